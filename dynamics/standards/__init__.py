@@ -1,0 +1,1 @@
+"""One document, one module, the edition in the name; printed symbols and the document's units."""

@@ -1,0 +1,1 @@
+"""Coupled thermal-dynamic design checker for back-to-back gear test rigs."""

@@ -1,0 +1,1 @@
+"""Named meshes, finite-element assembly and linear solvers. No physics."""
