@@ -1,0 +1,81 @@
+"""The law of one gear mesh: what every tooth pair does at every place on the path of contact.
+
+A mesh couples the rotations ``theta_1`` (pinion) and ``theta_2`` (wheel), both counted positive in the
+running direction of their own shaft. The approach along the transverse line of action is
+
+    x = r_b1 theta_1 - r_b2 theta_2 + offset                                                        [m]
+
+Tooth pair ``p`` (any integer) touches on the front flank at the path position
+
+    s_p = phase + r_b1 theta_1 - p base_pitch ,   s = 0 at the pitch point, growing to the pinion tip [m]
+
+and on the back flank at the mirrored position ``back_phase - r_b1 theta_1 + p base_pitch``. Slice ``i`` of
+the face width sees ``s_p - slice_shift[i]``. Its penetration is ``x - gap`` in front and
+``-x - backlash - gap`` on the back, and all forces and torques follow from the one potential
+
+    W = sum over flanks, pairs and slices of  k(s) max(0, penetration)^2 / 2                          [J]
+
+so that an angle-dependent stiffness neither creates nor destroys energy (ASME JMD 2005, Oh/Grosh/Barber).
+Damping acts in contact only, each contact force is clipped at zero, friction follows the sliding direction.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class MeshLaw(NamedTuple):
+    """Tables of one gear mesh on a uniform grid over the path of contact; plain numbers for the kernels."""
+
+    base_radius_1: float
+    """Base radius of the pinion [m]."""
+    base_radius_2: float
+    """Base radius of the wheel [m]."""
+    base_pitch: float
+    """Transverse base pitch [m]."""
+    teeth_1: int
+    teeth_2: int
+    tooth_offset_2: int
+    """Wheel tooth that meets pinion tooth 0 in pair 0: pair p joins p mod z1 with (p + offset) mod z2."""
+    path_start: float
+    """Path position of the first grid point [m]; the grid reaches beyond the active path on both sides."""
+    path_step: float
+    """Grid step [m]."""
+    stiffness: Array
+    """Stiffness of one tooth pair in one slice, shape (n_slices, n_path) [N/m]."""
+    gap: Array
+    """Gap of an ideal-pitch tooth pair in one slice, shape (n_slices, n_path) [m]: flank modifications inside
+    the active path, growing separation (tip corner contact) outside it."""
+    slice_shift: Array
+    """Lag of each slice on the path, shape (n_slices,) [m]: z tan(base helix angle)."""
+    deviation_1: Array
+    """Gap added by each pinion tooth, shape (teeth_1, n_path), or (1, n_path) if all teeth are equal [m]."""
+    deviation_2: Array
+    """The same for the wheel, shape (teeth_2, n_path) or (1, n_path) [m]."""
+    scale_1: Array
+    """Stiffness scale of each pinion tooth, shape (teeth_1,) or (1,) [-]."""
+    scale_2: Array
+    """Stiffness scale of each wheel tooth, shape (teeth_2,) or (1,) [-]."""
+    backlash: float
+    """Play between front and back flank along the line of action [m]."""
+    offset: float
+    """Approach imposed by shifting a helical gear axially [m]."""
+    phase: float
+    """Front-flank path position of pair 0 at theta_1 = 0 [m]."""
+    back_phase: float
+    """Back-flank path position of pair 0 at theta_1 = 0 [m]."""
+    damping: float
+    """Damping of the mesh at its mean stiffness [N s/m]; a contact takes the share k / mean_stiffness."""
+    mean_stiffness: float
+    """Mean stiffness of the mesh over one base pitch [N/m]."""
+    friction: float
+    """Friction coefficient of the tooth contact [-]."""
+    rolling_radius_1: float
+    """Distance of the pitch point from the pinion's base tangent point, T1C [m]."""
+    rolling_radius_2: float
+    """The same for the wheel, T2C [m]."""
+    friction_reversal_speed: float
+    """Sliding speed over which friction changes sign at the pitch point [m/s]."""

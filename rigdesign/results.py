@@ -1,0 +1,263 @@
+"""What a run returns: immutable records, named as they stand in results.json."""
+
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermal.fe.mesh import NamedMesh
+
+Verdict = Literal["pass", "warn", "fail", "not applicable"]
+Role = Literal["specimen", "rig"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """One design rule held against the result.
+
+    ``margin`` is the distance to the limit in the unit of the value, positive when held; ``utilisation`` is
+    the share of the limit used up, 1 at the limit. Both are None when the rule is not applicable.
+    """
+
+    id: str
+    title: str
+    value: float | None
+    limit: float | None
+    unit: str
+    comparison: Literal["<=", ">=", "within"]
+    margin: float | None
+    utilisation: float | None
+    verdict: Verdict
+    source: str
+    role: Role
+    reason: str = ""
+    group: str = ""
+    """Section of the report: dynamics, losses, temperatures, clearances, specimen, ramp."""
+    upper_limit: float | None = None
+    """Second limit of a window (comparison ``within``)."""
+    assumptions: tuple[str, ...] = ()
+    """Case paths of the assumptions the value rests on."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicFactorPoint:
+    """K_V of one gearbox at one speed [rpm]; simulated = max/mean (P2, Formula 1)."""
+
+    speed_rpm: float
+    simulated: float
+    simulated_half_peak_to_peak: float
+    iso_6336_1_method_b: float
+    method: str = ""
+    """harmonic_balance or time_integration."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RootStressHistory:
+    """Root stress of one gear over its rolling angle at the loaded held stage."""
+
+    gear: str
+    rolling_angle_deg: list[float]
+    dynamic_MPa: list[float]  # noqa: N815
+    quasi_static_MPa: list[float]  # noqa: N815
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearboxDynamics:
+    """Dynamic results of one gearbox."""
+
+    role: Role
+    dynamic_factor: list[DynamicFactorPoint]
+    dynamic_factor_variants: dict[str, list[DynamicFactorPoint]]
+    """The same curve under a named variant of the mesh law (e.g. ``unscaled_weber_banaschek_x0.8``)."""
+    dynamic_torque_peak_Nm: float  # noqa: N815
+    iso_factors: dict[str, float | str]
+    """Every factor of ISO 6336-1 method B at the test speed, by its printed symbol."""
+    lift_off: list[dict[str, Any]]
+    """{stage, start_s, end_s, share} intervals without tooth contact."""
+    resonances: list[dict[str, Any]]
+    """{mode, frequency_Hz, harmonic, speed_rpm, amplification, dangerous}."""
+    root_stress: list[RootStressHistory]
+    root_stress_factor: list[dict[str, float]]
+    """{speed_rpm, pinion, wheel}: max sigma_F dynamic / quasi-static beside K_V(n)."""
+    geometry: dict[str, float | str]
+    """Gear data, cold and warm, for the report."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RampHistory:
+    """Time run over the schedule, decimated for the report; envelopes keep the peaks at the internal rate."""
+
+    time_s: list[float]
+    speed_rpm: list[float]
+    stage: list[str]
+    target_torque_Nm: list[float]  # noqa: N815
+    drive_torque_Nm: list[float]  # noqa: N815
+    torque: dict[str, dict[str, list[float]]]
+    """gearbox -> {mean, maximum, minimum} of the dynamic torque [Nm] in each time slot."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicsResult:
+    """Everything the drivetrain says."""
+
+    gearboxes: dict[str, GearboxDynamics]
+    natural_frequencies: list[dict[str, Any]]
+    """{frequency_Hz, damping_ratio, shape}: named mode shapes of the assembled loop."""
+    shaft_frequencies: dict[str, list[float]]
+    """Free-free torsional frequencies [Hz] of each isolated shaft."""
+    crossings: list[dict[str, Any]]
+    """{gearbox, shaft, frequency_Hz, harmonic, speed_rpm}."""
+    damping_audit: list[dict[str, Any]]
+    """{joint, damping_ratio, corner_frequency_Hz, warning}."""
+    sampling: dict[str, float]
+    bracing: list[dict[str, Any]]
+    """Per stage: {stage, mode, torque_Nm, twist_deg, axial_shift_mm, half_gear_rotation_deg,
+    actuator_force_N, torque_cold_Nm, torque_hot_Nm}."""
+    ramp: RampHistory | None
+    torque_balance: list[dict[str, Any]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LossRow:
+    """Power loss of one place at one stage [W]; into_oil + into_body = power."""
+
+    place: str
+    kind: str
+    stage: str
+    power_W: float  # noqa: N815
+    into_oil_W: float  # noqa: N815
+    into_body_W: float  # noqa: N815
+    basis: Literal["computed", "input"]
+    details: dict[str, float | str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OilRow:
+    """One oil consumer at one stage."""
+
+    consumer: str
+    stage: str
+    inlet_degC: float  # noqa: N815
+    outlet_degC: float  # noqa: N815
+    flow_l_min: float
+    heat_W: float  # noqa: N815
+    """Loss into the oil plus heat taken from bodies."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeatRow:
+    """Heat of one surface [W], positive into the solid."""
+
+    surface: str
+    kind: str
+    power_W: float  # noqa: N815
+    area_m2: float
+    mean_temperature_degC: float  # noqa: N815
+    coefficient: dict[str, Any] | None = None
+    """Film coefficient with formula, inputs, range, source."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThermalResult:
+    """Steady temperatures of one gearbox at one held stage."""
+
+    gearbox: str
+    stage: str
+    max_temperature_degC: float  # noqa: N815
+    max_temperature_body: str
+    heat: list[HeatRow]
+    closure_relative: float
+    nodes: int
+    elements: int
+    bodies: dict[str, dict[str, float]]
+    """body -> {mean_degC, max_degC, min_degC}."""
+    room_heat_W: float  # noqa: N815
+    alternatives: dict[str, float]
+    """max_temperature_degC under another reading (radiation_included true / false)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GrowthResult:
+    """Expansion of one gearbox at one held stage; every entry carries cold, hot and unit."""
+
+    gearbox: str
+    stage: str
+    seal_gaps: list[dict[str, Any]]
+    """{seal, cold_mm, hot_min_mm, hot_mean_mm, angle_of_min_deg, hot_mm: [...], angle_deg: [...]}"""
+    shafts: list[dict[str, Any]]
+    """{shaft, growth_mm, axial_play_cold_mm, axial_play_hot_mm, free_expansion_mm}"""
+    gears: list[dict[str, Any]]
+    """{gear pair, centre_distance_cold_mm, centre_distance_hot_mm, backlash_cold_mm, backlash_hot_mm,
+    tip_clearance_cold_mm, tip_clearance_hot_mm, bulk_pinion_degC, bulk_wheel_degC}"""
+    bearings: list[dict[str, Any]]
+    """{bearing, diametral_clearance_cold_um, diametral_clearance_hot_um}"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CouplingHistory:
+    """Residuals of every pass of the coupling loop of one stage."""
+
+    stage: str
+    iterations: int
+    residuals: list[dict[str, float]]
+    """{temperature_K, growth_um, torque_relative} by pass."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class AssumptionRecord:
+    """An input marked as assumed in the case file."""
+
+    path: str
+    value: str
+    reason: str
+    range: tuple[str, str] | None = None
+    decides: tuple[str, ...] = ()
+    """Ids of the checks that rest on it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Warning:  # noqa: A001
+    """A warning of the tool's own: a result, never a Python warning."""
+
+    id: str
+    text: str
+
+
+@dataclass(frozen=True)
+class TemperatureField:
+    """Temperature and displacement of one gearbox at one stage, for pictures and .vtu."""
+
+    gearbox: str
+    stage: str
+    mesh: NamedMesh
+    temperature: NDArray[np.float64]
+    """(n_nodes,) [K]"""
+    displacement: NDArray[np.float64]
+    """(n_nodes, 3) [m]"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunResult:
+    """Result of `rigdesign.run_case`; all of it but ``fields`` goes into results.json."""
+
+    case: dict[str, str]
+    """{name, path, hash, title}"""
+    fidelity: str
+    verdict: Literal["pass", "warn", "fail"]
+    checks: list[Check]
+    dynamics: DynamicsResult | None
+    losses: list[LossRow]
+    oil: list[OilRow]
+    cooler: dict[str, float]
+    thermal: list[ThermalResult]
+    growth: list[GrowthResult]
+    coupling: list[CouplingHistory]
+    hand_checks: list[dict[str, Any]]
+    """{quantity, computed, by_hand, unit, formula}: a number an engineer can redo beside each key result."""
+    assumptions: list[AssumptionRecord]
+    overrides: list[dict[str, str]]
+    not_modelled: list[str]
+    warnings: list[Warning]
+    timings_s: dict[str, float]
+    fields: list[TemperatureField] = field(repr=False)
