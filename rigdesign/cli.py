@@ -1,0 +1,192 @@
+"""The command line: `rigdesign check | study | validate | schema | doctor`.
+
+Exit status: 0 all checks pass (study: complete; validate: no gate missed), 1 a check fails or a gate is
+missed, 2 usage or case error, 3 no convergence, 4 a system library is missing. Heavy imports happen inside
+the commands, so that `--help` answers at once.
+"""
+
+import json
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import App, CycloptsError, Parameter
+
+from rigdesign import __version__
+
+Fidelity = Literal["quick", "standard", "reference"]
+
+app = App(
+    name="rigdesign",
+    help="Coupled thermal-dynamic design checker for back-to-back gear test rigs.",
+    version=__version__,
+    exit_on_error=False,
+    print_error=False,
+)
+
+
+@app.command
+def check(
+    case: Path,
+    *,
+    out: Path | None = None,
+    fidelity: Fidelity = "standard",
+    json: bool = False,
+    fail_on: Literal["fail", "warn"] = "fail",
+) -> int:
+    """Compute loads, losses, temperatures and clearances of a rig and hold them against its limits.
+
+    Parameters
+    ----------
+    case
+        Case folder or its case.toml.
+    out
+        Folder for results.json, report.html, junit.xml, fields and curves.
+    fidelity
+        Size of the models: quick, standard or reference.
+    json
+        Print results.json on stdout; everything else goes to stderr.
+    fail_on
+        Verdict from which the exit status is 1.
+    """
+    from rigdesign.case import load_case
+    from rigdesign.report import prepare_output, results_document, write_results
+    from rigdesign.run import run_case
+    from rigdesign.terminal import Progress, print_checks
+
+    loaded = load_case(case)
+    if out is not None:
+        prepare_output(out)
+    with Progress() as progress:
+        result = run_case(loaded, fidelity=fidelity, progress=progress)
+        if out is not None:
+            progress("writing report")
+            write_results(result, out)
+    if json:
+        _print_json(results_document(result))
+    else:
+        print_checks(result, out)
+    failing = {"fail"} if fail_on == "fail" else {"fail", "warn"}
+    return 1 if result.verdict in failing else 0
+
+
+@app.command
+def study(
+    case: Path,
+    *,
+    vary: Annotated[list[str], Parameter(negative=())],
+    out: Path,
+    fidelity: Fidelity = "standard",
+    workers: int | None = None,
+    retry: bool = False,
+) -> int:
+    """Run a case over a grid of parameter values; resumes where it stopped.
+
+    Parameters
+    ----------
+    case
+        Case folder or its case.toml.
+    vary
+        'PATH=START:STOP:STEP' or 'PATH=v1,v2', once per parameter; several make a grid.
+    out
+        Folder of the study: ledger, results.csv, plot of margins.
+    fidelity
+        Size of the models.
+    workers
+        Number of worker processes; default one per core.
+    retry
+        Run points again that failed before.
+    """
+    from rigdesign.case import load_case
+    from rigdesign.study import parse_variation, run_study
+    from rigdesign.terminal import Progress, print_study
+
+    loaded = load_case(case)
+    variations = [parse_variation(text) for text in vary]
+    with Progress() as progress:
+        outcome = run_study(
+            loaded, variations, out, fidelity=fidelity, workers=workers, retry=retry, progress=progress
+        )
+    print_study(outcome, out)
+    return 0
+
+
+@app.command
+def validate(*, out: Path | None = None, json: bool = False, quick: bool = False) -> int:
+    """Print every published number beside ours, with the assumption it rests on.
+
+    Parameters
+    ----------
+    out
+        Folder for validation.json and validation.csv.
+    json
+        Print the rows as JSON on stdout.
+    quick
+        Leave out the rows that need a run of the prototype case.
+    """
+    from rigdesign.terminal import Progress, print_validation
+    from rigdesign.validate import validation_document, validation_rows, write_validation
+
+    with Progress() as progress:
+        rows = validation_rows(with_run=not quick, progress=progress)
+    if out is not None:
+        write_validation(rows, out)
+    if json:
+        _print_json(validation_document(rows))
+    else:
+        print_validation(rows)
+    return 1 if any(row.verdict == "gate missed" for row in rows) else 0
+
+
+@app.command
+def schema() -> int:
+    """Print the JSON Schema of the case file, for editors."""
+    from rigdesign.case import json_schema
+
+    _print_json(json_schema())
+    return 0
+
+
+@app.command
+def doctor() -> int:
+    """Look for missing system libraries and compile the kernels once."""
+    from rigdesign.system import diagnose
+    from rigdesign.terminal import print_findings
+
+    findings = diagnose()
+    print_findings(findings)
+    return 0 if all(finding.ok for finding in findings) else 4
+
+
+def main() -> None:
+    """Entry point of the `rigdesign` command."""
+    sys.exit(_exit_status(lambda: app(result_action="return_value")))
+
+
+def _exit_status(command: Callable[[], object]) -> int:
+    """Run a command and turn the tool's errors into messages and exit status."""
+    from rigdesign.errors import RigdesignError
+
+    try:
+        status = command()
+        sys.stdout.flush()
+    except CycloptsError as error:
+        print(f"rigdesign: {error}", file=sys.stderr)
+        return 2
+    except RigdesignError as error:
+        print(f"rigdesign: {error}", file=sys.stderr)
+        return error.exit_code
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        print("rigdesign: interrupted", file=sys.stderr)
+        return 130
+    return status if isinstance(status, int) else 0
+
+
+def _print_json(document: object) -> None:
+    json.dump(document, sys.stdout, indent=2, ensure_ascii=False, allow_nan=False)
+    sys.stdout.write("\n")

@@ -1,0 +1,130 @@
+"""What the commands show in a terminal: progress on stderr, tables on stdout."""
+
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from rigdesign.results import Check, RunResult
+
+if TYPE_CHECKING:
+    from rigdesign.system import Finding
+    from rigdesign.validate import ValidationRow
+
+STYLES = {"pass": "green", "warn": "yellow", "fail": "bold red", "not applicable": "dim"}
+
+
+class Progress:
+    """Says what is being computed: a spinner in a terminal, plain lines elsewhere."""
+
+    def __init__(self) -> None:
+        self._console = Console(stderr=True, highlight=False)
+        self._status = self._console.status("starting") if self._console.is_terminal else None
+        self._started = time.perf_counter()
+
+    def __enter__(self) -> "Progress":
+        if self._status is not None:
+            self._status.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        if self._status is not None:
+            self._status.stop()
+
+    def __call__(self, message: str) -> None:
+        """Show ``message`` with the seconds since the start."""
+        text = f"{time.perf_counter() - self._started:6.1f} s  {message}"
+        if self._status is not None:
+            self._status.update(text)
+        else:
+            print(text, file=sys.stderr, flush=True)
+
+
+def print_checks(result: RunResult, out: Path | None) -> None:
+    """Checks grouped as in the report, failing ones explained, then the verdict."""
+    console = Console(highlight=False)
+    table = Table(title=f"{result.case['title']}  ({result.fidelity})", title_justify="left", pad_edge=False)
+    for heading, justify in (
+        ("check", "left"), ("value", "right"), ("limit", "right"), ("margin", "right"), ("used", "right"),
+        ("verdict", "left"),
+    ):  # fmt: skip
+        table.add_column(heading, justify=justify)  # type: ignore[arg-type]
+    group = None
+    for check in result.checks:
+        if check.group != group:
+            group = check.group
+            table.add_section()
+        table.add_row(*_check_cells(check))
+    console.print(table)
+    for check in result.checks:
+        if check.verdict in ("fail", "warn"):
+            console.print(Text(f"{check.verdict}: ", STYLES[check.verdict]) + Text(f"{check.title}: {check.reason}"))
+    for record in result.warnings:
+        console.print(Text(f"note {record.id}: ", "yellow") + Text(record.text))
+    console.print(Text("verdict: ") + Text(result.verdict, STYLES[result.verdict]))
+    if out is not None:
+        console.print(f"report: {out / 'report.html'}")
+
+
+def _check_cells(check: Check) -> tuple[Text, ...]:
+    limit = _number(check.limit)
+    if check.upper_limit is not None:
+        limit = f"{limit} … {_number(check.upper_limit)}"
+    used = "" if check.utilisation is None else f"{100 * check.utilisation:.0f} %"
+    margin = "" if check.margin is None else f"{_number(check.margin)} {check.unit}"
+    value = "" if check.value is None else f"{_number(check.value)} {check.unit}"
+    cells = (check.title, value, f"{check.comparison} {limit}" if limit else "", margin, used)
+    return (*map(Text, cells), Text(check.verdict, STYLES[check.verdict]))
+
+
+def _number(value: float | None) -> str:
+    return "" if value is None else f"{value:.4g}"
+
+
+def print_study(outcome: Any, out: Path) -> None:
+    """One line per point that failed, then where the table is."""
+    console = Console(highlight=False)
+    for point in outcome.failed:
+        console.print(Text("failed: ", "bold red") + Text(point))
+    console.print(f"{outcome.completed} points computed, {outcome.reused} found done: {out / 'results.csv'}")
+
+
+def print_findings(findings: Sequence["Finding"]) -> None:
+    """The lines of `rigdesign doctor`."""
+    console = Console(highlight=False, soft_wrap=True)
+    for finding in findings:
+        mark = Text("ok      ", "green") if finding.ok else Text("missing ", "bold red")
+        console.print(mark + Text(f"{finding.subject:12s} {finding.text}"))
+
+
+def print_validation(rows: Sequence["ValidationRow"]) -> None:
+    """Published numbers beside ours; the headline counts predicted rows only."""
+    console = Console(highlight=False)
+    table = Table(title="published numbers beside ours", title_justify="left", pad_edge=False)
+    for heading in ("id", "quantity", "published", "computed", "unit", "deviation", "verdict", "basis"):
+        table.add_column(heading)
+    for row in rows:
+        deviation = "" if row.deviation is None else f"{100 * row.deviation:+.2f} %"
+        style = {"gate missed": "bold red", "not modelled": "dim"}.get(row.verdict, "")
+        table.add_row(
+            row.id, row.quantity, row.published_text, row.computed_text, row.unit, deviation,
+            Text(row.verdict, style), row.basis,
+        )  # fmt: skip
+    console.print(table)
+    for row in rows:
+        if row.assumptions:
+            console.print(Text(f"{row.id}: ", "bold") + Text(row.assumptions))
+    predicted = [row for row in rows if row.basis == "predicted" and row.deviation is not None]
+    within = sum(row.verdict in ("gate held", "goal met") for row in predicted)
+    console.print(f"predicted rows within their goal: {within} of {len(predicted)}")
