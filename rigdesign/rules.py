@@ -1,0 +1,130 @@
+"""Design rules: a value held against a limit gives a Check with margin, utilisation and verdict.
+
+Margins are in the unit of the value and positive when the rule holds. Utilisation is the used share of the
+limit, 1 at the limit: value/limit below an upper limit, limit/value above a lower one, the larger of both in
+a window. A value beyond a lower limit of zero or below zero is counted as 1 plus the shortfall in limits.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from rigdesign.results import Check, Role, Verdict
+
+WARN_UTILISATION = 0.95
+"""A rule that holds with more than this share of its limit used is a warning."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rule:
+    """What is held against what; everything of a check but the value."""
+
+    id: str
+    title: str
+    unit: str
+    source: str
+    group: str
+    role: Role = "rig"
+    limit: float | None = None
+    upper_limit: float | None = None
+    comparison: Literal["<=", ">=", "within"] = "<="
+    warn_only: bool = False
+    """A broken rule warns instead of failing (a rule of good practice, not a limit)."""
+
+
+def hold(
+    rule: Rule, value: float, reason: str = "", assumptions: Sequence[str] = (), doubt: str = ""
+) -> Check:
+    """Hold ``value`` against ``rule``.
+
+    ``doubt`` names why a held rule is still only a warning (a formula outside its range, say).
+    """
+    if rule.limit is None:
+        raise ValueError(f"rule {rule.id} has no limit; give one or use not_applicable")
+    margin = _margin(rule, value)
+    utilisation = _utilisation(rule, value)
+    return Check(
+        id=rule.id,
+        title=rule.title,
+        value=value,
+        limit=rule.limit,
+        upper_limit=rule.upper_limit,
+        unit=rule.unit,
+        comparison=rule.comparison,
+        margin=margin,
+        utilisation=utilisation,
+        verdict=_verdict(rule, margin, utilisation, doubt),
+        source=rule.source,
+        role=rule.role,
+        reason="; ".join(part for part in (reason, doubt) if part),
+        group=rule.group,
+        assumptions=tuple(assumptions),
+    )
+
+
+def not_applicable(rule: Rule, reason: str) -> Check:
+    """The rule does not apply to this rig; ``reason`` says why."""
+    return Check(
+        id=rule.id,
+        title=rule.title,
+        value=None,
+        limit=rule.limit,
+        upper_limit=rule.upper_limit,
+        unit=rule.unit,
+        comparison=rule.comparison,
+        margin=None,
+        utilisation=None,
+        verdict="not applicable",
+        source=rule.source,
+        role=rule.role,
+        reason=reason,
+        group=rule.group,
+    )
+
+
+def overall(checks: Sequence[Check]) -> Literal["pass", "warn", "fail"]:
+    """The worst verdict; rules that do not apply do not count."""
+    verdicts = {check.verdict for check in checks}
+    if "fail" in verdicts:
+        return "fail"
+    return "warn" if "warn" in verdicts else "pass"
+
+
+def _margin(rule: Rule, value: float) -> float:
+    assert rule.limit is not None
+    if rule.comparison == "<=":
+        return rule.limit - value
+    if rule.comparison == ">=":
+        return value - rule.limit
+    assert rule.upper_limit is not None
+    return min(value - rule.limit, rule.upper_limit - value)
+
+
+def _utilisation(rule: Rule, value: float) -> float:
+    assert rule.limit is not None
+    if rule.comparison == "<=":
+        return _upper_share(value, rule.limit)
+    if rule.comparison == ">=":
+        return _lower_share(value, rule.limit)
+    assert rule.upper_limit is not None
+    return max(_lower_share(value, rule.limit), _upper_share(value, rule.upper_limit))
+
+
+def _upper_share(value: float, limit: float) -> float:
+    if limit > 0:
+        return max(0.0, value / limit)
+    return 0.0 if value <= limit else 1.0 + (value - limit)
+
+
+def _lower_share(value: float, limit: float) -> float:
+    if limit <= 0:
+        return 0.0 if value >= limit else 1.0 + (limit - value)
+    if value > 0:
+        return limit / value
+    return 1.0 + (limit - value) / limit
+
+
+def _verdict(rule: Rule, margin: float, utilisation: float, doubt: str) -> Verdict:
+    if margin < 0:
+        return "warn" if rule.warn_only else "fail"
+    return "warn" if doubt or utilisation > WARN_UTILISATION else "pass"
