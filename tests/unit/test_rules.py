@@ -1,0 +1,65 @@
+"""Margin, utilisation and verdict of every kind of rule."""
+
+import pytest
+
+from rigdesign.rules import Rule, hold, not_applicable, overall
+
+
+def rule(**changes: object) -> Rule:
+    data: dict[str, object] = {
+        "id": "x", "title": "x", "unit": "mm", "source": "test", "group": "clearances", "limit": 2.0
+    }  # fmt: skip
+    return Rule(**(data | changes))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("comparison", "value", "margin", "utilisation", "verdict"),
+    [
+        ("<=", 1.0, 1.0, 0.5, "pass"),
+        ("<=", 1.96, 0.04, 0.98, "warn"),
+        ("<=", 3.0, -1.0, 1.5, "fail"),
+        (">=", 4.0, 2.0, 0.5, "pass"),
+        (">=", 1.0, -1.0, 2.0, "fail"),
+        (">=", -1.0, -3.0, 2.5, "fail"),
+    ],
+)
+def test_one_sided_rules(
+    comparison: str, value: float, margin: float, utilisation: float, verdict: str
+) -> None:
+    check = hold(rule(comparison=comparison), value)
+    assert check.margin == pytest.approx(margin)
+    assert check.utilisation == pytest.approx(utilisation)
+    assert check.verdict == verdict
+
+
+@pytest.mark.parametrize(("value", "margin", "verdict"), [(1.0, -1.0, "fail"), (3.0, 1.0, "pass"), (9.0, -4.0, "fail")])
+def test_window(value: float, margin: float, verdict: str) -> None:
+    check = hold(rule(comparison="within", upper_limit=5.0), value)
+    assert check.margin == pytest.approx(margin)
+    assert check.verdict == verdict
+
+
+def test_a_lower_limit_of_zero_is_broken_below_zero_only() -> None:
+    assert hold(rule(comparison=">=", limit=0.0), 0.1).verdict == "pass"
+    assert hold(rule(comparison=">=", limit=0.0), -0.1).utilisation == pytest.approx(1.1)
+
+
+def test_doubt_turns_a_pass_into_a_warning_and_leaves_a_fail() -> None:
+    assert hold(rule(), 1.0, doubt="outside the regression").verdict == "warn"
+    assert hold(rule(), 3.0, doubt="outside the regression").verdict == "fail"
+
+
+def test_a_rule_of_good_practice_warns() -> None:
+    assert hold(rule(warn_only=True), 3.0).verdict == "warn"
+
+
+def test_overall_is_the_worst_applicable_verdict() -> None:
+    good, bad = hold(rule(), 1.0), hold(rule(), 3.0)
+    skipped = not_applicable(rule(), "no such part")
+    assert overall([good, skipped]) == "pass"
+    assert overall([good, bad, skipped]) == "fail"
+
+
+def test_a_rule_without_limit_is_refused() -> None:
+    with pytest.raises(ValueError, match="has no limit"):
+        hold(rule(limit=None), 1.0)
