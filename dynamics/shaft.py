@@ -1,0 +1,177 @@
+"""Stepped shafts in torsion: cylinders and discs turned into a chain of lumped inertias and springs."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+STEEL_SHEAR_MODULUS = 79.3e9
+"""Shear modulus of steel [Pa] (E 206 GPa, nu 0.30)."""
+STEEL_DENSITY = 7850.0
+"""Density of steel [kg/m3]."""
+
+
+class DrivetrainError(ValueError):
+    """A drivetrain that cannot be built; the message names part, value, limit and remedy."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """Cylinder of a stepped shaft: length, outer and inner diameter [m]."""
+
+    length: float
+    outer_diameter: float
+    inner_diameter: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.length > 0.0:
+            raise DrivetrainError(
+                f"section length = {self.length} m: must be above 0 m; give a positive length"
+            )
+        if not 0.0 <= self.inner_diameter < self.outer_diameter:
+            raise DrivetrainError(
+                f"section inner diameter = {self.inner_diameter} m: must be at least 0 and below the outer "
+                f"diameter {self.outer_diameter} m; correct one of the two"
+            )
+
+    @property
+    def polar_moment(self) -> float:
+        """Polar second moment of area pi (D^4 - d^4) / 32 [m4]."""
+        return math.pi * (self.outer_diameter**4 - self.inner_diameter**4) / 32.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Disc:
+    """Rigid disc on a shaft (coupling flange, nut, torque flange half): inertia [kg m2] at a position [m]."""
+
+    name: str
+    position: float
+    inertia: float
+
+    def __post_init__(self) -> None:
+        if not self.inertia > 0.0:
+            raise DrivetrainError(
+                f"disc {self.name!r}: inertia = {self.inertia} kg m2: must be above 0; leave out a massless disc"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaft:
+    """Stepped shaft from its left end at 0 m to its right end, in running direction of its own axis.
+
+    ``element_length`` [m] is the longest element. Lumped inertia makes a frequency low by the share
+    (omega h / c)^2 / 24 with c = sqrt(G/rho) = 3180 m/s: 0.3 % at 13 kHz for the default 10 mm.
+    """
+
+    name: str
+    sections: tuple[Section, ...]
+    discs: tuple[Disc, ...] = ()
+    shear_modulus: float = STEEL_SHEAR_MODULUS
+    density: float = STEEL_DENSITY
+    element_length: float = 0.010
+
+    def __post_init__(self) -> None:
+        if not self.sections:
+            raise DrivetrainError(f"shaft {self.name!r}: has no section; give at least one")
+        for quantity in ("shear_modulus", "density", "element_length"):
+            if not getattr(self, quantity) > 0.0:
+                raise DrivetrainError(
+                    f"shaft {self.name!r}: {quantity} = {getattr(self, quantity)}: must be above 0; correct it"
+                )
+        for disc in self.discs:
+            self.check_position(disc.position, f"disc {disc.name!r}")
+
+    @property
+    def length(self) -> float:
+        """Total length [m]."""
+        return math.fsum(section.length for section in self.sections)
+
+    @property
+    def inertia(self) -> float:
+        """Polar inertia of sections and discs [kg m2]."""
+        body = math.fsum(self.density * s.polar_moment * s.length for s in self.sections)
+        return body + math.fsum(disc.inertia for disc in self.discs)
+
+    def check_position(self, position: float, part: str) -> None:
+        """Raise DrivetrainError when a part sits beyond the ends of the shaft."""
+        if not -1e-9 <= position <= self.length + 1e-9:
+            raise DrivetrainError(
+                f"{part} on shaft {self.name!r}: position = {position} m: must lie within 0 and "
+                f"{self.length:.6g} m; move the part or lengthen the shaft"
+            )
+
+
+@dataclass(frozen=True)
+class ShaftChain:
+    """Lumped chain of one shaft: ``positions`` and ``inertia`` (n,) [m], [kg m2]; ``springs`` (n - 1,) [N m/rad]."""
+
+    positions: Array
+    inertia: Array
+    springs: Array
+
+    def node(self, position: float) -> int:
+        """Index of the node at a position that was asked for when the chain was built."""
+        return int(np.argmin(np.abs(self.positions - position)))
+
+
+def discretise(shaft: Shaft, stations: tuple[float, ...] = ()) -> ShaftChain:
+    """Chain of lumped inertias with a node at every step, disc and station, none further apart than asked.
+
+    stations : positions of attached parts [m]; each gets a node of its own, so nothing is moved.
+
+    Element stiffness G J / h; half of the inertia rho J h goes to either end. The disc inertias are added.
+    """
+    steps = np.cumsum([0.0] + [section.length for section in shaft.sections])
+    marks = np.concatenate(
+        [steps, np.clip(stations, 0.0, steps[-1]), [disc.position for disc in shaft.discs]]
+    )
+    marks = np.unique(np.round(np.clip(marks, 0.0, steps[-1]), 9))
+    pieces = [
+        np.linspace(a, b, max(1, math.ceil((b - a) / shaft.element_length - 1e-9)) + 1)[:-1]
+        for a, b in zip(marks[:-1], marks[1:])
+    ]
+    positions = np.concatenate([*pieces, marks[-1:]])
+    lengths = np.diff(positions)
+    middle = positions[:-1] + 0.5 * lengths
+    section_of = np.clip(np.searchsorted(steps, middle) - 1, 0, len(shaft.sections) - 1)
+    moment = np.array([section.polar_moment for section in shaft.sections])[section_of]
+    inertia = np.zeros(positions.size)
+    half = 0.5 * shaft.density * moment * lengths
+    inertia[:-1] += half
+    inertia[1:] += half
+    chain = ShaftChain(positions, inertia, shaft.shear_modulus * moment / lengths)
+    for disc in shaft.discs:
+        inertia[chain.node(disc.position)] += disc.inertia
+    return chain
+
+
+def free_frequencies(shaft: Shaft, attached: tuple[tuple[float, float], ...] = (), count: int = 3) -> Array:
+    """First elastic torsional frequencies [Hz] of the free-free shaft with rigidly attached inertias.
+
+    attached : (position [m], inertia [kg m2]) of every body that counts as rigid with the shaft.
+    """
+    from scipy.linalg import eigh_tridiagonal
+
+    chain = discretise(shaft, tuple(position for position, _ in attached))
+    inertia = chain.inertia.copy()
+    for position, value in attached:
+        inertia[chain.node(position)] += value
+    diagonal = np.zeros(inertia.size)
+    diagonal[:-1] += chain.springs
+    diagonal[1:] += chain.springs
+    scale = 1.0 / np.sqrt(inertia)
+    if count + 1 > inertia.size:
+        raise DrivetrainError(
+            f"shaft {shaft.name!r}: {count} elastic modes asked of {inertia.size} nodes: shorten element_length"
+        )
+    squared: Array = eigh_tridiagonal(
+        diagonal * scale**2,
+        -chain.springs * scale[:-1] * scale[1:],
+        eigvals_only=True,
+        select="i",
+        select_range=(0, count),
+    )
+    return np.asarray(np.sqrt(np.maximum(squared[1:], 0.0)) / (2.0 * math.pi))
