@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +29,7 @@ class Section:
 
     def __post_init__(self) -> None:
         if not self.length > 0.0:
-            raise DrivetrainError(
-                f"section length = {self.length} m: must be above 0 m; give a positive length"
-            )
+            raise DrivetrainError(f"section length = {self.length} m: must be above 0; correct it")
         if not 0.0 <= self.inner_diameter < self.outer_diameter:
             raise DrivetrainError(
                 f"section inner diameter = {self.inner_diameter} m: must be at least 0 and below the outer "
@@ -54,7 +53,7 @@ class Disc:
     def __post_init__(self) -> None:
         if not self.inertia > 0.0:
             raise DrivetrainError(
-                f"disc {self.name!r}: inertia = {self.inertia} kg m2: must be above 0; leave out a massless disc"
+                f"disc {self.name!r}: inertia = {self.inertia} kg m2: must be above 0; else leave it out"
             )
 
 
@@ -79,7 +78,7 @@ class Shaft:
         for quantity in ("shear_modulus", "density", "element_length"):
             if not getattr(self, quantity) > 0.0:
                 raise DrivetrainError(
-                    f"shaft {self.name!r}: {quantity} = {getattr(self, quantity)}: must be above 0; correct it"
+                    f"shaft {self.name!r}: {quantity} = {getattr(self, quantity)}: must be above 0"
                 )
         for disc in self.discs:
             self.check_position(disc.position, f"disc {disc.name!r}")
@@ -106,7 +105,7 @@ class Shaft:
 
 @dataclass(frozen=True)
 class ShaftChain:
-    """Lumped chain of one shaft: ``positions`` and ``inertia`` (n,) [m], [kg m2]; ``springs`` (n - 1,) [N m/rad]."""
+    """Lumped chain of a shaft: positions [m], inertia [kg m2], both (n,); springs (n - 1,) [N m/rad]."""
 
     positions: Array
     inertia: Array
@@ -131,7 +130,7 @@ def discretise(shaft: Shaft, stations: tuple[float, ...] = ()) -> ShaftChain:
     marks = np.unique(np.round(np.clip(marks, 0.0, steps[-1]), 9))
     pieces = [
         np.linspace(a, b, max(1, math.ceil((b - a) / shaft.element_length - 1e-9)) + 1)[:-1]
-        for a, b in zip(marks[:-1], marks[1:])
+        for a, b in pairwise(marks)
     ]
     positions = np.concatenate([*pieces, marks[-1:]])
     lengths = np.diff(positions)
@@ -165,9 +164,9 @@ def free_frequencies(shaft: Shaft, attached: tuple[tuple[float, float], ...] = (
     scale = 1.0 / np.sqrt(inertia)
     if count + 1 > inertia.size:
         raise DrivetrainError(
-            f"shaft {shaft.name!r}: {count} elastic modes asked of {inertia.size} nodes: shorten element_length"
+            f"shaft {shaft.name!r}: {count} elastic modes asked of {inertia.size} nodes: refine it"
         )
-    squared: Array = eigh_tridiagonal(
+    squared = eigh_tridiagonal(
         diagonal * scale**2,
         -chain.springs * scale[:-1] * scale[1:],
         eigvals_only=True,

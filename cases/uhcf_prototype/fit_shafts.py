@@ -5,15 +5,16 @@ cylinders each that have these frequencies, all four at once, so that they also 
 
 What counts as shaft: the five cylinders (steel, no bore), the coupling flange at the coupling end, and the
 gear body as a rigid ring on the middle cylinder. The gear sits on a spline of 1e6 Nm/rad with 1e3 Nms/rad
-(P2, Table 1): its corner frequency is 159 Hz, so above 3.5 kHz the damper carries the gear along as if it were
-shrunk on (damping ratio about 22 for the test pinion). It is therefore counted as rigidly attached.
+(P2, Table 1): its corner frequency is 159 Hz, so above 3.5 kHz the damper carries the gear along as if it
+were shrunk on (damping ratio about 22 for the test pinion). It is therefore counted as rigidly attached.
 
 Layout, outboard end first: journal, shoulder, gear seat, shoulder, journal with coupling end. Journals are
 40 mm. Both shafts of a gearbox have their bearings in common planes, and the gear-to-gear distance of the
 pinion line equals that of the wheel line, whose coupling is longer by the torque flange.
 
-Twelve numbers are met with 40 free ones: the dimensions are an assumption that reproduces Table 2, no finding.
-Run `python fit_shafts.py` (about half a minute, the same result every time); it prints a TOML fragment.
+Twelve numbers are met with 40 free ones: the dimensions are an assumption that reproduces Table 2, not a
+finding. `python cases/uhcf_prototype/fit_shafts.py` takes about half a minute, gives the same result every
+time and prints a TOML fragment.
 """
 
 import math
@@ -65,7 +66,7 @@ def gear_inertia(target: Target, seat_diameter: float) -> float:
 
 
 def build(target: Target, p: Array, element_length: float) -> tuple[Shaft, float, float]:
-    """Shaft from its unknowns, with the position [m] and the inertia [kg m2] of its gear, coupling end last."""
+    """Shaft from its unknowns, with the position [m] and inertia [kg m2] of its gear, coupling end last."""
     diameters = [JOURNAL_DIAMETER, *p[DIAMETERS], JOURNAL_DIAMETER]
     sections = tuple(
         Section(length=float(length) * 1e-3, outer_diameter=float(diameter) * 1e-3)
