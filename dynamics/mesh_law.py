@@ -10,8 +10,10 @@ Tooth pair ``p`` (any integer) touches on the front flank at the path position
     s_p = phase + r_b1 theta_1 - p base_pitch ,   s = 0 at the pitch point, growing to the pinion tip [m]
 
 and on the back flank at the mirrored position ``back_phase - r_b1 theta_1 + p base_pitch``. Slice ``i`` of
-the face width sees ``s_p - slice_shift[i]``. Its penetration is ``x - gap`` in front and
-``-x - backlash - gap`` on the back, and all forces and torques follow from the one potential
+the face width sees ``s_p - slice_shift[i]`` in front and, the helix being mirrored with the flank, the back
+position plus ``slice_shift[i]``. The deviation of a tooth counts on both of its flanks. The penetration is
+``x - gap`` in front and ``-x - backlash - gap`` on the back, and all forces and torques follow from the one
+potential
 
     W = sum over flanks, pairs and slices of  k(s) max(0, penetration)^2 / 2                          [J]
 
@@ -79,3 +81,51 @@ class MeshLaw(NamedTuple):
     """The same for the wheel, T2C [m]."""
     friction_reversal_speed: float
     """Sliding speed over which friction changes sign at the pitch point [m/s]."""
+
+
+def check_mesh_law(law: MeshLaw) -> None:
+    """Raise ``ValueError`` naming value, limit and remedy if the tables do not describe a possible mesh."""
+    n_slices, n_path = law.stiffness.shape
+    positive = {
+        "base_radius_1": law.base_radius_1,
+        "base_radius_2": law.base_radius_2,
+        "base_pitch": law.base_pitch,
+        "path_step": law.path_step,
+        "mean_stiffness": law.mean_stiffness,
+        "teeth_1": law.teeth_1,
+        "teeth_2": law.teeth_2,
+    }
+    for name, value in positive.items():
+        if not (value > 0.0 and np.isfinite(value)):
+            raise ValueError(f"mesh law: {name} = {value} must be positive and finite")
+    not_negative = {
+        "backlash": law.backlash,
+        "damping": law.damping,
+        "friction": law.friction,
+        "friction_reversal_speed": law.friction_reversal_speed,
+        "least stiffness": float(np.min(law.stiffness)),
+        "least scale_1": float(np.min(law.scale_1)),
+        "least scale_2": float(np.min(law.scale_2)),
+    }
+    for name, value in not_negative.items():
+        if not (value >= 0.0 and np.isfinite(value)):
+            raise ValueError(f"mesh law: {name} = {value} must not be negative")
+    shapes: dict[str, tuple[tuple[int, ...], tuple[tuple[int, ...], ...]]] = {
+        "gap": (law.gap.shape, ((n_slices, n_path),)),
+        "slice_shift": (law.slice_shift.shape, ((n_slices,),)),
+        "deviation_1": (law.deviation_1.shape, ((law.teeth_1, n_path), (1, n_path))),
+        "deviation_2": (law.deviation_2.shape, ((law.teeth_2, n_path), (1, n_path))),
+        "scale_1": (law.scale_1.shape, ((law.teeth_1,), (1,))),
+        "scale_2": (law.scale_2.shape, ((law.teeth_2,), (1,))),
+    }
+    for name, (shape, allowed) in shapes.items():
+        if shape not in allowed:
+            raise ValueError(f"mesh law: {name} has shape {shape}, expected {' or '.join(map(str, allowed))}")
+    if n_slices < 1 or n_path < 2:
+        raise ValueError(
+            f"mesh law: stiffness has shape {law.stiffness.shape}; one slice and two path points are needed"
+        )
+    if not all(np.all(np.isfinite(table)) for table in (law.gap, law.deviation_1, law.deviation_2)):
+        raise ValueError(
+            "mesh law: gap and deviations must be finite; let the gap grow outside the active path"
+        )
