@@ -1,1 +1,80 @@
 """Writers of results.json, junit.xml, fields, curves and the self-contained report."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from rigdesign.errors import OutputError
+from rigdesign.report.output import prepare_output, remove_published, staged, write_whole
+from rigdesign.report.results_json import NonFiniteResultError, results_document, to_text
+from rigdesign.results import RunResult
+
+__all__ = [
+    "NonFiniteResultError",
+    "OutputError",
+    "prepare_output",
+    "results_document",
+    "write_results",
+    "write_whole",
+]
+
+
+def write_results(result: RunResult, out: Path) -> None:
+    """Write results.json, report.html, junit.xml, fields/*.vtu and curves/*.csv to the folder ``out``.
+
+    Every file appears whole or not at all, results.json last. Files of an earlier run in the same folder that
+    this run does not write are removed; other files are left alone.
+
+    Raises
+    ------
+    OutputError
+        If the folder cannot be written.
+    NonFiniteResultError
+        If a result is NaN or infinite; nothing is written then.
+    """
+    document = results_document(result)
+    earlier = _published_before(out)
+    with staged(out) as scratch:
+        document["fields"] = _write_fields(result, scratch)
+        _write_curves(result, scratch)
+        _write_report(result, scratch)
+        files = [path.relative_to(scratch).as_posix() for path in scratch.rglob("*") if path.is_file()]
+        document["files"] = sorted([*files, "results.json"])
+        (scratch / "results.json").write_text(to_text(document), encoding="utf-8", newline="\n")
+    remove_published(out, sorted(set(earlier) - set(document["files"])))
+
+
+def _write_fields(result: RunResult, folder: Path) -> list[dict[str, Any]]:
+    from rigdesign.report.fields import file_stem, write_field
+
+    (folder / "fields").mkdir()
+    entries = []
+    for field in result.fields:
+        name = f"fields/{file_stem(field.gearbox, field.stage)}.vtu"
+        entries.append({"file": name, **write_field(field, folder / name)})
+    return entries
+
+
+def _write_curves(result: RunResult, folder: Path) -> None:
+    from rigdesign.report.tables import curve_tables
+
+    (folder / "curves").mkdir()
+    for name, text in curve_tables(result).items():
+        (folder / "curves" / name).write_text(text, encoding="utf-8", newline="\n")
+
+
+def _write_report(result: RunResult, folder: Path) -> None:
+    from rigdesign.report.html import report_html
+    from rigdesign.report.junit import write_junit
+
+    write_junit(result, folder / "junit.xml")
+    (folder / "report.html").write_text(report_html(result), encoding="utf-8", newline="\n")
+
+
+def _published_before(out: Path) -> list[str]:
+    """Files that an earlier results.json in this folder lists; an unreadable one lists none."""
+    try:
+        listed = json.loads((out / "results.json").read_text(encoding="utf-8")).get("files", [])
+    except (OSError, ValueError, AttributeError):
+        return []
+    return [name for name in listed if isinstance(name, str)]

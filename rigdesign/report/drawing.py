@@ -1,0 +1,114 @@
+"""The look of every figure and its way into the page as inline SVG."""
+
+import io
+import re
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+INK = "#22303c"
+GRID = "#d9dfe4"
+MUTED = "#7d8b97"
+SERIES = ("#1f5a8a", "#c2571a", "#3c7a4b", "#7a4c93", "#9a7b1c", "#2a8c8c", "#a3395b", "#5b6b78")
+VERDICT_COLOURS = {"pass": "#2e7d4f", "warn": "#b7791f", "fail": "#b3261e", "not applicable": "#8a96a1"}
+
+WIDTH = 9.2
+"""Width of a full figure [in]; the page scales it to its text width."""
+
+STYLE: dict[Any, Any] = {
+    "svg.hashsalt": "rigdesign",
+    "svg.fonttype": "none",
+    "font.family": "DejaVu Sans",
+    "font.size": 8.5,
+    "mathtext.fontset": "dejavusans",
+    "axes.edgecolor": MUTED,
+    "axes.labelcolor": INK,
+    "axes.titlesize": 9,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.linewidth": 0.7,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "grid.color": GRID,
+    "grid.linewidth": 0.6,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "text.color": INK,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "lines.linewidth": 1.2,
+    "path.simplify": True,
+    "path.simplify_threshold": 0.3,
+    "figure.facecolor": "white",
+    "image.composite_image": False,
+}
+"""matplotlib settings of every figure; text stays text, so that it can be searched and copied."""
+
+NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
+FONT_STACK = "'DejaVu Sans', Verdana, Geneva, sans-serif"
+
+
+@contextmanager
+def drawing_style() -> Iterator[None]:
+    """Apply ``STYLE`` while figures are made and drawn; matplotlib's global settings come back afterwards."""
+    import matplotlib as mpl
+
+    with warnings.catch_warnings(), mpl.rc_context():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from")
+        mpl.rcdefaults()
+        mpl.rcParams.update(STYLE)
+        yield
+
+
+def new_figure(height: float, width: float = WIDTH) -> "Figure":
+    """A white figure of the given size [in] without a window."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height))
+
+
+def inline_svg(figure: "Figure", name: str, description: str) -> str:
+    """The figure as an <svg> element for an HTML page.
+
+    name : prefix of every id in it, unique on the page
+    description : text for screen readers (plain text; escaped here)
+    """
+    from html import escape
+
+    buffer = io.StringIO()
+    figure.savefig(buffer, format="svg", metadata=NO_METADATA, dpi=160)
+    svg = buffer.getvalue()
+    svg = svg[svg.index("<svg") :]
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, count=1, flags=re.DOTALL)
+    svg = re.sub(r'( id="|xlink:href="#|url\(#)', rf"\g<1>{name}-", svg)
+    svg = svg.replace("'DejaVu Sans'", FONT_STACK)
+    label = escape(description, quote=True)
+    return svg.replace("<svg ", f'<svg role="img" aria-label="{label}" ', 1)
+
+
+def plain(text: str) -> str:
+    """A user's text for matplotlib: a dollar sign is a dollar sign, not the start of a formula."""
+    return text.replace("$", r"\$")
+
+
+def finish(axes: "Axes", xlabel: str = "", ylabel: str = "", title: str = "") -> None:
+    """Labels (with unit and convention) and title of one plot."""
+    axes.set_xlabel(xlabel)
+    axes.set_ylabel(ylabel)
+    if title:
+        axes.set_title(title)
+
+
+def legend_right(axes: "Axes") -> None:
+    """A legend outside, to the right of the plot, where it hides no curve."""
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.02), borderaxespad=0.0)

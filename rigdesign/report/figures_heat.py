@@ -1,0 +1,192 @@
+"""Figures of losses, oil, heat flows, clearances and convergence."""
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from rigdesign.report.drawing import INK, MUTED, SERIES, finish, legend_right, new_figure, plain
+from rigdesign.results import CouplingHistory, GrowthResult, LossRow, OilRow, ThermalResult
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WARM, COLD = "#b3452c", "#2b6ca3"
+
+
+def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
+    """Power loss of every stage [W], stacked by kind."""
+    stages = list(dict.fromkeys(row.stage for row in losses))
+    kinds = list(dict.fromkeys(row.kind for row in losses))
+    height = 0.75 + 0.34 * len(stages)
+    figure = new_figure(height)
+    axes = figure.subplots()
+    left = [0.0] * len(stages)
+    for colour, kind in zip(_colours(len(kinds)), kinds, strict=True):
+        power = [
+            sum(row.power_W for row in losses if row.stage == stage and row.kind == kind) for stage in stages
+        ]
+        axes.barh(range(len(stages)), power, left=left, color=colour, height=0.65, label=plain(_words(kind)))
+        left = [start + width for start, width in zip(left, power, strict=True)]
+    for row, total in enumerate(left):
+        axes.annotate(
+            f"{total:.0f} W", (total, row), textcoords="offset points", xytext=(4, -3), fontsize=7.5
+        )
+    axes.set_yticks(range(len(stages)), [plain(stage) for stage in stages])
+    axes.invert_yaxis()
+    axes.grid(axis="y", visible=False)
+    axes.margins(x=0.1)
+    finish(axes, "power loss, mean over the stage [W]")
+    legend_right(axes)
+    figure.subplots_adjust(left=0.16, right=0.8, top=1 - 0.1 / height, bottom=0.47 / height)
+    return figure
+
+
+def losses_by_place_figure(losses: list[LossRow], stage: str) -> "Figure":
+    """Power loss of every place at one stage [W], split into oil and body."""
+    rows = sorted((row for row in losses if row.stage == stage), key=lambda row: -row.power_W)
+    height = 0.75 + 0.24 * len(rows)
+    figure = new_figure(height)
+    axes = figure.subplots()
+    places = range(len(rows))
+    axes.barh(places, [r.into_oil_W for r in rows], color=SERIES[0], height=0.65, label="into the oil")
+    axes.barh(
+        places,
+        [r.into_body_W for r in rows],
+        left=[r.into_oil_W for r in rows],
+        color=SERIES[1],
+        height=0.65,
+        label="into the body",
+    )
+    axes.set_yticks(places, [plain(_words(row.place)) for row in rows])
+    axes.invert_yaxis()
+    axes.grid(axis="y", visible=False)
+    finish(axes, f"power loss at stage {plain(stage)}, mean [W]")
+    axes.legend(loc="lower right")
+    figure.subplots_adjust(left=0.26, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
+    return figure
+
+
+def oil_figure(oil: list[OilRow], stage: str) -> "Figure":
+    """Oil temperature of every consumer at one stage, inlet to outlet [degC]."""
+    rows = [row for row in oil if row.stage == stage]
+    height = 0.75 + 0.26 * len(rows)
+    figure = new_figure(height)
+    axes = figure.subplots()
+    for place, row in enumerate(rows):
+        axes.plot([row.inlet_degC, row.outlet_degC], [place, place], color=MUTED, linewidth=1.6, zorder=2)
+    places = range(len(rows))
+    axes.plot([r.inlet_degC for r in rows], places, "o", color=COLD, markersize=5, label="inlet")
+    axes.plot([r.outlet_degC for r in rows], places, "o", color=WARM, markersize=5, label="outlet")
+    axes.set_yticks(places, [plain(_words(row.consumer)) for row in rows])
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.margins(x=0.08)
+    finish(axes, f"oil temperature at stage {plain(stage)}, mixed mean [°C]")
+    axes.legend(loc="best")
+    figure.subplots_adjust(left=0.26, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
+    return figure
+
+
+def heat_flow_figure(thermal: ThermalResult) -> "Figure":
+    """Heat into the solid by kind of boundary [W]: sources to the right, sinks to the left."""
+    totals: dict[str, float] = defaultdict(float)
+    for row in thermal.heat:
+        totals[row.kind] += row.power_W
+    kinds = sorted(totals, key=lambda kind: -totals[kind])
+    height = 0.75 + 0.25 * len(kinds)
+    figure = new_figure(height)
+    axes = figure.subplots()
+    powers = [totals[kind] for kind in kinds]
+    axes.barh(range(len(kinds)), powers, color=[WARM if p > 0 else COLD for p in powers], height=0.65)
+    for place, power in enumerate(powers):
+        offset, align = (4, "left") if power > 0 else (-4, "right")
+        axes.annotate(
+            f"{power:+.0f} W",
+            (power, place),
+            textcoords="offset points",
+            xytext=(offset, -3),
+            ha=align,
+            fontsize=7.5,
+        )
+    axes.axvline(0, color=INK, linewidth=0.8)
+    axes.set_yticks(range(len(kinds)), [plain(_words(kind)) for kind in kinds])
+    axes.invert_yaxis()
+    axes.grid(axis="y", visible=False)
+    axes.margins(x=0.12)
+    finish(axes, "heat, positive into the solid [W]")
+    figure.subplots_adjust(left=0.2, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
+    return figure
+
+
+def seal_gap_figure(growth: list[GrowthResult]) -> "Figure":
+    """Radial gap of every seal round its circumference, hot against cold [mm]."""
+    shown = [item for item in growth if any(seal.get("hot_mm") for seal in item.seal_gaps)]
+    height = 0.4 + 2.2 * len(shown)
+    figure = new_figure(height)
+    for axes, item in zip(figure.subplots(len(shown), 1, squeeze=False)[:, 0], shown, strict=True):
+        _seal_gaps(axes, item)
+        finish(
+            axes,
+            "angle about the shaft axis [°]",
+            "radial gap, local [mm]",
+            f"{plain(item.gearbox)}, {plain(item.stage)}",
+        )
+        legend_right(axes)
+    figure.subplots_adjust(left=0.085, right=0.76, top=1 - 0.28 / height, bottom=0.47 / height, hspace=0.5)
+    return figure
+
+
+def _seal_gaps(axes: "Axes", item: GrowthResult) -> None:
+    seals = [seal for seal in item.seal_gaps if seal.get("hot_mm")]
+    for colour, seal in zip(_colours(len(seals)), seals, strict=True):
+        axes.plot(
+            [*seal["angle_deg"]],
+            seal["hot_mm"],
+            color=colour,
+            label=f"{plain(_words(str(seal['seal'])))}, hot",
+        )
+    for number, gap in enumerate(sorted({seal["cold_mm"] for seal in seals})):
+        axes.axhline(gap, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=None if number else "cold")
+    axes.set_xlim(0, 360)
+    axes.set_xticks(range(0, 361, 45))
+
+
+def convergence_figure(histories: list[CouplingHistory]) -> "Figure":
+    """Residuals of the coupling loop by pass, logarithmic."""
+    quantities = list(dict.fromkeys(key for history in histories for row in history.residuals for key in row))
+    figure = new_figure(2.3)
+    axes_list = figure.subplots(1, max(1, len(quantities)), squeeze=False)[0]
+    for axes, quantity in zip(axes_list, quantities, strict=False):
+        for colour, history in zip(_colours(len(histories)), histories, strict=True):
+            values = [
+                (n, row[quantity]) for n, row in enumerate(history.residuals, start=1) if row.get(quantity)
+            ]
+            axes.plot(
+                [n for n, _ in values],
+                [abs(v) for _, v in values],
+                "o-",
+                markersize=3,
+                color=colour,
+                label=plain(history.stage),
+            )
+        if any(row.get(quantity) for history in histories for row in history.residuals):
+            axes.set_yscale("log")
+        axes.xaxis.get_major_locator().set_params(integer=True)
+        finish(axes, "pass [–]", _residual_label(quantity))
+        axes.legend(loc="best")
+    figure.subplots_adjust(left=0.085, right=0.985, top=0.94, bottom=0.21, wspace=0.32)
+    return figure
+
+
+def _residual_label(key: str) -> str:
+    from rigdesign.report.numbers import split_key
+
+    words, unit = split_key(key)
+    return f"change of {words.replace(' relative', '')}, max [{unit or '–'}]"
+
+
+def _colours(count: int) -> list[str]:
+    return [SERIES[index % len(SERIES)] for index in range(count)]
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")

@@ -1,0 +1,209 @@
+"""report.html: one self-contained page in the order an engineer reads it."""
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rigdesign import __version__
+from rigdesign.report import numbers
+from rigdesign.report.drawing import drawing_style, inline_svg
+from rigdesign.results import AssumptionRecord, Check, GearboxDynamics, RunResult
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from markupsafe import Markup
+    from matplotlib.figure import Figure
+
+TEMPLATES = Path(__file__).parent / "templates"
+VERDICT_ORDER = ("fail", "warn", "pass", "not applicable")
+BAR_END = 1.5
+"""Utilisation at the right end of a bar in the table of checks."""
+MAX_DRIVERS = 6
+
+
+def report_html(result: RunResult) -> str:
+    """The whole report as one HTML document: no link, script, font or picture from elsewhere.
+
+    Everything from the case is escaped. Two runs give the same text but for the timings.
+    """
+    figures = _Figures()
+    with drawing_style():
+        context = _context(result, figures)
+    return environment().get_template("report.html.j2").render(context)
+
+
+@cache
+def environment() -> "Environment":
+    """Templates with escaping on and an error for every name that is missing."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    templates = Environment(
+        loader=FileSystemLoader(TEMPLATES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    templates.filters.update(
+        number=numbers.number_text,
+        unit=numbers.unit_text,
+        heading=numbers.heading_text,
+        cell=numbers.cell_text,
+        words=lambda text: str(text).replace("_", " "),
+    )
+    templates.globals.update(
+        quantity=numbers.quantity_text,
+        limit=numbers.limit_text,
+        bar=bar_widths,
+        columns=columns,
+        is_number=is_number,
+    )
+    return templates
+
+
+class _Figures:
+    """Turns figures into SVG and numbers them, so that ids stay unique on the page."""
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def __call__(self, figure: "Figure", description: str) -> "Markup":
+        from markupsafe import Markup
+
+        self._count += 1
+        return Markup(inline_svg(figure, f"f{self._count}", description))
+
+
+def _context(result: RunResult, draw: _Figures) -> dict[str, Any]:
+    return {
+        "result": result,
+        "tool_version": __version__,
+        "checks": sorted_checks(result.checks),
+        "counts": {verdict: sum(c.verdict == verdict for c in result.checks) for verdict in VERDICT_ORDER},
+        "drivers": drivers(result),
+        "bar_end": BAR_END,
+        "main_stage": main_stage(result),
+        **_dynamics_figures(result, draw),
+        **_heat_figures(result, draw),
+    }
+
+
+def sorted_checks(checks: list[Check]) -> list[Check]:
+    """Failing checks first, then warnings; the most used-up first within each verdict."""
+    return sorted(checks, key=lambda c: (VERDICT_ORDER.index(c.verdict), -(c.utilisation or 0.0)))
+
+
+def drivers(result: RunResult) -> list[tuple[Check, list[AssumptionRecord]]]:
+    """The checks that decide the verdict, each with the assumptions its value rests on.
+
+    Every failing and warning check, filled up with the most used-up passing ones to ``MAX_DRIVERS``.
+    """
+    records = {record.path: record for record in result.assumptions}
+    ordered = [check for check in sorted_checks(result.checks) if check.verdict != "not applicable"]
+    undecided = sum(check.verdict in ("fail", "warn") for check in ordered)
+    chosen = ordered[: max(MAX_DRIVERS, undecided)]
+    return [
+        (check, [records.get(p, AssumptionRecord(path=p, value="", reason="")) for p in check.assumptions])
+        for check in chosen
+    ]
+
+
+def main_stage(result: RunResult) -> str:
+    """The stage that turns over the most heat, shown in the figures of one stage; empty without losses."""
+    totals: dict[str, float] = {}
+    for row in result.losses:
+        totals[row.stage] = totals.get(row.stage, 0.0) + row.power_W
+    return max(totals, key=lambda stage: totals[stage]) if totals else ""
+
+
+def bar_widths(utilisation: float) -> tuple[float, bool]:
+    """Width of a utilisation bar [%] and whether it was cut at ``BAR_END``."""
+    return 100 * min(max(utilisation, 0.0), BAR_END) / BAR_END, utilisation > BAR_END
+
+
+def columns(rows: list[dict[str, Any]]) -> list[str]:
+    """Keys of all records in their order of appearance, lists (curves) left out."""
+    keys = dict.fromkeys(key for row in rows for key in row)
+    return [key for key in keys if not any(isinstance(row.get(key), list | tuple) for row in rows)]
+
+
+def is_number(value: Any) -> bool:
+    """True for what stands right-aligned in a table."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _dynamics_figures(result: RunResult, draw: Callable[["Figure", str], "Markup"]) -> dict[str, Any]:
+    from rigdesign.report import figures_dynamics, figures_ramp
+
+    shown: dict[str, Any] = {"ramp_figure": None, "kv_figure": None, "campbell": None, "root_stress": {}}
+    dynamics = result.dynamics
+    if dynamics is None:
+        return shown
+    if dynamics.ramp is not None and len(dynamics.ramp.time_s) > 1:
+        figure = figures_ramp.ramp_figure(dynamics.ramp)
+        shown["ramp_figure"] = draw(figure, "Speed, torques and torque envelopes over time")
+    if any(gearbox.dynamic_factor for gearbox in dynamics.gearboxes.values()):
+        figure = figures_dynamics.dynamic_factor_figure(dynamics)
+        shown["kv_figure"] = draw(figure, "Dynamic factor over speed, simulated and by ISO 6336-1")
+    if dynamics.crossings:
+        shown["campbell"] = draw(
+            figures_dynamics.campbell_figure(dynamics), "Mesh orders and natural frequencies over speed"
+        )
+    for name, gearbox in dynamics.gearboxes.items():
+        if _has_root_stress(gearbox):
+            figure = figures_dynamics.root_stress_figure(gearbox)
+            shown["root_stress"][name] = draw(
+                figure, f"Root stress of gearbox {name}, dynamic and quasi-static"
+            )
+    return shown
+
+
+def _has_root_stress(gearbox: GearboxDynamics) -> bool:
+    return bool(gearbox.root_stress or gearbox.root_stress_factor)
+
+
+def _heat_figures(result: RunResult, draw: Callable[["Figure", str], "Markup"]) -> dict[str, Any]:
+    from rigdesign.report import figures_field, figures_heat
+
+    stage = main_stage(result)
+    shown: dict[str, Any] = dict.fromkeys(
+        ("losses_by_stage", "losses_by_place", "oil", "seal_gaps", "convergence")
+    )
+    if result.losses:
+        shown["losses_by_stage"] = draw(
+            figures_heat.losses_by_stage_figure(result.losses), "Power loss by stage and kind"
+        )
+        figure = figures_heat.losses_by_place_figure(result.losses, stage)
+        shown["losses_by_place"] = draw(figure, f"Power loss by place at stage {stage}")
+    oil_stage = (
+        stage if any(row.stage == stage for row in result.oil) else next((r.stage for r in result.oil), "")
+    )
+    if result.oil:
+        shown["oil"] = draw(
+            figures_heat.oil_figure(result.oil, oil_stage), f"Oil inlet and outlet at stage {oil_stage}"
+        )
+    if any(seal.get("hot_mm") for growth in result.growth for seal in growth.seal_gaps):
+        shown["seal_gaps"] = draw(
+            figures_heat.seal_gap_figure(result.growth), "Seal gap round the circumference, hot and cold"
+        )
+    if any(history.residuals for history in result.coupling):
+        shown["convergence"] = draw(
+            figures_heat.convergence_figure(result.coupling), "Residuals of the coupling loop by pass"
+        )
+    shown["pictures"] = {
+        (field.gearbox, field.stage): draw(
+            figures_field.temperature_figure(field),
+            f"Temperature of gearbox {field.gearbox} at stage {field.stage}",
+        )
+        for field in result.fields
+    }
+    shown["heat_flows"] = {
+        (item.gearbox, item.stage): draw(
+            figures_heat.heat_flow_figure(item),
+            f"Heat of gearbox {item.gearbox} by kind at stage {item.stage}",
+        )
+        for item in result.thermal
+        if item.heat
+    }
+    return shown

@@ -1,0 +1,151 @@
+"""Geometry of pictures: what is seen of a tetrahedral mesh from outside and in a plane cut. No drawing."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from thermal.fe.mesh import FloatArray, NamedMesh
+
+Indices = NDArray[np.int64]
+
+SUB_TETRAHEDRA = np.array(
+    [
+        (0, 4, 6, 7),
+        (1, 5, 4, 8),
+        (2, 6, 5, 9),
+        (3, 7, 8, 9),
+        (4, 9, 5, 6),
+        (4, 9, 6, 7),
+        (4, 9, 7, 8),
+        (4, 9, 8, 5),
+    ]
+)
+"""Eight linear tetrahedra that fill a 10-node one (VTK order), the inner octahedron split along 01-23."""
+
+SUB_TRIANGLES = np.array([(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)])
+"""Four linear triangles that fill a 6-node one (corners first, mid-sides 01 12 20)."""
+
+
+@dataclass(frozen=True)
+class PlaneCut:
+    """Triangles of a plane through a mesh; every point lies on an edge between two nodes.
+
+    points : (m, 3) coordinates [m]
+    triangles : (k, 3) indices into ``points``
+    bodies : (k,) number of the body, in the order of ``mesh.bodies``
+    nodes : (m, 2) mesh nodes at the ends of the edge
+    weights : (m,) position on the edge, 0 at the first node
+    """
+
+    points: FloatArray
+    triangles: Indices
+    bodies: Indices
+    nodes: Indices
+    weights: FloatArray
+
+    def interpolate(self, values: FloatArray) -> FloatArray:
+        """Nodal values, shape (n_nodes,), at the points of the cut, shape (m,)."""
+        start, end = values[self.nodes[:, 0]], values[self.nodes[:, 1]]
+        return np.asarray(start + self.weights * (end - start))
+
+    def outlines(self) -> Indices:
+        """(e, 2) point pairs of the edges where a body ends."""
+        sides = np.concatenate(
+            [self.triangles[:, [0, 1]], self.triangles[:, [1, 2]], self.triangles[:, [2, 0]]]
+        )
+        tagged = np.column_stack([np.sort(sides, axis=1), np.tile(self.bodies, 3)])
+        unique, counts = np.unique(tagged, axis=0, return_counts=True)
+        return np.asarray(unique[counts == 1, :2])
+
+
+def cut_mesh(mesh: NamedMesh, axis: int, position: float) -> PlaneCut:
+    """Cut a mesh by the plane where coordinate ``axis`` (0, 1, 2) equals ``position`` [m].
+
+    A node in the plane counts as beyond it, so no cell is met twice.
+    """
+    distance = mesh.points[:, axis] - position
+    beyond = distance >= 0
+    sides = beyond[mesh.cells]
+    met = np.flatnonzero(sides.any(axis=1) & ~sides.all(axis=1))
+    body_of_cell = np.zeros(len(mesh.cells), dtype=np.int64)
+    for number, cells in enumerate(mesh.bodies.values()):
+        body_of_cell[cells] = number
+    tetrahedra = mesh.cells[met][:, SUB_TETRAHEDRA].reshape(-1, 4).astype(np.int64)
+    bodies = np.repeat(body_of_cell[met], len(SUB_TETRAHEDRA))
+    edges, owners = _crossed_edges(tetrahedra, bodies, beyond)
+    nodes, inverse = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+    first, second = distance[nodes[:, 0]], distance[nodes[:, 1]]
+    weights = first / (first - second)
+    points = mesh.points[nodes[:, 0]] + weights[:, None] * (
+        mesh.points[nodes[:, 1]] - mesh.points[nodes[:, 0]]
+    )
+    return PlaneCut(points, inverse.reshape(-1, 3), owners, nodes, weights)
+
+
+def _crossed_edges(
+    tetrahedra: Indices, bodies: Indices, beyond: NDArray[np.bool_]
+) -> tuple[Indices, Indices]:
+    """(k, 3, 2) node pairs of the triangle corners in the plane, and the body of each triangle."""
+    order = np.argsort(~beyond[tetrahedra], axis=1, kind="stable")
+    nodes = np.take_along_axis(tetrahedra, order, axis=1)
+    count = beyond[tetrahedra].sum(axis=1)
+    triangles, owners = [], []
+    for beyond_count, patterns in {
+        1: [[(0, 1), (0, 2), (0, 3)]],
+        2: [[(0, 2), (0, 3), (1, 3)], [(0, 2), (1, 3), (1, 2)]],
+        3: [[(3, 0), (3, 1), (3, 2)]],
+    }.items():
+        chosen = np.flatnonzero(count == beyond_count)
+        for pattern in patterns:
+            triangles.append(nodes[chosen][:, np.array(pattern)])
+            owners.append(bodies[chosen])
+    return np.concatenate(triangles), np.concatenate(owners)
+
+
+@dataclass(frozen=True)
+class OutsideView:
+    """Facets that face the viewer, farthest first, in the picture plane.
+
+    corners : (k, 3, 2) picture coordinates [m]
+    nodes : (k, 3) mesh nodes of the corners
+    brightness : (k,) 0 to 1 from the angle to the light
+    """
+
+    corners: FloatArray
+    nodes: Indices
+    brightness: FloatArray
+
+
+def view_outside(mesh: NamedMesh, azimuth_deg: float = -60.0, elevation_deg: float = 28.0) -> OutsideView:
+    """Parallel projection of the named surfaces, x along the shafts, z up.
+
+    azimuth_deg, elevation_deg : direction from which the viewer looks, azimuth from the x axis about z
+    """
+    right, up, towards = _camera(np.radians(azimuth_deg), np.radians(elevation_deg))
+    facets = np.concatenate(list(mesh.surfaces.values()))[:, SUB_TRIANGLES].reshape(-1, 3).astype(np.int64)
+    corners = mesh.points[facets]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1)
+    normals /= np.where(lengths > 0, lengths, 1.0)[:, None]
+    facing = np.flatnonzero(normals @ towards > 0)
+    facing = facing[np.argsort(corners[facing].mean(axis=1) @ towards, kind="stable")]
+    light = towards + 0.6 * up - 0.4 * right
+    brightness = 0.62 + 0.38 * np.clip(normals[facing] @ (light / np.linalg.norm(light)), 0.0, 1.0)
+    return OutsideView(corners[facing] @ np.column_stack([right, up]), facets[facing], brightness)
+
+
+def _camera(azimuth: float, elevation: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Unit vectors to the right, up, and towards the viewer."""
+    towards = np.array(
+        [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
+    )
+    right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+    return right, np.cross(towards, right), towards
+
+
+def shaft_axis_height(mesh: NamedMesh) -> float:
+    """Height z [m] of a horizontal cut that shows the most: through the shafts, else through the middle."""
+    shafts = [cells for name, cells in mesh.bodies.items() if "shaft" in name.lower() and len(cells)]
+    heights = mesh.points[mesh.cells[np.concatenate(shafts)], 2] if shafts else mesh.points[:, 2]
+    return float(heights.min() + heights.max()) / 2
