@@ -1,9 +1,6 @@
-"""Compiled loops of the dynamics: contact of one gear mesh and the march of the modal propagator.
+"""Contact of one gear mesh, flank by flank, on the packed tables of ``dynamics.mesh_force.PackedMeshes``.
 
-Everything here works on plain numbers and packed arrays (``dynamics.mesh_force.PackedMeshes`` and
-``dynamics.propagator``); names, units and validation live above.
-
-Contact of one flank. With ``sign`` +1 in front and -1 on the back, ``play`` 0 in front and the backlash
+With ``sign`` +1 in front and -1 on the back, ``play`` 0 in front and the backlash
 behind, the penetration is ``d = sign x - play - e(s)`` and the path position moves with
 ``ds/dt = sign r_b1 omega_1``. From the potential ``k(s) d^2 / 2``
 

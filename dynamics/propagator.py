@@ -1,0 +1,328 @@
+"""Exact propagator of the linear drivetrain between its gear meshes.
+
+The torsional system is brought to a real-mode basis, one exact rigid mode per shaft line and the elastic modes
+of each line, in scaled coordinates ``s = (v, Omega eta)`` with modal velocities ``v``: half its square is the
+energy. The rigid angles stand outside (no double zero is left), the complex eigenproblem of ``s' = A s + B u``
+is solved once, and only then are fast modes dropped; what they do statically stays as feedthrough. A step with
+inputs that vary linearly (first-order hold) is exact for any step length,
+
+    z' = E z + h (phi_1 - phi_2) b u + h phi_2 b u',     phi_k(lambda h)
+
+so overdamped joints with real poles of 1e7 1/s cost nothing. Angles and approaches are integrals of the
+velocity outputs, exact in the same sense, which keeps the small difference of two large rotations.
+
+Source: phi_k as in exponential integrators (Hochbruck and Ostermann, Acta Numerica 19, 2010);
+real-mode basis before the complex modes because unscaled complex eigenvectors of free-free shafts drift.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import factorial
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from dynamics.linear_system import LinearSystem
+from dynamics.mesh_law import MeshLaw
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+DEFAULT_CUTOFF = 50e3
+"""Modes above this frequency [Hz] keep their static effect only."""
+
+
+class DefectiveModes(RuntimeError):  # noqa: N818
+    """The complex modes of the drivetrain are no basis (two of them coincide)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModalModel:
+    """Complex modes of the linear part with inputs (mesh torques, then slow loads) and velocity outputs.
+
+    eigenvalues : (n_modes,) kept, one of each conjugate pair [1/s]
+    weights : (n_modes,) 2 for a conjugate pair, 1 for a real mode
+    inputs : (n_modes, n_inputs) modal forcing per unit input
+    outputs : (n_rows, n_modes) velocity outputs; rows as in ``row_names``
+    through : (n_rows, n_inputs) output of the dropped modes per unit input
+    through_rate : (n_rows, n_inputs) the same per unit change of the input per second [s]
+    to_modes : (n_modes, n_states) kept left eigenvectors, scaled coordinates -> modal state
+    to_scaled : (n_states, n_modes) right eigenvectors
+    scaled_through : (n_states, n_inputs) static part of the dropped modes
+    shapes : (n, n) real modes, mass-normalised, rigid ones first
+    frequencies : (n,) undamped circular frequencies of the lines [rad/s]
+    n_meshes, n_slow : numbers of meshes and of slow loads
+    dropped : number of eigenvalues left out
+    """
+
+    eigenvalues: ComplexArray
+    weights: Array
+    inputs: ComplexArray
+    outputs: ComplexArray
+    through: Array
+    through_rate: Array
+    to_modes: ComplexArray
+    to_scaled: ComplexArray
+    scaled_through: Array
+    shapes: Array
+    frequencies: Array
+    inertia: Array
+    mesh_ports: NDArray[np.int64]
+    n_lines: int
+    n_meshes: int
+    n_slow: int
+    dropped: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Propagator:
+    """The modal model at one step length, in the layout of ``kernels.march`` (see there)."""
+
+    step: float
+    decay: Array
+    inputs: Array
+    rows: Array
+    through_old: Array
+    through_new: Array
+    slow_inputs: Array
+    slow_old: Array
+    slow_new: Array
+    hold: ComplexArray
+    """(n_modes, n_inputs) part of the modal state that follows the inputs at once: z = w + hold u."""
+
+
+def modal_model(
+    system: LinearSystem, laws: Sequence[MeshLaw], loads: Array, *, cutoff: float = DEFAULT_CUTOFF
+) -> ModalModel:
+    """Solve the complex eigenproblem of the drivetrain without its meshes.
+
+    Parameters
+    ----------
+    laws : base radii of each mesh, in the order of ``system.mesh_ports``
+    loads : (n, n_slow) torque on each freedom per unit of each slow input [-]
+    cutoff : modes above this frequency keep their static effect only [Hz]; ``inf`` keeps all
+
+    Raises
+    ------
+    ValueError
+        If shapes disagree, the damping is not symmetric, or a line is not free to rotate.
+    DefectiveModes
+        If two complex modes coincide.
+    """
+    n = len(system.inertia)
+    _check(system, laws, loads)
+    shapes, frequencies, n_lines = _line_modes(system)
+    damping = shapes.T @ system.damping @ shapes
+    damping[np.abs(damping) < 1e-13 * max(np.abs(damping).max(), 1e-300)] = 0.0
+    elastic = frequencies[n_lines:]
+    m = n - n_lines
+    matrix = np.zeros((n + m, n + m))
+    matrix[:n, :n] = -damping
+    matrix[n_lines:n, n:] = -np.diag(elastic)
+    matrix[n:, n_lines:n] = np.diag(elastic)
+    values, vectors = scipy.linalg.eig(matrix)
+    condition = float(np.linalg.cond(vectors))
+    if not condition < 1e12:
+        raise DefectiveModes(
+            f"complex modes: condition number {condition:.1e} of the eigenvectors, limit 1e12; two modes coincide, "
+            "change a joint damping by a part in 1e4"
+        )
+    inverse = np.linalg.inv(vectors)
+    kept_half = values.imag >= 0.0
+    values, vectors, inverse = values[kept_half], vectors[:, kept_half], inverse[kept_half]
+    weights = np.where(values.imag > 0.0, 2.0, 1.0)
+    order = np.lexsort((values.imag, np.abs(values)))
+    values, vectors, inverse, weights = values[order], vectors[:, order], inverse[order], weights[order]
+
+    forcing = np.zeros((n + m, 2 * len(laws) + loads.shape[1]))
+    forcing[:n] = shapes.T @ np.column_stack((_port_columns(system), loads))
+    modal_forcing = inverse @ forcing
+    velocity = _velocity_rows(system, laws, loads) @ shapes
+    seen = (velocity @ vectors[:n]) * weights
+    keep = np.abs(values) <= 2.0 * np.pi * cutoff
+    lost, lost_forcing = values[~keep], modal_forcing[~keep]
+    static = -lost_forcing / lost[:, None]
+    delayed = -lost_forcing / lost[:, None] ** 2
+    return ModalModel(
+        eigenvalues=values[keep],
+        weights=weights[keep],
+        inputs=modal_forcing[keep],
+        outputs=seen[:, keep],
+        through=(seen[:, ~keep] @ static).real,
+        through_rate=(seen[:, ~keep] @ delayed).real,
+        to_modes=inverse[keep],
+        to_scaled=vectors[:, keep] * weights[keep],
+        scaled_through=((vectors[:, ~keep] * weights[~keep]) @ static).real,
+        shapes=shapes,
+        frequencies=frequencies,
+        inertia=np.asarray(system.inertia, float),
+        mesh_ports=system.mesh_ports,
+        n_lines=n_lines,
+        n_meshes=len(laws),
+        n_slow=loads.shape[1],
+        dropped=int(np.count_nonzero(~keep)),
+    )
+
+
+def discretise(model: ModalModel, step: float, *, with_losses: bool = True) -> Propagator:
+    """Return the propagator for one step length [s]; ``with_losses=False`` leaves out the joint losses."""
+    if not step > 0.0:
+        raise ValueError(f"step = {step} s must be positive")
+    scaled = model.eigenvalues * step
+    decay = np.exp(scaled)
+    phi_1, phi_2, phi_3 = (_phi(k, scaled)[:, None] for k in (1, 2, 3))
+    old = step * (phi_1 - phi_2) * model.inputs
+    hold = step * phi_2 * model.inputs
+    driven = decay[:, None] * hold + old
+
+    n_rows = model.outputs.shape[0] if with_losses else 4 * model.n_meshes + model.n_slow
+    seen = model.outputs[:n_rows]
+    through, through_rate = model.through[:n_rows], model.through_rate[:n_rows] / step
+    rows = seen * decay
+    through_old = (seen @ driven).real - through_rate
+    through_new = (seen @ hold).real + through + through_rate
+    # rows 2 and 3 of each mesh are the steps of approach and pinion angle: integrals of a velocity output
+    integral = step * phi_1 * hold + step**2 * (phi_2 - phi_3) * model.inputs
+    for mesh in range(model.n_meshes):
+        at = slice(4 * mesh + 2, 4 * mesh + 4)
+        rows[at] = seen[at] * (step * phi_1[:, 0])
+        dropped, dropped_rate = 0.5 * step * model.through[at], model.through_rate[at]
+        through_old[at] = (seen[at] @ integral).real + dropped - dropped_rate
+        through_new[at] = (seen[at] @ (step**2 * phi_3 * model.inputs)).real + dropped + dropped_rate
+    fast = 2 * model.n_meshes
+    return Propagator(
+        step=step,
+        decay=np.ascontiguousarray(np.stack((decay.real, decay.imag))),
+        inputs=_real_columns(driven[:, :fast]),
+        rows=np.ascontiguousarray(np.hstack((rows.real, -rows.imag))),
+        through_old=np.ascontiguousarray(through_old[:, :fast]),
+        through_new=np.ascontiguousarray(through_new[:, :fast]),
+        slow_inputs=_real_columns(driven[:, fast:]),
+        slow_old=np.ascontiguousarray(through_old[:, fast:]),
+        slow_new=np.ascontiguousarray(through_new[:, fast:]),
+        hold=hold,
+    )
+
+
+def modal_state(
+    model: ModalModel, propagator: Propagator, angles: Array, speeds: Array, inputs: Array
+) -> Array:
+    """Return the marched state ``w`` (2 n_modes,) of a drivetrain at ``angles`` and ``speeds``, both (n,).
+
+    ``inputs`` (n_inputs,): mesh torques and slow inputs that act at this instant.
+    """
+    moved = model.shapes.T @ (model.inertia * angles)
+    scaled = np.concatenate(
+        (model.shapes.T @ (model.inertia * speeds), (model.frequencies * moved)[model.n_lines :])
+    )
+    z = model.to_modes @ scaled - propagator.hold @ inputs
+    return np.concatenate((z.real, z.imag))
+
+
+def scaled_state(model: ModalModel, propagator: Propagator, state: Array, inputs: Array) -> Array:
+    """Return the scaled coordinates (modal velocities, Omega eta); half their square is the energy [J]."""
+    half = len(state) // 2
+    z = state[:half] + 1j * state[half:] + propagator.hold @ inputs
+    scaled: Array = (model.to_scaled @ z).real + model.scaled_through @ inputs
+    return scaled
+
+
+def _check(system: LinearSystem, laws: Sequence[MeshLaw], loads: Array) -> None:
+    n = len(system.inertia)
+    if system.mesh_ports.shape != (len(laws), 2):
+        raise ValueError(
+            f"mesh_ports has shape {system.mesh_ports.shape}, but {len(laws)} mesh laws were given: one per mesh"
+        )
+    if loads.ndim != 2 or loads.shape[0] != n:
+        raise ValueError(f"loads has shape {loads.shape}, expected ({n}, number of slow inputs)")
+    if not np.all(system.inertia > 0.0):
+        worst = int(np.argmin(system.inertia))
+        raise ValueError(
+            f"inertia of {system.dofs[worst]} is {system.inertia[worst]} kg m2, must be positive"
+        )
+    scale = max(float(np.abs(system.damping).max()), 1e-300)
+    if np.abs(system.damping - system.damping.T).max() > 1e-9 * scale:
+        raise ValueError("damping matrix is not symmetric; joints and bearings act equally on both sides")
+
+
+def _line_modes(system: LinearSystem) -> tuple[Array, Array, int]:
+    """Return mass-normalised modes of every line, exact rigid ones first, and their circular frequencies."""
+    n = len(system.inertia)
+    lines = np.unique(system.lines)
+    rigid = np.zeros((n, len(lines)))
+    elastic: list[Array] = []
+    frequencies: list[Array] = []
+    for column, line in enumerate(lines):
+        members = np.flatnonzero(system.lines == line)
+        others = np.flatnonzero(system.lines != line)
+        stiffness = system.stiffness[np.ix_(members, members)]
+        largest = max(float(np.abs(stiffness).max()), 1e-300)
+        if others.size and np.abs(system.stiffness[np.ix_(members, others)]).max() > 0.0:
+            raise ValueError(f"stiffness couples line {line} to another line; only meshes may do that")
+        if np.abs(stiffness.sum(axis=1)).max() > 1e-8 * largest:
+            raise ValueError(f"line {line} is not free to rotate: its stiffness rows sum to more than 1e-8")
+        root = np.sqrt(system.inertia[members])
+        uniform = root / np.linalg.norm(root)
+        rigid[members, column] = uniform / root
+        if len(members) == 1:
+            continue
+        # an orthonormal basis of everything but the rigid motion keeps the rigid mode exact
+        basis = scipy.linalg.null_space(uniform[None, :])
+        reduced = basis.T @ (stiffness / np.outer(root, root)) @ basis
+        squares, vectors = scipy.linalg.eigh(0.5 * (reduced + reduced.T))
+        if squares[0] <= 0.0:
+            raise ValueError(
+                f"line {line} is torn: a part of it is held by no stiffness; join it or make it a line"
+            )
+        block = np.zeros((n, len(members) - 1))
+        block[members] = (basis @ vectors) / root[:, None]
+        elastic.append(block)
+        frequencies.append(np.sqrt(squares))
+    shapes = np.hstack((rigid, *elastic))
+    return shapes, np.concatenate((np.zeros(len(lines)), *frequencies)), len(lines)
+
+
+def _port_columns(system: LinearSystem) -> Array:
+    columns = np.zeros((len(system.inertia), 2 * len(system.mesh_ports)))
+    for mesh, (pinion, wheel) in enumerate(system.mesh_ports):
+        columns[pinion, 2 * mesh] = 1.0
+        columns[wheel, 2 * mesh + 1] = 1.0
+    return columns
+
+
+def _velocity_rows(system: LinearSystem, laws: Sequence[MeshLaw], loads: Array) -> Array:
+    """Rows of velocity outputs: four per mesh, one per slow load, then square roots of the joint loss."""
+    n = len(system.inertia)
+    rows = []
+    for law, (pinion, wheel) in zip(laws, system.mesh_ports):
+        approach = np.zeros(n)
+        approach[pinion] = law.base_radius_1
+        approach[wheel] -= law.base_radius_2
+        turn = np.zeros(n)
+        turn[pinion] = 1.0
+        rows += [approach, turn, approach, turn]
+    rows += list(loads.T)
+    squares, vectors = scipy.linalg.eigh(system.damping)
+    lossy = squares > 1e-13 * max(float(squares.max()), 1e-300)
+    rows += list((vectors[:, lossy] * np.sqrt(squares[lossy])).T)
+    return np.array(rows)
+
+
+def _phi(k: int, x: ComplexArray) -> ComplexArray:
+    """Return phi_k(x) = sum_j x^j / (j + k)!, by series near zero and by recursion elsewhere."""
+    small = np.abs(x) < 0.5
+    near = np.where(small, x, 0.0)
+    series = np.zeros_like(near)
+    for j in range(18, -1, -1):
+        series = series * near + 1.0 / factorial(j + k)
+    far = np.where(small, 1.0, x)
+    value = np.exp(far)
+    for j in range(k):
+        value = (value - 1.0 / factorial(j)) / far
+    return np.where(small, series, value)
+
+
+def _real_columns(columns: ComplexArray) -> Array:
+    """Return (n_columns, 2 n_modes): real parts, then imaginary parts, of each column."""
+    return np.ascontiguousarray(np.hstack((columns.real.T, columns.imag.T)))

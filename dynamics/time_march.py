@@ -1,0 +1,279 @@
+"""A drivetrain in motion: modal state, gear contacts and accounts that are carried from call to call.
+
+``DriveState`` is where a run starts and ends; ``TimeMarch`` advances it in blocks and keeps the work done by
+each slow input and the losses of meshes and joints, so that drive torque and losses are known from two sides.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics import kernels
+from dynamics.linear_system import LinearSystem
+from dynamics.mesh_force import evaluate_mesh, pack_meshes
+from dynamics.mesh_law import MeshLaw
+from dynamics.propagator import (
+    DEFAULT_CUTOFF,
+    ModalModel,
+    discretise,
+    modal_model,
+    modal_state,
+    scaled_state,
+)
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveState:
+    """Angles [rad] and speeds [rad/s] of all freedoms, shape (n,), and the bracing twist [rad]."""
+
+    angles: Array
+    speeds: Array
+    twist: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedControl:
+    """Speed controller of the motor: torque = proportional * error + integral * integrated error, limited.
+
+    proportional : [N m s/rad]; integral : [N m/rad]; torque_limit : largest motor torque [N m]
+    """
+
+    proportional: float
+    integral: float
+    torque_limit: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueControl:
+    """Torque-controlled bracing: the twist follows the averaged torque of the first mesh.
+
+    stiffness : torque of the first mesh per twist of the bracing [N m/rad]
+    time_constant : of the control loop and of the average it acts on [s]
+    """
+
+    stiffness: float
+    time_constant: float = 0.02
+
+
+class Block(NamedTuple):
+    """One advance: internal steps and sample values."""
+
+    force: Array
+    """(n_meshes, n_steps) front minus back normal force in the transverse line of action [N]."""
+    approach: Array
+    """(n_meshes, n_steps) approach including offsets [m]; no columns unless everything is recorded."""
+    angle_1: Array
+    """(n_meshes, n_steps) pinion angle [rad]."""
+    rate: Array
+    """(n_meshes, n_steps) approach rate [m/s]."""
+    omega_1: Array
+    """(n_meshes, n_steps) pinion speed [rad/s]."""
+    torque_1: Array
+    """(n_meshes, n_steps) generalized torque on the pinion body, friction included [N m]."""
+    slow: Array
+    """(n_samples, n_slow) motor torque [N m], twist [rad] and drags [N m] at the end of each sample."""
+    slow_speed: Array
+    """(n_samples, n_slow) speed that each slow input works on: its power is input times this."""
+
+
+class Accounts(NamedTuple):
+    """Work since the start of a march [J]; losses are positive."""
+
+    friction: Array
+    """(n_meshes,) sliding friction of the teeth."""
+    mesh_damping: Array
+    """(n_meshes,)"""
+    slow_work: Array
+    """(n_slow,) work done on the drivetrain by motor, bracing and drags (drags negative)."""
+    joint_damping: float
+
+
+class TimeMarch:
+    """A drivetrain that is advanced in time; the only object of the dynamics that changes.
+
+    Slow inputs are the motor torque (on ``system.drive_dof``), the bracing twist (on ``system.twist_load``) and
+    one torque for each name in ``drags``, acting through ``system.drag_loads``.
+    """
+
+    def __init__(
+        self,
+        system: LinearSystem,
+        laws: Sequence[MeshLaw],
+        start: DriveState,
+        *,
+        step: float,
+        substeps: int = 1,
+        drags: Sequence[str] = (),
+        drive_torque: float = 0.0,
+        drag_torques: Sequence[float] = (),
+        cutoff: float = DEFAULT_CUTOFF,
+        accounts: bool = True,
+        record_all: bool = True,
+        derivative_torques: bool = True,
+        model: ModalModel | None = None,
+    ) -> None:
+        """Prepare the march; ``step`` is the internal step [s], a sample has ``substeps`` of them.
+
+        ``model`` is a modal model of the same system, laws and drags, to be shared between runs.
+        Raises ValueError for disagreeing shapes or unknown drags, DefectiveModes as ``modal_model``.
+        """
+        self.laws = tuple(laws)
+        self.step = step
+        self.substeps = substeps
+        self.drags = tuple(drags)
+        self.model = model or modal_model(system, laws, slow_loads(system, drags), cutoff=cutoff)
+        self.propagator = discretise(self.model, step, with_losses=accounts)
+        self.packed = pack_meshes(laws, derivative_torques=derivative_torques)
+        self.unsettled = 0
+        self._record_all = record_all
+        n_meshes, n_slow = len(self.laws), 2 + len(self.drags)
+        self._slow = np.array([drive_torque, start.twist, *(drag_torques or [0.0] * len(self.drags))], float)
+        self._offset = self.packed.offsets.copy()
+        self._ports = np.zeros((n_meshes, 6))
+        for mesh, (law, (pinion, wheel)) in enumerate(zip(self.laws, system.mesh_ports)):
+            x = law.base_radius_1 * start.angles[pinion] - law.base_radius_2 * start.angles[wheel]
+            reaction = evaluate_mesh(
+                law, start.angles[pinion], x + law.offset, start.speeds[pinion], start.speeds[wheel]
+            )
+            torques = float(reaction.torque_1[0]), float(reaction.torque_2[0])
+            self._ports[mesh] = (*torques, *torques, x, start.angles[pinion])
+        self._state = modal_state(self.model, self.propagator, start.angles, start.speeds, self._inputs())
+        self._floor = np.array([1e-12 * law.mean_stiffness * law.base_radius_1 for law in self.laws])
+        loads = slow_loads(system, drags)
+        n_power = 2 * n_meshes + n_slow + 1 if accounts else 0
+        self._powers = np.zeros(n_power + n_slow)
+        self._powers[n_power:] = loads.T @ start.speeds
+        self._work = np.zeros(n_power)
+        self._memory = np.zeros(3)
+        self._memory[2] = self.mean_torque_of_first_mesh()
+
+    def advance(
+        self,
+        given: Array,
+        *,
+        offsets: Array | None = None,
+        speed_control: SpeedControl | None = None,
+        torque_control: TorqueControl | None = None,
+        drag_tables: Array | None = None,
+        drag_speeds: Array | None = None,
+    ) -> Block:
+        """March over ``len(given)`` samples.
+
+        Parameters
+        ----------
+        given : (n_samples, 4) commands at the end of each sample: motor torque (feed-forward) [N m],
+            twist [rad], speed of the drive freedom [rad/s], torque of the first mesh [N m]
+        offsets : (n_samples, n_meshes) approach imposed on each mesh [m], in place of the offsets of the laws
+        drag_tables : (n_drags, n_table) drag torque over speed, from 0 to ``drag_speeds`` [N m]
+        drag_speeds : (n_drags,) last speed of each table [rad/s]
+        """
+        n_meshes, n_slow = len(self.laws), 2 + len(self.drags)
+        n_samples = len(given)
+        sample_time = self.step * self.substeps
+        control = np.zeros(5)
+        if speed_control is not None:
+            control[:3] = (
+                speed_control.proportional, speed_control.integral * sample_time, speed_control.torque_limit
+            )  # fmt: skip
+        if torque_control is not None:
+            share = sample_time / torque_control.time_constant
+            control[3:] = 0.25 * share / torque_control.stiffness, share
+        tables = np.zeros((len(self.drags), 2)) if drag_tables is None else np.ascontiguousarray(drag_tables)
+        ends = np.ones(len(self.drags)) if drag_speeds is None else drag_speeds
+        followed = np.tile(self._offset, (n_samples, 1)) if offsets is None else np.ascontiguousarray(offsets)
+        history = np.empty((n_meshes, 6 if self._record_all else 1, n_samples * self.substeps))
+        samples = np.empty((n_samples, 2 * n_slow))
+        p = self.propagator
+        self.unsettled += kernels.march(
+            self.packed.values, self.packed.counts, self.packed.tables, self._floor,
+            p.decay, p.inputs, p.rows, p.through_old, p.through_new, p.slow_inputs, p.slow_old, p.slow_new,
+            self.step, self.substeps, np.ascontiguousarray(given, float), followed, control,
+            tables, (tables.shape[1] - 1) / np.asarray(ends, float),
+            self._state, self._ports, self._slow, self._offset, self._memory, self._powers, self._work,
+            history, samples,
+        )  # fmt: skip
+        if not np.all(np.isfinite(self._ports)):
+            raise FloatingPointError(
+                "the march left the finite numbers; check inertias, stiffness and mesh tables"
+            )
+        none = np.empty((n_meshes, 0))
+        force, approach, angle, rate, omega, torque = (
+            (history[:, i] for i in range(6)) if self._record_all else (history[:, 0], *[none] * 5)
+        )
+        return Block(force, approach, angle, rate, omega, torque, samples[:, :n_slow], samples[:, n_slow:])
+
+    def mean_torque_of_first_mesh(self) -> float:
+        """Torque of the first mesh at its pinion at this instant, friction left out [N m]."""
+        law, ports = self.laws[0], self._ports[0]
+        force = evaluate_mesh(law, ports[5], ports[4] + self._offset[0], 0.0, 0.0)
+        return float(law.base_radius_1 * (force.force_front[0] - force.force_back[0]))
+
+    def accounts(self) -> Accounts:
+        """Return work and losses since the start; zeros if the march keeps no accounts."""
+        n = len(self.laws)
+        if len(self._work) == 0:
+            return Accounts(np.zeros(n), np.zeros(n), np.zeros(2 + len(self.drags)), 0.0)
+        work = self._work
+        return Accounts(
+            work[0 : 2 * n : 2].copy(), work[1 : 2 * n : 2].copy(), work[2 * n : -1].copy(), float(work[-1])
+        )
+
+    def energy(self) -> float:
+        """Kinetic energy plus elastic energy of joints and tooth contacts at this instant [J]."""
+        scaled = scaled_state(self.model, self.propagator, self._state, self._inputs())
+        stored = 0.5 * float(scaled @ scaled)
+        for law, ports, offset in zip(self.laws, self._ports, self._offset):
+            stored += float(evaluate_mesh(law, ports[5], ports[4] + offset, 0.0, 0.0).energy[0])
+        return stored
+
+    def state(self) -> DriveState:
+        """Return angles, speeds and twist at this instant; each line is placed by one of its mesh ports."""
+        model = self.model
+        scaled = scaled_state(model, self.propagator, self._state, self._inputs())
+        n, rigid = len(model.inertia), model.n_lines
+        elastic = scaled[n:] / model.frequencies[rigid:]
+        angles = model.shapes[:, rigid:] @ elastic
+        placed: set[int] = set()
+        for mesh in range(len(self.laws)):
+            law = self.laws[mesh]
+            turned = self._ports[mesh, 5], 0.0
+            turned = turned[0], (law.base_radius_1 * turned[0] - self._ports[mesh, 4]) / law.base_radius_2
+            for port, angle in zip(model.mesh_ports[mesh], turned):
+                line = int(np.argmax(np.abs(model.shapes[port, :rigid])))
+                if line not in placed:
+                    members = model.shapes[:, line] != 0.0
+                    angles[members] += angle - angles[port]
+                    placed.add(line)
+        return DriveState(angles=angles, speeds=model.shapes @ scaled[:n], twist=float(self._slow[1]))
+
+    def kick(self, speeds: Array) -> None:
+        """Add ``speeds`` (n,) [rad/s] to the motion at once."""
+        nothing = np.zeros(self.model.inputs.shape[1])
+        self._state += modal_state(self.model, self.propagator, np.zeros_like(speeds), speeds, nothing)
+
+    def set_slow(self, drive_torque: float, twist: float) -> None:
+        """Change motor torque and twist at once, without a ramp over the next sample."""
+        before = self._inputs()
+        self._slow[:2] = drive_torque, twist
+        shift = self.propagator.hold @ (before - self._inputs())
+        self._state += np.concatenate((shift.real, shift.imag))
+
+    def _inputs(self) -> Array:
+        return np.concatenate((self._ports[:, :2].ravel(), self._slow))
+
+
+def slow_loads(system: LinearSystem, drags: Sequence[str]) -> Array:
+    """Return the loads (n, 2 + n_drags) of motor, twist and named drags; ValueError for unknown names."""
+    drive = np.zeros(len(system.inertia))
+    drive[system.drive_dof] = 1.0
+    unknown = [name for name in drags if name not in system.drag_loads]
+    if unknown:
+        raise ValueError(
+            f"no drag load named {', '.join(unknown)}; known: {', '.join(system.drag_loads) or 'none'}"
+        )
+    return np.column_stack((drive, system.twist_load, *(system.drag_loads[name] for name in drags)))
