@@ -1,0 +1,282 @@
+"""ISO 6336-3:2006, tooth root stress by method B. Printed symbols; mm, N, N/mm2, degrees.
+
+Clause 6 gives the form factor Y_F, clause 7 the stress correction factor Y_S, both for the load on the outer
+point of single pair contact of the virtual spur gear; ``d_en`` may be any load point instead.
+"""
+
+from dataclasses import dataclass
+from math import asin, cos, inf, log, pi, radians, sin, sqrt, tan
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToothRoot:
+    """One external gear as clause 6 reads it; rack data in modules."""
+
+    z: int
+    m_n: float
+    alpha_n: float
+    beta: float
+    x: float
+    h_fP: float
+    rho_fP: float
+    d_a: float
+    s_pr: float = 0.0
+    """Residual fillet undercut of a protuberance tool, in modules."""
+
+    @property
+    def beta_b(self) -> float:
+        """Base helix angle [rad]."""
+        return asin(sin(radians(self.beta)) * cos(radians(self.alpha_n)))
+
+    @property
+    def z_n(self) -> float:
+        """Virtual number of teeth."""
+        return self.z / (cos(self.beta_b) ** 2 * cos(radians(self.beta)))
+
+    @property
+    def d(self) -> float:
+        """Reference diameter."""
+        return self.z * self.m_n / cos(radians(self.beta))
+
+    @property
+    def d_n(self) -> float:
+        """Reference diameter of the virtual gear."""
+        return self.m_n * self.z_n
+
+    @property
+    def d_bn(self) -> float:
+        """Base diameter of the virtual gear."""
+        return self.d_n * cos(radians(self.alpha_n))
+
+    @property
+    def d_an(self) -> float:
+        """Tip diameter of the virtual gear."""
+        return self.d_n + self.d_a - self.d
+
+    @property
+    def p_bn(self) -> float:
+        """Normal base pitch."""
+        return pi * self.m_n * cos(radians(self.alpha_n))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RootSection:
+    """Section at the 30 degree tangents of the virtual gear (clause 6.2), lengths over m_n, angle [rad]."""
+
+    E: float
+    G: float
+    H: float
+    theta: float
+    s_Fn: float
+    rho_F: float
+    y_F: float
+    """Height of the section above the gear centre."""
+
+
+def root_section(root: ToothRoot) -> RootSection:
+    """Critical section of clause 6.2.1; raises ValueError if the tangent cannot be found."""
+    alpha = radians(root.alpha_n)
+    E = (
+        pi / 4.0
+        - root.h_fP * tan(alpha)
+        + root.s_pr / cos(alpha)
+        - (1.0 - sin(alpha)) * root.rho_fP / cos(alpha)
+    )
+    G = root.rho_fP - root.h_fP + root.x
+    H = 2.0 / root.z_n * (pi / 2.0 - E) - pi / 3.0
+    theta = pi / 6.0
+    for _ in range(100):
+        step = _tangent_residual(theta, G, H, root.z_n)
+        theta -= step
+        if abs(step) < 1e-14:
+            break
+    else:
+        raise ValueError(
+            f"30 degree tangent not found for z_n = {root.z_n:.2f}, x = {root.x:.3f}, h_fP = {root.h_fP:.3f}, "
+            f"rho_fP = {root.rho_fP:.3f}; the tool makes no fillet of this kind: check the rack"
+        )
+    s_Fn = root.z_n * sin(pi / 3.0 - theta) + sqrt(3.0) * (G / cos(theta) - root.rho_fP)
+    rho_F = root.rho_fP + 2.0 * G**2 / (cos(theta) * (root.z_n * cos(theta) ** 2 - 2.0 * G))
+    y_F = 0.5 * (root.z_n * cos(pi / 3.0 - theta) + G / cos(theta) - root.rho_fP)
+    return RootSection(E=E, G=G, H=H, theta=theta, s_Fn=s_Fn, rho_F=rho_F, y_F=y_F)
+
+
+def _tangent_residual(theta: float, G: float, H: float, z_n: float) -> float:
+    """Newton step of theta = (2 G / z_n) tan(theta) - H."""
+    ratio = 2.0 * G / z_n
+    return (theta - ratio * tan(theta) + H) / (1.0 - ratio / cos(theta) ** 2)
+
+
+def d_en(root: ToothRoot, epsilon_alpha: float) -> float:
+    """Diameter of the outer point of single pair contact of the virtual gear (clause 6.2.2)."""
+    epsilon_an = epsilon_alpha / cos(root.beta_b) ** 2
+    roll = sqrt((root.d_an / 2.0) ** 2 - (root.d_bn / 2.0) ** 2) - root.p_bn * (epsilon_an - 1.0)
+    return 2.0 * sqrt(roll**2 + (root.d_bn / 2.0) ** 2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadedRoot:
+    """Bending lever, angle and factors for loads at the diameters d_en; arrays of one shape."""
+
+    alpha_Fen: Array
+    """[rad]"""
+    h_Fe: Array
+    """Over m_n."""
+    Y_F: Array
+    Y_S: Array
+    q_s: float
+
+
+def loaded_root(root: ToothRoot, section: RootSection, diameters: Array) -> LoadedRoot:
+    """Y_F and Y_S (clauses 6.1, 7.2) for loads at virtual-gear diameters [mm]."""
+    alpha = radians(root.alpha_n)
+    ratio = np.minimum(root.d_bn / np.asarray(diameters, dtype=float), 1.0)
+    alpha_en = np.arccos(ratio)
+    half_tooth = (pi / 2.0 + 2.0 * root.x * tan(alpha)) / root.z_n
+    gamma_e = half_tooth + (tan(alpha) - alpha) - (np.tan(alpha_en) - alpha_en)
+    alpha_Fen = alpha_en - gamma_e
+    lever = (np.cos(gamma_e) - np.sin(gamma_e) * np.tan(alpha_Fen)) * diameters / root.m_n
+    h_Fe = 0.5 * lever - section.y_F
+    q_s = section.s_Fn / (2.0 * section.rho_F)
+    Y_F = 6.0 * h_Fe * np.cos(alpha_Fen) / (section.s_Fn**2 * cos(alpha))
+    L = section.s_Fn / h_Fe
+    Y_S = (1.2 + 0.13 * L) * q_s ** (1.0 / (1.21 + 2.3 / L))
+    return LoadedRoot(alpha_Fen=alpha_Fen, h_Fe=h_Fe, Y_F=Y_F, Y_S=Y_S, q_s=q_s)
+
+
+def Y_beta(epsilon_beta: float, beta: float) -> float:
+    """Helix angle factor (clause 8): overlap ratio at most 1, ``beta`` [deg] at most 30."""
+    return 1.0 - min(epsilon_beta, 1.0) * min(beta, 30.0) / 120.0
+
+
+def Y_B(s_R: float, h_t: float) -> float:
+    """Rim thickness factor of an external gear (clause 9); ``s_R = inf`` is a solid body.
+
+    Raises ValueError for s_R <= 0.5 h_t, which the clause excludes.
+    """
+    ratio = s_R / h_t
+    if ratio >= 1.2:
+        return 1.0
+    if ratio <= 0.5:
+        raise ValueError(
+            f"rim thickness s_R / h_t = {ratio:.3f} must exceed 0.5 (ISO 6336-3:2006, 9); thicken the rim"
+        )
+    return 1.6 * log(2.242 / ratio)
+
+
+def Y_DT(epsilon_an: float, grade: int) -> float:
+    """Deep tooth factor (clause 10) for the virtual contact ratio and the ISO 1328-1 grade."""
+    if epsilon_an <= 2.05 or grade > 4:
+        return 1.0
+    return 0.7 if epsilon_an > 2.5 else 2.366 - 0.666 * epsilon_an
+
+
+def K_Fbeta(K_Hbeta: float, b_over_h: float) -> float:
+    """Face load factor for root stress from that for contact (ISO 6336-1:2006, 7.3); b/h at least 3."""
+    r = max(b_over_h, 3.0)
+    return float(K_Hbeta ** (r**2 / (1.0 + r + r**2)))
+
+
+def K_Falpha(
+    epsilon_alpha: float, epsilon_gamma: float, c_gamma_alpha: float, f_pb_eff: float, specific_load: float
+) -> float:
+    """Transverse load factor (ISO 6336-1:2006, 8.3.2) for F_tH / b = ``specific_load`` [N/mm].
+
+    c_gamma_alpha [N/(mm um)], f_pb_eff = f_pb - y_alpha [um]; limited to 1 .. epsilon_gamma/(0.25 eps_alpha + 0.75).
+    """
+    X = c_gamma_alpha * f_pb_eff / specific_load
+    if epsilon_gamma <= 2.0:
+        K = epsilon_gamma / 2.0 * (0.9 + 0.4 * X)
+    else:
+        K = 0.9 + 0.4 * sqrt(2.0 * (epsilon_gamma - 1.0) / epsilon_gamma) * X
+    return min(max(K, 1.0), epsilon_gamma / (0.25 * epsilon_alpha + 0.75))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RootStress:
+    """Root stress of one gear with all factors [N/mm2]."""
+
+    d_en: float
+    s_Fn: float
+    h_Fe: float
+    rho_F: float
+    q_s: float
+    alpha_Fen: float
+    """[deg]"""
+    Y_F: float
+    Y_S: float
+    Y_beta: float
+    Y_B: float
+    Y_DT: float
+    sigma_F0: float
+    K_A: float
+    K_V: float
+    K_Fbeta: float
+    K_Falpha: float
+    sigma_F: float
+    warnings: tuple[str, ...]
+
+
+def root_stress(
+    root: ToothRoot,
+    *,
+    F_t: float,
+    b: float,
+    epsilon_alpha: float,
+    epsilon_beta: float = 0.0,
+    grade: int = 5,
+    s_R: float = inf,
+    K_A: float = 1.0,
+    K_V: float = 1.0,
+    K_Fbeta: float = 1.0,
+    K_Falpha: float = 1.0,
+) -> RootStress:
+    """Nominal stress sigma_F0 (clause 5.2) and local stress sigma_F (5.1) for F_t [N] on the width b [mm]."""
+    section = root_section(root)
+    diameter = d_en(root, epsilon_alpha)
+    load = loaded_root(root, section, np.array([diameter]))
+    Y_F, Y_S = float(load.Y_F[0]), float(load.Y_S[0])
+    h_t = 0.5 * (root.d_a - root.d) - root.m_n * (root.x - root.h_fP)
+    factors = (
+        Y_beta(epsilon_beta, root.beta),
+        Y_B(s_R, h_t),
+        Y_DT(epsilon_alpha / cos(root.beta_b) ** 2, grade),
+    )
+    sigma_F0 = F_t / (b * root.m_n) * Y_F * Y_S * factors[0] * factors[1] * factors[2]
+    warnings = []
+    if not 1.0 <= load.q_s < 8.0:
+        warnings.append(
+            f"q_s = {load.q_s:.3f} outside 1..8 of Y_S (ISO 6336-3:2006, 7.2); use a larger tool tip radius"
+        )
+    if epsilon_alpha / cos(root.beta_b) ** 2 >= 2.0:
+        warnings.append(
+            f"virtual contact ratio {epsilon_alpha / cos(root.beta_b) ** 2:.3f} is 2 or more: the load point of "
+            "method B is conservative; use contact analysis"
+        )
+    if root.beta > 30.0:
+        warnings.append(f"beta = {root.beta:.2f} deg above 30 deg: Y_beta taken at 30 deg; confirm by test")
+    return RootStress(
+        d_en=diameter,
+        s_Fn=section.s_Fn * root.m_n,
+        h_Fe=float(load.h_Fe[0]) * root.m_n,
+        rho_F=section.rho_F * root.m_n,
+        q_s=load.q_s,
+        alpha_Fen=float(np.degrees(load.alpha_Fen[0])),
+        Y_F=Y_F,
+        Y_S=Y_S,
+        Y_beta=factors[0],
+        Y_B=factors[1],
+        Y_DT=factors[2],
+        sigma_F0=sigma_F0,
+        K_A=K_A,
+        K_V=K_V,
+        K_Fbeta=K_Fbeta,
+        K_Falpha=K_Falpha,
+        sigma_F=sigma_F0 * K_A * K_V * K_Fbeta * K_Falpha,
+        warnings=tuple(warnings),
+    )
