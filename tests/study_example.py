@@ -1,0 +1,61 @@
+"""A cheap stand-in for case and run, importable by the worker processes of a study."""
+
+import json
+import os
+import time
+from dataclasses import dataclass, field, replace
+from hashlib import sha256
+from pathlib import Path
+
+from rigdesign.errors import CaseError, NotConvergedError
+from tests.report_example import make_check, make_result
+
+
+@dataclass(frozen=True)
+class ExampleCase:
+    """Has what a study needs of a case: name, title, hash, with_value."""
+
+    log: str
+    name: str = "example"
+    title: str = "Example <rig>"
+    values: dict[str, str] = field(default_factory=lambda: {"oil.inlet": "80 degC", "gear.width": "7 mm"})
+
+    @property
+    def hash(self) -> str:
+        return sha256(json.dumps(self.values, sort_keys=True).encode()).hexdigest()
+
+    def with_value(self, path, value):
+        if path not in self.values:
+            raise CaseError(f"{path}: no such key; the nearest is oil.inlet")
+        if value.startswith("-"):
+            raise CaseError(f"{path} = {value}: below 0; give a positive value")
+        return replace(self, values={**self.values, path: value})
+
+
+def run_example(case, *, fidelity):
+    """A result whose gap closes with the oil temperature; logs begin and end of the computation."""
+    _log(case, "begin")
+    time.sleep(0.2)
+    inlet = float(case.values["oil.inlet"].split()[0])
+    if inlet == 666:
+        os._exit(9)
+    if inlet == 120:
+        raise NotConvergedError("temperature: 3 K above the limit of 0.05 K after 40 passes; relax the loop")
+    if inlet == 121:
+        raise ZeroDivisionError("a defect")
+    gap = 1.0 - 0.006 * inlet
+    limit = 0.05 * float(case.values["gear.width"].split()[0])
+    result = make_result(
+        checks=[
+            make_check("seal_gap", gap, limit, comparison=">="),
+            make_check("oil_outlet", inlet + 11, 150.0, unit="degC"),
+        ],
+        verdict="fail" if gap < limit else "pass", dynamics=None, growth=[], fields=[],
+    )  # fmt: skip
+    _log(case, "end")
+    return result
+
+
+def _log(case, what):
+    with Path(case.log).open("a", encoding="utf-8") as log:
+        log.write(f"{what} {os.getpid()} {case.values['oil.inlet']} {case.values['gear.width']}\n")

@@ -1,0 +1,267 @@
+"""Parameter studies: what is varied, the ledger, resuming after SIGKILL, failed points."""
+
+import csv
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from rigdesign.errors import CaseError, OutputError, UsageError
+from rigdesign.study import parse_variation, run_study
+from rigdesign.study_grid import Variation, grid
+from rigdesign.study_ledger import Ledger, point_key
+from tests.study_example import ExampleCase, run_example
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("oil.inlet=90 degC:140 degC:10 K", [f"{t} degC" for t in (90, 100, 110, 120, 130, 140)]),
+        ("a=90:140:25 degC", ["90 degC", "115 degC", "140 degC"]),
+        ("a = 90 degC : 100 degC : 5 degC", ["90 degC", "95 degC", "100 degC"]),
+        ("a=0.1:0.3:0.1", ["0.1", "0.2", "0.3"]),
+        ("a=-2:-3:-0.5 mm", ["-2 mm", "-2.5 mm", "-3 mm"]),
+        ("a=1e3:3e3:1e3 rpm", ["1000 rpm", "2000 rpm", "3000 rpm"]),
+        ("a=5 mm:5 mm:1 mm", ["5 mm"]),
+        ("a=MIL-PRF-23699,FVA 3", ["MIL-PRF-23699", "FVA 3"]),
+        ('a="x, y",z', ["x, y", "z"]),
+        ("a=../b:c", ["../b:c"]),
+    ],
+)
+def test_variation_forms(text, values):
+    assert list(parse_variation(text).values) == values
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("oil.inlet", "a value is missing"),
+        ("=1,2", "a path"),
+        ("a=", "a value"),
+        ("a=1,,2", "empty"),
+        ("a=1,1", "twice"),
+        ("a=90:140", "2 numbers"),
+        ("a=90:140:0", "step of 0"),
+        ("a=90:140:-10", "sign"),
+        ("a=90:145:10 degC", "140 or 150"),
+        ("a=90 degC:140 K:10 K", "same unit"),
+        ("a=90 degC:140:10 degC", "same unit"),
+        ("a=1 mm:2 mm:0.1 K", "same unit"),
+        ("a=0:1e9:1", "at most"),
+    ],
+)
+def test_variation_faults_say_what_is_wrong(text, named):
+    with pytest.raises(UsageError, match=named):
+        parse_variation(text)
+
+
+def test_grid_runs_the_last_variation_fastest():
+    assert grid([Variation("a", ("1", "2")), Variation("b", ("x", "y"))]) == [
+        ("1", "x"), ("1", "y"), ("2", "x"), ("2", "y"),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("variations", "named"),
+    [([], "nothing"), ([Variation("a", ("1",)), Variation("a", ("2",))], "twice"),
+     ([Variation(p, tuple(map(str, range(400)))) for p in "ab"], "160000")],
+)  # fmt: skip
+def test_grid_faults(variations, named):
+    with pytest.raises(UsageError, match=named):
+        grid(variations)
+
+
+def test_numbers_of_a_variation_share_one_unit():
+    assert parse_variation("a=90:100:10 degC").numbers() == ([90.0, 100.0], "degC")
+    assert parse_variation("a=1 mm,2 cm").numbers() is None
+    assert parse_variation("a=FVA 3,FVA 3A").numbers() is None
+
+
+def test_key_separates_case_and_fidelity():
+    assert len({point_key("a", "quick"), point_key("a", "standard"), point_key("b", "quick")}) == 3
+
+
+def test_ledger_keeps_points_and_replaces_a_retried_one(tmp_path):
+    with Ledger(tmp_path / "l.sqlite") as ledger:
+        ledger.store("k", fidelity="quick", case_hash="h", inputs={}, failed=True, record={"error": "no"})
+        ledger.store(
+            "k", fidelity="quick", case_hash="h", inputs={}, failed=False, record={"verdict": "pass"}
+        )
+    with Ledger(tmp_path / "l.sqlite") as ledger:
+        assert ledger.stored() == {"k": (False, {"verdict": "pass"})}
+
+
+def test_broken_ledger_is_refused_with_a_remedy(tmp_path):
+    (tmp_path / "l.sqlite").write_text("not a database " * 50)
+    with pytest.raises(OutputError, match="remove the file"):
+        Ledger(tmp_path / "l.sqlite")
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    """One varied input with a point that does not converge, a defect and an invalid case."""
+    out = tmp_path_factory.mktemp("study")
+    variations = [parse_variation("oil.inlet=90 degC,110 degC,120 degC,121 degC,-1 degC")]
+    case = ExampleCase(log=str(out / "log"))
+    lines = []
+    outcome = run_study(
+        case, variations, out, fidelity="quick", workers=2, progress=lines.append, run=run_example
+    )
+    return out, case, variations, outcome, lines
+
+
+def test_study_table(study):
+    out, _, _, outcome, lines = study
+    rows = list(csv.DictReader((out / "results.csv").read_text(encoding="utf-8").splitlines()))
+    assert [row["status"] for row in rows] == ["done", "done", "failed", "failed", "failed"]
+    assert [row["verdict"] for row in rows[:2]] == ["pass", "fail"]
+    assert [row["first_failing_check"] for row in rows[:2]] == ["", "seal_gap"]
+    assert float(rows[1]["seal_gap margin [mm]"]) == pytest.approx(0.34 - 0.35)
+    assert rows[0]["oil_outlet verdict"] == "pass"
+    assert rows[0]["max_temperature [degC]"] == "178.6"
+    assert "3 K above" in rows[2]["error"]
+    assert rows[3]["error"] == "ZeroDivisionError: a defect"
+    assert "below 0" in rows[4]["error"]
+    assert outcome.completed == 4
+    assert len(outcome.failed) == 3
+    assert any("110 degC: fail" in line for line in lines)
+
+
+def test_study_page_and_plot(study):
+    out = study[0]
+    page = (out / "study.html").read_text(encoding="utf-8")
+    assert "Example &lt;rig&gt;" in page
+    assert "Example <rig>" not in page
+    assert "margin, 1 − utilisation" in page
+    assert (out / "study.svg").read_text(encoding="utf-8").startswith("<?xml")
+    assert not list(out.glob(".rigdesign-*"))
+
+
+def test_second_run_computes_nothing_and_writes_the_same(study):
+    out, case, variations, first, _ = study
+    before = {name: (out / name).read_bytes() for name in ("results.csv", "study.svg", "study.html", "log")}
+    again = run_study(case, variations, out, fidelity="quick", workers=1, run=run_example)
+    assert (again.completed, again.reused) == (0, 4)
+    assert again.points == first.points
+    assert before == {name: (out / name).read_bytes() for name in before}
+
+
+def test_retry_computes_failed_points_only(study, tmp_path):
+    out, case, variations, _, _ = study
+    before = (out / "log").read_text().count("begin")
+    again = run_study(case, variations, out, fidelity="quick", workers=2, retry=True, run=run_example)
+    assert (again.completed, again.reused) == (2, 2)
+    assert (out / "log").read_text().count("begin") == before + 2
+
+
+def test_a_point_that_kills_its_worker_costs_only_itself(tmp_path):
+    variations = [parse_variation("oil.inlet=90 degC,666 degC,100 degC,105 degC,110 degC")]
+    outcome = run_study(
+        ExampleCase(log=str(tmp_path / "log")), variations, tmp_path / "out", workers=2, run=run_example
+    )
+    assert [point.failed for point in outcome.points] == [False, True, False, False, False]
+    assert "process died" in outcome.points[1].record["error"]
+
+
+def test_two_variations_make_a_grid_in_order(tmp_path):
+    variations = [parse_variation("oil.inlet=90:110:20 degC"), parse_variation("gear.width=7 mm,8 mm")]
+    outcome = run_study(
+        ExampleCase(log=str(tmp_path / "log")), variations, tmp_path, workers=2, run=run_example
+    )
+    assert [tuple(point.values.values()) for point in outcome.points] == [
+        ("90 degC", "7 mm"), ("90 degC", "8 mm"), ("110 degC", "7 mm"), ("110 degC", "8 mm"),
+    ]  # fmt: skip
+    assert [point.record["verdict"] for point in outcome.points] == ["pass", "pass", "fail", "fail"]
+
+
+def test_unknown_path_writes_nothing(tmp_path):
+    out = tmp_path / "out"
+    with pytest.raises(CaseError, match="no such key"):
+        run_study(ExampleCase(log=""), [parse_variation("oil.inlett=1,2")], out, run=run_example)
+    assert not out.exists()
+
+
+def test_bad_calls(tmp_path):
+    variations = [parse_variation("oil.inlet=90 degC")]
+    with pytest.raises(UsageError, match="workers = 0"):
+        run_study(ExampleCase(log=""), variations, tmp_path, workers=0, run=run_example)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match="is a file"):
+        run_study(ExampleCase(log=""), variations, tmp_path / "file", run=run_example)
+
+
+DRIVER = """
+import sys
+from pathlib import Path
+sys.path.insert(0, {root!r})
+from rigdesign.study import parse_variation, run_study
+from tests.study_example import ExampleCase, run_example
+
+if __name__ == "__main__":
+    out = Path(sys.argv[1])
+    case = ExampleCase(log=str(out.parent / (out.name + ".log")))
+    run_study(case, [parse_variation("oil.inlet=90:118:2 degC")], out, workers=2, run=run_example)
+"""
+POINTS = 15
+
+
+def test_killed_study_resumes_without_loss_or_repetition(tmp_path):
+    """SIGKILL with points stored and others under way; the resumed study equals an undisturbed one."""
+    script = tmp_path / "driver.py"
+    script.write_text(DRIVER.format(root=str(ROOT)))
+    killed, undisturbed = tmp_path / "killed", tmp_path / "undisturbed"
+
+    process = subprocess.Popen([sys.executable, str(script), str(killed)])
+    log = tmp_path / "killed.log"
+    _wait(lambda: _stored(killed) >= 3 and _events(log, "begin") > _events(log, "end"))
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    done_before = _stored(killed)
+    assert 3 <= done_before < POINTS
+    assert not (killed / "results.csv").exists()
+    workers = {int(line.split()[1]) for line in log.read_text().splitlines()}
+    _wait(lambda: not any(_alive(pid) for pid in workers))
+
+    begun_before = _events(log, "begin")
+    subprocess.run([sys.executable, str(script), str(killed)], check=True)
+    subprocess.run([sys.executable, str(script), str(undisturbed)], check=True)
+    assert _events(log, "begin") - begun_before == POINTS - done_before
+    for name in ("results.csv", "study.svg", "study.html"):
+        assert (killed / name).read_bytes() == (undisturbed / name).read_bytes()
+    assert len((killed / "results.csv").read_text().splitlines()) == POINTS + 1
+
+
+def _wait(condition, seconds=60.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.02)
+
+
+def _stored(out):
+    if not (out / "ledger.sqlite").exists():
+        return 0
+    try:
+        with closing(sqlite3.connect(out / "ledger.sqlite")) as connection:
+            return connection.execute("SELECT COUNT(*) FROM points").fetchone()[0]
+    except sqlite3.OperationalError:
+        return 0
+
+
+def _events(log, what):
+    return log.read_text().count(what) if log.exists() else 0
+
+
+def _alive(pid):
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
