@@ -8,7 +8,7 @@ allowed; whether the loops can close is checked in `dynamics.power_loop`.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Literal, TypeVar
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +24,14 @@ __all__ = [
     "Drivetrain",
     "DrivetrainError",
     "GearBody",
+    "Joint",
     "JournalBearing",
     "MeshConnection",
     "Motor",
     "Section",
     "Shaft",
     "assemble",
+    "joints",
 ]
 
 Array = NDArray[np.float64]
@@ -154,6 +156,17 @@ class Drivetrain:
         return {name: order[value] for name, value in line.items()}
 
 
+class Joint(NamedTuple):
+    """Spring and damper between two freedoms; all elements of a shaft share its name."""
+
+    name: str
+    kind: Literal["shaft", "spline", "coupling", "motor", "mesh"]
+    dof_a: int
+    dof_b: int
+    stiffness: float
+    damping: float
+
+
 def assemble(drivetrain: Drivetrain) -> LinearSystem:
     """Matrices of the drivetrain without its meshes.
 
@@ -161,30 +174,22 @@ def assemble(drivetrain: Drivetrain) -> LinearSystem:
     lumped, hence diagonal. Every angle is positive in the running direction of its line.
     """
     builder = _Builder(drivetrain)
-    for gear in drivetrain.gears:
-        builder.add_body(f"{gear.shaft}/{gear.name}", gear.inertia, gear.shaft)
-        builder.join(
-            builder.size - 1, builder.station(gear.shaft, gear.position), gear.stiffness, gear.damping
-        )
     gear_dof = {gear.name: builder.stations + i for i, gear in enumerate(drivetrain.gears)}
-    twist = {}
-    for coupling in drivetrain.couplings:
-        a, b = (builder.end(name, end) for name, end in zip(coupling.shafts, coupling.ends))
-        builder.join(a, b, coupling.stiffness, coupling.damping)
-        twist[coupling.name] = (a, b, coupling.stiffness)
-    drive = builder.add_motor(drivetrain.motor)
     places = {place.name: builder.station(place.shaft, place.position) for place in drivetrain.drag_places}
     for bearing in drivetrain.bearings:
         places[bearing.name] = builder.station(bearing.shaft, bearing.position)
-        builder.grounded.append((places[bearing.name], bearing.linear_drag))
     places.update(gear_dof)
 
     stiffness, damping = builder.matrices()
     n = builder.size
     twist_load = np.zeros(n)
     if drivetrain.bracing_coupling is not None:
-        a, b, k = twist[drivetrain.bracing_coupling]
-        twist_load[a], twist_load[b] = k, -k
+        braced = next(
+            joint
+            for joint in builder.joints
+            if joint.name == drivetrain.bracing_coupling and joint.kind == "coupling"
+        )
+        twist_load[braced.dof_a], twist_load[braced.dof_b] = braced.stiffness, -braced.stiffness
     line = drivetrain.lines()
     return LinearSystem(
         inertia=np.array(builder.inertia),
@@ -195,10 +200,15 @@ def assemble(drivetrain: Drivetrain) -> LinearSystem:
             [(gear_dof[m.pinion], gear_dof[m.wheel]) for m in drivetrain.meshes], dtype=np.int64
         ).reshape(-1, 2),
         lines=np.array([line[shaft] for shaft in builder.shaft_of], dtype=np.int64),
-        drive_dof=drive,
+        drive_dof=builder.drive,
         twist_load=twist_load,
         drag_loads={name: -np.eye(1, n, dof)[0] for name, dof in places.items()},
     )
+
+
+def joints(drivetrain: Drivetrain) -> tuple[Joint, ...]:
+    """All springs and dampers between the freedoms of ``assemble``, meshes left out."""
+    return tuple(_Builder(drivetrain).joints)
 
 
 @dataclass
@@ -209,13 +219,25 @@ class _Builder:
     inertia: list[float] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     shaft_of: list[str] = field(default_factory=list)
-    springs: list[tuple[int, int, float, float]] = field(default_factory=list)
-    grounded: list[tuple[int, float]] = field(default_factory=list)
+    joints: list[Joint] = field(default_factory=list)
     chains: dict[str, ShaftChain] = field(default_factory=dict)
     first: dict[str, int] = field(default_factory=dict)
     stations: int = 0
+    drive: int = 0
 
     def __post_init__(self) -> None:
+        self._add_shafts()
+        self.stations = self.size
+        for gear in self.drivetrain.gears:
+            self.add_body(f"{gear.shaft}/{gear.name}", gear.inertia, gear.shaft)
+            seat = self.station(gear.shaft, gear.position)
+            self.joints.append(Joint(gear.name, "spline", self.size - 1, seat, gear.stiffness, gear.damping))
+        for coupling in self.drivetrain.couplings:
+            a, b = (self.end(name, end) for name, end in zip(coupling.shafts, coupling.ends))
+            self.joints.append(Joint(coupling.name, "coupling", a, b, coupling.stiffness, coupling.damping))
+        self._add_motor(self.drivetrain.motor)
+
+    def _add_shafts(self) -> None:
         for shaft in self.drivetrain.shafts:
             chain = discretise(shaft, _stations(self.drivetrain, shaft.name))
             self.chains[shaft.name] = chain
@@ -223,8 +245,7 @@ class _Builder:
             for position, inertia in zip(chain.positions, chain.inertia):
                 self.add_body(f"{shaft.name}/{position * 1e3:.2f} mm", float(inertia), shaft.name)
             for i, spring in enumerate(chain.springs):
-                self.join(start + i, start + i + 1, float(spring), 0.0)
-        self.stations = self.size
+                self.joints.append(Joint(shaft.name, "shaft", start + i, start + i + 1, float(spring), 0.0))
 
     @property
     def size(self) -> int:
@@ -235,35 +256,33 @@ class _Builder:
         self.names.append(name)
         self.shaft_of.append(shaft)
 
-    def join(self, a: int, b: int, stiffness: float, damping: float) -> None:
-        self.springs.append((a, b, stiffness, damping))
-
     def station(self, shaft: str, position: float) -> int:
         return self.first[shaft] + self.chains[shaft].node(position)
 
     def end(self, shaft: str, end: End) -> int:
         return self.station(shaft, 0.0 if end == "left" else self.drivetrain.shaft(shaft).length)
 
-    def add_motor(self, motor: Motor) -> int:
-        station = self.station(motor.shaft, motor.position)
+    def _add_motor(self, motor: Motor) -> None:
+        self.drive = self.station(motor.shaft, motor.position)
         if motor.stiffness is None:
-            self.inertia[station] += motor.inertia
-            return station
+            self.inertia[self.drive] += motor.inertia
+            return
         self.add_body(f"{motor.shaft}/motor", motor.inertia, motor.shaft)
-        self.join(self.size - 1, station, motor.stiffness, motor.damping)
-        return self.size - 1
+        self.joints.append(Joint("motor", "motor", self.size - 1, self.drive, motor.stiffness, motor.damping))
+        self.drive = self.size - 1
 
     def matrices(self) -> tuple[Array, Array]:
         """Stiffness and damping matrix (n, n)."""
         stiffness, damping = np.zeros((2, self.size, self.size))
-        for a, b, k, c in self.springs:
+        for _, _, a, b, k, c in self.joints:
             for matrix, value in ((stiffness, k), (damping, c)):
                 matrix[a, a] += value
                 matrix[b, b] += value
                 matrix[a, b] -= value
                 matrix[b, a] -= value
-        for dof, c in self.grounded:
-            damping[dof, dof] += c
+        for bearing in self.drivetrain.bearings:
+            dof = self.station(bearing.shaft, bearing.position)
+            damping[dof, dof] += bearing.linear_drag
         return stiffness, damping
 
 

@@ -44,7 +44,7 @@ def check_loops(drivetrain: "Drivetrain") -> None:
         asked = Fraction(mesh.teeth[0], mesh.teeth[1])
         if here != asked:
             raise DrivetrainError(
-                f"mesh {mesh.name!r}: the loop cannot turn: teeth {mesh.teeth[0]}/{mesh.teeth[1]} give the wheel "
+                f"mesh {mesh.name!r}: loop cannot turn: teeth {mesh.teeth[0]}/{mesh.teeth[1]} give the wheel "
                 f"{float(asked):.9g} of the pinion's speed, the rest of the loop {float(here):.9g}, "
                 "so the product of the ratios round the loop is "
                 f"{float(asked / here):.9g} and not 1; change tooth numbers so that it is 1"
@@ -57,8 +57,8 @@ def check_loops(drivetrain: "Drivetrain") -> None:
         known = distances.setdefault(frozenset((a, b)), (mesh.name, mesh.centre_distance))
         if abs(known[1] - mesh.centre_distance) > DISTANCE_TOLERANCE:
             raise DrivetrainError(
-                f"mesh {mesh.name!r}: centre distance = {mesh.centre_distance} m: mesh {known[0]!r} holds the "
-                f"same two lines at {known[1]} m, the shafts cannot be parallel; make the two equal"
+                f"mesh {mesh.name!r}: centre distance = {mesh.centre_distance} m: mesh {known[0]!r} holds "
+                f"the same two lines at {known[1]} m, the shafts cannot be parallel; make the two equal"
             )
     _check_polygons(drivetrain, {pair: distance for pair, (_, distance) in distances.items()})
 
@@ -119,8 +119,8 @@ def _spread(drivetrain: "Drivetrain") -> tuple[dict[int, Fraction], dict[int, in
     loose = [name for name, line in lines.items() if line not in ratios]
     if loose:
         raise DrivetrainError(
-            f"shaft {loose[0]!r} is not connected to the motor's shaft {drivetrain.motor.shaft!r} by couplings "
-            "or meshes; add the missing joint or leave the shaft out"
+            f"shaft {loose[0]!r} is not connected to the motor's shaft {drivetrain.motor.shaft!r} by "
+            "couplings or meshes; add the missing joint or leave the shaft out"
         )
     return ratios, directions
 
@@ -133,8 +133,8 @@ def _check_polygons(drivetrain: "Drivetrain", distances: dict[frozenset[int], fl
         around = _shortest_way(start, goal, {p: d for p, d in distances.items() if p != pair})
         if direct > around + DISTANCE_TOLERANCE:
             raise DrivetrainError(
-                f"centre distance between {names[start]!r} and {names[goal]!r} = {direct} m: the way round the "
-                f"loop is only {around:.6g} m long, it cannot close; shorten this one or lengthen the others"
+                f"centre distance between {names[start]!r} and {names[goal]!r} = {direct} m: the way round "
+                f"the loop is only {around:.6g} m long, it cannot close; shorten this or lengthen the others"
             )
 
 
