@@ -1,0 +1,81 @@
+"""ISO/TR 14179-2:2001, thermal load carrying capacity of gears, part 2: mesh friction and seal losses.
+
+Symbols and units as printed (N, mm, m/s, mPa s, um, 1/min, W). Confidence: the friction formula and the seal
+constant were found in two public programs that cite the document; the limits of validity are from the field's
+textbooks (Schlenk 1994; Niemann/Winter II) and should be compared with a copy before they decide a verdict.
+"""
+
+import math
+
+LINE_LOAD_MINIMUM = 150.0
+"""F_bt/b [N/mm] below which the value at 150 is used."""
+SPEED_MAXIMUM = 50.0
+"""Pitch line velocity v_t [m/s] above which the value at 50 is used."""
+SPEED_MINIMUM = 1.0
+"""Pitch line velocity v_t [m/s] below which the value at 1 is used: boundary friction is not described."""
+
+LUBRICANT_FACTOR = {
+    "mineral": 1.0,
+    "polyalphaolefin": 0.8,
+    "ester": 0.8,
+    "phosphate_ester": 1.3,
+    "traction": 1.5,
+}
+"""X_L by base oil; medium confidence (Schlenk 1994), a measured value is better."""
+
+
+def mu_mz(F_bt_b: float, v_SigmaC: float, rho_redC: float, eta_oil: float, Ra: float, X_L: float) -> float:
+    """Mean friction coefficient of the mesh (Schlenk).
+
+    mu_mz = 0.048 (F_bt/b / (v_SigmaC rho_redC))^0.2 eta_oil^-0.05 Ra^0.25 X_L
+
+    F_bt_b : tooth force in the transverse base tangent plane per face width [N/mm]
+    v_SigmaC : sum of the surface speeds at the pitch point, 2 v_t sin(alpha_wt) [m/s]
+    rho_redC : relative radius of curvature at the pitch point [mm]
+    eta_oil : dynamic viscosity at the oil temperature [mPa s]
+    Ra : mean roughness of both flanks [um]
+    X_L : lubricant factor [-]
+    """
+    mu: float = 0.048 * (F_bt_b / (v_SigmaC * rho_redC)) ** 0.2 * eta_oil**-0.05 * Ra**0.25 * X_L
+    return mu
+
+
+def mu_mz_michaelis(
+    F_bt_b: float, v_SigmaC: float, rho_redC: float, eta_oil: float, Ra: float, d_1: float, X_L: float
+) -> float:
+    """Mean friction coefficient of the mesh (Michaelis; Niemann/Winter II).
+
+    mu_mz = 0.045 (F_bt/b / (v_SigmaC rho_redC))^0.2 eta_oil^-0.05 X_R X_L , X_R = 3.8 (Ra / d_1)^0.25
+
+    Units as in `mu_mz`; Ra [um], d_1 reference diameter of the pinion [mm].
+    """
+    X_R = 3.8 * (Ra / d_1) ** 0.25
+    mu: float = 0.045 * (F_bt_b / (v_SigmaC * rho_redC)) ** 0.2 * eta_oil**-0.05 * X_R * X_L
+    return mu
+
+
+def H_V(z_1: int, u: float, beta_b: float, eps_1: float, eps_2: float) -> float:
+    """Tooth-loss factor after Ohlendorf, rigid teeth, half the load in double contact [-].
+
+    H_V = pi (u + 1) / (z_1 u cos beta_b) (1 - eps_alpha + eps_1^2 + eps_2^2)
+
+    beta_b [rad]. Raises ValueError where the formula does not hold: pitch point outside the path of contact
+    (eps_1 or eps_2 negative) or eps_alpha outside 1 to 2.
+    """
+    eps_alpha = eps_1 + eps_2
+    if eps_1 < 0.0 or eps_2 < 0.0:
+        raise ValueError(
+            f"addendum contact ratios {eps_1:.4g}, {eps_2:.4g}: must not be negative, the pitch point lies "
+            "outside the path of contact; use the integrated tooth-loss factor"
+        )
+    if not 1.0 <= eps_alpha <= 2.0:
+        raise ValueError(
+            f"transverse contact ratio {eps_alpha:.4g}: must lie within 1 to 2 for Ohlendorf's formula; use "
+            "the integrated tooth-loss factor"
+        )
+    return math.pi * (u + 1.0) / (z_1 * u * math.cos(beta_b)) * (1.0 - eps_alpha + eps_1**2 + eps_2**2)
+
+
+def P_VD(d_sh: float, n: float) -> float:
+    """Loss of one radial lip seal [W]: 7.69e-6 d_sh^2 n; shaft diameter [mm], speed [1/min]."""
+    return 7.69e-6 * d_sh**2 * n
