@@ -1,0 +1,94 @@
+"""Shafts, joints and drive of the power circuit (torsional)."""
+
+from collections.abc import Mapping
+from typing import Literal
+
+from pydantic import Field
+
+from rigdesign.case.fields import (
+    Force,
+    Gap,
+    Inertia,
+    Length,
+    Name,
+    Part,
+    Power,
+    Text,
+    Torque,
+    TorsionalDamping,
+    TorsionalStiffness,
+)
+
+End = Literal["start", "end"]
+
+
+class Section(Part):
+    """Cylinder of a stepped shaft."""
+
+    length: Length
+    outer_diameter: Length
+    inner_diameter: Gap = 0.0
+
+
+class Disc(Part):
+    """Rigid disc on a shaft: flange, nut, thrust collar."""
+
+    position: Gap
+    """Distance from the start of the shaft."""
+    inertia: Inertia
+
+
+class Shaft(Part):
+    """Stepped shaft; positions on it count from its start."""
+
+    sections: tuple[Section, ...] = Field(min_length=1)
+    discs: Mapping[Name, Disc] = {}
+    material: Name
+
+
+class Coupling(Part):
+    """Torsion spring and damper between the ends of two shafts."""
+
+    shafts: tuple[Name, Name]
+    ends: tuple[End, End]
+    torsional_stiffness: TorsionalStiffness
+    torsional_damping: TorsionalDamping
+    """Massless; its flanges and a torque flange are discs of the shafts."""
+
+
+class Motor(Part):
+    """Drive outside the power circuit."""
+
+    shaft: Name
+    end: End
+    torque_limit: Torque
+    power_limit: Power | None = None
+    inertia: Inertia
+
+
+class Bracing(Part):
+    """How the test torque is locked into the loop."""
+
+    mode: Literal["torque_controlled", "twist_held", "shift_held"]
+    coupling: Name | None = None
+    """Coupling that is twisted (``twist_held``)."""
+    shifted_gear: Text | None = None
+    """Helical gear that is shifted, ``gearbox.gear`` (``shift_held`` and ``torque_controlled``)."""
+    partner_floats: bool = False
+    """The partner of the shifted half floats axially and takes half of the shift."""
+    spline_friction_coefficient: float = Field(default=0.0, ge=0.0, le=1.0)
+    spline_pitch_radius: Length | None = None
+    actuator_force_limit: Force | None = None
+
+
+class Drivetrain(Part):
+    """The power circuit: which shafts, how joined, how driven and braced."""
+
+    shafts: Mapping[Name, Shaft] = Field(min_length=2)
+    couplings: Mapping[Name, Coupling] = {}
+    motor: Motor
+    bracing: Bracing
+    torque_at: Text
+    """Gear at which test torque and speed are counted, ``gearbox.gear``."""
+    mesh_stiffness: Literal["iso_6336_scaled", "weber_banaschek_0.8"] = "iso_6336_scaled"
+    """Analytic shape scaled to the mean of ISO 6336-1, or unscaled times 0.8."""

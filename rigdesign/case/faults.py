@@ -1,0 +1,120 @@
+"""Validation errors in the user's words: path, value, what is accepted, what to do."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from rigdesign.case.fields import FAULT
+from rigdesign.case.marks import KEYS, MARKS
+from rigdesign.case.paths import Slot, item_name, nearest, slot_at
+from rigdesign.errors import Fault
+from rigdesign.units import describe
+
+
+def faults_of(error: ValidationError, model: type[BaseModel], tree: Mapping[str, Any]) -> list[Fault]:
+    """Every error of a validation as a fault, in the order of the model."""
+    return [_fault(entry, model, tree) for entry in error.errors(include_url=False)]
+
+
+def written(value: object, width: int = 70) -> str:
+    """A value as the file shows it, cut to one line."""
+    text = f'"{value}"' if isinstance(value, str) else str(value)
+    if isinstance(value, bool):
+        text = "true" if value else "false"
+    if isinstance(value, dict | list | tuple):
+        text = f"{describe(value)} of {len(value)}"
+    return text if len(text) <= width else text[: width - 1] + "…"
+
+
+def _fault(entry: Any, model: type[BaseModel], tree: Mapping[str, Any]) -> Fault:
+    keys = _keys(entry["loc"], tree)
+    path = ".".join(keys)
+    kind, given, context = entry["type"], entry["input"], entry.get("ctx", {})
+    if kind == "missing":
+        slot = slot_at(model, tree, keys)
+        return Fault(path, "", "a required key is missing", f"add it: {slot.example if slot else 'a value'}")
+    if kind == "extra_forbidden":
+        return Fault(path, written(given), "unknown key", _known_here(keys, model, tree))
+    if kind == FAULT:
+        if isinstance(given, dict) and "value" in given:
+            return _misspelt_mark(path, given)
+        shown = "" if isinstance(given, dict | BaseModel) else written(given)
+        return Fault(path, shown, context["problem"], context["remedy"])
+    if kind in ("union_tag_not_found", "union_tag_invalid"):
+        return _unknown_law(path, given, context)
+    if isinstance(given, dict) and "value" in given and set(given) - KEYS:
+        return _misspelt_mark(path, given)
+    slot = slot_at(model, tree, keys)
+    return Fault(path, written(given), _in_words(kind, given, entry["msg"]), _accepted(kind, given, context, slot))
+
+
+def _in_words(kind: str, given: object, message: str) -> str:
+    if kind.endswith("_type"):
+        return f"{describe(given)} is not accepted here"
+    if kind == "literal_error":
+        return "not one of the choices"
+    return message.replace("Input should be", "is not").replace("Value should have", "does not have")
+
+
+def _accepted(kind: str, given: object, context: Mapping[str, Any], slot: Slot | None) -> str:
+    if kind == "literal_error":
+        choices = str(context.get("expected", ""))
+        meant = nearest(str(given), choices.replace("'", "").replace(" or ", ", ").split(", "), 1)
+        return (f'did you mean "{meant[0]}"? ' if meant else "") + f"write {choices}"
+    limits = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most", "min_length": "length at least"}
+    bounds = " and ".join(f"{words} {context[key]}" for key, words in limits.items() if key in context)
+    example = slot.example if slot is not None else "a value"
+    if bounds:
+        return f"write {example}, {bounds}"
+    if "pattern" in context:
+        return "write lower-case letters, digits and underscores, starting with a letter"
+    return f"write {example}"
+
+
+def _known_here(keys: Sequence[str], model: type[BaseModel], tree: Mapping[str, Any]) -> str:
+    slot = slot_at(model, tree, keys[:-1])
+    names = [name for table in (slot.models() if slot else ()) for name in table.model_fields]
+    meant = nearest(keys[-1], names)
+    if meant:
+        return "did you mean " + " or ".join(f"'{name}'" for name in meant) + "?"
+    return "remove it; known here: " + ", ".join(dict.fromkeys(names))
+
+
+def _misspelt_mark(path: str, given: Mapping[str, Any]) -> Fault:
+    unknown = [key for key in given if key not in KEYS]
+    meant = [name for key in unknown for name in nearest(key, MARKS, 1)]
+    hint = f"did you mean '{meant[0]}'? " if meant else ""
+    names = ", ".join(f"'{key}'" for key in unknown) or "none"
+    return Fault(path, written(given["value"]), f"unknown mark {names}", f"{hint}marks are {', '.join(MARKS)}")
+
+
+def _unknown_law(path: str, given: object, context: Mapping[str, Any]) -> Fault:
+    choices = str(context.get("expected_tags", ""))
+    tag = str(context.get("tag", ""))
+    if not isinstance(given, dict):
+        return Fault(path, written(given), f"{describe(given)} is not accepted here", 'write a table with law = "…"')
+    if not tag:
+        return Fault(f"{path}.law", "", "a required key is missing", "add it: a law of heat transfer, see the schema")
+    meant = nearest(tag, choices.replace("'", "").split(", "), 1)
+    hint = f'did you mean "{meant[0]}"? ' if meant else ""
+    return Fault(f"{path}.law", f'"{tag}"', "not one of the choices", f"{hint}write {choices}")
+
+
+def _keys(location: Sequence[str | int], tree: Mapping[str, Any]) -> list[str]:
+    """Keys of a path from a pydantic location: list items by name, union tags and key marks left out."""
+    keys: list[str] = []
+    node: Any = tree
+    for part in location:
+        if part == "[key]":
+            continue
+        if isinstance(part, int):
+            item = node[part] if isinstance(node, list | tuple) and part < len(node) else None
+            keys.append(item_name(item, part))
+            node = item
+        elif isinstance(node, Mapping) and part not in node and node.get("law") == part:
+            continue
+        else:
+            keys.append(part)
+            node = node.get(part) if isinstance(node, Mapping) else None
+    return keys

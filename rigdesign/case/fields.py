@@ -1,0 +1,116 @@
+"""Types of the leaves of a case: quantities with their kind and limits, names, shares."""
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from rigdesign import units
+
+FAULT = "rigdesign"
+"""Type of a validation error that carries its own problem and remedy."""
+
+
+class Part(BaseModel):
+    """A table of the case file: every key known, every value of its type, nothing changed afterwards."""
+
+    model_config = ConfigDict(strict=True, frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+
+def fault(problem: str, remedy: str) -> PydanticCustomError:
+    """A validation error with a remedy, collected by the loader."""
+    return PydanticCustomError(FAULT, "{problem}; {remedy}", {"problem": problem, "remedy": remedy})
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number with a unit; the field holds it in SI.
+
+    kind : name in ``rigdesign.units.KINDS``
+    above, at_least, at_most, below : limits, written as a user would
+    """
+
+    kind: str
+    above: str | None = None
+    at_least: str | None = None
+    at_most: str | None = None
+    below: str | None = None
+
+    def parse(self, text: object) -> float:
+        """SI value of ``text`` within the limits; raises a pydantic error otherwise."""
+        try:
+            value = units.parse(text, self.kind)
+        except units.QuantityError as error:
+            raise fault(error.problem, error.remedy) from None
+        for limit, words, holds in (
+            (self.above, "is not above", float.__gt__),
+            (self.at_least, "is below", float.__ge__),
+            (self.at_most, "is above", float.__le__),
+            (self.below, "is not below", float.__lt__),
+        ):
+            if limit is not None and not holds(value, units.parse(limit, self.kind)):
+                raise fault(f"{words} {limit}", f"write a value {self.bounds}, e.g. \"{units.KINDS[self.kind].example}\"")
+        return value
+
+    @property
+    def bounds(self) -> str:
+        """The limits in words."""
+        named = {"above": self.above, "at least": self.at_least, "at most": self.at_most, "below": self.below}
+        return " and ".join(f"{word} {limit}" for word, limit in named.items() if limit is not None)
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.parse)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        kind = units.KINDS[self.kind]
+        text = f"{kind.label}, {self.bounds}" if self.bounds else kind.label
+        return {
+            "type": "string", "pattern": units.pattern(self.kind), "examples": [kind.example],
+            "description": text,
+        }  # fmt: skip
+
+
+Length = Annotated[float, Quantity("length", above="0 mm", at_most="20 m")]
+Gap = Annotated[float, Quantity("length", at_least="0 mm", at_most="1 m")]
+"""A length that may be zero."""
+Offset = Annotated[float, Quantity("length", at_least="-20 m", at_most="20 m")]
+"""A length with a sign."""
+Small = Annotated[float, Quantity("length", at_least="0 um", at_most="1 mm")]
+"""A flank modification, a roughness."""
+Angle = Annotated[float, Quantity("angle", at_least="-360 deg", at_most="360 deg")]
+PressureAngle = Annotated[float, Quantity("angle", at_least="10 deg", at_most="35 deg")]
+HelixAngle = Annotated[float, Quantity("angle", above="-60 deg", below="60 deg")]
+Temperature = Annotated[float, Quantity("temperature", at_least="-60 degC", at_most="600 degC")]
+TemperatureDifference = Annotated[float, Quantity("temperature_difference", above="0 K", at_most="500 K")]
+Torque = Annotated[float, Quantity("torque", at_least="0 N m", at_most="1000 kN m")]
+Speed = Annotated[float, Quantity("speed", at_least="0 rpm", at_most="200000 rpm")]
+Velocity = Annotated[float, Quantity("velocity", at_least="0 m/s", at_most="500 m/s")]
+Force = Annotated[float, Quantity("force", at_least="0 N")]
+Power = Annotated[float, Quantity("power", at_least="0 W")]
+Stress = Annotated[float, Quantity("pressure", above="0 MPa")]
+Time = Annotated[float, Quantity("time", above="0 s")]
+Frequency = Annotated[float, Quantity("frequency", above="0 Hz", at_most="10000 kHz")]
+Flow = Annotated[float, Quantity("flow", above="0 l/min", at_most="100000 l/min")]
+Density = Annotated[float, Quantity("density", above="0 kg/m3", at_most="25000 kg/m3")]
+KinematicViscosity = Annotated[float, Quantity("kinematic_viscosity", above="0 mm2/s")]
+HeatCapacity = Annotated[float, Quantity("heat_capacity", above="0 J/(kg K)")]
+Conductivity = Annotated[float, Quantity("conductivity", above="0 W/(m K)", at_most="1000 W/(m K)")]
+HeatTransferCoefficient = Annotated[
+    float, Quantity("heat_transfer_coefficient", above="0 W/(m2 K)", at_most="1000000 W/(m2 K)")
+]
+ExpansionCoefficient = Annotated[float, Quantity("expansion_coefficient", at_least="0 1/K", at_most="1e-3 1/K")]
+TorsionalStiffness = Annotated[float, Quantity("torsional_stiffness", above="0 N m/rad")]
+TorsionalDamping = Annotated[float, Quantity("torsional_damping", at_least="0 N m s/rad")]
+LinearStiffness = Annotated[float, Quantity("linear_stiffness", above="0 N/m")]
+LinearDamping = Annotated[float, Quantity("linear_damping", at_least="0 N s/m")]
+Inertia = Annotated[float, Quantity("inertia", at_least="0 kg m2", at_most="100000 kg m2")]
+
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+"""A part of a whole, 0 to 1."""
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+Count = Annotated[int, Field(gt=0)]
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=60)]
+"""Name of a part: lower-case letters, digits and underscores."""
+Text = Annotated[str, Field(min_length=1)]

@@ -1,0 +1,113 @@
+"""A gearbox: gears, bearings, seals, their oil, and the housing if temperatures are wanted."""
+
+from collections.abc import Mapping
+from typing import Literal
+
+from pydantic import Field
+
+from rigdesign.case.fields import (
+    Flow,
+    Force,
+    Gap,
+    Length,
+    LinearDamping,
+    LinearStiffness,
+    Name,
+    Part,
+    Share,
+    Text,
+    Temperature,
+    TorsionalDamping,
+    Velocity,
+)
+from rigdesign.case.gears import Gear, GearMesh
+from rigdesign.case.housing import Housing
+
+
+class GearOil(Part):
+    """Oil injected at the meshes of a gearbox."""
+
+    oil: Text
+    """Built-in oil or a name under ``oils``."""
+    inlet_temperature: Temperature
+    flow: Flow
+    """Flow per mesh."""
+    jet_direction: Literal["into_mesh", "out_of_mesh", "radial"]
+    jet_velocity: Velocity
+    outlet_temperature: Temperature | None = None
+    """Measured outlet; computed from the heat when left out."""
+
+
+class BearingOil(Part):
+    """Oil fed to the journal bearings of a gearbox."""
+
+    oil: Text
+    inlet_temperature: Temperature
+    flow: Flow
+    """Flow per bearing."""
+    outlet_temperature: Temperature | None = None
+    """Measured outlet; computed from the heat when left out."""
+
+
+class JournalBearing(Part):
+    """Plain journal bearing."""
+
+    shaft: Name
+    side: Literal["front", "rear"]
+    """End of the housing it sits in; the front is where x starts."""
+    diameter: Length
+    width: Length
+    diametral_clearance: Length
+    """Bore minus journal, cold."""
+    locating: bool = False
+    """Fixes its shaft axially; one per shaft."""
+    axial_play: Gap = 0.0
+    """Free axial travel of the shaft in its locating bearing, cold."""
+    position: Gap | None = None
+    """Distance of its middle from the start of its shaft in the drivetrain."""
+    radial_load: Force | None = None
+    """Load at the held stages; from the tooth forces when left out."""
+    torsional_damping: TorsionalDamping | None = None
+    """Drag torque over speed; computed from the film when left out."""
+    radial_stiffness: LinearStiffness | None = None
+    """For the record: the drivetrain is torsional."""
+    radial_damping: LinearDamping | None = None
+    """For the record: the drivetrain is torsional."""
+
+
+class Seals(Part):
+    """Seals of one shaft: in both partitions, and wherever the shaft leaves the housing."""
+
+    shaft: Name
+    kind: Literal["contactless", "radial_lip"] = "contactless"
+    radial_gap: Length
+    axial_travel: Length
+    """Axial movement of the shaft the seals take without touching."""
+
+
+class HeatSplit(Part):
+    """Share of each loss that enters solid bodies; the rest goes into the oil at once."""
+
+    mesh_into_gears: Share
+    mesh_pinion_share: Share = 0.5
+    """Of the mesh heat entering the gears, the part that enters the pinion."""
+    windage_into_gears: Share
+    seal_into_shaft: Share
+    seal_into_housing: Share
+
+
+class Gearbox(Part):
+    """One gearbox of the rig."""
+
+    title: Text
+    role: Literal["specimen", "rig"]
+    """specimen: its gears are what is tested, held against a target window; rig: against a safety."""
+    gears: Mapping[Name, Gear] = Field(min_length=2)
+    meshes: Mapping[Name, GearMesh] = Field(min_length=1)
+    oil: GearOil
+    bearings: Mapping[Name, JournalBearing] = Field(min_length=1)
+    bearing_oil: BearingOil
+    seals: Mapping[Name, Seals] = {}
+    heat_split: HeatSplit
+    housing: Housing | None = None
+    """Geometry and boundary conditions; a gearbox without one has no temperature field."""

@@ -1,0 +1,137 @@
+"""Gears and meshes of a gearbox."""
+
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from rigdesign.case.fields import (
+    Angle,
+    Count,
+    Gap,
+    HelixAngle,
+    Inertia,
+    Length,
+    LinearDamping,
+    Name,
+    Offset,
+    Part,
+    Positive,
+    PressureAngle,
+    Small,
+    TorsionalDamping,
+    TorsionalStiffness,
+    fault,
+)
+
+
+class Rack(Part):
+    """Basic rack of the toothing, in modules (ISO 53 A: 1.0, 1.25, 0.38)."""
+
+    addendum: Positive = 1.0
+    dedendum: Positive = 1.25
+    tip_radius: float = Field(default=0.38, ge=0.0, le=0.6)
+
+    @model_validator(mode="after")
+    def _radius_fits(self) -> "Rack":
+        if self.dedendum <= 0.2 or self.tip_radius >= self.dedendum:
+            raise fault(
+                f"a tip radius of {self.tip_radius} modules does not fit a dedendum of {self.dedendum} modules",
+                "write a dedendum above the tip radius and above 0.2, e.g. 1.25 and 0.38",
+            )
+        return self
+
+
+class Spline(Part):
+    """Spline-hub connection of a gear with its shaft."""
+
+    torsional_stiffness: TorsionalStiffness
+    torsional_damping: TorsionalDamping = 0.0
+
+
+class FlankModification(Part):
+    """Micro-geometry and deviations of one gear; everything is zero unless stated."""
+
+    profile_crowning: Small = 0.0
+    """C_alpha: relief at tip and root against the middle of the profile."""
+    lead_crowning: Small = 0.0
+    """C_beta: relief at both face ends against the middle."""
+    tip_relief: Small = 0.0
+    """C_a: relief at the tip edge."""
+    tip_relief_length: Gap = 0.0
+    """Radial height over which the tip relief grows."""
+    helix_slope: Offset = 0.0
+    """f_Hbeta over the face width, positive where the rear end is relieved."""
+    twist: Offset = 0.0
+    """Relief difference between the two diagonals of the flank."""
+    run_out: Small = 0.0
+    """F_r: total run-out; the eccentricity is half of it."""
+    run_out_phase: Angle = 0.0
+    """Angle of the tooth with the largest run-out."""
+    single_pitch: tuple[Offset, ...] = ()
+    """Pitch deviation of each tooth, one entry per tooth; empty for an ideal pitch."""
+
+
+class Gear(Part):
+    """One gear: body, toothing of its own, and where it sits."""
+
+    shaft: Name
+    teeth: Count = Field(ge=6, le=2000)
+    face_width: Length
+    bore_diameter: Gap = 0.0
+    """Bore of the gear body; zero for a solid disc."""
+    position: Gap | None = None
+    """Distance of the middle of the face from the start of its shaft in the drivetrain."""
+    profile_shift: float | None = Field(default=None, ge=-2.0, le=2.0)
+    """x, in modules; give it for one gear of the pair, or ``profile_shift_split`` of the mesh."""
+    tip_shortening: Gap = 0.0
+    """Radial cut of the tip cylinder; or ``contact_ratio`` of the mesh."""
+    tooth_thinning: Small = 0.0
+    """Allowance of the normal tooth thickness that makes the backlash."""
+    quality_grade: int = Field(ge=1, le=11)
+    """Flank tolerance class, ISO 1328-1:2013."""
+    flank_roughness: Small
+    """Ra of the flank."""
+    material: Name
+    flank: FlankModification = FlankModification()
+    inertia: Inertia | None = None
+    """Polar inertia of the gear body; that of the bored disc when left out."""
+    spline: Spline | None = None
+    """Connection with the shaft; a gear without one is rigid with its shaft."""
+
+
+class GearMesh(Part):
+    """Two meshing gears of a gearbox."""
+
+    pinion: Name
+    wheel: Name
+    normal_module: Length
+    pressure_angle: PressureAngle
+    helix_angle: HelixAngle = 0.0
+    centre_distance: Length
+    rack: Rack = Rack()
+    profile_shift_split: Literal["equal"] | None = None
+    """How the sum of the profile shifts is shared when no gear states its own."""
+    contact_ratio: float | None = Field(default=None, gt=0.5, lt=4.0)
+    """Transverse contact ratio to which the tips named in ``tip_cut`` are shortened."""
+    tip_cut: Literal["pinion", "wheel", "both"] | None = None
+    double_helical: bool = False
+    """Two opposite helices; face widths are those of the modelled half that carries the torque."""
+    damping: LinearDamping
+    """Damping along the line of action at the mean mesh stiffness."""
+    application_factor: float = Field(default=1.0, ge=1.0, le=5.0)
+    """K_A of ISO 6336."""
+    face_load_factor: float = Field(default=1.0, ge=1.0, le=10.0)
+    """K_Fbeta of ISO 6336-3."""
+    low_load_factor: bool = True
+    """Reduce the tooth stiffness below 100 N/mm line load (ISO 6336-1)."""
+
+    @model_validator(mode="after")
+    def _tips(self) -> "GearMesh":
+        if (self.contact_ratio is None) != (self.tip_cut is None):
+            raise fault(
+                "contact_ratio and tip_cut belong together",
+                'write both, e.g. contact_ratio = 1.26 and tip_cut = "wheel", or neither',
+            )
+        if self.pinion == self.wheel:
+            raise fault("a gear cannot mesh with itself", "name two gears of the gearbox")
+        return self

@@ -1,0 +1,127 @@
+"""From the housing of a case to the geometry the thermal model is built of, and what covers its surfaces."""
+
+import re
+from collections.abc import Iterable, Mapping
+
+from rigdesign.case.gearbox import Gearbox, JournalBearing
+from rigdesign.case.gears import Gear
+from rigdesign.case.housing import GapExchange, Housing, HousingShaft, SeriesExchange
+from thermal.housing_geometry import ClampingField, GearDisc, HousingGeometry, ShaftGeometry
+
+
+def pitch_diameters(gearbox: Gearbox) -> dict[str, float]:
+    """Working pitch diameter of every gear [m]: 2 a z / (z1 + z2)."""
+    diameters = {}
+    for mesh in gearbox.meshes.values():
+        teeth = {name: gearbox.gears[name].teeth for name in (mesh.pinion, mesh.wheel)}
+        for name, count in teeth.items():
+            diameters[name] = 2.0 * mesh.centre_distance * count / sum(teeth.values())
+    return diameters
+
+
+def housing_geometry(gearbox: Gearbox, gear_diameters: Mapping[str, float] | None = None) -> HousingGeometry:
+    """Geometry of the housing of ``gearbox``.
+
+    Parameters
+    ----------
+    gearbox : with a housing
+    gear_diameters : gear name -> diameter of its disc [m]; the working pitch diameter when left out
+
+    Raises
+    ------
+    ValueError
+        The gearbox has no housing, or (GeometryError) its measures do not go together.
+    """
+    housing = gearbox.housing
+    if housing is None:
+        raise ValueError("the gearbox has no housing; add a [gearboxes.<name>.housing] table")
+    diameters = gear_diameters or pitch_diameters(gearbox)
+    shafts = tuple(
+        _shaft(name, shaft, gearbox, diameters) for name, shaft in housing.shafts.items()
+    )
+    return HousingGeometry(
+        chamber_length=housing.warm_length,
+        cold_length_front=housing.cold_length_front,
+        cold_length_rear=housing.cold_length_rear,
+        height=housing.height,
+        width=housing.width,
+        wall_thickness=housing.wall_thickness,
+        floor_thickness=housing.floor_thickness,
+        top_thickness=housing.top_thickness,
+        partition_thickness=housing.partition_thickness,
+        end_wall_thickness=housing.end_wall_thickness,
+        shaft_height=housing.shaft_height,
+        shafts=shafts,
+        end_seal_width=housing.end_seal_width,
+        field=ClampingField(
+            length=housing.field.length, width=housing.field.width, thickness=housing.field.thickness
+        ),
+    )
+
+
+def gear_on(gearbox: Gearbox, shaft: str) -> tuple[str, Gear] | None:
+    """Name and gear of the gear on a shaft; None for a shaft without one."""
+    return next(((name, gear) for name, gear in gearbox.gears.items() if gear.shaft == shaft), None)
+
+
+def bearing_on(gearbox: Gearbox, shaft: str, side: str) -> JournalBearing:
+    """Bearing of a shaft at one end of the housing; KeyError when there is none."""
+    for bearing in gearbox.bearings.values():
+        if (bearing.shaft, bearing.side) == (shaft, side):
+            return bearing
+    raise KeyError(f"{shaft}, {side}")
+
+
+def matched(patterns: Iterable[str], names: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """Surface -> what each ``*`` stood for, for every name that a pattern fits."""
+    known = tuple(names)
+    found = {}
+    for pattern in patterns:
+        expression = re.compile("(.+)".join(re.escape(part) for part in pattern.split("*")))
+        for name in known:
+            match = expression.fullmatch(name)
+            if match is not None:
+                found[name] = match.groups()
+    return found
+
+
+def partner_of(condition: GapExchange | SeriesExchange, stood_for: Iterable[str]) -> str:
+    """Name of the partner surface, each ``*`` filled with what it stood for in the surface."""
+    name = condition.partner
+    for text in stood_for:
+        name = name.replace("*", text, 1)
+    return name
+
+
+def conditions_of(housing: Housing, names: Iterable[str]) -> list[tuple[str, str, tuple[str, ...]]]:
+    """(condition, surface, what its stars stood for) for every surface that every condition names."""
+    known = tuple(names)
+    return [
+        (name, surface, stood_for)
+        for name, condition in housing.boundary.items()
+        for surface, stood_for in matched(condition.surfaces, known).items()
+    ]
+
+
+def _shaft(
+    name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[str, float]
+) -> ShaftGeometry:
+    front, rear = (bearing_on(gearbox, name, side) for side in ("front", "rear"))
+    seals = next(seals for seals in gearbox.seals.values() if seals.shaft == name)
+    on_shaft = gear_on(gearbox, name)
+    return ShaftGeometry(
+        name=name,
+        y=shaft.lateral_position,
+        journal_diameter=front.diameter,
+        seal_diameter=shaft.seal_diameter,
+        seat_diameter=on_shaft[1].bore_diameter if on_shaft else shaft.seal_diameter,
+        overhang_diameter=shaft.outside_diameter,
+        bearing_width=front.width,
+        bearing_clearance=0.5 * front.diametral_clearance,
+        seal_gap=seals.radial_gap,
+        locating="rear" if rear.locating else "front",
+        bore_diameter=shaft.bore_diameter,
+        overhang_front=shaft.overhang_front,
+        overhang_rear=shaft.overhang_rear,
+        gear=GearDisc(outer_diameter=diameters[on_shaft[0]], width=on_shaft[1].face_width) if on_shaft else None,
+    )

@@ -1,0 +1,205 @@
+"""Geometry of a gearbox housing and what its surfaces exchange heat with."""
+
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from rigdesign.case.fields import (
+    Gap,
+    HeatTransferCoefficient,
+    Length,
+    Name,
+    Offset,
+    Part,
+    Temperature,
+    Text,
+)
+
+Fluid = Literal[
+    "ambient",
+    "gear_oil_inlet",
+    "gear_oil_mean",
+    "gear_oil_outlet",
+    "bearing_oil_inlet",
+    "bearing_oil_mean",
+    "bearing_oil_outlet",
+]
+"""What wets a surface: room air, or the oil of the chamber at inlet, outlet or their mean."""
+
+
+class HousingShaft(Part):
+    """A shaft inside the housing; journals are those of its bearings, the seat is the bore of its gear."""
+
+    lateral_position: Offset
+    """y of its axis; the pinion usually at minus half the centre distance."""
+    seal_diameter: Length
+    """Diameter in the partition seals and in the cold sections."""
+    outside_diameter: Length
+    """Diameter in the end seals and outside the housing."""
+    overhang_front: Gap
+    """Length that leaves the front end wall; zero for a shaft that ends at its bearing."""
+    overhang_rear: Gap
+    bore_diameter: Gap = 0.0
+    material: Name
+
+
+class ClampingField(Part):
+    """Plate the gearbox stands on."""
+
+    length: Length
+    """Along the shafts."""
+    width: Length
+    thickness: Length
+    material: Name
+
+
+class _Condition(Part):
+    surfaces: tuple[Text, ...] = Field(min_length=1)
+    """Surface names; ``*`` stands for any run of characters."""
+
+
+class NiemannWinter(_Condition):
+    """Housing to room air, alpha = f_k (10 + 0.07 dT) h^-0.15 (Niemann/Winter; P2, Formula 2)."""
+
+    law: Literal["niemann_winter"]
+    draught_factor: float = Field(default=1.0, gt=0.0, le=5.0)
+    """f_k: 1 in still room air."""
+    height: Length
+    """h: height of the housing."""
+
+
+class RecknagelPlate(_Condition):
+    """Horizontal plate to still room air."""
+
+    law: Literal["recknagel_plate"]
+    correlation: Literal["quarter_power", "turbulent"] = "quarter_power"
+    """quarter_power: 2.0 dT^(1/4); turbulent: Nu = 0.125 Ra^(1/3)."""
+
+
+class IsoTr14179(_Condition):
+    """Housing to room air by ISO/TR 14179-2, free convection."""
+
+    law: Literal["iso_tr_14179_2"]
+    height: Length
+
+
+class ConstantFilm(_Condition):
+    """A given heat transfer coefficient to a fluid."""
+
+    law: Literal["constant_film"]
+    heat_transfer_coefficient: HeatTransferCoefficient
+    fluid: Fluid
+    fluid_temperature: Temperature | None = None
+    """Overrides the temperature of the fluid."""
+
+
+class RotatingCylinder(_Condition):
+    """Rotating shaft in air or oil mist; diameter and speed from the shaft."""
+
+    law: Literal["rotating_cylinder"]
+    correlation: Literal["jungnickel", "becker"] = "jungnickel"
+    fluid: Fluid
+
+
+class RotatingDisc(_Condition):
+    """Rotating end or gear face in air or oil mist; radius and speed from the shaft."""
+
+    law: Literal["rotating_disc"]
+    correlation: Literal["jungnickel"] = "jungnickel"
+    fluid: Fluid
+
+
+class BearingFilm(_Condition):
+    """Bore or journal to the lubricant film: conductance of the film, sink at film temperature."""
+
+    law: Literal["bearing_film"]
+
+
+class ThermalRadiation(_Condition):
+    """Grey radiation to large surroundings; may stand beside a film on the same surface."""
+
+    law: Literal["radiation"]
+    emissivity: float = Field(gt=0.0, le=1.0)
+    surroundings_temperature: Temperature | None = None
+    """Walls of the room; ambient when left out."""
+
+
+class GapExchange(_Condition):
+    """Heat across a narrow rotating gap from each surface to its partner (area means)."""
+
+    law: Literal["narrow_gap"]
+    partner: Text
+    """Surface on the other side; ``*`` is filled with what it stood for in ``surfaces``."""
+    gap: Length
+
+
+class SeriesExchange(_Condition):
+    """Heat from a rotating shaft through air to a wall: two films in series (P2, Formula 3)."""
+
+    law: Literal["series_films"]
+    partner: Text
+    coefficients: tuple[HeatTransferCoefficient, HeatTransferCoefficient]
+    """Film on the surface, film on the partner."""
+
+
+class FixedTemperature(_Condition):
+    """A surface held at one temperature."""
+
+    law: Literal["fixed_temperature"]
+    temperature: Temperature
+
+
+class Insulated(_Condition):
+    """A surface that passes no heat."""
+
+    law: Literal["insulated"]
+
+
+Condition = Annotated[
+    NiemannWinter
+    | RecknagelPlate
+    | IsoTr14179
+    | ConstantFilm
+    | RotatingCylinder
+    | RotatingDisc
+    | BearingFilm
+    | ThermalRadiation
+    | GapExchange
+    | SeriesExchange
+    | FixedTemperature
+    | Insulated,
+    Field(discriminator="law"),
+]
+"""One boundary condition; ``law`` says which."""
+
+
+class Housing(Part):
+    """A box with a warm chamber between two cold sections, on a clamping field.
+
+    x runs along the shafts from front to rear, y from pinion to wheel, z up.
+    """
+
+    warm_length: Length
+    """Clear length of the warm chamber, between the partitions."""
+    cold_length_front: Length
+    cold_length_rear: Length
+    width: Length
+    height: Length
+    wall_thickness: Length
+    floor_thickness: Length
+    top_thickness: Length
+    partition_thickness: Length
+    end_wall_thickness: Length
+    """Walls that carry the bearings."""
+    end_seal_width: Length
+    """Length of the end seal outside of each bearing."""
+    shaft_height: Length
+    """Height of the shaft axes above the clamping field."""
+    material: Name
+    field: ClampingField
+    shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
+    boundary: Mapping[Name, Condition] = Field(min_length=1)
+    radiation_included: bool
+    """True: the film to room air already contains radiation, explicit radiation of those surfaces is left
+    out of the verdicts; the other reading is computed beside it."""

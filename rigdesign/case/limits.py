@@ -1,0 +1,199 @@
+"""Limits the results are held against; a limit that is left out makes its check not applicable."""
+
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from rigdesign import units
+from rigdesign.case.fields import (
+    Flow,
+    Gap,
+    Name,
+    Offset,
+    Part,
+    Positive,
+    Power,
+    Share,
+    Speed,
+    Stress,
+    Temperature,
+    TemperatureDifference,
+    Text,
+    Torque,
+    fault,
+)
+
+
+class ClearanceLimits(Part):
+    """Play that must be left hot."""
+
+    seal_gap_minimum: Gap | None = None
+    axial_play_minimum: Offset | None = None
+    backlash_minimum: Gap | None = None
+    """Transverse, at the working pitch circle."""
+    tip_clearance_minimum: Gap | None = None
+    bearing_clearance_minimum: Gap | None = None
+    """Diametral."""
+
+
+class TemperatureLimits(Part):
+    """Temperatures that must not be passed."""
+
+    housing_maximum: Temperature | None = None
+    bearing_film_maximum: Temperature | None = None
+    oil_outlet_maximum: Temperature | None = None
+    tempering_distance_minimum: TemperatureDifference | None = None
+    """Distance of the gear bulk temperature below the tempering temperature of its material."""
+
+
+class OilLimits(Part):
+    """What pump, cooler and room can take."""
+
+    flow_maximum: Flow | None = None
+    cooler_power_maximum: Power | None = None
+    room_heat_maximum: Power | None = None
+
+
+class BearingLimits(Part):
+    """Journal bearings."""
+
+    start_torque_limit: Torque | None = None
+    """Most torque below the transition speed."""
+    film_thickness_minimum: Gap | None = None
+    specific_load_maximum: Stress | None = None
+
+
+class DynamicsLimits(Part):
+    """Additional dynamic load."""
+
+    dynamic_factor_maximum: Annotated[float, Field(gt=1.0)] | None = None
+    """K_V at the held stages, max over mean."""
+    resonance_distance_minimum: Share | None = None
+    """Distance of a held speed from a dangerous resonance, as a share of that speed."""
+    dangerous_amplification: Positive = 2.0
+    """A resonance is dangerous above this amplification of the mesh force …"""
+    dangerous_force_share: Positive = 0.2
+    """… or above this dynamic mesh force as a share of the mean one."""
+    lift_off_share_maximum: Share | None = None
+    """Share of time without tooth contact in a loaded stage."""
+
+
+class StrengthLimits(Part):
+    """Safety of the gears that belong to the rig."""
+
+    root_safety_minimum: Positive | None = None
+    """S_F, ISO 6336-3."""
+
+
+class SpecimenWindow(Part):
+    """What the test gears are meant to see."""
+
+    root_stress_minimum: Stress | None = None
+    root_stress_maximum: Stress | None = None
+    load_cycles_minimum: Positive | None = None
+
+    @model_validator(mode="after")
+    def _window_open(self) -> "SpecimenWindow":
+        low, high = self.root_stress_minimum, self.root_stress_maximum
+        if (low is None) != (high is None):
+            raise fault("a window needs both ends", "write root_stress_minimum and root_stress_maximum")
+        if low is not None and high is not None and low >= high:
+            raise fault("root_stress_minimum is not below root_stress_maximum", "exchange or correct them")
+        return self
+
+
+class RampRules(Part):
+    """Rules of the run-up (P2, Figure 9)."""
+
+    standstill_torque: Torque | None = None
+    """Least torque at which the speed may rise from standstill."""
+    transition_speed: Speed | None = None
+    """Speed from which the journal bearings run on a full film."""
+    run_up_torque_share_maximum: Share | None = None
+    """Most torque between transition and test speed, as a share of the test torque."""
+
+
+ResultQuantity = Literal[
+    "torque_peak",
+    "torque_mean",
+    "speed",
+    "drive_torque",
+    "drive_power",
+    "actuator_force",
+    "circulating_power",
+    "seal_surface_velocity",
+    "shaft_growth",
+    "oil_flow",
+    "temperature_maximum",
+]
+RESULT_KINDS: Mapping[ResultQuantity, str] = {
+    "torque_peak": "torque",
+    "torque_mean": "torque",
+    "speed": "speed",
+    "drive_torque": "torque",
+    "drive_power": "power",
+    "actuator_force": "force",
+    "circulating_power": "power",
+    "seal_surface_velocity": "velocity",
+    "shaft_growth": "length",
+    "oil_flow": "flow",
+    "temperature_maximum": "temperature",
+}
+"""Kind of quantity of each result that a bought part may be held against."""
+
+
+class BoughtPart(Part):
+    """Limit of a bought part: a result or a given value held below what its maker allows."""
+
+    title: Text
+    part: Text
+    """Case path of the part it belongs to, e.g. ``drivetrain.couplings.pinion_side``."""
+    quantity: ResultQuantity
+    """What is held against the limit."""
+    given: str | None = None
+    """The value, when it does not come from the run."""
+    limit: str
+    """Quantity with unit."""
+    source: Text
+    """Data sheet."""
+
+    @model_validator(mode="after")
+    def _quantities(self) -> "BoughtPart":
+        for key in ("limit", "given"):
+            text = getattr(self, key)
+            if text is not None:
+                try:
+                    units.parse(text, RESULT_KINDS[self.quantity])
+                except units.QuantityError as error:
+                    raise fault(f"{key}: {error.problem}", error.remedy) from None
+        return self
+
+    @property
+    def kind(self) -> str:
+        """Kind of quantity of value and limit."""
+        return RESULT_KINDS[self.quantity]
+
+    @property
+    def limit_si(self) -> float:
+        """The limit in SI."""
+        return units.parse(self.limit, self.kind)
+
+    @property
+    def given_si(self) -> float | None:
+        """The given value in SI, if there is one."""
+        return None if self.given is None else units.parse(self.given, self.kind)
+
+
+class Limits(Part):
+    """All limits of the rig."""
+
+    clearances: ClearanceLimits = ClearanceLimits()
+    temperatures: TemperatureLimits = TemperatureLimits()
+    oil: OilLimits = OilLimits()
+    bearing: BearingLimits = BearingLimits()
+    dynamics: DynamicsLimits = DynamicsLimits()
+    strength: StrengthLimits = StrengthLimits()
+    specimen: SpecimenWindow = SpecimenWindow()
+    ramp: RampRules = RampRules()
+    bought_parts: Mapping[Name, BoughtPart] = {}

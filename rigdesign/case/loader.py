@@ -1,0 +1,119 @@
+"""Loads a case: file -> tree -> marks off -> validated -> rules that span keys; every fault at once."""
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from rigdesign import units
+from rigdesign.case.faults import faults_of, written
+from rigdesign.case.marks import Mark, is_marked, item_name, take_off
+from rigdesign.case.model import Case, Origin
+from rigdesign.case.paths import Slot, known_paths, nearest_paths, slot_at
+from rigdesign.case.rules import broken_rules
+from rigdesign.case.source import case_file, read_tree
+from rigdesign.errors import CaseError, Fault
+
+
+def load_case(path: str | Path) -> Case:
+    """Load and validate a case.
+
+    Parameters
+    ----------
+    path : case folder or its case file; ``extends`` in it is followed
+
+    Raises
+    ------
+    CaseError
+        With every fault found: path, value, what is accepted, remedy.
+    """
+    file = case_file(Path(path))
+    return _build(read_tree(file), file)
+
+
+def changed(case: Case, path: str, value: object) -> Case:
+    """A copy of ``case`` with the value at ``path`` replaced; see ``Case.with_value``."""
+    tree = case.origin.tree
+    plain, _, _ = take_off(dict(tree))
+    keys = path.split(".")
+    slot = slot_at(Case, plain, keys)
+    if slot is None:
+        meant = nearest_paths(path, known_paths(Case, plain))
+        remedy = "did you mean " + " or ".join(meant) + "?" if meant else "see the schema for the paths of a case"
+        raise CaseError([Fault(path, "", "no such path in this case", remedy)], str(case.path))
+    return _build(_replaced(tree, keys, _coerced(value, slot)), case.path)
+
+
+def _build(tree: Mapping[str, Any], file: Path) -> Case:
+    plain, marks, wrong_marks = take_off(dict(tree))
+    faults = [Fault(wrong.path, wrong.given, wrong.problem, wrong.remedy) for wrong in wrong_marks]
+    faults += [fault for mark in marks if mark.range is not None for fault in _range_faults(mark, plain)]
+    try:
+        case = Case.model_validate(plain)
+    except ValidationError as error:
+        raise CaseError([*faults_of(error, Case, plain), *faults], str(file)) from None
+    faults += broken_rules(case)
+    if faults:
+        raise CaseError(faults, str(file))
+    case._origin = Origin(file, tree, marks)
+    return case
+
+
+def _range_faults(mark: Mark, plain: Mapping[str, Any]) -> list[Fault]:
+    """A range holds values of the same kind, in order, and contains the value."""
+    assert mark.range is not None
+    slot = slot_at(Case, plain, mark.path.split("."))
+    if slot is None:
+        return []
+    shown = f"[{written(mark.range[0])}, {written(mark.range[1])}]"
+    where = f"{mark.path} (range)"
+    try:
+        kind = slot.quantity.kind if slot.quantity is not None else units.kind_of(mark.value)
+        low, high, value = (_number(item, kind) for item in (*mark.range, mark.value))
+    except units.QuantityError as error:
+        return [Fault(where, shown, error.problem, error.remedy)]
+    if not low < high:
+        return [Fault(where, shown, "the first end is not below the second", "exchange or correct them")]
+    if not low <= value <= high:
+        return [Fault(where, shown, f"does not contain the value {written(mark.value)}", "widen it or correct the value")]
+    return []
+
+
+def _number(item: object, kind: str | None) -> float:
+    if kind is not None:
+        return units.parse(item, kind)
+    if isinstance(item, int | float) and not isinstance(item, bool):
+        return float(item)
+    raise units.QuantityError(
+        f"{units.describe(item)} where a bare number belongs", "write bare numbers as the value itself is one"
+    )
+
+
+def _coerced(value: object, slot: Slot) -> object:
+    """A text from a command line as the number or true/false the place holds."""
+    if isinstance(value, str) and slot.quantity is None and set(slot.plain_types) & {float, int, bool}:
+        try:
+            return tomllib.loads(f"x = {value}")["x"]
+        except tomllib.TOMLDecodeError:
+            return value
+    return value
+
+
+def _replaced(node: Any, keys: Sequence[str], value: object) -> Any:
+    """The tree with one value replaced; the old tree is left alone, an assumption keeps its reason."""
+    if is_marked(node) and not (keys and keys[0] == "value"):
+        inner = _replaced(node["value"], keys, value)
+        if keys:
+            return {**node, "value": inner}
+        return {"value": inner, "assumed": node["assumed"]} if "assumed" in node else inner
+    if not keys:
+        return value
+    if isinstance(node, list | tuple):
+        names = [item_name(item, index) for index, item in enumerate(node)]
+        here = names.index(keys[0]) if keys[0] in names else int(keys[0])
+        return [_replaced(item, keys[1:], value) if i == here else item for i, item in enumerate(node)]
+    table = dict(node or {})
+    table[keys[0]] = _replaced(table.get(keys[0]), keys[1:], value)
+    return table

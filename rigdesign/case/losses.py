@@ -1,0 +1,46 @@
+"""How power losses are found: computed, or given by place."""
+
+from collections.abc import Mapping
+from typing import Literal
+
+from pydantic import Field
+
+from rigdesign.case.fields import Density, Name, Part, Power
+
+LossKind = Literal["mesh", "bearing", "windage", "seal", "oil_acceleration", "squeeze"]
+
+
+class GivenLoss(Part):
+    """A power loss prescribed or measured at one place; with basis ``computed`` it overrides that place."""
+
+    gearbox: Name
+    kind: LossKind
+    part: Name
+    """Mesh, bearing, seal or gear (windage) of that gearbox."""
+    power: Power
+    stages: tuple[Name, ...] = ()
+    """Stages it holds for; all when empty."""
+
+
+class ToothFriction(Part):
+    """Friction coefficient of the tooth contact, used in the torque loop and for the loss."""
+
+    law: Literal["schlenk", "michaelis", "doleschel", "constant"] = "schlenk"
+    lubricant_factor: float = Field(default=1.0, gt=0.1, le=2.0)
+    """X_L: 1 for mineral oil."""
+    coefficient: float | None = Field(default=None, ge=0.0, le=0.5)
+    """Friction coefficient when the law is ``constant``."""
+
+
+class Losses(Part):
+    """Basis and inputs of the losses."""
+
+    basis: Literal["computed", "input"]
+    given: Mapping[Name, GivenLoss] = {}
+    friction: ToothFriction = ToothFriction()
+    chamber_density: Density | None = None
+    """Density of the oil-air mist round the gears, for windage."""
+    squeeze_share: float = Field(default=0.0, ge=0.0, le=0.10)
+    """Squeezing of oil out of the mesh, as a share of the mesh loss."""
+    bearing_drag: Literal["film", "constant"] = "film"
+    """film: from the bearing solution; constant: ``torsional_damping`` of each bearing."""

@@ -1,0 +1,118 @@
+"""Marks: what a case file says about a value besides the value.
+
+Any value may be written as a table that holds it under ``value`` beside one or more marks:
+
+    flow = { value = "5 l/min", assumed = "as for an FZG rig of this power", range = ["3 l/min", "8 l/min"] }
+    damping = { value = "1000 N s/m", source = "P2, Table 1" }
+    heat_transfer_coefficient = { value = "9.1 W/(m2 K)", measured = "heat flux foil, 2026-05-12" }
+
+The loader takes the marks off before the values are validated and keeps them by path.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+MARKS = ("assumed", "range", "source", "measured")
+KEYS = frozenset(("value", *MARKS))
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What is known about one value.
+
+    path : dotted path of the value
+    value : the value as written
+    assumed : reason of an assumption
+    range : lowest and highest believable value, as written
+    source : where it is printed
+    measured : the measurement that replaces a computed or printed value
+    """
+
+    path: str
+    value: Any
+    assumed: str | None = None
+    range: tuple[str, str] | None = None
+    source: str | None = None
+    measured: str | None = None
+
+    @property
+    def shown(self) -> str:
+        """The value as text; a list or table by its size."""
+        if isinstance(self.value, list | tuple):
+            items = [str(item) for item in self.value if not isinstance(item, dict)]
+            return ", ".join(items) if len(items) == len(self.value) else f"{len(self.value)} entries"
+        if isinstance(self.value, dict):
+            return ", ".join(f"{key} {item}" for key, item in self.value.items())
+        if isinstance(self.value, bool):
+            return "true" if self.value else "false"
+        return str(self.value)
+
+    def as_record(self) -> dict[str, Any]:
+        """The marks without the value, for the hash of a case."""
+        return {"path": self.path, **{key: getattr(self, key) for key in MARKS if getattr(self, key) is not None}}
+
+
+@dataclass(frozen=True)
+class MarkFault:
+    """A mark that cannot be read."""
+
+    path: str
+    given: str
+    problem: str
+    remedy: str
+
+
+def is_marked(node: object) -> bool:
+    """Whether a table is a value with marks and not a part of the case."""
+    return isinstance(node, dict) and "value" in node and set(node) <= KEYS
+
+
+def take_off(tree: dict[str, Any]) -> tuple[dict[str, Any], tuple[Mark, ...], tuple[MarkFault, ...]]:
+    """The tree with plain values, the marks found, and the marks that cannot be read."""
+    marks: list[Mark] = []
+    faults: list[MarkFault] = []
+
+    def strip(node: Any, path: str) -> Any:
+        if isinstance(node, dict):
+            if is_marked(node):
+                mark, wrong = _read(node, path)
+                marks.extend([mark] if mark is not None else [])
+                faults.extend(wrong)
+                return strip(node["value"], path)
+            return {key: strip(value, f"{path}.{key}" if path else key) for key, value in node.items()}
+        if isinstance(node, list | tuple):
+            return tuple(strip(item, f"{path}.{item_name(item, i)}") for i, item in enumerate(node))
+        return node
+
+    return strip(tree, ""), tuple(marks), tuple(faults)
+
+
+def item_name(item: object, index: int) -> str:
+    """How a path names an item of a list: by its ``name``, else by its number."""
+    if isinstance(item, dict) and isinstance(item.get("name"), str):
+        return str(item["name"])
+    return str(index)
+
+
+def _read(node: dict[str, Any], path: str) -> tuple[Mark | None, list[MarkFault]]:
+    faults = [
+        MarkFault(path, repr(node[key]), f"mark '{key}' is not a text", f'write {key} = "…", a reason or source')
+        for key in ("assumed", "source", "measured")
+        if key in node and not (isinstance(node[key], str) and node[key].strip())
+    ]
+    limits = node.get("range")
+    if limits is not None and not (isinstance(limits, list | tuple) and len(limits) == 2):
+        faults.append(
+            MarkFault(path, repr(limits), "a range has two ends", 'write range = ["lowest", "highest"]')
+        )
+    if faults or set(node) == {"value"}:
+        return None, faults
+    mark = Mark(
+        path=path,
+        value=node["value"],
+        assumed=node.get("assumed"),
+        range=None if limits is None else (limits[0], limits[1]),
+        source=node.get("source"),
+        measured=node.get("measured"),
+    )
+    return mark, []

@@ -1,0 +1,127 @@
+"""The case: everything a user states about a rig, in SI, with what the file said about its sources."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, PrivateAttr
+
+from rigdesign.case.drivetrain import Drivetrain
+from rigdesign.case.fields import Name, Part, Text
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.limits import Limits
+from rigdesign.case.losses import Losses
+from rigdesign.case.marks import Mark
+from rigdesign.case.numerics import Numerics
+from rigdesign.case.schedule import Schedule, TestPlan
+from rigdesign.case.substances import Ambient, CustomMaterial, CustomOil
+from rigdesign.results import AssumptionRecord
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a case came from: file, resolved tree (marks still in it), marks by path."""
+
+    path: Path
+    tree: Mapping[str, Any]
+    marks: tuple[Mark, ...]
+
+
+class Case(Part):
+    """A rig, what it is to do, and the limits it is held against.
+
+    Every quantity is a float in SI units (kelvin for temperatures); a share or factor is a bare number. Made by
+    ``load_case``; ``with_value`` gives a changed copy.
+    """
+
+    schema_version: Literal[1]
+    name: Name
+    title: Text
+    ambient: Ambient
+    oils: Mapping[Name, CustomOil] = {}
+    materials: Mapping[Name, CustomMaterial] = {}
+    gearboxes: Mapping[Name, Gearbox] = Field(min_length=1)
+    drivetrain: Drivetrain | None = None
+    """Left out when the losses are given: the dynamic checks are then not applicable."""
+    losses: Losses
+    schedule: Schedule
+    test_plan: TestPlan
+    limits: Limits = Limits()
+    numerics: Numerics
+
+    _origin: Origin = PrivateAttr()
+
+    @property
+    def origin(self) -> Origin:
+        """File, tree and marks of this case."""
+        return self._origin
+
+    @property
+    def path(self) -> Path:
+        """The case file."""
+        return self._origin.path
+
+    @property
+    def assumptions(self) -> tuple[AssumptionRecord, ...]:
+        """Inputs marked as assumed, in the order of the file."""
+        return tuple(
+            AssumptionRecord(path=mark.path, value=mark.shown, reason=mark.assumed, range=mark.range)
+            for mark in self._origin.marks
+            if mark.assumed is not None
+        )
+
+    @property
+    def overrides(self) -> tuple[dict[str, str], ...]:
+        """Inputs replaced by a measured value: path, value, measured (where from)."""
+        return tuple(
+            {"path": mark.path, "value": mark.shown, "measured": mark.measured}
+            for mark in self._origin.marks
+            if mark.measured is not None
+        )
+
+    @property
+    def sources(self) -> dict[str, str]:
+        """Case path -> where the value is printed."""
+        return {mark.path: mark.source for mark in self._origin.marks if mark.source is not None}
+
+    @property
+    def hash(self) -> str:
+        """SHA-256 of the resolved content: values in SI and marks, neither file name nor spelling of units."""
+        content = {
+            "values": _rounded(self.model_dump(mode="json")),
+            "marks": [mark.as_record() for mark in sorted(self._origin.marks, key=lambda mark: mark.path)],
+        }
+        text = json.dumps(content, sort_keys=True, ensure_ascii=False, allow_nan=False)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def with_value(self, path: str, value: object) -> "Case":
+        """A copy with one value changed, as if the file had said so.
+
+        Parameters
+        ----------
+        path : dotted path, e.g. ``gearboxes.test.oil.inlet_temperature``; list items by name or number
+        value : what the file would hold (``"120 degC"``, ``0.4``); a text is read as number or true/false
+            where the key holds one
+
+        Raises
+        ------
+        CaseError
+            The path does not exist (the nearest ones are named), or the changed case has faults.
+        """
+        from rigdesign.case.loader import changed
+
+        return changed(self, path, value)
+
+
+def _rounded(content: Any) -> Any:
+    """Floats to 12 digits, so that ``40 mm`` and ``0.04 m`` are the same case."""
+    if isinstance(content, float):
+        return float(f"{content:.12g}")
+    if isinstance(content, dict):
+        return {key: _rounded(value) for key, value in content.items()}
+    if isinstance(content, list | tuple):
+        return [_rounded(value) for value in content]
+    return content

@@ -1,0 +1,99 @@
+"""What the rig is asked to do: stages of speed and torque, and the planned test."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from pydantic import Field, model_validator
+
+from rigdesign.case.fields import Count, Name, Part, Positive, Share, Speed, Time, Torque, fault
+
+StageKind = Literal["load", "unload", "run_up", "run_down", "dwell"]
+
+
+class Stage(Part):
+    """One stage; it starts where the one before ended, the first at standstill without torque.
+
+    load, unload: the torque rises, falls at constant speed. run_up, run_down: the speed rises, falls at
+    constant torque. dwell: both stay.
+    """
+
+    name: Name
+    kind: StageKind
+    speed: Speed | None = None
+    """Speed at its end; that of the stage before when left out."""
+    torque: Torque | None = None
+    """Torque at its end; that of the stage before when left out."""
+    torque_share: Share | None = None
+    """The torque as a share of the test torque."""
+    duration: Time
+    drive_torque: Torque | None = None
+    """Constant drive torque instead of speed control; ``duration`` is then the most it may take."""
+    held: bool = False
+    """Long enough for steady temperatures; the others carry losses only."""
+
+    @model_validator(mode="after")
+    def _one_torque(self) -> "Stage":
+        if self.torque is not None and self.torque_share is not None:
+            raise fault("both torque and torque_share are given", "keep one of the two")
+        return self
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageValues:
+    """A stage with its ends filled in: speeds [rad/s], torques [N m], duration [s]."""
+
+    name: str
+    kind: StageKind
+    speed_start: float
+    speed_end: float
+    torque_start: float
+    torque_end: float
+    duration: float
+    drive_torque: float | None
+    held: bool
+
+
+class Schedule(Part):
+    """Stages in their order."""
+
+    test_speed: Speed
+    """Speed of the test, counted at ``drivetrain.torque_at``."""
+    test_torque: Torque
+    stages: tuple[Stage, ...] = Field(min_length=1)
+    simulation_only: str | None = None
+    """Why the schedule cannot be run on the rig; left out for one that can."""
+
+    def resolved(self) -> tuple[StageValues, ...]:
+        """The stages with start and end values, each starting where the one before ended."""
+        speed = torque = 0.0
+        values = []
+        for stage in self.stages:
+            speed_end = speed if stage.speed is None else stage.speed
+            torque_end = torque if stage.torque is None else stage.torque
+            if stage.torque_share is not None:
+                torque_end = stage.torque_share * self.test_torque
+            values.append(
+                StageValues(
+                    name=stage.name,
+                    kind=stage.kind,
+                    speed_start=speed,
+                    speed_end=speed_end,
+                    torque_start=torque,
+                    torque_end=torque_end,
+                    duration=stage.duration,
+                    drive_torque=stage.drive_torque,
+                    held=stage.held,
+                )
+            )
+            speed, torque = speed_end, torque_end
+        return tuple(values)
+
+
+class TestPlan(Part):
+    """What the test is to reach."""
+
+    load_cycles: Positive
+    """Cycles wanted per tooth at test speed and torque."""
+    time: Time
+    """Time planned at test speed and torque."""
+    specimens: Count = 1

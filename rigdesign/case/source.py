@@ -1,0 +1,101 @@
+"""From a path on disk to one tree: reads TOML, follows ``extends``, merges."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from rigdesign.case.marks import is_marked
+from rigdesign.errors import CaseError
+
+CASE_FILE = "case.toml"
+
+
+def case_file(path: Path) -> Path:
+    """The case file of a folder, or the file itself.
+
+    Raises CaseError when there is none.
+    """
+    file = path / CASE_FILE if path.is_dir() else path
+    if not file.is_file():
+        what = f"no {CASE_FILE} in this folder" if path.is_dir() else "no such file or folder"
+        raise CaseError(f"{what}; give a case folder or its {CASE_FILE}", str(path))
+    return file
+
+
+def read_tree(file: Path) -> dict[str, Any]:
+    """The content of a case file merged over what it extends, marks included.
+
+    Raises CaseError for a file that cannot be read or decoded, is truncated, or extends itself.
+    """
+    chain: list[dict[str, Any]] = []
+    seen: list[Path] = []
+    current: Path | None = file.resolve()
+    while current is not None:
+        if current in seen:
+            trail = " -> ".join(str(link) for link in [*seen, current])
+            raise CaseError(f"extends itself: {trail}; remove one 'extends'", str(file))
+        seen.append(current)
+        content = _read(current)
+        chain.append(content)
+        current = _base(content.pop("extends", None), current)
+    tree = chain.pop()
+    while chain:
+        tree = merge(tree, chain.pop())
+    return tree
+
+
+def merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
+    """``over`` laid on ``base``: tables key by key, lists of named tables item by item, all else replaced.
+
+    ``remove = ["key", …]`` in a table of ``over`` leaves out inherited keys. A table with another ``law`` takes
+    the place of the inherited one.
+    """
+    dropped = over.get("remove", [])
+    if not isinstance(dropped, list) or not all(key in base for key in dropped):
+        raise CaseError(
+            f"remove = {dropped!r}: not a list of inherited keys; inherited here: {', '.join(base)}"
+        )
+    merged = {key: value for key, value in base.items() if key not in dropped}
+    for key, value in over.items():
+        if key != "remove":
+            merged[key] = _merge_value(merged[key], value) if key in merged else value
+    return merged
+
+
+def _merge_value(base: Any, over: Any) -> Any:
+    if isinstance(base, dict) and isinstance(over, dict) and not (is_marked(base) or is_marked(over)):
+        return over if over.get("law", base.get("law")) != base.get("law") else merge(base, over)
+    if _named(base) and _named(over):
+        items = {item["name"]: item for item in base}
+        for item in over:
+            items[item["name"]] = merge(items[item["name"]], item) if item["name"] in items else item
+        return list(items.values())
+    return over
+
+
+def _named(value: object) -> bool:
+    return isinstance(value, list) and bool(value) and all(isinstance(i, dict) and "name" in i for i in value)
+
+
+def _base(extends: object, file: Path) -> Path | None:
+    if extends is None:
+        return None
+    if not isinstance(extends, str):
+        raise CaseError(f"extends = {extends!r}: not a text; write the path of a case file", str(file))
+    base = (file.parent / extends).resolve()
+    if not base.exists():
+        raise CaseError(f"extends = {extends!r}: no such file {base}; correct the path", str(file))
+    return case_file(base)
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(file.read_bytes().decode("utf-8"))
+    except OSError as error:
+        raise CaseError(f"cannot be read: {error.strerror}; check the path and its rights", str(file)) from None
+    except UnicodeDecodeError as error:
+        raise CaseError(f"is not UTF-8 text (byte {error.start}); save it as UTF-8", str(file)) from None
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"is not valid TOML or was cut off: {error}; correct it there", str(file)) from None
+    except RecursionError:
+        raise CaseError("is nested too deeply to be read; flatten its tables", str(file)) from None

@@ -1,0 +1,64 @@
+"""Room, oils and materials."""
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from rigdesign.case.fields import (
+    Conductivity,
+    Density,
+    ExpansionCoefficient,
+    HeatCapacity,
+    KinematicViscosity,
+    Part,
+    Stress,
+    Temperature,
+    Text,
+    fault,
+)
+
+BUILT_IN_OILS = ("FVA 3", "FVA 3A", "MIL-PRF-23699")
+"""Oils of ``rigdesign.oil``."""
+BUILT_IN_MATERIALS = ("case_hardened_steel", "structural_steel", "grey_iron", "ductile_iron", "aluminium")
+"""Materials of ``rigdesign.materials``."""
+
+
+class Ambient(Part):
+    """The room."""
+
+    temperature: Temperature
+    surroundings_temperature: Temperature | None = None
+    """Walls that the rig radiates to; the air temperature when left out."""
+
+
+class CustomOil(Part):
+    """Oil described by two viscosities and its heat data at 15 degC."""
+
+    title: Text
+    kinematic_viscosity_40: KinematicViscosity
+    kinematic_viscosity_100: KinematicViscosity
+    density_15: Density
+    heat_capacity: HeatCapacity
+    conductivity: Conductivity
+
+    @model_validator(mode="after")
+    def _thins(self) -> "CustomOil":
+        if self.kinematic_viscosity_40 <= self.kinematic_viscosity_100:
+            raise fault(
+                "the viscosity at 40 degC is not above that at 100 degC", "exchange or correct the two viscosities"
+            )
+        return self
+
+
+class CustomMaterial(Part):
+    """Solid material."""
+
+    title: Text
+    conductivity: Conductivity
+    expansion_coefficient: ExpansionCoefficient
+    elastic_modulus: Stress
+    poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)]
+    density: Density
+    root_strength: Stress | None = None
+    """sigma_FE of ISO 6336-5 for gears."""
+    tempering_temperature: Temperature | None = None

@@ -1,0 +1,116 @@
+"""Rules of a housing: its parts fit together and every surface has a boundary condition."""
+
+from collections.abc import Iterator
+
+from rigdesign.case.faults import written
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry, matched, partner_of
+from rigdesign.case.housing import GapExchange, Housing, SeriesExchange, ThermalRadiation
+from rigdesign.case.paths import nearest
+from rigdesign.errors import Fault
+from rigdesign.units import show
+from thermal.housing_surfaces import surface_names
+
+POSITION_TOLERANCE = 1e-4
+"""Most difference [m] between the distance of two axes and the centre distance of their mesh."""
+
+
+def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
+    """Everything wrong with the housing of a gearbox; empty for one without a housing."""
+    housing = gearbox.housing
+    if housing is None:
+        return []
+    at = f"gearboxes.{name}"
+    faults = [*_shafts(at, gearbox, housing), *_centre_distances(at, gearbox, housing)]
+    if faults:
+        return faults
+    try:
+        names = tuple(surface_names(housing_geometry(gearbox)))
+    except ValueError as error:
+        return [Fault(f"{at}.housing", "", str(error), "correct the measures of the housing")]
+    return list(_boundary(f"{at}.housing.boundary", housing, names))
+
+
+def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
+    for shaft in housing.shafts:
+        sides = [bearing.side for bearing in gearbox.bearings.values() if bearing.shaft == shaft]
+        if sorted(sides) != ["front", "rear"]:
+            found = ", ".join(sides) or "none"
+            yield Fault(
+                f"{at}.bearings", "", f"shaft {shaft} needs a bearing at the front and one at the rear, has {found}",
+                "add or remove bearings",
+            )  # fmt: skip
+            continue
+        front, rear = (bearing_on(gearbox, shaft, side) for side in ("front", "rear"))
+        for key in ("diameter", "width", "diametral_clearance"):
+            if getattr(front, key) != getattr(rear, key):
+                yield Fault(
+                    f"{at}.bearings", "", f"the two bearings of shaft {shaft} differ in {key}, which the housing "
+                    "model has once per shaft", "give both the same value",
+                )  # fmt: skip
+        if not (front.locating or rear.locating):
+            yield Fault(f"{at}.bearings", "", f"no bearing locates shaft {shaft}", "write locating = true at one of them")
+        if [seals.shaft for seals in gearbox.seals.values()].count(shaft) != 1:
+            yield Fault(f"{at}.seals", "", f"shaft {shaft} needs one table of seals", "add or remove seals")
+        gears = [gear_name for gear_name, gear in gearbox.gears.items() if gear.shaft == shaft]
+        if len(gears) > 1:
+            yield Fault(
+                f"{at}.gears", "", f"{' and '.join(gears)} sit on one shaft, the housing model has one gear per shaft",
+                "put them on shafts of their own",
+            )  # fmt: skip
+        yield from _bores(at, gearbox, shaft)
+
+
+def _bores(at: str, gearbox: Gearbox, shaft: str) -> Iterator[Fault]:
+    for name, gear in gearbox.gears.items():
+        if gear.shaft == shaft and gear.bore_diameter == 0.0:
+            yield Fault(
+                f"{at}.gears.{name}.bore_diameter", "", "a gear on a shaft of the housing needs its bore",
+                "add the diameter of the gear seat",
+            )  # fmt: skip
+
+
+def _centre_distances(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
+    for name, mesh in gearbox.meshes.items():
+        shafts = [gearbox.gears[gear].shaft for gear in (mesh.pinion, mesh.wheel)]
+        apart = abs(housing.shafts[shafts[0]].lateral_position - housing.shafts[shafts[1]].lateral_position)
+        if abs(apart - mesh.centre_distance) > POSITION_TOLERANCE:
+            yield Fault(
+                f"{at}.meshes.{name}.centre_distance", show(mesh.centre_distance, "length"),
+                f"the axes of {shafts[0]} and {shafts[1]} are {show(apart, 'length')} apart",
+                "correct lateral_position of the shafts or the centre distance",
+            )  # fmt: skip
+
+
+def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
+    covered: dict[str, list[str]] = {name: [] for name in names}
+    for name, condition in housing.boundary.items():
+        for pattern in condition.surfaces:
+            if not matched([pattern], names):
+                meant = nearest(pattern, names)
+                hint = "did you mean " + " or ".join(meant) + "? " if meant else ""
+                yield Fault(
+                    f"{at}.{name}.surfaces", written(pattern), "no such surface", f"{hint}known: {', '.join(names)}"
+                )
+    for name, surface, stood_for in conditions_of(housing, names):
+        condition = housing.boundary[name]
+        if isinstance(condition, GapExchange | SeriesExchange):
+            partner = partner_of(condition, stood_for)
+            covered[surface].append("")
+            if partner in covered:
+                covered[partner].append("")
+            else:
+                meant = nearest(partner, names)
+                hint = "did you mean " + " or ".join(meant) + "?" if meant else "write a surface name"
+                yield Fault(f"{at}.{name}.partner", written(partner), f"no such surface, partner of {surface}", hint)
+        else:
+            covered[surface].append("" if isinstance(condition, ThermalRadiation) else name)
+    for surface, conditions in covered.items():
+        films = [name for name in conditions if name]
+        if not conditions:
+            yield Fault(
+                at, "", f"surface {surface} has no boundary condition",
+                'add one, e.g. law = "constant_film" or law = "insulated"',
+            )  # fmt: skip
+        if len(films) > 1:
+            yield Fault(f"{at}.{films[1]}.surfaces", written(surface), f"already has {films[0]}", "name it once")

@@ -1,0 +1,97 @@
+"""Errors a user can meet, with the exit status of the command that raised them.
+
+    RigdesignError              1
+    ├── CaseError               2   the case file or a study path is wrong; carries every fault found
+    ├── UsageError              2   a wrong call
+    │   └── OutputError         2   an output folder that cannot be written
+    ├── NotConvergedError       3   an iteration did not settle, a speed was not reached
+    ├── MissingLibraryError     4   a system library is missing
+    └── MeasurementError        5   measured data cannot be used
+
+A message states name, value, limit and remedy. The solvers raise ValueError and RuntimeError of their own;
+``rigdesign.run`` turns them into this tree.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+class RigdesignError(Exception):
+    """Base of every error that is the user's or the machine's to mend."""
+
+    exit_code: int = 1
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing wrong with a case: where, what was given, what is accepted, what to do.
+
+    path : dotted path of the key, empty for the file as a whole
+    given : the value as written, empty where a key is missing
+    problem : what is wrong, with the limit
+    remedy : what to write instead
+    """
+
+    path: str
+    given: str
+    problem: str
+    remedy: str
+
+    def __str__(self) -> str:
+        place = self.path or "case"
+        given = f" = {self.given}" if self.given else ""
+        return f"{place}{given}: {self.problem}; {self.remedy}"
+
+
+class CaseError(RigdesignError):
+    """A case that cannot be computed; lists all its faults at once.
+
+    Parameters
+    ----------
+    faults : what is wrong, or one sentence
+    source : file or operation the faults belong to
+    """
+
+    exit_code = 2
+
+    def __init__(self, faults: str | Sequence[Fault], source: str = "") -> None:
+        super().__init__(faults, source)
+        self.faults: tuple[Fault, ...] = () if isinstance(faults, str) else tuple(faults)
+        self.source = source
+        self._sentence = faults if isinstance(faults, str) else ""
+
+    def __str__(self) -> str:
+        head = f"{self.source}: " if self.source else ""
+        if self._sentence:
+            return head + self._sentence
+        if len(self.faults) == 1:
+            return head + str(self.faults[0])
+        return "\n".join([f"{head}{len(self.faults)} faults", *(f"  {fault}" for fault in self.faults)])
+
+
+class UsageError(RigdesignError):
+    """A command or function called with something it cannot take."""
+
+    exit_code = 2
+
+
+class OutputError(UsageError):
+    """An output folder that cannot be written."""
+
+
+class NotConvergedError(RigdesignError):
+    """An iteration that did not settle within its limit; the message carries the residuals."""
+
+    exit_code = 3
+
+
+class MissingLibraryError(RigdesignError):
+    """A system library that is not installed; the message carries the command that installs it."""
+
+    exit_code = 4
+
+
+class MeasurementError(RigdesignError):
+    """Measured data that cannot be used."""
+
+    exit_code = 5
