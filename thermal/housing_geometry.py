@@ -1,0 +1,365 @@
+"""What a parametric gearbox is made of: chambers, walls, parallel shafts, bearings, seals and gears.
+
+The housing is a closed box on a clamping field. Along x it has, from front to rear: end wall with bearings,
+cold section, partition with contactless seals, warm chamber with gears, partition, cold section, end wall.
+
+    x ->      0                                                                     length
+              | end |  cold front  | part. |   warm chamber   | part. | cold rear | end |
+    z = height -----------------------------------------------------------------------------
+    z = shaft_height  ==[J]========[S]=========[ gear ]=========[S]===========[J]====== shaft
+    z = 0      -----------------------------------------------------------------------------
+              ################################ clamping field ################################
+
+x runs along the shafts, y across, z up; y = 0 is the middle of the housing and of the field. All lengths in
+metres, cold. A bearing sits at the inner side of its end wall, the end seal (or, at a blind shaft end, the
+cover) outside of it; a bearing wider than the wall leaves room for protrudes into the cold section on a boss.
+"""
+
+import math
+import re
+from dataclasses import dataclass, fields
+from itertools import combinations
+from typing import Literal
+
+Side = Literal["front", "rear"]
+SIDES: tuple[Side, Side] = ("front", "rear")
+MINIMUM_LAND = 1e-3
+"""Least length or thickness [m] that geometry may leave between two features."""
+
+
+class GeometryError(ValueError):
+    """A gearbox that cannot be built; the message names the quantity, its value, the limit and the remedy."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearDisc:
+    """A gear body as a solid disc on the gear seat of its shaft; the teeth are not drawn.
+
+    Discs of a meshing pair may overlap (tip diameters do): they are separate bodies that share no nodes.
+    """
+
+    outer_diameter: float
+    """Diameter of the disc [m]; tip diameter, or the mean of tip and root to keep the mass."""
+    width: float
+    """Face width [m]."""
+    offset: float = 0.0
+    """x of the disc's mid-plane relative to the middle of the warm chamber [m]."""
+
+    def __post_init__(self) -> None:
+        _require_positive(self, "outer_diameter", "width")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShaftGeometry:
+    """A stepped shaft on two journal bearings, with its seals and at most one gear. Lengths in metres."""
+
+    name: str
+    """Lower-case letters, digits and underscores; part of the names of its bodies and surfaces."""
+    y: float
+    """Cold position of the axis across the housing."""
+    journal_diameter: float
+    seal_diameter: float
+    """Diameter in the partition seals and in the cold sections between partition and bearing."""
+    seat_diameter: float
+    """Diameter in the warm chamber: gear seat, and bore of the gear."""
+    overhang_diameter: float
+    """Diameter in the end seals and outside the housing."""
+    bearing_width: float
+    seal_gap: float
+    """Radial gap of every seal of this shaft."""
+    locating: Side
+    """The end whose bearing fixes the shaft axially."""
+    bearing_clearance: float = 0.0
+    """Radial bearing clearance."""
+    bore_diameter: float = 0.0
+    """Central bore right through the shaft; 0 for a solid one."""
+    overhang_front: float = 0.0
+    """Length that leaves the front end wall; 0: the shaft ends at its bearing behind a closed cover."""
+    overhang_rear: float = 0.0
+    gear: GearDisc | None = None
+
+    def __post_init__(self) -> None:
+        if not re.fullmatch(r"[a-z][a-z0-9_]*", self.name):
+            raise GeometryError(
+                f"shaft name {self.name!r} is not allowed: use lower-case letters, digits and underscores, "
+                "starting with a letter"
+            )
+        _require_positive(
+            self, "journal_diameter", "seal_diameter", "seat_diameter", "overhang_diameter",
+            "bearing_width", "seal_gap",
+        )  # fmt: skip
+        _require_not_negative(self, "bearing_clearance", "bore_diameter", "overhang_front", "overhang_rear")
+        if not math.isfinite(self.y):
+            raise GeometryError(
+                f"shaft {self.name}: y = {self.y} is no number; give the axis position in metres"
+            )
+        if self.locating not in SIDES:
+            raise GeometryError(
+                f"shaft {self.name}: locating = {self.locating!r} is neither 'front' nor 'rear'"
+            )
+        self._check_bore()
+
+    def _check_bore(self) -> None:
+        zones = ("journal_diameter", "seal_diameter", "seat_diameter", "overhang_diameter")
+        thinnest = min(zones, key=lambda zone: float(getattr(self, zone)))
+        limit = getattr(self, thinnest) - 2.0 * MINIMUM_LAND
+        if self.bore_diameter > limit:
+            raise GeometryError(
+                f"shaft {self.name}: bore_diameter = {self.bore_diameter:g} m is above {limit:g} m, which "
+                f"{thinnest} leaves; make the bore smaller or the shaft thicker"
+            )
+        if self.gear is not None and self.gear.outer_diameter < self.seat_diameter + 2.0 * MINIMUM_LAND:
+            raise GeometryError(
+                f"shaft {self.name}: gear outer_diameter = {self.gear.outer_diameter:g} m must exceed "
+                f"seat_diameter = {self.seat_diameter:g} m; enlarge the gear or reduce the seat"
+            )
+
+    def overhang(self, side: Side) -> float:
+        """Length outside the end wall of one side [m]."""
+        return self.overhang_front if side == "front" else self.overhang_rear
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClampingField:
+    """Plate under the housing, centred on it; foot and plate share their nodes (perfect contact)."""
+
+    length: float
+    """Along the shafts (x) [m]."""
+    width: float
+    """Across the shafts (y) [m]."""
+    thickness: float
+
+    def __post_init__(self) -> None:
+        _require_positive(self, "length", "width", "thickness")
+
+
+@dataclass(frozen=True, kw_only=True)
+class HousingGeometry:
+    """A gearbox with any number of parallel shafts in one horizontal plane; see the module's drawing. Metres.
+
+    Raises GeometryError (a ValueError) naming quantity, value, limit and remedy for a geometry that cannot be
+    built: negative or non-finite lengths, walls without room between them, bores that leave the housing or
+    run into each other, gears that do not fit their chamber, a field smaller than the foot.
+    """
+
+    chamber_length: float
+    """Clear length of the warm chamber."""
+    cold_length_front: float
+    """Clear length of the front cold section, between end wall and partition."""
+    cold_length_rear: float
+    height: float
+    """Outer height of the housing above the field."""
+    width: float
+    """Outer width of the housing."""
+    wall_thickness: float
+    floor_thickness: float
+    top_thickness: float
+    partition_thickness: float
+    end_wall_thickness: float
+    shaft_height: float
+    """Height of all shaft axes above the field."""
+    shafts: tuple[ShaftGeometry, ...]
+    end_seal_width: float = 6e-3
+    """Least length of the end seal (blind end: thickness of the cover) outside of each bearing."""
+    boss_wall: float = 12e-3
+    """Radial wall of the boss around a bearing that protrudes into the cold section."""
+    field: ClampingField | None = None
+
+    def __post_init__(self) -> None:
+        optional = {"shafts", "field"}
+        _require_positive(self, *(f.name for f in fields(self) if f.name not in optional))
+        self._check_walls()
+        if not self.shafts:
+            raise GeometryError("shafts is empty; a gearbox needs at least one shaft")
+        names = [shaft.name for shaft in self.shafts]
+        for name in names:
+            if names.count(name) > 1:
+                raise GeometryError(
+                    f"shaft name {name!r} is given {names.count(name)} times; names must differ"
+                )
+        for shaft in self.shafts:
+            self._check_shaft(shaft)
+        for first, second in combinations(self.shafts, 2):
+            self._check_neighbours(first, second)
+
+    # ------------------------------------------------------------------ stations along x
+
+    @property
+    def length(self) -> float:
+        """Outer length of the housing [m]."""
+        return self.partition_rear[1] + self.cold_length_rear + self.end_wall_thickness
+
+    @property
+    def partition_front(self) -> tuple[float, float]:
+        """x of the two faces of the front partition [m]."""
+        start = self.end_wall_thickness + self.cold_length_front
+        return start, start + self.partition_thickness
+
+    @property
+    def partition_rear(self) -> tuple[float, float]:
+        """x of the two faces of the rear partition [m]."""
+        start = self.partition_front[1] + self.chamber_length
+        return start, start + self.partition_thickness
+
+    @property
+    def warm_limits(self) -> tuple[float, float]:
+        """x of the two warm/cold lines on the outside [m]: the mid-planes of the partitions."""
+        return sum(self.partition_front) / 2.0, sum(self.partition_rear) / 2.0
+
+    @property
+    def inner_half_width(self) -> float:
+        """Half the clear width [m]."""
+        return self.width / 2.0 - self.wall_thickness
+
+    @property
+    def inner_height(self) -> float:
+        """Clear height [m]."""
+        return self.height - self.floor_thickness - self.top_thickness
+
+    def cold_length(self, side: Side) -> float:
+        """Clear length of the cold section of one side [m]."""
+        return self.cold_length_front if side == "front" else self.cold_length_rear
+
+    def mirrored(self, side: Side, depth: float) -> float:
+        """x of a plane ``depth`` metres inside the outer end face of one side."""
+        return depth if side == "front" else self.length - depth
+
+    def bearing_depths(self, shaft: ShaftGeometry) -> tuple[float, float]:
+        """Outer and inner edge of a bearing, measured inwards from the outer end face [m]."""
+        inner = max(self.end_wall_thickness, self.end_seal_width + shaft.bearing_width)
+        return inner - shaft.bearing_width, inner
+
+    def protrusion(self, shaft: ShaftGeometry) -> float:
+        """Length of the boss that carries the bearing into the cold section [m]; 0 without a boss."""
+        return self.bearing_depths(shaft)[1] - self.end_wall_thickness
+
+    def gear_limits(self, shaft: ShaftGeometry) -> tuple[float, float]:
+        """x of the two sides of the gear of ``shaft`` [m]; ValueError for a shaft without a gear."""
+        if shaft.gear is None:
+            raise ValueError(f"shaft {shaft.name} carries no gear")
+        middle = (self.partition_front[1] + self.partition_rear[0]) / 2.0 + shaft.gear.offset
+        return middle - shaft.gear.width / 2.0, middle + shaft.gear.width / 2.0
+
+    def bearing_radius(self, shaft: ShaftGeometry) -> float:
+        """Radius of the bearing bore [m]."""
+        return shaft.journal_diameter / 2.0 + shaft.bearing_clearance
+
+    def boss_radius(self, shaft: ShaftGeometry) -> float:
+        """Outer radius of the bearing boss [m]."""
+        return self.bearing_radius(shaft) + self.boss_wall
+
+    def seal_radius(self, shaft: ShaftGeometry) -> float:
+        """Radius of the seal bores in the partitions [m]."""
+        return shaft.seal_diameter / 2.0 + shaft.seal_gap
+
+    def end_seal_radius(self, shaft: ShaftGeometry) -> float:
+        """Radius of the seal bores in the end walls [m]."""
+        return shaft.overhang_diameter / 2.0 + shaft.seal_gap
+
+    # ------------------------------------------------------------------ can it be built?
+
+    def _check_walls(self) -> None:
+        for name, clear, remedy in (
+            ("width", 2.0 * self.inner_half_width, "widen the housing or thin its walls"),
+            ("height", self.inner_height, "raise the housing or thin floor and top"),
+        ):
+            if clear < 10.0 * MINIMUM_LAND:
+                raise GeometryError(
+                    f"{name} = {getattr(self, name):g} m leaves {clear:g} m between the walls, less than "
+                    f"{10.0 * MINIMUM_LAND:g} m; {remedy}"
+                )
+        if self.field is None:
+            return
+        for name, size, foot in (
+            ("length", self.field.length, self.length), ("width", self.field.width, self.width)
+        ):  # fmt: skip
+            if size < foot + 10.0 * MINIMUM_LAND:
+                raise GeometryError(
+                    f"field {name} = {size:g} m must exceed the housing's {foot:g} m by "
+                    f"{10.0 * MINIMUM_LAND:g} m; enlarge the clamping field"
+                )
+
+    def _check_shaft(self, shaft: ShaftGeometry) -> None:
+        room = {
+            "side wall": self.inner_half_width - abs(shaft.y),
+            "floor": self.shaft_height - self.floor_thickness,
+            "top": self.height - self.top_thickness - self.shaft_height,
+        }
+        for what, radius in self._radii(shaft).items():
+            for wall, distance in room.items():
+                if radius + MINIMUM_LAND > distance:
+                    raise GeometryError(
+                        f"shaft {shaft.name}: radius {radius:g} m of its {what} does not fit the "
+                        f"{distance:g} m between axis and {wall}; move the axis or enlarge the housing"
+                    )
+        for side in SIDES:
+            if self.protrusion(shaft) + MINIMUM_LAND > self.cold_length(side):
+                raise GeometryError(
+                    f"shaft {shaft.name}: bearing_width = {shaft.bearing_width:g} m protrudes "
+                    f"{self.protrusion(shaft):g} m from the end wall, more than cold_length_{side} = "
+                    f"{self.cold_length(side):g} m allows; narrow the bearing or thicken the end wall"
+                )
+            if 0.0 < shaft.overhang(side) < MINIMUM_LAND:
+                raise GeometryError(
+                    f"shaft {shaft.name}: overhang_{side} = {shaft.overhang(side):g} m is below "
+                    f"{MINIMUM_LAND:g} m; give 0 for a shaft that ends at its bearing"
+                )
+        if shaft.gear is not None:
+            start, end = self.gear_limits(shaft)
+            if start < self.partition_front[1] + MINIMUM_LAND or end > self.partition_rear[0] - MINIMUM_LAND:
+                raise GeometryError(
+                    f"shaft {shaft.name}: gear of width {shaft.gear.width:g} m at offset "
+                    f"{shaft.gear.offset:g} m does not fit chamber_length = "
+                    f"{self.chamber_length:g} m; lengthen the chamber"
+                )
+
+    def _radii(self, shaft: ShaftGeometry) -> dict[str, float]:
+        """Radius of everything that turns in, or is cut into, the housing around one axis."""
+        radii = {
+            "seat": shaft.seat_diameter / 2.0,
+            "partition seal bore": self.seal_radius(shaft),
+            "bearing": self.boss_radius(shaft)
+            if self.protrusion(shaft) > 0.0
+            else self.bearing_radius(shaft),
+        }
+        if shaft.overhang_front or shaft.overhang_rear:
+            radii["end seal bore"] = self.end_seal_radius(shaft)
+        if shaft.gear is not None:
+            radii["gear"] = shaft.gear.outer_diameter / 2.0
+        return radii
+
+    def _check_neighbours(self, first: ShaftGeometry, second: ShaftGeometry) -> None:
+        distance = abs(first.y - second.y)
+        radii = [
+            max(radius for what, radius in self._radii(shaft).items() if what != "gear")
+            for shaft in (first, second)
+        ]
+        if sum(radii) + MINIMUM_LAND > distance:
+            raise GeometryError(
+                f"shafts {first.name} and {second.name}: distance {distance:g} m is less than the "
+                f"{sum(radii):g} m their bores, bosses and seats need; move the axes apart or "
+                "reduce diameters or boss_wall"
+            )
+
+
+def _require_positive(record: object, *names: str) -> None:
+    for name in names:
+        value = getattr(record, name)
+        if not (math.isfinite(value) and value > 0.0):
+            raise GeometryError(
+                f"{_label(record)}{name} = {value} m must be greater than 0; give a positive length"
+            )
+
+
+def _require_not_negative(record: object, *names: str) -> None:
+    for name in names:
+        value = getattr(record, name)
+        if not (math.isfinite(value) and value >= 0.0):
+            raise GeometryError(f"{_label(record)}{name} = {value} m must not be negative; give 0 or more")
+
+
+def _label(record: object) -> str:
+    """Who owns the quantity: the shaft by name, the field, the gear; nothing for the housing itself."""
+    if isinstance(record, ShaftGeometry):
+        return f"shaft {record.name}: "
+    return {"GearDisc": "gear: ", "ClampingField": "field: "}.get(type(record).__name__, "")

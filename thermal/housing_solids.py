@@ -1,0 +1,150 @@
+"""The solids of a parametric gearbox, drawn with gmsh's OpenCASCADE kernel, and the element sizes on them."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from thermal.housing_geometry import SIDES, GeometryError, HousingGeometry, ShaftGeometry
+from thermal.housing_mesh import BendAxis, SizeLaw
+from thermal.housing_surfaces import shaft_zones
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshSizes:
+    """Target element sizes of a gearbox mesh [m]; second-order elements, so one covers a wall's thickness."""
+
+    wall: float
+    field: float
+    """At the outer edges of the clamping field; under the foot the size of the walls holds."""
+    shaft: float
+    circle: int
+    """Least number of elements round a bore or shaft."""
+
+    def __post_init__(self) -> None:
+        for name in ("wall", "field", "shaft"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise GeometryError(f"mesh size {name} = {value} m must be greater than 0; give a length")
+        if self.circle < 6:
+            raise GeometryError(
+                f"mesh size circle = {self.circle} is below 6; give 6 elements a turn or more"
+            )
+
+
+def draw_housing(g: HousingGeometry, occ: Any) -> dict[str, list[int]]:
+    """Box on its field, chambers and bores cut out, warm/cold lines imprinted on the outside."""
+    half, wide = g.width / 2.0, 2.0 * g.inner_half_width
+    solid = [(3, occ.addBox(0.0, -half, 0.0, g.length, g.width, g.height))]
+    chambers = [
+        (g.end_wall_thickness, g.cold_length_front),
+        (g.partition_front[1], g.chamber_length),
+        (g.partition_rear[1], g.cold_length_rear),
+    ]
+    hollow = [
+        (3, occ.addBox(x, -g.inner_half_width, g.floor_thickness, length, wide, g.inner_height))
+        for x, length in chambers
+    ]
+    solid, _ = occ.cut(solid, hollow)
+    bosses, bores = [], []
+    for shaft in g.shafts:
+        axis = (shaft.y, g.shaft_height)
+        for side in SIDES:
+            outer, inner = g.bearing_depths(shaft)
+            reach = sorted((g.mirrored(side, outer), g.mirrored(side, inner)))
+            bores.append(_cylinder(occ, axis, g.bearing_radius(shaft), *reach))
+            partition = g.partition_front if side == "front" else g.partition_rear
+            bores.append(_cylinder(occ, axis, g.seal_radius(shaft), *partition))
+            if shaft.overhang(side) > 0.0:
+                land = sorted((g.mirrored(side, 0.0), g.mirrored(side, outer)))
+                bores.append(_cylinder(occ, axis, g.end_seal_radius(shaft), *land))
+            if g.protrusion(shaft) > 0.0:
+                wall = g.mirrored(side, g.end_wall_thickness)
+                boss = sorted((wall, g.mirrored(side, inner)))
+                bosses.append(_cylinder(occ, axis, g.boss_radius(shaft), *boss))
+    if bosses:
+        solid, _ = occ.fuse(solid, bosses)
+    solid, _ = occ.cut(solid, bores)
+    tools = []
+    if g.field is not None:
+        f = g.field
+        corner = (g.length / 2.0 - f.length / 2.0, -f.width / 2.0, -f.thickness)
+        tools.append((3, occ.addBox(*corner, f.length, f.width, f.thickness)))
+    lines = [(1, line) for x in g.warm_limits for line in _portal(occ, x, half, g.height)]
+    _, origin = occ.fragment(solid, tools + lines)
+    bodies = {"housing": [tag for _, tag in origin[0]]}
+    if tools:
+        bodies["field"] = [tag for _, tag in origin[1]]
+    return bodies
+
+
+def draw_shaft(g: HousingGeometry, shaft: ShaftGeometry, occ: Any) -> dict[str, list[int]]:
+    """The zones of a shaft stacked, its gear on the seat, and the bore cut through."""
+    axis = (shaft.y, g.shaft_height)
+    zones = shaft_zones(g, shaft)
+    solids = [_cylinder(occ, axis, zone.radius, zone.start, zone.end) for zone in zones]
+    if shaft.gear is not None:
+        limits = g.gear_limits(shaft)
+        disc = _cylinder(occ, axis, shaft.gear.outer_diameter / 2.0, *limits)
+        seat = _cylinder(occ, axis, shaft.seat_diameter / 2.0, *limits)
+        ring, _ = occ.cut([disc], [seat])
+        solids += ring
+    if shaft.bore_diameter > 0.0:
+        bore = _cylinder(occ, axis, shaft.bore_diameter / 2.0, zones[0].start, zones[-1].end)
+        solids[: len(zones)], _ = occ.cut(solids[: len(zones)], [bore])
+    _, origin = occ.fragment(solids, [])
+    bodies = {f"shaft_{shaft.name}": [tag for part in origin[: len(zones)] for _, tag in part]}
+    if shaft.gear is not None:
+        bodies[f"gear_{shaft.name}"] = [tag for part in origin[len(zones) :] for _, tag in part]
+    return bodies
+
+
+def _cylinder(
+    occ: Any, axis: tuple[float, float], radius: float, start: float, end: float
+) -> tuple[int, int]:
+    return 3, occ.addCylinder(start, *axis, end - start, 0.0, 0.0, radius)
+
+
+def _portal(occ: Any, x: float, half_width: float, height: float) -> list[int]:
+    """Lines up one side, over the top and down the other at ``x``."""
+    corners = ((-half_width, 0.0), (-half_width, height), (half_width, height), (half_width, 0.0))
+    points = [occ.addPoint(x, *corner) for corner in corners]
+    return [occ.addLine(points[i], points[i + 1]) for i in range(3)]
+
+
+def bend_axes(g: HousingGeometry) -> list[BendAxis]:
+    """The axes of the bores, and the radius of the largest bore or boss round each."""
+    return [(shaft.y, g.shaft_height, max(radius for _, radius in _circles(g, shaft))) for shaft in g.shafts]
+
+
+def _circles(g: HousingGeometry, shaft: ShaftGeometry) -> list[tuple[float, float]]:
+    radii = [g.seal_radius(shaft), g.bearing_radius(shaft)]
+    if shaft.overhang_front or shaft.overhang_rear:
+        radii.append(g.end_seal_radius(shaft))
+    if g.protrusion(shaft) > 0.0:
+        radii.append(g.boss_radius(shaft))
+    return [(shaft.y, radius) for radius in radii]
+
+
+def housing_size(g: HousingGeometry, sizes: MeshSizes) -> SizeLaw:
+    """Element size at the corners of housing and field: field, walls, and finer round the bores."""
+    circles = [circle for shaft in g.shafts for circle in _circles(g, shaft)]
+
+    def size(x: float, y: float, z: float) -> float:
+        if z < -1e-9 or x < -1e-9 or x > g.length + 1e-9 or abs(y) > g.width / 2.0 + 1e-9:
+            return sizes.field
+        for axis, radius in circles:
+            if abs(math.hypot(y - axis, z - g.shaft_height) - radius) < 1e-6:
+                return min(sizes.wall, 2.0 * math.pi * radius / sizes.circle)
+        return sizes.wall
+
+    return size
+
+
+def shaft_size(g: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> SizeLaw:
+    """Element size at the vertices of one shaft."""
+
+    def size(x: float, y: float, z: float) -> float:
+        radius = math.hypot(y - shaft.y, z - g.shaft_height)
+        return min(sizes.shaft, 2.0 * math.pi * radius / sizes.circle)
+
+    return size
