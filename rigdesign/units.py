@@ -10,7 +10,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -75,46 +75,76 @@ KINDS: Mapping[str, Kind] = _kinds(
     Kind("temperature_difference", "kelvin", {"K": "kelvin"}, "20 K"),
     Kind("time", "s", {"s": "s", "ms": "ms", "min": "minute", "h": "hour", "d": "day"}, "8 s"),
     Kind("frequency", "hertz", {"Hz": "hertz", "kHz": "kilohertz"}, "40 kHz"),
-    Kind("speed", "rad/s", {"rpm": "revolution/minute", "1/min": "revolution/minute", "rad/s": "rad/s"}, "12000 rpm"),
+    Kind(
+        "speed",
+        "rad/s",
+        {"rpm": "revolution/minute", "1/min": "revolution/minute", "rad/s": "rad/s"},
+        "12000 rpm",
+    ),
     Kind("velocity", "m/s", {"m/s": "m/s", "km/h": "km/hour"}, "20 m/s"),
     Kind("force", "N", {"N": "N", "kN": "kN"}, "450 N"),
-    Kind("torque", "N*m", {"N m": "N*m", "Nm": "N*m", "kN m": "kN*m", "kNm": "kN*m", "N mm": "N*mm"}, "180 N m"),
+    Kind(
+        "torque", "N*m", {"N m": "N*m", "Nm": "N*m", "kN m": "kN*m", "kNm": "kN*m", "N mm": "N*mm"}, "180 N m"
+    ),
     Kind("power", "W", {"W": "W", "kW": "kW", "MW": "MW"}, "500 W"),
     Kind(
-        "pressure", "Pa",
-        {"MPa": "MPa", "N/mm2": "MPa", "Pa": "Pa", "kPa": "kPa", "GPa": "GPa", "bar": "bar"}, "206 GPa",
+        "pressure",
+        "Pa",
+        {"MPa": "MPa", "N/mm2": "MPa", "Pa": "Pa", "kPa": "kPa", "GPa": "GPa", "bar": "bar"},
+        "206 GPa",
     ),
     Kind(
-        "flow", "m**3/s",
-        {"l/min": "liter/minute", "l/h": "liter/hour", "l/s": "liter/s", "ml/min": "ml/minute",
-         "m3/h": "m**3/hour", "m3/s": "m**3/s"}, "5 l/min",
+        "flow",
+        "m**3/s",
+        {
+            "l/min": "liter/minute",
+            "l/h": "liter/hour",
+            "l/s": "liter/s",
+            "ml/min": "ml/minute",
+            "m3/h": "m**3/hour",
+            "m3/s": "m**3/s",
+        },
+        "5 l/min",
     ),
     Kind("density", "kg/m**3", {"kg/m3": "kg/m**3", "g/cm3": "g/cm**3", "kg/l": "kg/liter"}, "1000 kg/m3"),
     Kind(
-        "kinematic_viscosity", "m**2/s",
-        {"mm2/s": "mm**2/s", "cSt": "mm**2/s", "m2/s": "m**2/s"}, "27.6 mm2/s",
+        "kinematic_viscosity",
+        "m**2/s",
+        {"mm2/s": "mm**2/s", "cSt": "mm**2/s", "m2/s": "m**2/s"},
+        "27.6 mm2/s",
     ),
     Kind(
-        "dynamic_viscosity", "Pa*s",
-        {"mPa s": "mPa*s", "Pa s": "Pa*s", "cP": "mPa*s"}, "5 mPa s",
+        "dynamic_viscosity",
+        "Pa*s",
+        {"mPa s": "mPa*s", "Pa s": "Pa*s", "cP": "mPa*s"},
+        "5 mPa s",
     ),
     Kind(
-        "heat_capacity", "J/(kg*K)",
+        "heat_capacity",
+        "J/(kg*K)",
         {"J/(kg K)": "J/(kg*K)", "J/kgK": "J/(kg*K)", "kJ/(kg K)": "kJ/(kg*K)", "kJ/kgK": "kJ/(kg*K)"},
         "2000 J/(kg K)",
     ),
     Kind("conductivity", "W/(m*K)", {"W/(m K)": "W/(m*K)", "W/mK": "W/(m*K)"}, "45 W/(m K)"),
     Kind(
-        "heat_transfer_coefficient", "W/(m**2*K)",
-        {"W/(m2 K)": "W/(m**2*K)", "W/m2K": "W/(m**2*K)"}, "300 W/(m2 K)",
+        "heat_transfer_coefficient",
+        "W/(m**2*K)",
+        {"W/(m2 K)": "W/(m**2*K)", "W/m2K": "W/(m**2*K)"},
+        "300 W/(m2 K)",
     ),
-    Kind("torsional_stiffness", "N*m/rad", {"N m/rad": "N*m/rad", "Nm/rad": "N*m/rad", "kN m/rad": "kN*m/rad"},
-         "290e3 N m/rad"),
-    Kind("torsional_damping", "N*m*s/rad", {"N m s/rad": "N*m*s/rad", "Nms/rad": "N*m*s/rad"}, "600 N m s/rad"),
+    Kind(
+        "torsional_stiffness",
+        "N*m/rad",
+        {"N m/rad": "N*m/rad", "Nm/rad": "N*m/rad", "kN m/rad": "kN*m/rad"},
+        "290e3 N m/rad",
+    ),
+    Kind(
+        "torsional_damping", "N*m*s/rad", {"N m s/rad": "N*m*s/rad", "Nms/rad": "N*m*s/rad"}, "600 N m s/rad"
+    ),
     Kind("linear_stiffness", "N/m", {"N/m": "N/m", "N/um": "N/um", "kN/mm": "kN/mm"}, "1e8 N/m"),
     Kind("linear_damping", "N*s/m", {"N s/m": "N*s/m", "Ns/m": "N*s/m", "kN s/m": "kN*s/m"}, "1000 N s/m"),
     Kind("expansion_coefficient", "1/K", {"1/K": "1/K", "um/(m K)": "um/(m*K)"}, "11.5e-6 1/K"),
-)  # fmt: skip
+)
 """Every kind of quantity a case file knows, by name."""
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
@@ -228,7 +258,7 @@ def _normal(unit: str) -> str:
     return " ".join(unit.split())
 
 
-@lru_cache(maxsize=None)
+@cache
 def _units_of(kind: str) -> dict[str, str]:
     return {_normal(unit): expression for unit, expression in KINDS[kind].units.items()}
 
@@ -251,7 +281,7 @@ def _pattern_of(unit: str) -> str:
     return text.replace(" ", r"[ ·*]")
 
 
-@lru_cache(maxsize=None)
+@cache
 def _worth(expression: str, si: str) -> tuple[float, float]:
     """Factor and offset from a unit to SI, asked of pint once."""
     quantity = _registry().Quantity

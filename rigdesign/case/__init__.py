@@ -3,8 +3,9 @@
     rigdesign.case.load_case(path) -> Case
 
 ``model`` is the table of contents; ``gears``, ``gearbox``, ``housing``, ``drivetrain``, ``schedule``,
-``losses``, ``limits``, ``numerics`` and ``substances`` hold its parts. ``source`` reads files, ``marks`` takes
-off what a value says about itself, ``rules`` checks what spans several keys, ``faults`` words what is wrong.
+``losses``, ``limits``, ``numerics`` and ``substances`` hold its parts. ``source`` reads files, ``marks``
+takes off what a value says about itself, ``rules`` gathers what spans several keys (``*_rules``,
+``surfaces``), ``faults`` words what is wrong.
 """
 
 from rigdesign.case.loader import load_case

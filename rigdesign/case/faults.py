@@ -1,13 +1,13 @@
 """Validation errors in the user's words: path, value, what is accepted, what to do."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from rigdesign.case.fields import FAULT
-from rigdesign.case.marks import KEYS, MARKS
-from rigdesign.case.paths import Slot, item_name, nearest, slot_at
+from rigdesign.case.marks import KEYS, MARKS, item_name
+from rigdesign.case.paths import Slot, nearest, slot_at
 from rigdesign.errors import Fault
 from rigdesign.units import describe
 
@@ -25,6 +25,13 @@ def written(value: object, width: int = 70) -> str:
     if isinstance(value, dict | list | tuple):
         text = f"{describe(value)} of {len(value)}"
     return text if len(text) <= width else text[: width - 1] + "…"
+
+
+def unknown(path: str, name: str, known: Collection[str], what: str) -> Fault:
+    """A reference to a part that is not there."""
+    meant = nearest(name, known, 1)
+    hint = f'did you mean "{meant[0]}"? ' if meant else ""
+    return Fault(path, written(name), f"no such {what}", f"{hint}known: {', '.join(known) or 'none'}")
 
 
 def _fault(entry: Any, model: type[BaseModel], tree: Mapping[str, Any]) -> Fault:
@@ -46,7 +53,9 @@ def _fault(entry: Any, model: type[BaseModel], tree: Mapping[str, Any]) -> Fault
     if isinstance(given, dict) and "value" in given and set(given) - KEYS:
         return _misspelt_mark(path, given)
     slot = slot_at(model, tree, keys)
-    return Fault(path, written(given), _in_words(kind, given, entry["msg"]), _accepted(kind, given, context, slot))
+    return Fault(
+        path, written(given), _in_words(kind, given, entry["msg"]), _accepted(kind, given, context, slot)
+    )
 
 
 def _in_words(kind: str, given: object, message: str) -> str:
@@ -62,7 +71,13 @@ def _accepted(kind: str, given: object, context: Mapping[str, Any], slot: Slot |
         choices = str(context.get("expected", ""))
         meant = nearest(str(given), choices.replace("'", "").replace(" or ", ", ").split(", "), 1)
         return (f'did you mean "{meant[0]}"? ' if meant else "") + f"write {choices}"
-    limits = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most", "min_length": "length at least"}
+    limits = {
+        "gt": "above",
+        "ge": "at least",
+        "lt": "below",
+        "le": "at most",
+        "min_length": "length at least",
+    }
     bounds = " and ".join(f"{words} {context[key]}" for key, words in limits.items() if key in context)
     example = slot.example if slot is not None else "a value"
     if bounds:
@@ -86,16 +101,22 @@ def _misspelt_mark(path: str, given: Mapping[str, Any]) -> Fault:
     meant = [name for key in unknown for name in nearest(key, MARKS, 1)]
     hint = f"did you mean '{meant[0]}'? " if meant else ""
     names = ", ".join(f"'{key}'" for key in unknown) or "none"
-    return Fault(path, written(given["value"]), f"unknown mark {names}", f"{hint}marks are {', '.join(MARKS)}")
+    return Fault(
+        path, written(given["value"]), f"unknown mark {names}", f"{hint}marks are {', '.join(MARKS)}"
+    )
 
 
 def _unknown_law(path: str, given: object, context: Mapping[str, Any]) -> Fault:
     choices = str(context.get("expected_tags", ""))
     tag = str(context.get("tag", ""))
     if not isinstance(given, dict):
-        return Fault(path, written(given), f"{describe(given)} is not accepted here", 'write a table with law = "…"')
+        return Fault(
+            path, written(given), f"{describe(given)} is not accepted here", 'write a table with law = "…"'
+        )
     if not tag:
-        return Fault(f"{path}.law", "", "a required key is missing", "add it: a law of heat transfer, see the schema")
+        return Fault(
+            f"{path}.law", "", "a required key is missing", "add it: a law of heat transfer, see the schema"
+        )
     meant = nearest(tag, choices.replace("'", "").split(", "), 1)
     hint = f'did you mean "{meant[0]}"? ' if meant else ""
     return Fault(f"{path}.law", f'"{tag}"', "not one of the choices", f"{hint}write {choices}")

@@ -51,7 +51,10 @@ class Quantity:
             (self.below, "is not below", float.__lt__),
         ):
             if limit is not None and not holds(value, units.parse(limit, self.kind)):
-                raise fault(f"{words} {limit}", f"write a value {self.bounds}, e.g. \"{units.KINDS[self.kind].example}\"")
+                raise fault(
+                    f"{words} {limit}",
+                    f'write a value {self.bounds}, e.g. "{units.KINDS[self.kind].example}"',
+                )
         return value
 
     @property
@@ -63,7 +66,9 @@ class Quantity:
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_plain_validator_function(self.parse)
 
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
         kind = units.KINDS[self.kind]
         text = f"{kind.label}, {self.bounds}" if self.bounds else kind.label
         return {
@@ -100,7 +105,9 @@ Conductivity = Annotated[float, Quantity("conductivity", above="0 W/(m K)", at_m
 HeatTransferCoefficient = Annotated[
     float, Quantity("heat_transfer_coefficient", above="0 W/(m2 K)", at_most="1000000 W/(m2 K)")
 ]
-ExpansionCoefficient = Annotated[float, Quantity("expansion_coefficient", at_least="0 1/K", at_most="1e-3 1/K")]
+ExpansionCoefficient = Annotated[
+    float, Quantity("expansion_coefficient", at_least="0 1/K", at_most="1e-3 1/K")
+]
 TorsionalStiffness = Annotated[float, Quantity("torsional_stiffness", above="0 N m/rad")]
 TorsionalDamping = Annotated[float, Quantity("torsional_damping", at_least="0 N m s/rad")]
 LinearStiffness = Annotated[float, Quantity("linear_stiffness", above="0 N/m")]

@@ -15,8 +15,8 @@ from rigdesign.case.fields import (
     Name,
     Part,
     Share,
-    Text,
     Temperature,
+    Text,
     TorsionalDamping,
     Velocity,
 )

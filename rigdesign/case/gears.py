@@ -35,7 +35,7 @@ class Rack(Part):
     def _radius_fits(self) -> "Rack":
         if self.dedendum <= 0.2 or self.tip_radius >= self.dedendum:
             raise fault(
-                f"a tip radius of {self.tip_radius} modules does not fit a dedendum of {self.dedendum} modules",
+                f"a tip radius of {self.tip_radius} modules does not fit a dedendum of {self.dedendum}",
                 "write a dedendum above the tip radius and above 0.2, e.g. 1.25 and 0.38",
             )
         return self

@@ -36,9 +36,7 @@ def housing_geometry(gearbox: Gearbox, gear_diameters: Mapping[str, float] | Non
     if housing is None:
         raise ValueError("the gearbox has no housing; add a [gearboxes.<name>.housing] table")
     diameters = gear_diameters or pitch_diameters(gearbox)
-    shafts = tuple(
-        _shaft(name, shaft, gearbox, diameters) for name, shaft in housing.shafts.items()
-    )
+    shafts = tuple(_shaft(name, shaft, gearbox, diameters) for name, shaft in housing.shafts.items())
     return HousingGeometry(
         chamber_length=housing.warm_length,
         cold_length_front=housing.cold_length_front,
@@ -103,9 +101,7 @@ def conditions_of(housing: Housing, names: Iterable[str]) -> list[tuple[str, str
     ]
 
 
-def _shaft(
-    name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[str, float]
-) -> ShaftGeometry:
+def _shaft(name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[str, float]) -> ShaftGeometry:
     front, rear = (bearing_on(gearbox, name, side) for side in ("front", "rear"))
     seals = next(seals for seals in gearbox.seals.values() if seals.shaft == name)
     on_shaft = gear_on(gearbox, name)
@@ -123,5 +119,7 @@ def _shaft(
         bore_diameter=shaft.bore_diameter,
         overhang_front=shaft.overhang_front,
         overhang_rear=shaft.overhang_rear,
-        gear=GearDisc(outer_diameter=diameters[on_shaft[0]], width=on_shaft[1].face_width) if on_shaft else None,
+        gear=GearDisc(outer_diameter=diameters[on_shaft[0]], width=on_shaft[1].face_width)
+        if on_shaft
+        else None,
     )

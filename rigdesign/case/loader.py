@@ -41,7 +41,9 @@ def changed(case: Case, path: str, value: object) -> Case:
     slot = slot_at(Case, plain, keys)
     if slot is None:
         meant = nearest_paths(path, known_paths(Case, plain))
-        remedy = "did you mean " + " or ".join(meant) + "?" if meant else "see the schema for the paths of a case"
+        remedy = (
+            "did you mean " + " or ".join(meant) + "?" if meant else "see the schema for the paths of a case"
+        )
         raise CaseError([Fault(path, "", "no such path in this case", remedy)], str(case.path))
     return _build(_replaced(tree, keys, _coerced(value, slot)), case.path)
 
@@ -77,7 +79,14 @@ def _range_faults(mark: Mark, plain: Mapping[str, Any]) -> list[Fault]:
     if not low < high:
         return [Fault(where, shown, "the first end is not below the second", "exchange or correct them")]
     if not low <= value <= high:
-        return [Fault(where, shown, f"does not contain the value {written(mark.value)}", "widen it or correct the value")]
+        return [
+            Fault(
+                where,
+                shown,
+                f"does not contain the value {written(mark.value)}",
+                "widen it or correct the value",
+            )
+        ]
     return []
 
 

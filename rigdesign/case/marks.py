@@ -49,7 +49,10 @@ class Mark:
 
     def as_record(self) -> dict[str, Any]:
         """The marks without the value, for the hash of a case."""
-        return {"path": self.path, **{key: getattr(self, key) for key in MARKS if getattr(self, key) is not None}}
+        return {
+            "path": self.path,
+            **{key: getattr(self, key) for key in MARKS if getattr(self, key) is not None},
+        }
 
 
 @dataclass(frozen=True)
@@ -96,7 +99,9 @@ def item_name(item: object, index: int) -> str:
 
 def _read(node: dict[str, Any], path: str) -> tuple[Mark | None, list[MarkFault]]:
     faults = [
-        MarkFault(path, repr(node[key]), f"mark '{key}' is not a text", f'write {key} = "…", a reason or source')
+        MarkFault(
+            path, repr(node[key]), f"mark '{key}' is not a text", f'write {key} = "…", a reason or source'
+        )
         for key in ("assumed", "source", "measured")
         if key in node and not (isinstance(node[key], str) and node[key].strip())
     ]

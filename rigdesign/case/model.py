@@ -33,8 +33,8 @@ class Origin:
 class Case(Part):
     """A rig, what it is to do, and the limits it is held against.
 
-    Every quantity is a float in SI units (kelvin for temperatures); a share or factor is a bare number. Made by
-    ``load_case``; ``with_value`` gives a changed copy.
+    Every quantity is a float in SI units (kelvin for temperatures); a share or factor is a bare number. Made
+    by ``load_case``; ``with_value`` gives a changed copy.
     """
 
     schema_version: Literal[1]
@@ -89,7 +89,7 @@ class Case(Part):
 
     @property
     def hash(self) -> str:
-        """SHA-256 of the resolved content: values in SI and marks, neither file name nor spelling of units."""
+        """SHA-256 of the resolved content: values in SI and marks, not file name or spelling of units."""
         content = {
             "values": _rounded(self.model_dump(mode="json")),
             "marks": [mark.as_record() for mark in sorted(self._origin.marks, key=lambda mark: mark.path)],

@@ -6,9 +6,17 @@ from rigdesign.case.model import Case
 
 _MARK_PROPERTIES: dict[str, Any] = {
     "assumed": {"type": "string", "description": "reason of an assumption"},
-    "range": {"type": "array", "minItems": 2, "maxItems": 2, "description": "lowest and highest believable value"},
+    "range": {
+        "type": "array",
+        "minItems": 2,
+        "maxItems": 2,
+        "description": "lowest and highest believable value",
+    },
     "source": {"type": "string", "description": "where the value is printed"},
-    "measured": {"type": "string", "description": "the measurement that replaces a computed or printed value"},
+    "measured": {
+        "type": "string",
+        "description": "the measurement that replaces a computed or printed value",
+    },
 }
 
 

@@ -47,8 +47,8 @@ def read_tree(file: Path) -> dict[str, Any]:
 def merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     """``over`` laid on ``base``: tables key by key, lists of named tables item by item, all else replaced.
 
-    ``remove = ["key", …]`` in a table of ``over`` leaves out inherited keys. A table with another ``law`` takes
-    the place of the inherited one.
+    ``remove = ["key", …]`` in a table of ``over`` leaves out inherited keys. A table with another ``law``
+    takes the place of the inherited one.
     """
     dropped = over.get("remove", [])
     if not isinstance(dropped, list) or not all(key in base for key in dropped):
@@ -92,7 +92,9 @@ def _read(file: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(file.read_bytes().decode("utf-8"))
     except OSError as error:
-        raise CaseError(f"cannot be read: {error.strerror}; check the path and its rights", str(file)) from None
+        raise CaseError(
+            f"cannot be read: {error.strerror}; check the path and its rights", str(file)
+        ) from None
     except UnicodeDecodeError as error:
         raise CaseError(f"is not UTF-8 text (byte {error.start}); save it as UTF-8", str(file)) from None
     except tomllib.TOMLDecodeError as error:

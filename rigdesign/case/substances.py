@@ -45,7 +45,8 @@ class CustomOil(Part):
     def _thins(self) -> "CustomOil":
         if self.kinematic_viscosity_40 <= self.kinematic_viscosity_100:
             raise fault(
-                "the viscosity at 40 degC is not above that at 100 degC", "exchange or correct the two viscosities"
+                "the viscosity at 40 degC is not above that at 100 degC",
+                "exchange or correct the two viscosities",
             )
         return self
 

@@ -37,7 +37,8 @@ def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
         if sorted(sides) != ["front", "rear"]:
             found = ", ".join(sides) or "none"
             yield Fault(
-                f"{at}.bearings", "", f"shaft {shaft} needs a bearing at the front and one at the rear, has {found}",
+                f"{at}.bearings", "",
+                f"shaft {shaft} needs a bearing at the front and one at the rear, has {found}",
                 "add or remove bearings",
             )  # fmt: skip
             continue
@@ -45,17 +46,24 @@ def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
         for key in ("diameter", "width", "diametral_clearance"):
             if getattr(front, key) != getattr(rear, key):
                 yield Fault(
-                    f"{at}.bearings", "", f"the two bearings of shaft {shaft} differ in {key}, which the housing "
-                    "model has once per shaft", "give both the same value",
+                    f"{at}.bearings", "",
+                    f"the two bearings of shaft {shaft} differ in {key}, which the housing model has once per shaft",
+                    "give both the same value",
                 )  # fmt: skip
         if not (front.locating or rear.locating):
-            yield Fault(f"{at}.bearings", "", f"no bearing locates shaft {shaft}", "write locating = true at one of them")
+            yield Fault(
+                f"{at}.bearings",
+                "",
+                f"no bearing locates shaft {shaft}",
+                "write locating = true at one of them",
+            )
         if [seals.shaft for seals in gearbox.seals.values()].count(shaft) != 1:
             yield Fault(f"{at}.seals", "", f"shaft {shaft} needs one table of seals", "add or remove seals")
         gears = [gear_name for gear_name, gear in gearbox.gears.items() if gear.shaft == shaft]
         if len(gears) > 1:
             yield Fault(
-                f"{at}.gears", "", f"{' and '.join(gears)} sit on one shaft, the housing model has one gear per shaft",
+                f"{at}.gears", "",
+                f"{' and '.join(gears)} sit on one shaft, the housing model has one gear per shaft",
                 "put them on shafts of their own",
             )  # fmt: skip
         yield from _bores(at, gearbox, shaft)
@@ -90,7 +98,10 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
                 meant = nearest(pattern, names)
                 hint = "did you mean " + " or ".join(meant) + "? " if meant else ""
                 yield Fault(
-                    f"{at}.{name}.surfaces", written(pattern), "no such surface", f"{hint}known: {', '.join(names)}"
+                    f"{at}.{name}.surfaces",
+                    written(pattern),
+                    "no such surface",
+                    f"{hint}known: {', '.join(names)}",
                 )
     for name, surface, stood_for in conditions_of(housing, names):
         condition = housing.boundary[name]
@@ -102,7 +113,9 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
             else:
                 meant = nearest(partner, names)
                 hint = "did you mean " + " or ".join(meant) + "?" if meant else "write a surface name"
-                yield Fault(f"{at}.{name}.partner", written(partner), f"no such surface, partner of {surface}", hint)
+                yield Fault(
+                    f"{at}.{name}.partner", written(partner), f"no such surface, partner of {surface}", hint
+                )
         else:
             covered[surface].append("" if isinstance(condition, ThermalRadiation) else name)
     for surface, conditions in covered.items():
@@ -113,4 +126,6 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
                 'add one, e.g. law = "constant_film" or law = "insulated"',
             )  # fmt: skip
         if len(films) > 1:
-            yield Fault(f"{at}.{films[1]}.surfaces", written(surface), f"already has {films[0]}", "name it once")
+            yield Fault(
+                f"{at}.{films[1]}.surfaces", written(surface), f"already has {films[0]}", "name it once"
+            )

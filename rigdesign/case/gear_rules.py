@@ -1,0 +1,117 @@
+"""Rules of gears, meshes and bearings that span several keys."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from rigdesign.case.faults import unknown
+from rigdesign.errors import Fault
+from rigdesign.units import show
+
+if TYPE_CHECKING:
+    from rigdesign.case.gearbox import Gearbox
+    from rigdesign.case.gears import Gear, GearMesh
+    from rigdesign.case.model import Case
+
+
+def gearbox_faults(case: "Case") -> Iterator[Fault]:
+    """References, tooth numbers, profile shifts, tips, bearings of every gearbox."""
+    for name, box in case.gearboxes.items():
+        at = f"gearboxes.{name}"
+        meshed = [gear for mesh in box.meshes.values() for gear in (mesh.pinion, mesh.wheel)]
+        for mesh_name, mesh in box.meshes.items():
+            yield from _mesh(f"{at}.meshes.{mesh_name}", mesh, box)
+        for gear_name, gear in box.gears.items():
+            if gear_name not in meshed:
+                yield Fault(
+                    f"{at}.gears.{gear_name}",
+                    "",
+                    "meshes with no other gear",
+                    "name it in a mesh or remove it",
+                )
+            yield from _gear(f"{at}.gears.{gear_name}", gear)
+        yield from _bearings(at, box)
+        shafts = _shafts_of(case, box)
+        for kind, parts in (("gears", box.gears), ("bearings", box.bearings), ("seals", box.seals)):
+            for part_name, part in parts.items():
+                if shafts and part.shaft not in shafts:
+                    yield unknown(f"{at}.{kind}.{part_name}.shaft", part.shaft, shafts, "shaft")
+
+
+def _shafts_of(case: "Case", box: "Gearbox") -> list[str]:
+    """Shafts a part of this gearbox may sit on; empty when nothing names any."""
+    if box.housing is not None:
+        return list(box.housing.shafts)
+    return list(case.drivetrain.shafts) if case.drivetrain is not None else []
+
+
+def _gear(at: str, gear: "Gear") -> Iterator[Fault]:
+    pitch = gear.flank.single_pitch
+    if pitch and len(pitch) != gear.teeth:
+        yield Fault(
+            f"{at}.flank.single_pitch", f"{len(pitch)} entries", f"the gear has {gear.teeth} teeth",
+            "write one deviation per tooth, or none",
+        )  # fmt: skip
+
+
+def _mesh(at: str, mesh: "GearMesh", box: "Gearbox") -> Iterator[Fault]:
+    unknown_gears = [key for key in ("pinion", "wheel") if getattr(mesh, key) not in box.gears]
+    for key in unknown_gears:
+        yield unknown(f"{at}.{key}", getattr(mesh, key), list(box.gears), "gear in this gearbox")
+    if unknown_gears:
+        return
+    pinion, wheel = box.gears[mesh.pinion], box.gears[mesh.wheel]
+    if pinion.teeth > wheel.teeth:
+        yield Fault(
+            f"{at}.pinion", f'"{mesh.pinion}"',
+            f"has {pinion.teeth} teeth, more than the wheel's {wheel.teeth}",
+            "call the gear with fewer teeth the pinion",
+        )  # fmt: skip
+    given = [gear.profile_shift is not None for gear in (pinion, wheel)]
+    if sum(given) + (mesh.profile_shift_split is not None) != 1:
+        yield Fault(
+            at, "", "the centre distance fixes the sum of the profile shifts, one more statement their split",
+            'write profile_shift for one of the two gears, or profile_shift_split = "equal"',
+        )  # fmt: skip
+    if mesh.contact_ratio is not None and (pinion.tip_shortening or wheel.tip_shortening):
+        yield Fault(
+            f"{at}.contact_ratio", str(mesh.contact_ratio),
+            "the tips are also cut by tip_shortening of a gear",
+            "keep contact_ratio or tip_shortening",
+        )  # fmt: skip
+    yield from _too_close(at, mesh, pinion.teeth + wheel.teeth)
+
+
+def _too_close(at: str, mesh: "GearMesh", teeth: int) -> Iterator[Fault]:
+    """Two gears mesh only where cos(alpha_wt) = a_d cos(alpha_t) / a is below 1 (ISO 21771, section 5)."""
+    alpha_t = math.atan(math.tan(mesh.pressure_angle) / math.cos(mesh.helix_angle))
+    reference = 0.5 * mesh.normal_module * teeth / math.cos(mesh.helix_angle)
+    least = reference * math.cos(alpha_t)
+    if mesh.centre_distance <= least:
+        yield Fault(
+            f"{at}.centre_distance", show(mesh.centre_distance, "length"),
+            f"these gears cannot mesh at or below {show(least, 'length')}, where their base circles touch",
+            f"write a centre distance near {show(reference, 'length')}, or change module or tooth numbers",
+        )  # fmt: skip
+
+
+def _bearings(at: str, box: "Gearbox") -> Iterator[Fault]:
+    locating = [bearing.shaft for bearing in box.bearings.values() if bearing.locating]
+    for name, bearing in box.bearings.items():
+        here = f"{at}.bearings.{name}"
+        if bearing.locating and locating.count(bearing.shaft) > 1:
+            yield Fault(
+                f"{here}.locating", "true", f"shaft {bearing.shaft} is fixed axially more than once",
+                "let one bearing per shaft be locating",
+            )  # fmt: skip
+        if bearing.diametral_clearance >= 0.05 * bearing.diameter:
+            yield Fault(
+                f"{here}.diametral_clearance", show(bearing.diametral_clearance, "length"),
+                f"is above a twentieth of the diameter {show(bearing.diameter, 'length')}",
+                "write bore minus journal, usually 0.001 to 0.003 of the diameter",
+            )  # fmt: skip
+        if bearing.axial_play and not bearing.locating:
+            yield Fault(
+                f"{here}.axial_play", show(bearing.axial_play, "length"), "the bearing is not locating",
+                "give the play to the locating bearing of this shaft",
+            )  # fmt: skip
