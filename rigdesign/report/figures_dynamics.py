@@ -31,7 +31,12 @@ def dynamic_factor_figure(dynamics: DynamicsResult) -> "Figure":
     axes_list = figure.subplots(count, 1, squeeze=False)[:, 0]
     for axes, (name, gearbox) in zip(axes_list, dynamics.gearboxes.items(), strict=True):
         _dynamic_factor(axes, gearbox)
-        finish(axes, "pinion speed n [rpm]", f"dynamic factor {KV} [–]", f"{plain(name)} ({gearbox.role})")
+        finish(
+            axes,
+            "pinion speed n [rpm]",
+            f"dynamic factor {KV} [–]",
+            f"Gearbox {plain(name)} ({gearbox.role})",
+        )
         legend_right(axes)
     _margins(figure, count, right=0.72)
     return figure
@@ -90,7 +95,7 @@ def campbell_figure(dynamics: DynamicsResult) -> "Figure":
         _crossing_marks(axes, crossings, dynamics.gearboxes[name], top_speed)
         axes.set_xlim(0, top_speed)
         axes.set_ylim(bottom=0)
-        finish(axes, "pinion speed n [rpm]", "frequency [Hz]", plain(name))
+        finish(axes, "pinion speed n [rpm]", "frequency [Hz]", f"Gearbox {plain(name)}")
         axes.legend(loc="lower right", fontsize=7)
     figure.subplots_adjust(left=0.075, right=0.985, top=0.92, bottom=0.14, wspace=0.2)
     return figure
@@ -183,11 +188,12 @@ def _stress_ratio(axes: "Axes", rows: list[dict[str, float]], points: list[Dynam
     for colour, gear in zip(SERIES, gears, strict=False):
         axes.plot(speed, [row[gear] for row in rows], color=colour, label=f"{SIGMA_F} ratio, {plain(gear)}")
     axes.set_xlim(left=0)
+    axes.xaxis.get_major_locator().set_params(nbins=4)
     finish(
         axes,
         "pinion speed n [rpm]",
         f"max {SIGMA_F} dynamic / quasi-static [–]",
-        f"Ratio beside {KV}(n), max / mean",
+        f"Stress ratio beside {KV}(n)",
     )
     axes.legend(loc="best")
 

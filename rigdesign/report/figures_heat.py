@@ -100,7 +100,7 @@ def heat_flow_figure(thermal: ThermalResult) -> "Figure":
     for place, power in enumerate(powers):
         offset, align = (4, "left") if power > 0 else (-4, "right")
         axes.annotate(
-            f"{power:+.0f} W",
+            f"{power:+.0f} W".replace("-", "\u2212"),
             (power, place),
             textcoords="offset points",
             xytext=(offset, -3),

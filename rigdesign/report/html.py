@@ -1,14 +1,15 @@
 """report.html: one self-contained page in the order an engineer reads it."""
 
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rigdesign import __version__
-from rigdesign.report import numbers
+from rigdesign.report import numbers, views
 from rigdesign.report.drawing import drawing_style, inline_svg
-from rigdesign.results import AssumptionRecord, Check, GearboxDynamics, RunResult
+from rigdesign.results import GearboxDynamics, RunResult
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -16,10 +17,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TEMPLATES = Path(__file__).parent / "templates"
-VERDICT_ORDER = ("fail", "warn", "pass", "not applicable")
-BAR_END = 1.5
-"""Utilisation at the right end of a bar in the table of checks."""
-MAX_DRIVERS = 6
 
 
 def report_html(result: RunResult) -> str:
@@ -51,13 +48,18 @@ def environment() -> "Environment":
         heading=numbers.heading_text,
         cell=numbers.cell_text,
         words=lambda text: str(text).replace("_", " "),
+        signs=signs,
+        symbol=symbol,
     )
     templates.globals.update(
         quantity=numbers.quantity_text,
         limit=numbers.limit_text,
-        bar=bar_widths,
-        columns=columns,
-        is_number=is_number,
+        margin=numbers.margin_text,
+        bar=views.bar_width,
+        columns=views.columns,
+        is_number=views.is_number,
+        loss_table=views.loss_table,
+        crossing_table=views.crossing_table,
     )
     return templates
 
@@ -79,58 +81,33 @@ def _context(result: RunResult, draw: _Figures) -> dict[str, Any]:
     return {
         "result": result,
         "tool_version": __version__,
-        "checks": sorted_checks(result.checks),
-        "counts": {verdict: sum(c.verdict == verdict for c in result.checks) for verdict in VERDICT_ORDER},
-        "drivers": drivers(result),
-        "bar_end": BAR_END,
-        "main_stage": main_stage(result),
+        "checks": views.sorted_checks(result.checks),
+        "counts": {
+            verdict: sum(c.verdict == verdict for c in result.checks) for verdict in views.VERDICT_ORDER
+        },
+        "drivers": views.drivers(result),
+        "bar_end": views.BAR_END,
+        "main_stage": views.main_stage(result),
         **_dynamics_figures(result, draw),
         **_heat_figures(result, draw),
     }
 
 
-def sorted_checks(checks: list[Check]) -> list[Check]:
-    """Failing checks first, then warnings; the most used-up first within each verdict."""
-    return sorted(checks, key=lambda c: (VERDICT_ORDER.index(c.verdict), -(c.utilisation or 0.0)))
+def signs(text: str) -> "Markup":
+    """Escaped text in which K_V, f_z and the like carry a subscript."""
+    from markupsafe import Markup, escape
+
+    return Markup(re.sub(r"\b([KYfnσ])_([A-Z]|z)\b", r"\1<sub>\2</sub>", str(escape(text))))
 
 
-def drivers(result: RunResult) -> list[tuple[Check, list[AssumptionRecord]]]:
-    """The checks that decide the verdict, each with the assumptions its value rests on.
+def symbol(key: str) -> "Markup":
+    """A factor of a standard by its printed symbol, index as subscript; words stay words."""
+    from markupsafe import Markup
 
-    Every failing and warning check, filled up with the most used-up passing ones to ``MAX_DRIVERS``.
-    """
-    records = {record.path: record for record in result.assumptions}
-    ordered = [check for check in sorted_checks(result.checks) if check.verdict != "not applicable"]
-    undecided = sum(check.verdict in ("fail", "warn") for check in ordered)
-    chosen = ordered[: max(MAX_DRIVERS, undecided)]
-    return [
-        (check, [records.get(p, AssumptionRecord(path=p, value="", reason="")) for p in check.assumptions])
-        for check in chosen
-    ]
-
-
-def main_stage(result: RunResult) -> str:
-    """The stage that turns over the most heat, shown in the figures of one stage; empty without losses."""
-    totals: dict[str, float] = {}
-    for row in result.losses:
-        totals[row.stage] = totals.get(row.stage, 0.0) + row.power_W
-    return max(totals, key=lambda stage: totals[stage]) if totals else ""
-
-
-def bar_widths(utilisation: float) -> tuple[float, bool]:
-    """Width of a utilisation bar [%] and whether it was cut at ``BAR_END``."""
-    return 100 * min(max(utilisation, 0.0), BAR_END) / BAR_END, utilisation > BAR_END
-
-
-def columns(rows: list[dict[str, Any]]) -> list[str]:
-    """Keys of all records in their order of appearance, lists (curves) left out."""
-    keys = dict.fromkeys(key for row in rows for key in row)
-    return [key for key in keys if not any(isinstance(row.get(key), list | tuple) for row in rows)]
-
-
-def is_number(value: Any) -> bool:
-    """True for what stands right-aligned in a table."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    head, index = numbers.symbol_parts(key)
+    if len(head) > 2 or not index:
+        return Markup("{}").format(numbers.heading_text(key))
+    return Markup("{}<sub>{}</sub>").format(head, index)
 
 
 def _dynamics_figures(result: RunResult, draw: Callable[["Figure", str], "Markup"]) -> dict[str, Any]:
@@ -166,7 +143,7 @@ def _has_root_stress(gearbox: GearboxDynamics) -> bool:
 def _heat_figures(result: RunResult, draw: Callable[["Figure", str], "Markup"]) -> dict[str, Any]:
     from rigdesign.report import figures_field, figures_heat
 
-    stage = main_stage(result)
+    stage = views.main_stage(result)
     shown: dict[str, Any] = dict.fromkeys(
         ("losses_by_stage", "losses_by_place", "oil", "seal_gaps", "convergence")
     )

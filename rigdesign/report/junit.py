@@ -4,7 +4,7 @@ import re
 from itertools import groupby
 from pathlib import Path
 
-from rigdesign.report.numbers import limit_text, quantity_text
+from rigdesign.report.numbers import limit_text, margin_text, quantity_text
 from rigdesign.results import Check, RunResult
 
 NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -53,7 +53,7 @@ def check_summary(check: Check) -> str:
     value = quantity_text(check.value, check.unit)
     parts = [f"{check.title}: {value}, limit {limit_text(check)}"]
     if check.margin is not None:
-        parts.append(f"margin {quantity_text(check.margin, check.unit)}")
+        parts.append(f"margin {margin_text(check)}")
     if check.utilisation is not None:
         parts.append(f"utilisation {100 * check.utilisation:.0f} %")
     return ", ".join(parts)

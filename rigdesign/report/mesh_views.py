@@ -131,7 +131,7 @@ def view_outside(mesh: NamedMesh, azimuth_deg: float = -60.0, elevation_deg: flo
     facing = np.flatnonzero(normals @ towards > 0)
     facing = facing[np.argsort(corners[facing].mean(axis=1) @ towards, kind="stable")]
     light = towards + 0.6 * up - 0.4 * right
-    brightness = 0.62 + 0.38 * np.clip(normals[facing] @ (light / np.linalg.norm(light)), 0.0, 1.0)
+    brightness = 0.7 + 0.3 * np.clip(normals[facing] @ (light / np.linalg.norm(light)), 0.0, 1.0)
     return OutsideView(corners[facing] @ np.column_stack([right, up]), facets[facing], brightness)
 
 

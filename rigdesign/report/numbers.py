@@ -18,21 +18,31 @@ KEY_UNITS = (
 """Units that may end a key, longest first."""
 
 NARROW_SPACE = "\u202f"
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+GREEK = {
+    "alpha": "α",
+    "beta": "β",
+    "gamma": "γ",
+    "epsilon": "ε",
+    "sigma": "σ",
+    "rho": "ρ",
+    "mu": "µ",
+    "phi": "φ",
+}
 
 
 def number_text(value: float | None, digits: int = 4) -> str:
-    """A number with ``digits`` significant digits, no exponent from 1e-4 to 1e7; None is a dash."""
+    """A number with ``digits`` significant digits, large ones whole, powers of ten from 1e7; None: a dash."""
     if value is None:
         return "–"
-    text = f"{value:.{digits}g}"
     magnitude = abs(value)
-    if "e" in text and 1e-4 <= magnitude < 1e7:
-        text = f"{float(text):.0f}"
+    text = f"{value:.0f}" if 10.0 ** (digits - 1) <= magnitude < 1e7 else f"{value:.{digits}g}"
     if "e" in text:
         mantissa, exponent = text.split("e")
-        return f"{mantissa}e{int(exponent)}".replace("-", "\u2212")
+        power = str(int(exponent)).translate(SUPERSCRIPTS)
+        return f"{mantissa} × 10{power}".replace("-", "\u2212")
     if magnitude >= 10000:
-        text = f"{float(text):,.0f}".replace(",", NARROW_SPACE)
+        text = f"{float(text):,.10g}".replace(",", NARROW_SPACE)
     return text.replace("-", "\u2212")
 
 
@@ -56,6 +66,17 @@ def limit_text(check: Check) -> str:
         return f"{number_text(check.limit)} … {quantity_text(check.upper_limit, check.unit)}"
     sign = {"<=": "≤", ">=": "≥", "within": "within"}[check.comparison]
     return f"{sign} {quantity_text(check.limit, check.unit)}"
+
+
+def margin_text(check: Check) -> str:
+    """The distance to the limit; between two temperatures it is in kelvin."""
+    return quantity_text(check.margin, "K" if check.unit == "degC" else check.unit)
+
+
+def symbol_parts(key: str) -> tuple[str, str]:
+    """A printed symbol and its index: ``c_gamma_alpha`` -> (``c``, ``γα``), ``N`` -> (``N``, empty)."""
+    head, *indices = (GREEK.get(part, part) for part in key.split("_"))
+    return head, "".join(indices)
 
 
 def split_key(key: str) -> tuple[str, str]:

@@ -1,0 +1,77 @@
+"""What the pages show, picked and ordered from a result: pure functions, no drawing and no markup."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from rigdesign.results import AssumptionRecord, Check, LossRow, RunResult
+
+VERDICT_ORDER = ("fail", "warn", "pass", "not applicable")
+BAR_END = 1.5
+"""Utilisation at the right end of a bar in the table of checks."""
+MAX_DRIVERS = 6
+
+
+def sorted_checks(checks: list[Check]) -> list[Check]:
+    """Failing checks first, then warnings; the most used-up first within each verdict."""
+    return sorted(checks, key=lambda c: (VERDICT_ORDER.index(c.verdict), -(c.utilisation or 0.0)))
+
+
+def drivers(result: RunResult) -> list[tuple[Check, list[AssumptionRecord]]]:
+    """The checks that decide the verdict, each with the assumptions its value rests on.
+
+    Every failing and warning check, filled up with the most used-up passing ones to ``MAX_DRIVERS``.
+    """
+    records = {record.path: record for record in result.assumptions}
+    ordered = [check for check in sorted_checks(result.checks) if check.verdict != "not applicable"]
+    undecided = sum(check.verdict in ("fail", "warn") for check in ordered)
+    chosen = ordered[: max(MAX_DRIVERS, undecided)]
+    return [
+        (check, [records.get(p, AssumptionRecord(path=p, value="", reason="")) for p in check.assumptions])
+        for check in chosen
+    ]
+
+
+def main_stage(result: RunResult) -> str:
+    """The stage that turns over the most heat, shown in the figures of one stage; empty without losses."""
+    totals: dict[str, float] = {}
+    for row in result.losses:
+        totals[row.stage] = totals.get(row.stage, 0.0) + row.power_W
+    return max(totals, key=lambda stage: totals[stage]) if totals else ""
+
+
+def bar_width(utilisation: float) -> float:
+    """Width of a utilisation bar [%]; it ends at ``BAR_END``."""
+    return 100 * min(max(utilisation, 0.0), BAR_END) / BAR_END
+
+
+def columns(rows: list[dict[str, Any]]) -> list[str]:
+    """Keys of all records in their order of appearance, lists (curves) left out."""
+    keys = dict.fromkeys(key for row in rows for key in row)
+    return [key for key in keys if not any(isinstance(row.get(key), list | tuple) for row in rows)]
+
+
+def loss_table(losses: Sequence[LossRow]) -> tuple[list[str], list[tuple[str, list[float | None]]]]:
+    """Stages, and (place, power at each stage [W]) with None where a place has no entry."""
+    stages = list(dict.fromkeys(row.stage for row in losses))
+    powers: dict[str, dict[str, float]] = {}
+    for row in losses:
+        at_place = powers.setdefault(row.place, {})
+        at_place[row.stage] = at_place.get(row.stage, 0.0) + row.power_W
+    return stages, [(place, [found.get(stage) for stage in stages]) for place, found in powers.items()]
+
+
+def crossing_table(
+    crossings: list[dict[str, Any]],
+) -> tuple[list[Any], list[tuple[str, str, float, list[Any]]]]:
+    """Harmonics, and (gearbox, shaft, frequency, speed by harmonic) of every natural frequency."""
+    harmonics = sorted({item["harmonic"] for item in crossings})
+    speeds: dict[tuple[str, str, float], dict[Any, float]] = {}
+    for item in crossings:
+        key = (item["gearbox"], item["shaft"], item["frequency_Hz"])
+        speeds.setdefault(key, {})[item["harmonic"]] = item["speed_rpm"]
+    return harmonics, [(*key, [found.get(k) for k in harmonics]) for key, found in speeds.items()]
+
+
+def is_number(value: Any) -> bool:
+    """True for what stands right-aligned in a table."""
+    return isinstance(value, int | float) and not isinstance(value, bool)
