@@ -162,8 +162,8 @@ def damping_record(name: str, kind: str, stiffness: float, damping: float, inert
     if ratio > DAMPING_RATIO_LIMIT:
         warning = (
             f"{kind} {name!r}: damping ratio = {ratio:.3g}, limit {DAMPING_RATIO_LIMIT}: above its corner "
-            f"frequency of {corner:.3g} Hz the damper makes the joint rigid and deletes a resonance; measure the "
-            "damping or run a variant with less"
+            f"frequency of {corner:.3g} Hz the damper makes the joint rigid and deletes a resonance; measure "
+            "the damping or run a variant with less"
         )
     return DampingRecord(
         name=name,
