@@ -8,10 +8,10 @@ one revolution a minute.
 
 import math
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
+
+from rigdesign.kinds import KINDS, Kind
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -31,121 +31,6 @@ class QuantityError(ValueError):
     def __str__(self) -> str:
         return f"{self.problem}; {self.remedy}"
 
-
-@dataclass(frozen=True)
-class Kind:
-    """A kind of quantity.
-
-    si : unit inside, in pint's words
-    units : spelling in the case file -> unit in pint's words; the first is the one used for display
-    example : a quantity of this kind as a user writes it
-    """
-
-    name: str
-    si: str
-    units: Mapping[str, str]
-    example: str
-
-    @property
-    def display_unit(self) -> str:
-        """Unit of tables and axes."""
-        return next(iter(self.units))
-
-    @property
-    def remedy(self) -> str:
-        """What to write: the accepted units and an example."""
-        return f'write a {self.label} such as "{self.example}" (units: {", ".join(self.units)})'
-
-    @property
-    def label(self) -> str:
-        """Name in a sentence."""
-        return self.name.replace("_", " ")
-
-
-def _kinds(*kinds: Kind) -> dict[str, Kind]:
-    return {kind.name: kind for kind in kinds}
-
-
-KINDS: Mapping[str, Kind] = _kinds(
-    Kind("length", "m", {"mm": "mm", "um": "um", "cm": "cm", "m": "m", "in": "inch"}, "7 mm"),
-    Kind("angle", "rad", {"deg": "degree", "rad": "radian", "mrad": "milliradian"}, "20 deg"),
-    Kind("mass", "kg", {"kg": "kg", "g": "g"}, "4 kg"),
-    Kind("inertia", "kg*m**2", {"kg m2": "kg*m**2", "kg cm2": "kg*cm**2", "g m2": "g*m**2"}, "0.01 kg m2"),
-    Kind("temperature", "kelvin", {"degC": "degC", "K": "kelvin", "degF": "degF"}, "140 degC"),
-    Kind("temperature_difference", "kelvin", {"K": "kelvin"}, "20 K"),
-    Kind("time", "s", {"s": "s", "ms": "ms", "min": "minute", "h": "hour", "d": "day"}, "8 s"),
-    Kind("frequency", "hertz", {"Hz": "hertz", "kHz": "kilohertz"}, "40 kHz"),
-    Kind(
-        "speed",
-        "rad/s",
-        {"rpm": "revolution/minute", "1/min": "revolution/minute", "rad/s": "rad/s"},
-        "12000 rpm",
-    ),
-    Kind("velocity", "m/s", {"m/s": "m/s", "km/h": "km/hour"}, "20 m/s"),
-    Kind("force", "N", {"N": "N", "kN": "kN"}, "450 N"),
-    Kind(
-        "torque", "N*m", {"N m": "N*m", "Nm": "N*m", "kN m": "kN*m", "kNm": "kN*m", "N mm": "N*mm"}, "180 N m"
-    ),
-    Kind("power", "W", {"W": "W", "kW": "kW", "MW": "MW"}, "500 W"),
-    Kind(
-        "pressure",
-        "Pa",
-        {"MPa": "MPa", "N/mm2": "MPa", "Pa": "Pa", "kPa": "kPa", "GPa": "GPa", "bar": "bar"},
-        "206 GPa",
-    ),
-    Kind(
-        "flow",
-        "m**3/s",
-        {
-            "l/min": "liter/minute",
-            "l/h": "liter/hour",
-            "l/s": "liter/s",
-            "ml/min": "ml/minute",
-            "m3/h": "m**3/hour",
-            "m3/s": "m**3/s",
-        },
-        "5 l/min",
-    ),
-    Kind("density", "kg/m**3", {"kg/m3": "kg/m**3", "g/cm3": "g/cm**3", "kg/l": "kg/liter"}, "1000 kg/m3"),
-    Kind(
-        "kinematic_viscosity",
-        "m**2/s",
-        {"mm2/s": "mm**2/s", "cSt": "mm**2/s", "m2/s": "m**2/s"},
-        "27.6 mm2/s",
-    ),
-    Kind(
-        "dynamic_viscosity",
-        "Pa*s",
-        {"mPa s": "mPa*s", "Pa s": "Pa*s", "cP": "mPa*s"},
-        "5 mPa s",
-    ),
-    Kind(
-        "heat_capacity",
-        "J/(kg*K)",
-        {"J/(kg K)": "J/(kg*K)", "J/kgK": "J/(kg*K)", "kJ/(kg K)": "kJ/(kg*K)", "kJ/kgK": "kJ/(kg*K)"},
-        "2000 J/(kg K)",
-    ),
-    Kind("conductivity", "W/(m*K)", {"W/(m K)": "W/(m*K)", "W/mK": "W/(m*K)"}, "45 W/(m K)"),
-    Kind(
-        "heat_transfer_coefficient",
-        "W/(m**2*K)",
-        {"W/(m2 K)": "W/(m**2*K)", "W/m2K": "W/(m**2*K)"},
-        "300 W/(m2 K)",
-    ),
-    Kind(
-        "torsional_stiffness",
-        "N*m/rad",
-        {"N m/rad": "N*m/rad", "Nm/rad": "N*m/rad", "kN m/rad": "kN*m/rad"},
-        "290e3 N m/rad",
-    ),
-    Kind(
-        "torsional_damping", "N*m*s/rad", {"N m s/rad": "N*m*s/rad", "Nms/rad": "N*m*s/rad"}, "600 N m s/rad"
-    ),
-    Kind("linear_stiffness", "N/m", {"N/m": "N/m", "N/um": "N/um", "kN/mm": "kN/mm"}, "1e8 N/m"),
-    Kind("linear_damping", "N*s/m", {"N s/m": "N*s/m", "Ns/m": "N*s/m", "kN s/m": "kN*s/m"}, "1000 N s/m"),
-    Kind("expansion_coefficient", "1/K", {"1/K": "1/K", "um/(m K)": "um/(m*K)"}, "11.5e-6 1/K"),
-)
-"""Every kind of quantity a case file knows, by name."""
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*\Z")

@@ -8,6 +8,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rigdesign import units
+from rigdesign.kinds import KINDS
 
 FAULT = "rigdesign"
 """Type of a validation error that carries its own problem and remedy."""
@@ -28,7 +29,7 @@ def fault(problem: str, remedy: str) -> PydanticCustomError:
 class Quantity:
     """A number with a unit; the field holds it in SI.
 
-    kind : name in ``rigdesign.units.KINDS``
+    kind : name in ``rigdesign.KINDS``
     above, at_least, at_most, below : limits, written as a user would
     """
 
@@ -53,7 +54,7 @@ class Quantity:
             if limit is not None and not holds(value, units.parse(limit, self.kind)):
                 raise fault(
                     f"{words} {limit}",
-                    f'write a value {self.bounds}, e.g. "{units.KINDS[self.kind].example}"',
+                    f'write a value {self.bounds}, e.g. "{KINDS[self.kind].example}"',
                 )
         return value
 
@@ -69,7 +70,7 @@ class Quantity:
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> JsonSchemaValue:
-        kind = units.KINDS[self.kind]
+        kind = KINDS[self.kind]
         text = f"{kind.label}, {self.bounds}" if self.bounds else kind.label
         return {
             "type": "string", "pattern": units.pattern(self.kind), "examples": [kind.example],

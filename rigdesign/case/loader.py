@@ -1,6 +1,5 @@
 """Loads a case: file -> tree -> marks off -> validated -> rules that span keys; every fault at once."""
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -103,10 +102,12 @@ def _number(item: object, kind: str | None) -> float:
 def _coerced(value: object, slot: Slot) -> object:
     """A text from a command line as the number or true/false the place holds."""
     if isinstance(value, str) and slot.quantity is None and set(slot.plain_types) & {float, int, bool}:
-        try:
-            return tomllib.loads(f"x = {value}")["x"]
-        except tomllib.TOMLDecodeError:
-            return value
+        words = {"true": True, "false": False}
+        for read in (int, float, words.__getitem__):
+            try:
+                return read(value)
+            except (ValueError, KeyError):
+                continue
     return value
 
 

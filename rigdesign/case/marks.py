@@ -45,6 +45,8 @@ class Mark:
             return ", ".join(f"{key} {item}" for key, item in self.value.items())
         if isinstance(self.value, bool):
             return "true" if self.value else "false"
+        if isinstance(self.value, float):
+            return f"{self.value:g}"
         return str(self.value)
 
     def as_record(self) -> dict[str, Any]:

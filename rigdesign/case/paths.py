@@ -15,7 +15,7 @@ from pydantic import BaseModel
 
 from rigdesign.case.fields import Quantity
 from rigdesign.case.marks import item_name
-from rigdesign.units import KINDS
+from rigdesign.kinds import KINDS
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
             if getattr(front, key) != getattr(rear, key):
                 yield Fault(
                     f"{at}.bearings", "",
-                    f"the two bearings of shaft {shaft} differ in {key}, which the housing model has once per shaft",
+                    f"the two bearings of shaft {shaft} differ in {key}, one value per shaft is modelled",
                     "give both the same value",
                 )  # fmt: skip
         if not (front.locating or rear.locating):
