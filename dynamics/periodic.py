@@ -7,8 +7,9 @@ propagator of ``dynamics.response`` runs to a steady state.
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Literal
 
@@ -185,8 +186,8 @@ class _Walk:
         needed = math.ceil(1.5 * self.highest / cell_frequency)
         if needed > MOST_HARMONICS:
             raise NotConverged(
-                f"harmonic balance at {speed:.6g} rad/s: {needed} harmonics are needed to reach 1.5 times the highest "
-                f"mode of {self.highest:.4g} Hz, limit {MOST_HARMONICS}; integrate in time"
+                f"harmonic balance at {speed:.6g} rad/s: {needed} harmonics are needed to reach 1.5 times "
+                f"the highest mode of {self.highest:.4g} Hz, limit {MOST_HARMONICS}; integrate in time"
             )
         harmonics = max(needed, LEAST_HARMONICS)
         samples = max(LEAST_SAMPLES, 1 << (4 * harmonics - 1).bit_length())
@@ -199,7 +200,7 @@ class _Walk:
         reason = NotConverged("")
         for start in self._starts(grid, speed, drags):
             try:
-                solution = self._solve(grid, speed, start, drags)
+                solution = self._solve(start, speed, drags)
             except NotConverged as error:
                 reason = error
                 continue
@@ -208,22 +209,25 @@ class _Walk:
         raise reason
 
     def _solve(
-        self, grid: HarmonicGrid, speed: float, start: HarmonicSolution, drags: Mapping[str, float] | None
+        self, start: HarmonicSolution, speed: float, drags: Mapping[str, float] | None
     ) -> HarmonicSolution:
-        return solve_periodic(self.problem, grid, speed, start, drag_torques=drags, tolerance=self.tolerance)
+        return solve_periodic(
+            self.problem, start.grid, speed, start, drag_torques=drags, tolerance=self.tolerance
+        )
 
-    def _starts(self, grid, speed, drags):  # type: ignore[no-untyped-def]
-        """State of the speed before, then half way from it, then the quasi-static state."""
+    def _starts(
+        self, grid: HarmonicGrid, speed: float, drags: Mapping[str, float] | None
+    ) -> Iterator[HarmonicSolution]:
+        """State of the speed before, with more samples, half way from it, then the quasi-static state."""
+        finer = replace(grid, samples=4 * grid.samples)
         last = self.last
         if last is not None:
             yield resample(last, grid)
-            try:
-                middle = self._solve(grid, 0.5 * (last.speed + speed), resample(last, grid), drags)
-            except NotConverged:
-                pass
-            else:
-                yield middle
+            yield resample(last, finer)
+            with suppress(NotConverged):
+                yield self._solve(resample(last, finer), 0.5 * (last.speed + speed), drags)
         yield quasi_static_start(self.problem, grid, speed, drags)
+        yield quasi_static_start(self.problem, finer, speed, drags)
 
 
 def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int, float]:
@@ -240,8 +244,8 @@ def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int
     for value, m in zip(pitch, model.laws):
         if value.denominator > 200:
             raise ValueError(
-                f"mesh frequencies have no common period: {m.teeth_1} teeth give {float(value):.6g} of the frequency "
-                "of the control mesh; integrate in time"
+                f"mesh frequencies have no common period: {m.teeth_1} teeth give {float(value):.6g} of "
+                "the frequency of the control mesh; integrate in time"
             )
     common = math.lcm(*(value.denominator for value in pitch))
     cell_angle = common * 2.0 * math.pi / (law.teeth_1 * float(model.ratios[2 * control_mesh]))
