@@ -319,6 +319,11 @@ class GearPair:
                 found.append(
                     f"{name}: tip thickness {1e3 * gear.tip_thickness:.3f} mm below 0.2 m_n; reduce shift or addendum"
                 )
+        if self.transverse_backlash < -1e-9:
+            found.append(
+                f"backlash {1e6 * self.transverse_backlash:.1f} um on the working pitch circles is negative: "
+                "the teeth jam; thin them (thickness_allowances) or increase the centre distance"
+            )
         return tuple(found)
 
     def warm(

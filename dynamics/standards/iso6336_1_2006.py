@@ -206,7 +206,9 @@ def run_in(f: float, v: float, run_in_class: RunIn, sigma_Hlim: float | None) ->
     if run_in_class != "through_hardened":
         return min(0.075 * f, 3.0)
     if sigma_Hlim is None or not sigma_Hlim > 0.0:
-        raise ValueError(f"sigma_Hlim = {sigma_Hlim} must be positive for a through-hardened gear; give N/mm2")
+        raise ValueError(
+            f"sigma_Hlim = {sigma_Hlim} must be positive for a through-hardened gear; give N/mm2"
+        )
     y = 160.0 * f / sigma_Hlim
     if v > 10.0:
         return min(y, 6400.0 / sigma_Hlim, f)

@@ -1,0 +1,195 @@
+"""Flank micro-geometry and deviations, and the mesh law of a gear pair that they make."""
+
+from dataclasses import dataclass
+from math import pi, tan
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dynamics.gear import GearPair
+from dynamics.mesh_law import MeshLaw
+from dynamics.tip_contact import path_reach, tip_separation
+from dynamics.tooth_stiffness import PairStiffness
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Microgeometry:
+    """Intended modifications and deviations of one gear; all zero is the ideal involute gear.
+
+    Modifications are metal removed [m], positive widens the gap. Face position z runs over the own face width
+    from -b/2 to b/2 in the direction of rising helix lag.
+    """
+
+    tip_relief: float = 0.0
+    """C_a at the tip corner [m]."""
+    tip_relief_length: float = 0.0
+    """Path length from the tip over which the relief fades to zero [m]."""
+    tip_relief_exponent: float = 1.0
+    """1 linear, 2 parabolic."""
+    profile_crowning: float = 0.0
+    """C_alpha at both ends of the active path, parabolic, zero in its middle [m]."""
+    lead_crowning: float = 0.0
+    """C_beta at both ends of the face, parabolic, zero in its middle [m]."""
+    helix_slope: float = 0.0
+    """Change of the gap over the face width, from -b/2 to b/2 [m]."""
+    profile_twist: float = 0.0
+    """Gap at the tip at z = b/2; it changes sign at the root and at z = -b/2 (bilinear) [m]."""
+    pitch_deviations: tuple[float, ...] = ()
+    """Place of each tooth along the line of action ahead of its ideal one (cumulative), (z,) [m]."""
+    run_out: float = 0.0
+    """Eccentricity f_e of the teeth, about half the run-out F_r [m]."""
+    run_out_phase: float = 0.0
+    """Rotation of the gear at which the eccentric teeth stand furthest along the line of action, [rad]."""
+    tooth_stiffness: tuple[float, ...] = ()
+    """Stiffness scale of each tooth, (z,) [-]."""
+
+
+def cumulative_pitch(single_deviations: ArrayLike) -> tuple[float, ...]:
+    """Cumulative from single pitch deviations (z,) along the line of action [m], closed over the turn, mean zero."""
+    single = np.asarray(single_deviations, dtype=float)
+    cumulative = np.cumsum(single - single.mean())
+    return tuple(float(value) for value in cumulative - cumulative.mean())
+
+
+def mesh_law(
+    pair: GearPair,
+    *,
+    stiffness: PairStiffness,
+    micro: tuple[Microgeometry, Microgeometry] = (Microgeometry(), Microgeometry()),
+    n_slices: int | None = None,
+    n_path: int = 241,
+    damping: float = 0.0,
+    friction: float = 0.0,
+    friction_reversal_speed: float = 0.05,
+    offset: float = 0.0,
+    misalignment: float = 0.0,
+    phase: float = 0.0,
+    tooth_offset_2: int = 0,
+    reach: float | None = None,
+) -> MeshLaw:
+    """Mesh law of ``pair`` with the micro-geometry of pinion and wheel.
+
+    stiffness : course of the single-pair stiffness; a slice of width db takes c'(s) db
+    n_slices : over the common face width; default 1 (spur, flat in face), 5 (spur), 12 (helical)
+    n_path : points of the uniform grid over the path, active part and premature engagement
+    damping [N s/m], friction [-], friction_reversal_speed [m/s], offset [m], phase [m], tooth_offset_2: as
+        in ``MeshLaw``
+    misalignment : gap per face width [rad], growing with z over the common width
+    reach : tip separation at the ends of the grid, the largest approach the law is good for [m]; default 0.15
+        normal modules, at least 0.1 mm, at most 0.3 mm
+
+    A pair that jams (negative backlash, see ``GearPair.warnings``) gets zero play. Gears of unequal growth keep
+    the ratio of their tooth numbers; the difference of their base pitches becomes a gap along the path.
+
+    Raises ValueError for arrays of another length than the tooth number or numbers below their limit.
+    """
+    for gear, teeth in zip(micro, pair.teeth, strict=True):
+        _check(gear, teeth)
+    slices = _default_slices(pair, micro, misalignment) if n_slices is None else n_slices
+    if slices < 1 or n_path < 16:
+        raise ValueError(f"n_slices = {slices} and n_path = {n_path} must be at least 1 and 16")
+    width = pair.face_width
+    face = ((np.arange(slices) + 0.5) / slices - 0.5) * width
+    wanted = min(max(0.15 * pair.normal_module, 1e-4), 3e-4) if reach is None else reach
+    first, last = path_reach(pair, wanted)
+    path = np.linspace(first, last, n_path)
+    gap = tip_separation(pair, path) + path * pair.base_pitch_difference / pair.base_pitch
+    gap = gap + misalignment * face[:, None]
+    for index, gear in enumerate(micro):
+        gap = gap + flank_modification(pair, gear, index, path, face)
+    turns = (path - phase) / (pair.base_pitch / (2.0 * pi))
+    scales = [np.array(gear.tooth_stiffness or (1.0,)) for gear in micro]
+    return MeshLaw(
+        base_radius_1=_law_radius(pair, 0),
+        base_radius_2=_law_radius(pair, 1),
+        base_pitch=pair.base_pitch,
+        teeth_1=pair.teeth[0],
+        teeth_2=pair.teeth[1],
+        tooth_offset_2=tooth_offset_2,
+        path_start=first,
+        path_step=(last - first) / (n_path - 1),
+        stiffness=np.tile(stiffness.at(path) * width / slices, (slices, 1)),
+        gap=gap,
+        slice_shift=face * tan(pair.base_helix_angle),
+        deviation_1=_deviations(micro[0], pair.teeth[0], turns, 0),
+        deviation_2=_deviations(micro[1], pair.teeth[1], turns, tooth_offset_2),
+        scale_1=scales[0],
+        scale_2=scales[1],
+        backlash=max(pair.backlash_along_path, 0.0),
+        offset=offset,
+        phase=phase,
+        back_phase=pair.working_thicknesses[0] * pair.base_radii[0] / pair.working_radii[0] - phase,
+        damping=damping,
+        mean_stiffness=stiffness.mesh_mean * width * float(scales[0].mean() * scales[1].mean()),
+        friction=friction,
+        rolling_radius_1=pair.rolling_radii[0],
+        rolling_radius_2=pair.rolling_radii[1],
+        friction_reversal_speed=friction_reversal_speed,
+    )
+
+
+def flank_modification(pair: GearPair, gear: Microgeometry, index: int, path: Array, face: Array) -> Array:
+    """Metal removed from the flank of gear ``index`` (0 pinion), shape (len(face), len(path)) [m].
+
+    ``path`` [m] from the pitch point, ``face`` [m] from mid-face. Beyond the active path the value of its
+    end stays, since it is the corner that touches there.
+    """
+    limits = pair.path
+    towards_tip = 1.0 if index == 0 else -1.0
+    inside = np.clip(path, limits.start, limits.end)
+    profile = towards_tip * (inside - 0.5 * (limits.start + limits.end)) / (0.5 * limits.length)
+    removed = gear.profile_crowning * profile**2
+    if gear.tip_relief:
+        to_tip = limits.end - inside if index == 0 else inside - limits.start
+        share = np.maximum(1.0 - to_tip / gear.tip_relief_length, 0.0)
+        removed = removed + gear.tip_relief * share**gear.tip_relief_exponent
+    lead = 2.0 * face[:, None] / pair.face_widths[index]
+    across = gear.lead_crowning * lead**2 + 0.5 * gear.helix_slope * lead
+    return np.asarray(removed[None, :] + across + gear.profile_twist * lead * profile[None, :])
+
+
+def _law_radius(pair: GearPair, index: int) -> float:
+    """Base radius [m] with the mean base pitch, so that the radii keep the ratio of the tooth numbers."""
+    return pair.base_pitch * pair.teeth[index] / (2.0 * pi)
+
+
+def _deviations(gear: Microgeometry, teeth: int, turns: Array, first_tooth: int) -> Array:
+    """Gap added by each tooth, (teeth, n_path) or (1, n_path) [m].
+
+    ``turns`` (n_path,): teeth passed since rotation zero, times 2 pi; tooth j reaches it a tooth later.
+    """
+    if not gear.pitch_deviations and not gear.run_out:
+        return np.zeros((1, len(turns)))
+    place = np.array(gear.pitch_deviations or (0.0,) * teeth)[:, None]
+    tooth = (np.arange(teeth) - first_tooth)[:, None]
+    rotation = (turns[None, :] + 2.0 * pi * tooth) / teeth
+    return -place - gear.run_out * np.cos(rotation - gear.run_out_phase)
+
+
+def _default_slices(pair: GearPair, micro: tuple[Microgeometry, Microgeometry], misalignment: float) -> int:
+    if pair.helix_angle > 0.0:
+        return 12
+    flat = misalignment == 0.0 and all(
+        gear.lead_crowning == gear.helix_slope == gear.profile_twist == 0.0 for gear in micro
+    )
+    return 1 if flat else 5
+
+
+def _check(gear: Microgeometry, teeth: int) -> None:
+    for name in ("pitch_deviations", "tooth_stiffness"):
+        values = getattr(gear, name)
+        if values and len(values) != teeth:
+            raise ValueError(
+                f"{name} has {len(values)} values for a gear of {teeth} teeth; give one for each tooth or none"
+            )
+    if gear.tip_relief and not gear.tip_relief_length > 0.0:
+        raise ValueError(
+            f"tip_relief_length = {gear.tip_relief_length} m must be positive with tip_relief = "
+            f"{gear.tip_relief} m; give the path length of the relief"
+        )
+    if any(not value > 0.0 for value in gear.tooth_stiffness):
+        raise ValueError(
+            "tooth_stiffness must be positive for every tooth; use a small scale for a cracked one"
+        )
