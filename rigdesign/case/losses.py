@@ -26,8 +26,8 @@ class ToothFriction(Part):
     """Friction coefficient of the tooth contact, used in the torque loop and for the loss."""
 
     law: Literal["schlenk", "michaelis", "doleschel", "constant"] = "schlenk"
-    lubricant_factor: float = Field(default=1.0, gt=0.1, le=2.0)
-    """X_L: 1 for mineral oil."""
+    lubricant_factor: float | None = Field(default=None, gt=0.1, le=2.0)
+    """X_L; that of the oil when left out."""
     coefficient: float | None = Field(default=None, ge=0.0, le=0.5)
     """Friction coefficient when the law is ``constant``."""
 

@@ -9,9 +9,10 @@ from rigdesign.case.gear_rules import gearbox_faults
 from rigdesign.case.loss_rules import loss_faults
 from rigdesign.case.paths import known_paths, nearest_paths
 from rigdesign.case.schedule_rules import schedule_faults
-from rigdesign.case.substances import BUILT_IN_MATERIALS, BUILT_IN_OILS
 from rigdesign.case.surfaces import housing_faults
 from rigdesign.errors import Fault
+from rigdesign.materials import MATERIALS
+from rigdesign.oil import OILS
 from rigdesign.units import show
 
 if TYPE_CHECKING:
@@ -39,8 +40,8 @@ def broken_rules(case: "Case") -> list[Fault]:
 
 
 def _substances(case: "Case") -> Iterator[Fault]:
-    oils = [*case.oils, *BUILT_IN_OILS]
-    materials = [*case.materials, *BUILT_IN_MATERIALS]
+    oils = [*case.oils, *OILS]
+    materials = [*case.materials, *MATERIALS]
     for name, box in case.gearboxes.items():
         at = f"gearboxes.{name}"
         used = {f"{at}.oil.oil": box.oil.oil, f"{at}.bearing_oil.oil": box.bearing_oil.oil}

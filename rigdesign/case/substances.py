@@ -17,11 +17,6 @@ from rigdesign.case.fields import (
     fault,
 )
 
-BUILT_IN_OILS = ("FVA 3", "FVA 3A", "MIL-PRF-23699")
-"""Oils of ``rigdesign.oil``."""
-BUILT_IN_MATERIALS = ("case_hardened_steel", "structural_steel", "grey_iron", "ductile_iron", "aluminium")
-"""Materials of ``rigdesign.materials``."""
-
 
 class Ambient(Part):
     """The room."""
@@ -40,6 +35,8 @@ class CustomOil(Part):
     density_15: Density
     heat_capacity: HeatCapacity
     conductivity: Conductivity
+    lubricant_factor: Annotated[float, Field(gt=0.1, le=2.0)] = 1.0
+    """X_L of the friction laws: 1 for mineral oil."""
 
     @model_validator(mode="after")
     def _thins(self) -> "CustomOil":
