@@ -1,0 +1,113 @@
+"""What a mesh must satisfy before anything is computed on it."""
+
+import numpy as np
+
+from thermal.fe.mesh import FloatArray, IndexArray, MeshError, NamedMesh, facet_keys, facet_table
+
+MAX_NODES = 2_000_000
+"""Facets are recognised by one 64-bit number made of three node numbers."""
+
+
+def check_topology(mesh: NamedMesh) -> frozenset[str]:
+    """Check numbering, bodies and surfaces of ``mesh``; return the surfaces that lie between two cells.
+
+    Raises MeshError naming body or surface, the fault and what to do, if
+    - an array has the wrong shape, a node number is out of range or a coordinate is no finite number,
+    - a cell belongs to no body or to two, or a node to no cell,
+    - a facet of a surface is no side of a cell or looks into its cell,
+    - a facet on the boundary belongs to no surface or to two.
+    """
+    _check_arrays(mesh)
+    _check_bodies(mesh)
+    return _check_surfaces(mesh)
+
+
+def check_volumes(mesh: NamedMesh, first: IndexArray, weights: FloatArray) -> None:
+    """Check that no cell is inverted at any of its quadrature points.
+
+    first : (n_cells + 1,) first quadrature point of each cell; weights : (n_q,) volume weights [m3].
+    Raises MeshError with the number of inverted cells by body.
+    """
+    bad = np.minimum.reduceat(weights, first[:-1]) <= 0.0
+    if not bad.any():
+        return
+    counts = {name: int(np.count_nonzero(bad[cells])) for name, cells in mesh.bodies.items()}
+    where = ", ".join(f"{count} in body {name!r}" for name, count in counts.items() if count)
+    raise MeshError(
+        f"inverted cells: {where}; refine the mesh at curved faces, optimise its high-order nodes, "
+        "or put the nodes into NamedMesh order"
+    )
+
+
+def _check_arrays(mesh: NamedMesh) -> None:
+    if mesh.points.ndim != 2 or mesh.points.shape[1] != 3 or not np.isfinite(mesh.points).all():
+        raise MeshError(f"points of shape {mesh.points.shape}: need (n_nodes, 3) finite coordinates [m]")
+    if mesh.cells.ndim != 2 or mesh.cells.shape[1] != 10 or not len(mesh.cells):
+        raise MeshError(f"cells of shape {mesh.cells.shape}: need (n_cells, 10), n_cells at least 1")
+    if len(mesh.points) > MAX_NODES:
+        raise MeshError(f"{len(mesh.points)} nodes are above the limit of {MAX_NODES}; use larger cells")
+    for name, nodes in {"cells": mesh.cells, **mesh.surfaces}.items():
+        if nodes.size and (nodes.min() < 0 or nodes.max() >= len(mesh.points)):
+            raise MeshError(f"{name}: node number outside of 0 to {len(mesh.points) - 1}")
+    for name, nodes in mesh.surfaces.items():
+        if nodes.ndim != 2 or nodes.shape[1] != 6 or not len(nodes):
+            raise MeshError(f"surface {name!r} of shape {nodes.shape}: need (k, 6) nodes, k at least 1")
+
+
+def _check_bodies(mesh: NamedMesh) -> None:
+    owners = np.zeros(len(mesh.cells), dtype=np.int64)
+    for name, cells in mesh.bodies.items():
+        if not len(cells) or cells.min() < 0 or cells.max() >= len(mesh.cells):
+            raise MeshError(f"body {name!r}: empty, or a cell number outside of 0 to {len(mesh.cells) - 1}")
+        np.add.at(owners, cells, 1)
+    if (owners != 1).any():
+        raise MeshError(
+            f"{np.count_nonzero(owners == 0)} cells are in no body and {np.count_nonzero(owners > 1)} in "
+            "several; give every cell exactly one"
+        )
+    loose = len(mesh.points) - len(np.unique(mesh.cells))
+    if loose:
+        raise MeshError(f"{loose} nodes belong to no cell; remove them and renumber")
+
+
+def _check_surfaces(mesh: NamedMesh) -> frozenset[str]:
+    table = facet_table(mesh.cells, len(mesh.points))
+    on_boundary = table.on_boundary
+    covered = np.zeros(len(table.keys), dtype=np.int64)
+    interfaces = set()
+    for name, nodes in mesh.surfaces.items():
+        at = np.searchsorted(table.keys, facet_keys(nodes[:, :3], len(mesh.points)))
+        at = np.minimum(at, len(table.keys) - 1)
+        outward = _same_side(nodes, table.nodes[at])
+        inner = ~on_boundary[at]
+        second = np.minimum(at + 1, len(table.keys) - 1)
+        outward |= inner & _same_side(nodes, table.nodes[second])
+        if not outward.all():
+            raise MeshError(
+                f"surface {name!r}: {np.count_nonzero(~outward)} of {len(nodes)} facets are no side of a cell"
+                " or look into their cell; build surfaces with thermal.fe.mesh.named_mesh"
+            )
+        if inner.any() and not inner.all():
+            raise MeshError(f"surface {name!r} lies partly on the boundary, partly inside; split it in two")
+        if inner.any():
+            interfaces.add(name)
+        np.add.at(covered, at, 1)
+    if (covered > 1).any():
+        raise MeshError(f"{np.count_nonzero(covered > 1)} facets belong to two surfaces; assign each once")
+    open_facets = table.nodes[on_boundary & (covered == 0)]
+    if len(open_facets):
+        centre = mesh.points[open_facets[0, :3]].mean(axis=0)
+        raise MeshError(
+            f"{len(open_facets)} boundary facets belong to no surface, one at x, y, z = "
+            f"{centre[0]:.6g}, {centre[1]:.6g}, {centre[2]:.6g} m; name them"
+        )
+    return frozenset(interfaces)
+
+
+def _same_side(nodes: IndexArray, reference: IndexArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Whether facets are the same 6 nodes as the reference, up to a cyclic shift."""
+    same = np.zeros(len(nodes), dtype=np.bool_)
+    for shift in range(3):
+        turn = [(k + shift) % 3 for k in range(3)]
+        same |= np.all(nodes == reference[:, turn + [3 + k for k in turn]], axis=1)
+    return same
