@@ -28,7 +28,7 @@ class Rack:
         for name in ("addendum", "dedendum", "tip_radius"):
             if not getattr(self, name) >= 0.0:
                 raise GearGeometryError(
-                    f"rack.{name} = {getattr(self, name)} must not be negative; give it in multiples of the module"
+                    f"rack.{name} = {getattr(self, name)} must not be negative; give it in modules"
                 )
 
 
@@ -182,7 +182,7 @@ class CylindricalGear:
         return atan(x / y) - self.virtual_half_angle(hypot(x, y))
 
     def _undercut_roll_length(self) -> float:
-        """Roll length on the virtual gear where the trochoid crosses the involute; 0 if all flank stays [m]."""
+        """Roll length where the virtual gear's trochoid crosses its involute, 0 if all flank stays [m]."""
         base = 0.5 * self.normal_module * self.virtual_teeth * cos(self.pressure_angle)
         outside = self.pressure_angle
         for k in range(1, 361):

@@ -47,7 +47,7 @@ class Microgeometry:
 
 
 def cumulative_pitch(single_deviations: ArrayLike) -> tuple[float, ...]:
-    """Cumulative from single pitch deviations (z,) along the line of action [m], closed over the turn, mean zero."""
+    """Cumulative from single pitch deviations (z,) [m], closed over the turn and with mean zero."""
     single = np.asarray(single_deviations, dtype=float)
     cumulative = np.cumsum(single - single.mean())
     return tuple(float(value) for value in cumulative - cumulative.mean())
@@ -80,8 +80,8 @@ def mesh_law(
     reach : tip separation at the ends of the grid, the largest approach the law is good for [m]; default 0.15
         normal modules, at least 0.1 mm, at most 0.3 mm
 
-    A pair that jams (negative backlash, see ``GearPair.warnings``) gets zero play. Gears of unequal growth keep
-    the ratio of their tooth numbers; the difference of their base pitches becomes a gap along the path.
+    A pair that jams (negative backlash, see ``GearPair.warnings``) gets zero play. Gears of unequal growth
+    keep the ratio of their tooth numbers; the difference of their base pitches becomes a gap along the path.
 
     Raises ValueError for arrays of another length than the tooth number or numbers below their limit.
     """
@@ -182,7 +182,7 @@ def _check(gear: Microgeometry, teeth: int) -> None:
         values = getattr(gear, name)
         if values and len(values) != teeth:
             raise ValueError(
-                f"{name} has {len(values)} values for a gear of {teeth} teeth; give one for each tooth or none"
+                f"{name} has {len(values)} values for {teeth} teeth; give one for each tooth or none"
             )
     if gear.tip_relief and not gear.tip_relief_length > 0.0:
         raise ValueError(
@@ -190,6 +190,4 @@ def _check(gear: Microgeometry, teeth: int) -> None:
             f"{gear.tip_relief} m; give the path length of the relief"
         )
     if any(not value > 0.0 for value in gear.tooth_stiffness):
-        raise ValueError(
-            "tooth_stiffness must be positive for every tooth; use a small scale for a cracked one"
-        )
+        raise ValueError("tooth_stiffness must be positive for every tooth; use a small scale for a crack")

@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import acos, cos, degrees, pi, radians, tan
+from math import acos, cos, pi, radians, tan
 from typing import Literal, Self, TypedDict, Unpack
 
+from dynamics import gear_limits
 from dynamics.cylindrical_gear import CylindricalGear, GearGeometryError, Rack, involute
 from dynamics.line_of_action import (
     PathOfContact,
@@ -17,11 +18,6 @@ from dynamics.line_of_action import (
 __all__ = ["CylindricalGear", "GearBodies", "GearGeometryError", "GearPair", "PathOfContact", "Rack"]
 
 Pair = tuple[float, float]
-
-FILLET_OVERLAP_LIMIT = 0.02
-"""Overlap of a mating flank with the fillet, in normal modules, above which the pair is refused."""
-THIN_TIP = 0.2
-"""Tip thickness in normal modules below which a hardened tip is likely to break."""
 
 
 class GearBodies(TypedDict, total=False):
@@ -41,10 +37,10 @@ class GearBodies(TypedDict, total=False):
 class GearPair:
     """Two external cylindrical gears on a fixed centre distance. Lengths [m], angles [rad], pinion first.
 
-    Tip diameters, shifts, widths, bores and allowances are those of the cold gears; ``growth`` is the relative
-    linear growth of each gear body, set by :meth:`warm`, and every property includes it. A cold pair that
-    cannot mesh raises :class:`GearGeometryError`; a warm one only if it has no contact at all, so that a lost
-    tip clearance or backlash shows as a number.
+    Tip diameters, shifts, widths, bores and allowances are those of the cold gears; ``growth`` is the
+    relative linear growth of each gear body, set by :meth:`warm`, and every property includes it. A cold
+    pair that cannot mesh raises :class:`GearGeometryError`; a warm one only if it has no contact at all, so
+    that a lost tip clearance or backlash shows as a number.
     """
 
     normal_module: float
@@ -64,9 +60,9 @@ class GearPair:
     growth: Pair = (0.0, 0.0)
 
     def __post_init__(self) -> None:
-        _require_sizes(self)
+        gear_limits.require_sizes(self)
         if self.growth == (0.0, 0.0):
-            _require_meshing(self)
+            gear_limits.require_meshing(self)
         elif not self.path.length > 0.0:
             raise GearGeometryError(
                 f"path of contact = {1e3 * self.path.length:.4f} mm of the warm pair must be positive; "
@@ -91,8 +87,8 @@ class GearPair:
         """Pair whose profile-shift sum meshes without backlash on the centre distance (before allowances).
 
         Give either ``profile_shift_1`` or ``split="equal"``. Tips are at d + 2 m_n (h_aP + x), shortened on
-        the radius by ``tip_shortening`` [m] and then as far as the transverse ``contact_ratio`` wants, equally
-        on both gears or on one (``tip_cut``). Raises GearGeometryError.
+        the radius by ``tip_shortening`` [m] and then as far as the transverse ``contact_ratio`` wants,
+        equally on both gears or on one (``tip_cut``). Raises GearGeometryError.
         """
         if (profile_shift_1 is None) == (split is None):
             raise GearGeometryError(
@@ -304,27 +300,7 @@ class GearPair:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What makes the pair unusual without making it impossible: name, value, limit, remedy."""
-        found: list[str] = []
-        for name, gear, overlap in zip(("pinion", "wheel"), self.gears, self.fillet_overlaps, strict=True):
-            if gear.undercut:
-                found.append(
-                    f"{name}: undercut, involute starts at d = {2e3 * gear.form_radius:.3f} mm; raise its profile shift"
-                )
-            if overlap > 0.0:
-                found.append(
-                    f"{name}: fillet reaches {1e6 * overlap:.2f} um into the path of the mating tip (limit 0); "
-                    "use a smaller tool tip radius, a deeper tool or a shorter mating tip"
-                )
-            if gear.tip_thickness < THIN_TIP * gear.normal_module:
-                found.append(
-                    f"{name}: tip thickness {1e3 * gear.tip_thickness:.3f} mm below 0.2 m_n; reduce shift or addendum"
-                )
-        if self.transverse_backlash < -1e-9:
-            found.append(
-                f"backlash {1e6 * self.transverse_backlash:.1f} um on the working pitch circles is negative: "
-                "the teeth jam; thin them (thickness_allowances) or increase the centre distance"
-            )
-        return tuple(found)
+        return gear_limits.unusual(self)
 
     def warm(
         self,
@@ -336,7 +312,7 @@ class GearPair:
         expansion_coefficients: Pair = (11.5e-6, 11.5e-6),
         speed: float = 0.0,
     ) -> Self:
-        """The same cold gears at body temperatures [K], on a hot ``centre_distance`` [m], at pinion ``speed`` [rad/s].
+        """The cold gears at body temperatures [K], on a hot centre distance [m], at pinion ``speed`` [rad/s].
 
         Growth is that of the free body: thermal strain plus the centrifugal strain of the reference circle.
         Calling it on a warm pair starts again from the cold gears.
@@ -360,74 +336,3 @@ class GearPair:
         nu = self.poisson_ratios[index]
         shape = (1.0 - nu) * outer**2 + (3.0 + nu) * bore**2
         return self.densities[index] * speed**2 * shape / (4.0 * self.youngs_moduli[index])
-
-
-def _require_sizes(pair: GearPair) -> None:
-    """Refuse numbers that describe no gear."""
-    positive = {
-        "normal_module": (pair.normal_module, "m"),
-        "centre_distance": (pair.centre_distance, "m"),
-        "face_widths[0]": (pair.face_widths[0], "m"),
-        "face_widths[1]": (pair.face_widths[1], "m"),
-        "teeth[0]": (pair.teeth[0], ""),
-        "teeth[1]": (pair.teeth[1], ""),
-    }
-    for name, (value, unit) in positive.items():
-        if not value > 0.0:
-            raise GearGeometryError(f"{name} = {value} {unit} must be positive; correct the gear data")
-    for name, angle, low, high in (
-        ("pressure_angle", pair.pressure_angle, radians(10.0), radians(35.0)),
-        ("helix_angle", pair.helix_angle, 0.0, radians(45.0)),
-    ):
-        if not low <= angle <= high:
-            raise GearGeometryError(
-                f"{name} = {degrees(angle):.3f} deg must lie in {degrees(low):.0f}..{degrees(high):.0f} deg; "
-                "give the angle without sign of hand"
-            )
-    for i in (0, 1):
-        if not 0.0 <= pair.bore_diameters[i] < 2.0 * pair.root_radii[i]:
-            raise GearGeometryError(
-                f"bore_diameters[{i}] = {1e3 * pair.bore_diameters[i]:.3f} mm must lie between 0 and the root "
-                f"diameter {2e3 * pair.root_radii[i]:.3f} mm; reduce the bore"
-            )
-        if not pair.tip_radii[i] > pair.gears[i].form_radius:
-            raise GearGeometryError(
-                f"tip_diameters[{i}] = {1e3 * pair.tip_diameters[i]:.3f} mm must exceed the form diameter "
-                f"{2e3 * pair.gears[i].form_radius:.3f} mm; no involute is left: increase tip diameter or shift"
-            )
-    if not sum(pair.base_radii) < pair.centre_distance:
-        raise GearGeometryError(
-            f"centre_distance = {1e3 * pair.centre_distance:.4f} mm gives no working pressure angle: it must "
-            f"exceed the sum of the base radii, {1e3 * sum(pair.base_radii):.4f} mm; "
-            "increase it or reduce module, teeth or helix angle"
-        )
-
-
-def _require_meshing(pair: GearPair) -> None:
-    """Refuse a cold pair that cannot run."""
-    names = ("pinion", "wheel")
-    for name, gear in zip(names, pair.gears, strict=True):
-        if not gear.tip_thickness > 0.0:
-            raise GearGeometryError(
-                f"{name}: tip thickness {1e3 * gear.tip_thickness:.4f} mm must be positive (pointed tooth); "
-                "reduce profile shift or tip diameter"
-            )
-    for name, clearance in zip(names, pair.tip_clearances, strict=True):
-        if not clearance > 0.0:
-            raise GearGeometryError(
-                f"{name}: tip clearance {1e3 * clearance:.4f} mm must be positive; "
-                "shorten the tip, deepen the mating root or increase the centre distance"
-            )
-    limit = FILLET_OVERLAP_LIMIT * pair.normal_module
-    for name, overlap in zip(names, pair.fillet_overlaps, strict=True):
-        if overlap > limit:
-            raise GearGeometryError(
-                f"{name}: interference, its fillet overlaps the path of the mating tip by {1e6 * overlap:.1f} um "
-                f"(limit {1e6 * limit:.1f} um); shorten the mating tip or shift the profile"
-            )
-    ratio = pair.total_contact_ratio
-    if not (ratio >= 1.0 and pair.path.length > 0.0):
-        raise GearGeometryError(
-            f"total contact ratio {ratio:.4f} must be at least 1 "
-            f"(transverse {pair.transverse_contact_ratio:.4f}); lengthen the tips or reduce the centre distance"
-        )

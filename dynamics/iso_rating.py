@@ -37,7 +37,7 @@ class RatingOptions:
 
 
 def mesh_data(pair: GearPair) -> MeshData:
-    """The pair as ISO 6336-1 reads it (mm, degrees); the transverse contact ratio is that of the active flanks."""
+    """The pair as ISO 6336-1 reads it (mm, degrees), with the contact ratio of the active flanks."""
     pinion, wheel = pair.gears
     bores = tuple(0.5 * bore / gear.mean_radius for bore, gear in zip(pair.bore_diameters, pair.gears))
     return MeshData(

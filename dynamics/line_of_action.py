@@ -1,4 +1,4 @@
-"""Where two gears touch: points on the line of action, shift sum and tip cut for a centre distance (ISO 21771)."""
+"""Where two gears touch: path of contact, shift sum and tip cut for a centre distance (ISO 21771)."""
 
 from dataclasses import dataclass, replace
 from math import acos, atan, cos, tan
@@ -75,8 +75,8 @@ def shift_sum(
     smallest = 0.5 * normal_module * sum(teeth) / cos(helix_angle) * cos(alpha_t)
     if not centre_distance > smallest:
         raise GearGeometryError(
-            f"centre_distance = {1e3 * centre_distance:.4f} mm gives no working pressure angle: it must exceed "
-            f"the sum of the base radii, {1e3 * smallest:.4f} mm; "
+            f"centre_distance = {1e3 * centre_distance:.4f} mm gives no working pressure angle: it must "
+            f"exceed the sum of the base radii, {1e3 * smallest:.4f} mm; "
             "increase it or reduce module, teeth or helix angle"
         )
     opening = involute(acos(smallest / centre_distance)) - involute(alpha_t)

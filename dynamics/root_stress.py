@@ -34,7 +34,7 @@ class RootInfluence:
 
     def at(self, path: ArrayLike) -> Array:
         """Influence at ``path`` positions [m], same shape [Pa per N/m]; held beyond the active path."""
-        return np.interp(np.asarray(path, dtype=float), self.path, self.value)
+        return np.asarray(np.interp(np.asarray(path, dtype=float), self.path, self.value))
 
 
 def root_influence(pair: GearPair, index: int, *, n_path: int = 161) -> RootInfluence:

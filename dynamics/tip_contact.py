@@ -1,7 +1,7 @@
 """Separation of a tooth pair beyond the ends of its path, where only a tip corner could touch.
 
-Before A the wheel's tip corner faces the pinion flank, beyond E the pinion's tip corner faces the wheel flank.
-The gap is the approach along the line of action at which they would meet; it grows from zero with the square
+Before A the wheel's tip corner faces the pinion flank, beyond E the pinion's tip corner the wheel flank. The
+gap is the approach along the line of action at which they would meet; it grows from zero with the square
 of the distance to the end of the path, so that loaded, deflected teeth enter and leave the mesh smoothly
 (premature engagement). Derived from the involutes of both gears, no small-angle approximation; an undercut
 flank ends in a corner too, which is treated alike.

@@ -134,10 +134,10 @@ def _tooth_compliance(outline: ToothOutline, angle: Array, nu: float, modulus: f
     lever = _lever(outline, angle, foot)
     y = np.linspace(0.0, float(lever.max()), 2001)
     thickness = 2.0 * np.interp(y + foot, outline.y, outline.x)
-    moments = [cumulative_trapezoid(y**power / thickness**3, y, initial=0.0) for power in (0, 1, 2)]
+    moments = [cumulative_trapezoid(y**power / thickness**3, y, initial=0) for power in (0, 1, 2)]
     sums = [np.interp(lever, y, moment) for moment in moments]
     bending = lever**2 * sums[0] - 2.0 * lever * sums[1] + sums[2]
-    shear = np.interp(lever, y, cumulative_trapezoid(1.0 / thickness, y, initial=0.0))
+    shear = np.interp(lever, y, cumulative_trapezoid(1.0 / thickness, y, initial=0))
     tangent = np.tan(angle) ** 2
     total = 12.0 * bending + (2.4 / (1.0 - nu) + tangent) * shear
     return np.asarray(np.cos(angle) ** 2 * modulus * total)

@@ -161,8 +161,8 @@ def stiffness(
     if data.epsilon_alpha < 1.2:
         c_gamma_alpha *= 0.9
         warnings.append(
-            f"epsilon_alpha = {data.epsilon_alpha:.4f} below 1.2: c_gamma_alpha taken 10 % lower (clause 9.3.2); "
-            "confirm the mesh stiffness by contact analysis"
+            f"epsilon_alpha = {data.epsilon_alpha:.4f} below 1.2: c_gamma_alpha taken 10 % lower "
+            "(clause 9.3.2); confirm the mesh stiffness by contact analysis"
         )
     return Stiffness(
         q_prime=q,
@@ -318,8 +318,8 @@ def dynamic_factor(
     B_k = abs(1.0 - tooth.c_prime * relief / load)
     if grade > 6:
         warnings.append(
-            f"tolerance grade {grade} coarser than 6: tip relief has little effect, B_k = {B_k:.3f} may be low; "
-            "use C_a = 0 (B_k = 1) or a finer grade"
+            f"tolerance grade {grade} coarser than 6: tip relief has little effect, B_k = {B_k:.3f} may be "
+            "low; use C_a = 0 (B_k = 1) or a finer grade"
         )
     mass = m_red(data) if exact_m_red is None else exact_m_red
     n_E1 = 30000.0 / (pi * data.z_1) * sqrt(tooth.c_gamma_alpha / mass)

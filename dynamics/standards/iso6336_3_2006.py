@@ -97,8 +97,8 @@ def root_section(root: ToothRoot) -> RootSection:
             break
     else:
         raise ValueError(
-            f"30 degree tangent not found for z_n = {root.z_n:.2f}, x = {root.x:.3f}, h_fP = {root.h_fP:.3f}, "
-            f"rho_fP = {root.rho_fP:.3f}; the tool makes no fillet of this kind: check the rack"
+            f"30 degree tangent not found for z_n = {root.z_n:.2f}, x = {root.x:.3f}, h_fP = "
+            f"{root.h_fP:.3f}, rho_fP = {root.rho_fP:.3f}; check the rack"
         )
     s_Fn = root.z_n * sin(pi / 3.0 - theta) + sqrt(3.0) * (G / cos(theta) - root.rho_fP)
     rho_F = root.rho_fP + 2.0 * G**2 / (cos(theta) * (root.z_n * cos(theta) ** 2 - 2.0 * G))
@@ -187,7 +187,8 @@ def K_Falpha(
 ) -> float:
     """Transverse load factor (ISO 6336-1:2006, 8.3.2) for F_tH / b = ``specific_load`` [N/mm].
 
-    c_gamma_alpha [N/(mm um)], f_pb_eff = f_pb - y_alpha [um]; limited to 1 .. epsilon_gamma/(0.25 eps_alpha + 0.75).
+    c_gamma_alpha [N/(mm um)], f_pb_eff = f_pb - y_alpha [um]; limited to 1 ..
+    epsilon_gamma / (0.25 epsilon_alpha + 0.75).
     """
     X = c_gamma_alpha * f_pb_eff / specific_load
     if epsilon_gamma <= 2.0:
@@ -255,8 +256,8 @@ def root_stress(
         )
     if epsilon_alpha / cos(root.beta_b) ** 2 >= 2.0:
         warnings.append(
-            f"virtual contact ratio {epsilon_alpha / cos(root.beta_b) ** 2:.3f} is 2 or more: the load point of "
-            "method B is conservative; use contact analysis"
+            f"virtual contact ratio {epsilon_alpha / cos(root.beta_b) ** 2:.3f} is 2 or more: the load "
+            "point of method B is conservative; use contact analysis"
         )
     if root.beta > 30.0:
         warnings.append(f"beta = {root.beta:.2f} deg above 30 deg: Y_beta taken at 30 deg; confirm by test")
