@@ -100,6 +100,11 @@ class ShaftGeometry:
         self._check_bore()
 
     def _check_bore(self) -> None:
+        if 0.0 < self.bore_diameter < 2.0 * MINIMUM_LAND:
+            raise GeometryError(
+                f"shaft {self.name}: bore_diameter = {self.bore_diameter:g} m is below "
+                f"{2.0 * MINIMUM_LAND:g} m; give 0 for a solid shaft or a wider bore"
+            )
         zones = ("journal_diameter", "seal_diameter", "seat_diameter", "overhang_diameter")
         thinnest = min(zones, key=lambda zone: float(getattr(self, zone)))
         limit = getattr(self, thinnest) - 2.0 * MINIMUM_LAND

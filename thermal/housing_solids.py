@@ -141,10 +141,12 @@ def housing_size(g: HousingGeometry, sizes: MeshSizes) -> SizeLaw:
 
 
 def shaft_size(g: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> SizeLaw:
-    """Element size at the vertices of one shaft."""
+    """Element size at the vertices of one shaft; elements in its bore are up to three times as long as wide."""
+    thinnest = min(zone.radius for zone in shaft_zones(g, shaft))
 
     def size(x: float, y: float, z: float) -> float:
         radius = math.hypot(y - shaft.y, z - g.shaft_height)
-        return min(sizes.shaft, 2.0 * math.pi * radius / sizes.circle)
+        around = max(radius, min(3.0 * radius, thinnest))
+        return min(sizes.shaft, 2.0 * math.pi * around / sizes.circle)
 
     return size
