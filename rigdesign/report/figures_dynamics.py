@@ -188,7 +188,7 @@ def _stress_ratio(axes: "Axes", rows: list[dict[str, float]], points: list[Dynam
     for colour, gear in zip(SERIES, gears, strict=False):
         axes.plot(speed, [row[gear] for row in rows], color=colour, label=f"{SIGMA_F} ratio, {plain(gear)}")
     axes.set_xlim(left=0)
-    axes.xaxis.get_major_locator().set_params(nbins=4)
+    axes.locator_params(axis="x", nbins=4)
     finish(
         axes,
         "pinion speed n [rpm]",

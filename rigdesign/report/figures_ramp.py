@@ -28,10 +28,10 @@ def ramp_figure(ramp: RampHistory) -> "Figure":
         axes.set_title(f"Dynamic torque in {plain(name)}: mean, maximum and minimum of each time slot")
     for axes in axes_list:
         _stage_bands(axes, ramp)
+        axes.yaxis.set_label_coords(-0.052, 0.5)
     _stage_names(axes_list[0], ramp)
     axes_list[-1].set_xlabel("time [s]")
     axes_list[-1].set_xlim(ramp.time_s[0], ramp.time_s[-1])
-    figure.align_ylabels(axes_list)
     figure.subplots_adjust(left=0.085, right=0.985, top=1 - 0.52 / height, bottom=0.45 / height, hspace=0.32)
     return figure
 

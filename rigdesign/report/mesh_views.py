@@ -23,6 +23,9 @@ SUB_TETRAHEDRA = np.array(
 )
 """Eight linear tetrahedra that fill a 10-node one (VTK order), the inner octahedron split along 01-23."""
 
+EDGE_ON = 1e-9
+"""Cosine to the viewer below which a facet is only a line."""
+
 SUB_TRIANGLES = np.array([(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)])
 """Four linear triangles that fill a 6-node one (corners first, mid-sides 01 12 20)."""
 
@@ -128,7 +131,7 @@ def view_outside(mesh: NamedMesh, azimuth_deg: float = -60.0, elevation_deg: flo
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
     normals /= np.where(lengths > 0, lengths, 1.0)[:, None]
-    facing = np.flatnonzero(normals @ towards > 0)
+    facing = np.flatnonzero(normals @ towards > EDGE_ON)
     facing = facing[np.argsort(corners[facing].mean(axis=1) @ towards, kind="stable")]
     light = towards + 0.6 * up - 0.4 * right
     brightness = 0.7 + 0.3 * np.clip(normals[facing] @ (light / np.linalg.norm(light)), 0.0, 1.0)
