@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
 
 from dynamics import kernels
 from dynamics.mesh_law import MeshLaw, check_mesh_law
@@ -215,8 +216,12 @@ def tooth_forces(
 
 
 def _cells(table: Array) -> Array:
-    """Return (rows * cells, 2): value at the start of each cell and its change over the cell."""
-    return np.column_stack((table[:, :-1].ravel(), np.diff(table, axis=1).ravel()))
+    """Return (rows * cells, 4): coefficients of the monotone cubic over the fraction of each cell."""
+    if table.shape[1] == 2:
+        return np.column_stack((table[:, 0], table[:, 1] - table[:, 0], np.zeros((len(table), 2))))
+    cubic = PchipInterpolator(np.arange(table.shape[1]), table, axis=1)
+    coefficients: Array = np.moveaxis(cubic.c[::-1], 0, -1)  # (n_cells, rows, 4)
+    return np.ascontiguousarray(coefficients.swapaxes(0, 1).reshape(-1, 4))
 
 
 def _states(*columns: ArrayLike) -> list[Array]:

@@ -251,6 +251,10 @@ class TimeMarch:
                     placed.add(line)
         return DriveState(angles=angles, speeds=model.shapes @ scaled[:n], twist=float(self._slow[1]))
 
+    def pinion_angle(self) -> float:
+        """Angle of the pinion of the first mesh at this instant [rad]."""
+        return float(self._ports[0, 5])
+
     def kick(self, speeds: Array) -> None:
         """Add ``speeds`` (n,) [rad/s] to the motion at once."""
         nothing = np.zeros(self.model.inputs.shape[1])

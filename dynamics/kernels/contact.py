@@ -83,6 +83,7 @@ def list_contacts(
     mu_1 = sign * friction / r_1
     mu_2 = sign * friction / values[R2]
     column = at
+    error = np.empty(4)
     for i in range(n_slices):
         whole = (travel - sign * shifts[counts[SHIFTS_AT] + i]) * per_step
         turn = math.floor(whole * per_pitch)
@@ -91,17 +92,19 @@ def list_contacts(
         while place < n_cells:
             j = min(max(int(place), 0), n_cells - 1)
             f = place - j
-            k = cells[row + j, 0] + f * cells[row + j, 1]
-            dk = cells[row + j, 1]
-            e = cells[row + j, 2] + f * cells[row + j, 3]
-            de = cells[row + j, 3]
+            cell = cells[row + j]
+            k = cell[0] + f * (cell[1] + f * (cell[2] + f * cell[3]))
+            dk = cell[1] + f * (2.0 * cell[2] + 3.0 * f * cell[3])
+            e = cell[4] + f * (cell[5] + f * (cell[6] + f * cell[7]))
+            de = cell[5] + f * (2.0 * cell[6] + 3.0 * f * cell[7])
             pair = int(turn) if sign > 0.0 else -int(turn)
             if individual != 0:
                 row_1 = counts[DEVIATION_1_AT] + (pair % counts[ROWS_1]) * n_cells + j
                 row_2 = counts[DEVIATION_2_AT] + ((pair + counts[OFFSET_2]) % counts[ROWS_2]) * n_cells + j
-                e += deviations[row_1, 0] + f * deviations[row_1, 1]
-                e += deviations[row_2, 0] + f * deviations[row_2, 1]
-                de += deviations[row_1, 1] + deviations[row_2, 1]
+                for part in range(4):
+                    error[part] = deviations[row_1, part] + deviations[row_2, part]
+                e += error[0] + f * (error[1] + f * (error[2] + f * error[3]))
+                de += error[1] + f * (2.0 * error[2] + 3.0 * f * error[3])
                 scale = scales[counts[SCALES_1_AT] + pair % counts[SCALES_1]]
                 scale *= scales[counts[SCALES_2_AT] + (pair + counts[OFFSET_2]) % counts[SCALES_2]]
                 k *= scale
