@@ -1,0 +1,246 @@
+"""Boundary conditions of a housing: the case's laws with this pass's fluids, films, speeds and losses."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from dynamics.journal_bearing import BearingState
+from rigdesign.case import housing as laws
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.geometry import bearing_on, conditions_of, partner_of
+from rigdesign.lubrication import PlacedLoss
+from rigdesign.rig.model import Rig
+from rigdesign.state import Feedback, OperatingPoint
+from thermal import convection
+from thermal.boundary import (
+    Adiabatic,
+    BodySource,
+    BoundaryCondition,
+    Exchange,
+    Film,
+    FilmLaw,
+    PrescribedTemperature,
+    Radiation,
+    SurfaceSource,
+)
+from thermal.housing_geometry import HousingGeometry, ShaftGeometry
+from thermal.housing_surfaces import surface_names
+
+GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"
+"""Kinds of films: what takes the heat up, as the heat balance names it."""
+
+
+@dataclass(frozen=True)
+class _Context:
+    """One housing at one pass."""
+
+    rig: Rig
+    name: str
+    point: OperatingPoint
+    feedback: Feedback
+    bearings: Mapping[str, BearingState]
+
+    @property
+    def box(self) -> Gearbox:
+        return self.rig.case.gearboxes[self.name]
+
+    @property
+    def geometry(self) -> HousingGeometry:
+        return self.rig.geometries[self.name]
+
+    def fluid(self, name: laws.Fluid) -> tuple[str, float]:
+        """Kind and temperature [K] of a fluid of the case."""
+        if name == "ambient":
+            return AIR, self.rig.case.ambient.temperature
+        kind, _, which = name.rpartition("_")
+        entry = self.box.oil if kind == GEAR_OIL else self.box.bearing_oil
+        inlet, outlet = entry.inlet_temperature, self.feedback.oil_outlet[f"{self.name}.{kind}"]
+        return kind, {"inlet": inlet, "outlet": outlet, "mean": 0.5 * (inlet + outlet)}[which]
+
+    def shaft(self, surface: str) -> ShaftGeometry:
+        """The shaft a surface belongs to, from its name."""
+        candidates = [shaft for shaft in self.geometry.shafts if f"_{shaft.name}_" in f"{surface}_"]
+        return max(candidates, key=lambda shaft: len(shaft.name))
+
+    def speed(self, surface: str) -> float:
+        """Speed of the shaft of a surface [rad/s]."""
+        return self.rig.shaft_speed(self.shaft(surface).name, self.point.speed)
+
+    def diameter(self, surface: str) -> float:
+        """Diameter of a shaft or gear surface [m]."""
+        shaft = self.shaft(surface)
+        if surface.startswith("gear_") and shaft.gear is not None:
+            return shaft.gear.outer_diameter
+        if "_seal_" in surface or "_cold_" in surface:
+            return shaft.seal_diameter
+        if surface.endswith("_warm"):
+            return shaft.seat_diameter
+        if "_journal_" in surface:
+            return shaft.journal_diameter
+        return shaft.overhang_diameter
+
+
+def boundary_conditions(
+    rig: Rig,
+    name: str,
+    point: OperatingPoint,
+    feedback: Feedback,
+    bearings: Mapping[str, BearingState],
+    losses: Sequence[PlacedLoss],
+    *,
+    radiation_included: bool,
+) -> list[BoundaryCondition]:
+    """Every condition of the housing of gearbox ``name``: films, radiation, exchanges and sources.
+
+    radiation_included : leave out explicit radiation where the film to room air contains it already
+    """
+    context = _Context(rig, name, point, feedback, bearings)
+    housing = context.box.housing
+    assert housing is not None
+    rows = conditions_of(housing, surface_names(context.geometry))
+    covered = {
+        surface for entry, surface, _ in rows if isinstance(housing.boundary[entry], laws.NiemannWinter | laws.IsoTr14179)
+    }
+    conditions: list[BoundaryCondition] = []
+    for entry, surface, stood_for in rows:
+        condition = housing.boundary[entry]
+        if radiation_included and isinstance(condition, laws.ThermalRadiation) and surface in covered:
+            continue
+        conditions.append(_condition(context, condition, surface, stood_for))
+    return conditions + _sources(context, losses)
+
+
+def _condition(
+    context: _Context, condition: laws.Condition, surface: str, stood_for: tuple[str, ...]
+) -> BoundaryCondition:
+    if isinstance(condition, laws.ThermalRadiation):
+        ambient = context.rig.case.ambient
+        walls = condition.surroundings_temperature or ambient.surroundings_temperature or ambient.temperature
+        return Radiation(surface=surface, emissivity=condition.emissivity, surroundings_temperature=walls)
+    if isinstance(condition, laws.FixedTemperature):
+        return PrescribedTemperature(surface=surface, temperature=condition.temperature)
+    if isinstance(condition, laws.Insulated):
+        return Adiabatic(surface=surface)
+    if isinstance(condition, laws.GapExchange | laws.SeriesExchange):
+        return Exchange(
+            surface_a=surface,
+            surface_b=partner_of(condition, stood_for),
+            kind="exchange",
+            law=_exchange_law(context, condition, surface),
+        )
+    if isinstance(condition, laws.BearingFilm):
+        return _bearing_film(context, surface)
+    kind, temperature = _fluid_of(context, condition)
+    return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=_film_law(context, condition, surface))
+
+
+def _fluid_of(context: _Context, condition: laws.Condition) -> tuple[str, float]:
+    if isinstance(condition, laws.ConstantFilm):
+        kind, temperature = context.fluid(condition.fluid)
+        return kind, condition.fluid_temperature or temperature
+    if isinstance(condition, laws.RotatingCylinder | laws.RotatingDisc):
+        return context.fluid(condition.fluid)
+    return AIR, context.rig.case.ambient.temperature
+
+
+def _film_law(context: _Context, condition: laws.Condition, surface: str) -> FilmLaw:
+    match condition:
+        case laws.NiemannWinter():
+            return convection.niemann_winter(condition.height, condition.draught_factor)
+        case laws.RecknagelPlate():
+            variant = "turbulent" if condition.correlation == "turbulent" else "dimensional"
+            return convection.recknagel_plate(variant)
+        case laws.IsoTr14179():
+            return convection.iso_tr_14179_2_free(condition.height)
+        case laws.ConstantFilm():
+            source = "input of the case"
+            if condition.fluid != "ambient":
+                return convection.oil_wetted(condition.heat_transfer_coefficient)
+            return convection.constant(condition.heat_transfer_coefficient, source)
+        case laws.RotatingCylinder():
+            build = (
+                convection.rotating_cylinder_becker
+                if condition.correlation == "becker"
+                else convection.rotating_cylinder_jungnickel
+            )
+            return build(context.speed(surface), context.diameter(surface))
+        case laws.RotatingDisc():
+            return convection.rotating_disc_jungnickel(context.speed(surface), 0.5 * context.diameter(surface))
+    raise TypeError(f"no film law for {type(condition).__name__}")
+
+
+def _exchange_law(
+    context: _Context, condition: laws.GapExchange | laws.SeriesExchange, surface: str
+) -> FilmLaw:
+    if isinstance(condition, laws.GapExchange):
+        return convection.narrow_gap_jungnickel(
+            context.speed(surface), 0.5 * context.diameter(surface), condition.gap
+        )
+    first, second = condition.coefficients
+    source = "input of the case"
+    return convection.series(convection.constant(first, source), convection.constant(second, source))
+
+
+def _bearing_film(context: _Context, surface: str) -> Film:
+    """Conductance of the film from its mean temperature; the sink is that temperature, no source beside it."""
+    shaft = context.shaft(surface).name
+    side = "front" if surface.endswith("front") else "rear"
+    entry = bearing_on(context.box, shaft, side)
+    part = next(name for name, bearing in context.box.bearings.items() if bearing is entry)
+    state = context.bearings[f"{context.name}.{part}"]
+    oil = context.rig.oils[context.box.bearing_oil.oil]
+    return Film(
+        surface=surface,
+        kind=f"{BEARING_FILM}:{part}",
+        fluid_temperature=state.film_temperature,
+        law=convection.bearing_film(oil.conductivity(state.film_temperature), 1.0 / state.mean_inverse_gap),
+    )
+
+
+def _sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
+    """Losses that enter solids: meshes into the rims, windage into the gears, seals into shaft and bore."""
+    sources: list[BoundaryCondition] = []
+    for placed in losses:
+        if placed.gearbox != context.name or placed.into_body == 0.0:
+            continue
+        if placed.loss.kind == "mesh":
+            sources += _mesh_sources(context, placed)
+        elif placed.loss.kind == "windage":
+            shaft = context.box.gears[placed.part].shaft
+            sources.append(BodySource(body=f"gear_{shaft}", power=placed.into_body, kind="windage"))
+        elif placed.loss.kind == "seal":
+            sources += _seal_sources(context, placed)
+    return sources
+
+
+def _mesh_sources(context: _Context, placed: PlacedLoss) -> list[BoundaryCondition]:
+    mesh = context.box.meshes[placed.part]
+    pinion_share = context.box.heat_split.mesh_pinion_share
+    return [
+        SurfaceSource(
+            surface=f"gear_{context.box.gears[gear].shaft}_rim", power=share * placed.into_body, kind="mesh_loss"
+        )
+        for gear, share in ((mesh.pinion, pinion_share), (mesh.wheel, 1.0 - pinion_share))
+    ]
+
+
+def _seal_sources(context: _Context, placed: PlacedLoss) -> list[BoundaryCondition]:
+    """Evenly on the two partition seals of the shaft."""
+    shaft = context.box.seals[placed.part].shaft
+    split = context.box.heat_split
+    total = split.seal_into_shaft + split.seal_into_housing
+    parts = ((f"shaft_{shaft}_seal", split.seal_into_shaft), (f"seal_bore_{shaft}", split.seal_into_housing))
+    return [
+        SurfaceSource(
+            surface=f"{stem}_{side}", power=0.5 * placed.into_body * share / total, kind="seal_loss"
+        )
+        for stem, share in parts
+        for side in ("front", "rear")
+    ]
+
+
+def gear_body(context_box: Gearbox, gear: str) -> str:
+    """Name of the body of a gear in the mesh of its housing."""
+    return f"gear_{context_box.gears[gear].shaft}"
+
+
+__all__ = ["AIR", "BEARING_FILM", "BEARING_OIL", "GEAR_OIL", "boundary_conditions", "gear_body"]

@@ -1,0 +1,168 @@
+"""The power circuit of a case as a drivetrain of the dynamics package."""
+
+import math
+from collections.abc import Mapping
+
+from dynamics import drivetrain as dyn
+from dynamics.gear import GearPair
+from rigdesign.case.model import Case
+from rigdesign.materials import Material
+
+ENDS: dict[str, dyn.End] = {"start": "left", "end": "right"}
+RIGID_SEAT = 1e8
+"""Torsional stiffness [N m/rad] of a gear that is rigid with its shaft: far above any spline."""
+
+
+def build_drivetrain(
+    case: Case, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
+) -> dyn.Drivetrain:
+    """Shafts, gears, couplings, bearings and meshes of the loop.
+
+    pairs : ``gearbox.mesh`` -> gear pair. Gears are called ``gearbox.gear``, bearings ``gearbox.bearing``,
+    seals ``gearbox.seals.name``.
+
+    Raises
+    ------
+    DrivetrainError
+        A part that does not fit its shaft, or a loop that cannot close.
+    """
+    power = case.drivetrain
+    assert power is not None
+    return dyn.Drivetrain(
+        shafts=tuple(_shaft(name, case, materials) for name in power.shafts),
+        gears=tuple(_gear_bodies(case, pairs, materials)),
+        meshes=tuple(_meshes(case, pairs)),
+        motor=_motor(case),
+        couplings=tuple(
+            dyn.Coupling(
+                name=name,
+                shafts=coupling.shafts,
+                ends=(ENDS[coupling.ends[0]], ENDS[coupling.ends[1]]),
+                stiffness=coupling.torsional_stiffness,
+                damping=coupling.torsional_damping,
+            )
+            for name, coupling in power.couplings.items()
+        ),
+        bearings=tuple(_bearings(case)),
+        drag_places=tuple(_seals(case)),
+        bracing_coupling=power.bracing.coupling or next(iter(power.couplings), None),
+    )
+
+
+def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> dyn.Shaft:
+    assert case.drivetrain is not None
+    shaft = case.drivetrain.shafts[name]
+    material = materials[shaft.material]
+    return dyn.Shaft(
+        name=name,
+        sections=tuple(
+            dyn.Section(
+                length=section.length,
+                outer_diameter=section.outer_diameter,
+                inner_diameter=section.inner_diameter,
+            )
+            for section in shaft.sections
+        ),
+        discs=tuple(
+            dyn.Disc(name=disc, position=entry.position, inertia=entry.inertia)
+            for disc, entry in shaft.discs.items()
+        ),
+        shear_modulus=material.elastic_modulus / (2.0 * (1.0 + material.poisson_ratio)),
+        density=material.density,
+        element_length=case.numerics.shaft_element_length,
+    )
+
+
+def _gear_bodies(
+    case: Case, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
+) -> list[dyn.GearBody]:
+    bodies = []
+    for box_name, box in case.gearboxes.items():
+        for name, gear in box.gears.items():
+            inertia = gear.inertia
+            if inertia is None:
+                radius = _reference_radius(name, box_name, case, pairs)
+                density = materials[gear.material].density
+                inertia = disc_inertia(2.0 * radius, gear.bore_diameter, gear.face_width, density)
+            assert gear.position is not None
+            bodies.append(
+                dyn.GearBody(
+                    name=f"{box_name}.{name}",
+                    shaft=gear.shaft,
+                    position=gear.position,
+                    inertia=inertia,
+                    stiffness=RIGID_SEAT if gear.spline is None else gear.spline.torsional_stiffness,
+                    damping=0.0 if gear.spline is None else gear.spline.torsional_damping,
+                )
+            )
+    return bodies
+
+
+def disc_inertia(outer_diameter: float, bore_diameter: float, width: float, density: float) -> float:
+    """Polar inertia of a bored disc, pi rho b (D^4 - d^4) / 32 [kg m2]."""
+    return math.pi * density * width * (outer_diameter**4 - bore_diameter**4) / 32.0
+
+
+def _reference_radius(gear: str, box: str, case: Case, pairs: Mapping[str, GearPair]) -> float:
+    for mesh_name, mesh in case.gearboxes[box].meshes.items():
+        for member, name in enumerate((mesh.pinion, mesh.wheel)):
+            if name == gear:
+                return pairs[f"{box}.{mesh_name}"].gears[member].reference_radius
+    raise dyn.DrivetrainError(f"gear {box}.{gear} is in no mesh; state its inertia or remove it")
+
+
+def _meshes(case: Case, pairs: Mapping[str, GearPair]) -> list[dyn.MeshConnection]:
+    meshes = []
+    for box_name, box in case.gearboxes.items():
+        for name, mesh in box.meshes.items():
+            pair = pairs[f"{box_name}.{name}"]
+            pinion, wheel = pair.gears
+            meshes.append(
+                dyn.MeshConnection(
+                    name=f"{box_name}.{name}",
+                    pinion=f"{box_name}.{mesh.pinion}",
+                    wheel=f"{box_name}.{mesh.wheel}",
+                    base_radii=(pinion.base_radius, wheel.base_radius),
+                    teeth=(pinion.teeth, wheel.teeth),
+                    centre_distance=pair.centre_distance,
+                )
+            )
+    return meshes
+
+
+def _motor(case: Case) -> dyn.Motor:
+    assert case.drivetrain is not None
+    motor = case.drivetrain.motor
+    length = math.fsum(section.length for section in case.drivetrain.shafts[motor.shaft].sections)
+    return dyn.Motor(
+        shaft=motor.shaft, position=0.0 if motor.end == "start" else length, inertia=motor.inertia
+    )
+
+
+def _bearings(case: Case) -> list[dyn.JournalBearing]:
+    """Constant drag enters the damping matrix; the drag of a computed film acts as a load."""
+    constant = case.losses.bearing_drag == "constant"
+    bearings = []
+    for box_name, box in case.gearboxes.items():
+        for name, bearing in box.bearings.items():
+            assert bearing.position is not None
+            bearings.append(
+                dyn.JournalBearing(
+                    name=f"{box_name}.{name}",
+                    shaft=bearing.shaft,
+                    position=bearing.position,
+                    linear_drag=(bearing.torsional_damping or 0.0) if constant else 0.0,
+                )
+            )
+    return bearings
+
+
+def _seals(case: Case) -> list[dyn.DragPlace]:
+    """All seals of a shaft brake halfway between its bearings."""
+    places = []
+    for box_name, box in case.gearboxes.items():
+        for name, seals in box.seals.items():
+            stations = [b.position for b in box.bearings.values() if b.shaft == seals.shaft]
+            middle = math.fsum(position or 0.0 for position in stations) / len(stations)
+            places.append(dyn.DragPlace(name=f"{box_name}.seals.{name}", shaft=seals.shaft, position=middle))
+    return places

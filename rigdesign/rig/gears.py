@@ -1,0 +1,67 @@
+"""Gear pairs of a case: cold geometry from centre distance, tips, shifts and bodies."""
+
+from collections.abc import Mapping
+
+from dynamics.gear import GearBodies, GearPair, Rack
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.gears import GearMesh
+from rigdesign.case.model import Case
+from rigdesign.materials import Material
+
+
+def build_pairs(case: Case, materials: Mapping[str, Material]) -> dict[str, GearPair]:
+    """Cold gear pair of every mesh by ``gearbox.mesh``.
+
+    Raises
+    ------
+    GearGeometryError
+        Gears that cannot be made or cannot mesh.
+    """
+    return {
+        f"{box_name}.{mesh_name}": build_pair(box, mesh, materials)
+        for box_name, box in case.gearboxes.items()
+        for mesh_name, mesh in box.meshes.items()
+    }
+
+
+def build_pair(box: Gearbox, mesh: GearMesh, materials: Mapping[str, Material]) -> GearPair:
+    """Cold gear pair of one mesh."""
+    pinion, wheel = box.gears[mesh.pinion], box.gears[mesh.wheel]
+    solid = [materials[gear.material] for gear in (pinion, wheel)]
+    rack = Rack(addendum=mesh.rack.addendum, dedendum=mesh.rack.dedendum, tip_radius=mesh.rack.tip_radius)
+    bodies: GearBodies = {
+        "pressure_angle": mesh.pressure_angle,
+        "helix_angle": mesh.helix_angle,
+        "racks": (rack, rack),
+        "bore_diameters": (pinion.bore_diameter, wheel.bore_diameter),
+        "thickness_allowances": (pinion.tooth_thinning, wheel.tooth_thinning),
+        "youngs_moduli": (solid[0].elastic_modulus, solid[1].elastic_modulus),
+        "poisson_ratios": (solid[0].poisson_ratio, solid[1].poisson_ratio),
+        "densities": (solid[0].density, solid[1].density),
+    }
+    first = None if mesh.profile_shift_split else _pinion_shift(box, mesh)
+    return GearPair.from_centre_distance(
+        normal_module=mesh.normal_module,
+        teeth=(pinion.teeth, wheel.teeth),
+        centre_distance=mesh.centre_distance,
+        face_widths=(pinion.face_width, wheel.face_width),
+        profile_shift_1=first,
+        split=mesh.profile_shift_split,
+        tip_shortening=(pinion.tip_shortening, wheel.tip_shortening),
+        contact_ratio=mesh.contact_ratio,
+        tip_cut=mesh.tip_cut or "both",
+        **bodies,
+    )
+
+
+def _pinion_shift(box: Gearbox, mesh: GearMesh) -> float | None:
+    """Profile shift of the pinion, stated or as what the wheel's leaves of the sum."""
+    pinion, wheel = box.gears[mesh.pinion], box.gears[mesh.wheel]
+    if pinion.profile_shift is not None or wheel.profile_shift is None:
+        return pinion.profile_shift
+    from dynamics.line_of_action import shift_sum
+
+    total = shift_sum(
+        mesh.normal_module, mesh.pressure_angle, mesh.helix_angle, (pinion.teeth, wheel.teeth), mesh.centre_distance
+    )
+    return total - wheel.profile_shift

@@ -1,0 +1,190 @@
+"""The rig: a case turned into the inputs of the solvers, cold, SI. Nothing here changes during a run."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+from dynamics.drivetrain import Drivetrain, assemble
+from dynamics.gear import GearPair
+from dynamics.linear_system import LinearSystem
+from rigdesign.case.gearbox import Gearbox, JournalBearing
+from rigdesign.case.geometry import housing_geometry
+from rigdesign.case.model import Case
+from rigdesign.materials import MATERIALS, Material
+from rigdesign.oil import OILS, Oil
+from rigdesign.rig.drivetrain import build_drivetrain
+from rigdesign.rig.gears import build_pairs
+from rigdesign.rig.speeds import speed_ratios
+from thermal.housing_geometry import HousingGeometry
+
+Fidelity = Literal["quick", "standard", "reference"]
+
+
+@dataclass(frozen=True)
+class Rig:
+    """Everything that stays the same over operating points and passes.
+
+    pairs : cold gear pair by ``gearbox.mesh``; oils, materials : by the name the case uses
+    """
+
+    case: Case
+    fidelity: Fidelity
+    oils: Mapping[str, Oil]
+    materials: Mapping[str, Material]
+    pairs: Mapping[str, GearPair]
+    speed_ratios: Mapping[str, float]
+    """Speed of each shaft per speed of the gear that counts."""
+
+    @cached_property
+    def drivetrain(self) -> Drivetrain | None:
+        """The power circuit; None when the losses are given."""
+        return None if self.case.drivetrain is None else build_drivetrain(self.case, self.pairs, self.materials)
+
+    @cached_property
+    def system(self) -> LinearSystem | None:
+        """Matrices of the power circuit without its meshes."""
+        return None if self.drivetrain is None else assemble(self.drivetrain)
+
+    @cached_property
+    def geometries(self) -> Mapping[str, HousingGeometry]:
+        """Parametric housing of every gearbox that has one."""
+        return {
+            name: housing_geometry(box, self._gear_diameters(name))
+            for name, box in self.case.gearboxes.items()
+            if box.housing is not None
+        }
+
+    @property
+    def mesh_names(self) -> tuple[str, ...]:
+        """``gearbox.mesh`` in the order of the case, which is that of the drivetrain."""
+        return tuple(self.pairs)
+
+    @property
+    def control_mesh(self) -> int:
+        """Index of the mesh whose torque the case states."""
+        return self.mesh_names.index(self.control_mesh_name)
+
+    @property
+    def control_mesh_name(self) -> str:
+        """The first mesh of the gear at which torque and speed count."""
+        power = self.case.drivetrain
+        if power is None:
+            return self.mesh_names[0]
+        box, gear = power.torque_at.split(".")
+        return next(
+            f"{box}.{name}" for name, mesh in self.case.gearboxes[box].meshes.items() if gear in (mesh.pinion, mesh.wheel)
+        )
+
+    @property
+    def torque_ratio(self) -> float:
+        """Pinion torque of the control mesh per stated torque: 1, or z1/z2 if the case counts at a wheel."""
+        power = self.case.drivetrain
+        if power is None:
+            return 1.0
+        gear = power.torque_at.split(".")[1]
+        box, mesh = self.mesh(self.control_mesh_name)
+        pair = self.pairs[self.control_mesh_name]
+        return 1.0 if box.meshes[mesh].pinion == gear else pair.teeth[0] / pair.teeth[1]
+
+    def mesh(self, name: str) -> tuple[Gearbox, str]:
+        """Gearbox and own name of the mesh ``gearbox.mesh``."""
+        box, mesh = name.split(".")
+        return self.case.gearboxes[box], mesh
+
+    def mesh_gears(self, name: str) -> tuple[str, str]:
+        """Names ``gearbox.gear`` of pinion and wheel of a mesh."""
+        box_name = name.split(".")[0]
+        box, mesh = self.mesh(name)
+        entry = box.meshes[mesh]
+        return f"{box_name}.{entry.pinion}", f"{box_name}.{entry.wheel}"
+
+    def shaft_speed(self, shaft: str, speed: float) -> float:
+        """Speed of a shaft [rad/s] at the stated speed [rad/s]."""
+        return self.speed_ratios[shaft] * speed
+
+    def drive_speed(self, speed: float) -> float:
+        """Speed of the motor [rad/s] at the stated speed [rad/s]."""
+        power = self.case.drivetrain
+        assert power is not None
+        return self.shaft_speed(power.motor.shaft, speed)
+
+    def bearings(self) -> list[tuple[str, Gearbox, JournalBearing]]:
+        """(``gearbox.bearing``, gearbox, bearing) of the whole rig."""
+        return [
+            (f"{box_name}.{name}", box, bearing)
+            for box_name, box in self.case.gearboxes.items()
+            for name, bearing in box.bearings.items()
+        ]
+
+    def shaft_mass(self, shaft: str) -> float:
+        """Mass of the sections of a shaft of the drivetrain [kg]; zero without a drivetrain."""
+        power = self.case.drivetrain
+        if power is None or shaft not in power.shafts:
+            return 0.0
+        entry = power.shafts[shaft]
+        density = self.materials[entry.material].density
+        return density * math.fsum(
+            0.25 * math.pi * (section.outer_diameter**2 - section.inner_diameter**2) * section.length
+            for section in entry.sections
+        )
+
+    def _gear_diameters(self, name: str) -> dict[str, float]:
+        """Mean tooth diameter (d_a + d_f)/2 of each gear of a gearbox [m]."""
+        diameters = {}
+        for mesh_name, mesh in self.case.gearboxes[name].meshes.items():
+            pair = self.pairs[f"{name}.{mesh_name}"]
+            for gear, member in zip((mesh.pinion, mesh.wheel), pair.gears):
+                diameters[gear] = 2.0 * member.mean_radius
+        return diameters
+
+
+def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
+    """Turn a case into a rig.
+
+    Raises
+    ------
+    ValueError
+        Of the solvers: gears that cannot mesh, a loop that cannot close, a housing that cannot be built.
+    """
+    oils = dict(OILS) | {name: _custom_oil(case, name) for name in case.oils}
+    materials = dict(MATERIALS) | {name: _custom_material(case, name) for name in case.materials}
+    pairs = build_pairs(case, materials)
+    return Rig(
+        case=case,
+        fidelity=fidelity,
+        oils=oils,
+        materials=materials,
+        pairs=pairs,
+        speed_ratios=speed_ratios(case),
+    )
+
+
+def _custom_oil(case: Case, name: str) -> Oil:
+    entry = case.oils[name]
+    return Oil.from_viscosities(
+        name=name,
+        viscosity_1=entry.kinematic_viscosity_40,
+        temperature_1=313.15,
+        viscosity_2=entry.kinematic_viscosity_100,
+        temperature_2=373.15,
+        density_15=entry.density_15,
+        heat_capacity=entry.heat_capacity,
+        conductivity_40=entry.conductivity,
+        lubricant_factor=entry.lubricant_factor,
+    )
+
+
+def _custom_material(case: Case, name: str) -> Material:
+    entry = case.materials[name]
+    return Material(
+        title=entry.title,
+        conductivity=entry.conductivity,
+        expansion_coefficient=entry.expansion_coefficient,
+        elastic_modulus=entry.elastic_modulus,
+        poisson_ratio=entry.poisson_ratio,
+        density=entry.density,
+        root_strength=entry.root_strength,
+        tempering_temperature=entry.tempering_temperature,
+    )

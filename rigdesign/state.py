@@ -1,0 +1,82 @@
+"""What goes round the coupling loop, and what one pass of it returns. SI units throughout.
+
+Parts are named by gearbox and own name: gear ``test.pinion``, mesh ``test.main``, bearing
+``test.pinion_front``; the two oil streams of a gearbox are ``test.gear_oil`` and ``test.bearing_oil``.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+
+Values = Mapping[str, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OperatingPoint:
+    """A steady point: speed [rad/s] and torque [N m] at the gear where the case counts them."""
+
+    stage: str
+    speed: float
+    torque: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Feedback:
+    """What a pass takes from the one before: the arrows of the loop, one field each."""
+
+    gear_temperature: Values
+    """Bulk temperature of each gear [K]: its growth enters backlash and mesh."""
+    centre_distance: Values
+    """Hot centre distance of each mesh [m]."""
+    bearing_clearance: Values
+    """Hot diametral clearance of each bearing, centrifugal growth included [m]."""
+    bearing_heat: Values
+    """Heat that shaft and shell give to the film of each bearing [W]."""
+    wall_heat: Values
+    """Heat that walls, shafts and gears give to each oil stream [W]."""
+    oil_outlet: Values
+    """Outlet temperature of each oil stream [K]: it wets the walls and thins the tooth film."""
+    mesh_torque: Values
+    """Mean torque of each mesh at its pinion [N m]: it loads the bearings."""
+    tooth_growth: Values
+    """Axial growth that shifts a helical gear against its partner, by mesh [m]: it changes the bracing."""
+
+    def hold(self, arrows: frozenset[str], cold: "Feedback") -> "Feedback":
+        """This feedback with the named arrows cut: those fields stay as in ``cold``.
+
+        Raises KeyError for a name that is no field.
+        """
+        unknown = arrows - {entry.name for entry in fields(self)}
+        if unknown:
+            raise KeyError(f"no such arrow: {', '.join(sorted(unknown))}")
+        return Feedback(
+            **{entry.name: getattr(cold if entry.name in arrows else self, entry.name) for entry in fields(self)}
+        )
+
+
+TEMPERATURES = ("gear_temperature", "oil_outlet")
+LENGTHS = ("centre_distance", "bearing_clearance", "tooth_growth")
+
+
+def temperature_change(old: Feedback, new: Feedback) -> float:
+    """Largest change of a temperature between two passes [K]."""
+    return _largest_change(old, new, TEMPERATURES)
+
+
+def growth_change(old: Feedback, new: Feedback) -> float:
+    """Largest change of a length between two passes [m]."""
+    return _largest_change(old, new, LENGTHS)
+
+
+def torque_change(old: Feedback, new: Feedback) -> float:
+    """Largest relative change of a mean mesh torque between two passes [-]."""
+    changes = (
+        abs(new.mesh_torque[name] - value) / max(abs(value), 1e-9) for name, value in old.mesh_torque.items()
+    )
+    return max(changes, default=0.0)
+
+
+def _largest_change(old: Feedback, new: Feedback, names: tuple[str, ...]) -> float:
+    changes = (
+        abs(getattr(new, name)[part] - value) for name in names for part, value in getattr(old, name).items()
+    )
+    return max(changes, default=0.0)
