@@ -23,6 +23,8 @@ VOGELPOHL_CONSTANT = 1e-7
 """n [1/min] = 1e-7 F / (C eta V), SI units (G. Vogelpohl, Betriebssichere Gleitlager)."""
 MAXIMUM_FILM_RISE = 400.0
 """Film temperature above the inlet at which the oil would be destroyed and the balance is given up [K]."""
+MAXIMUM_FILM_DROP = 60.0
+"""Film temperature below the inlet at which cold bodies would have stiffened the oil [K]."""
 
 
 class BearingError(ValueError):
@@ -263,10 +265,11 @@ def _balance(film_excess: Callable[[float], float], inlet: float) -> float:
     while film_excess(other) * start > 0.0:
         step *= 2.0
         other = inlet + step
-        if abs(step) > MAXIMUM_FILM_RISE:
+        if not -MAXIMUM_FILM_DROP <= step <= MAXIMUM_FILM_RISE:
+            limit = MAXIMUM_FILM_RISE if step > 0.0 else -MAXIMUM_FILM_DROP
             raise BearingNotConvergedError(
                 f"journal bearing: film temperature leaves the inlet {inlet:.0f} K by more than "
-                f"{MAXIMUM_FILM_RISE:.0f} K; feed more oil or correct the heat from the bodies"
+                f"{limit:+.0f} K; feed more oil or correct the heat from the bodies"
             )
     low, high = min(inlet, other), max(inlet, other)
     root: float = brentq(film_excess, low, high, xtol=1e-9, rtol=1e-13)

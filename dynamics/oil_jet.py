@@ -4,6 +4,9 @@ import math
 
 from dynamics.losses import Loss, LossError
 
+JET_ANGLES = {"into_mesh": 0.0, "radial": 0.5 * math.pi, "out_of_mesh": math.pi}
+"""Angle between jet and surface speed [rad] by the side of the mesh the nozzle points at."""
+
 
 def oil_acceleration(
     place: str,

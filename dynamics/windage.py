@@ -11,7 +11,9 @@ not offered: as printed in W it gives a 1 m gear less than the skin friction of 
 
 import math
 from dataclasses import dataclass
+from typing import Self
 
+from dynamics.gear import GearPair
 from dynamics.losses import Loss, LossError
 
 LAMINAR_LIMIT = 3e5
@@ -50,6 +52,20 @@ class GearRotor:
             )
         if not 0.0 <= self.shielding <= 1.0:
             raise LossError(f"windage: shielding = {self.shielding}: must lie within 0 to 1; it is a share")
+
+    @classmethod
+    def of_pair(cls, pair: GearPair, index: int, free_faces: int = 2, shielding: float = 1.0) -> Self:
+        """Pinion (index 0) or wheel (1) of a gear pair; the pitch radius is the reference radius."""
+        gear = pair.gears[index]
+        return cls(
+            pitch_radius=gear.reference_radius,
+            tip_radius=gear.tip_radius,
+            face_width=pair.face_widths[index],
+            teeth=pair.teeth[index],
+            tip_space_angle=2.0 * math.pi / pair.teeth[index] - gear.tip_thickness / gear.tip_radius,
+            free_faces=free_faces,
+            shielding=shielding,
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

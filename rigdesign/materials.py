@@ -55,8 +55,8 @@ class Material:
             )
         if not 0.0 <= self.expansion_coefficient <= 1e-4:
             raise MaterialError(
-                f"material {self.title!r}: expansion_coefficient = {self.expansion_coefficient:.3g} 1/K: must "
-                "lie within 0 to 1e-4; steel has 11.5e-6"
+                f"material {self.title!r}: expansion_coefficient = {self.expansion_coefficient:.3g} 1/K: "
+                "must lie within 0 to 1e-4; steel has 11.5e-6"
             )
 
     @property
@@ -76,8 +76,9 @@ CASE_HARDENED_STEEL = Material(
     root_strength=920e6,
     flank_strength=1500e6,
     tempering_temperature=ZERO_CELSIUS + 180.0,
-    source="E, nu, rho as in ISO 6336-1; sigma_FE about 860 to 1000 MPa and sigma_Hlim 1500 MPa of quality MQ, "
-    "ISO 6336-5; tempered at 180 degC as usual for carburized gears; conductivity of low-alloy steel",
+    source="E, nu, rho as in ISO 6336-1; sigma_FE about 860 to 1000 MPa and sigma_Hlim 1500 MPa of "
+    "quality MQ, ISO 6336-5; tempered at 180 degC as usual for carburized gears; "
+    "conductivity of low-alloy steel",
     confidence="medium",
 )
 STRUCTURAL_STEEL = Material(
