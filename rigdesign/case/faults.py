@@ -68,8 +68,8 @@ def _in_words(kind: str, given: object, message: str) -> str:
 
 def _accepted(kind: str, given: object, context: Mapping[str, Any], slot: Slot | None) -> str:
     if kind == "literal_error":
-        choices = str(context.get("expected", ""))
-        meant = nearest(str(given), choices.replace("'", "").replace(" or ", ", ").split(", "), 1)
+        choices = str(context.get("expected", "")).replace("'", '"')
+        meant = nearest(str(given), choices.replace('"', "").replace(" or ", ", ").split(", "), 1)
         return (f'did you mean "{meant[0]}"? ' if meant else "") + f"write {choices}"
     limits = {
         "gt": "above",
@@ -107,7 +107,7 @@ def _misspelt_mark(path: str, given: Mapping[str, Any]) -> Fault:
 
 
 def _unknown_law(path: str, given: object, context: Mapping[str, Any]) -> Fault:
-    choices = str(context.get("expected_tags", ""))
+    choices = str(context.get("expected_tags", "")).replace("'", '"')
     tag = str(context.get("tag", ""))
     if not isinstance(given, dict):
         return Fault(
@@ -117,7 +117,7 @@ def _unknown_law(path: str, given: object, context: Mapping[str, Any]) -> Fault:
         return Fault(
             f"{path}.law", "", "a required key is missing", "add it: a law of heat transfer, see the schema"
         )
-    meant = nearest(tag, choices.replace("'", "").split(", "), 1)
+    meant = nearest(tag, choices.replace('"', "").split(", "), 1)
     hint = f'did you mean "{meant[0]}"? ' if meant else ""
     return Fault(f"{path}.law", f'"{tag}"', "not one of the choices", f"{hint}write {choices}")
 
