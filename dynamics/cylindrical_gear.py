@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, asin, atan, cos, hypot, inf, pi, sin, sqrt, tan
+from math import acos, asin, atan, cos, degrees, hypot, inf, pi, sin, sqrt, tan
 
 from scipy.optimize import brentq
 
@@ -14,6 +14,19 @@ class GearGeometryError(ValueError):
 def involute(angle: float) -> float:
     """Involute function tan(angle) - angle [rad]."""
     return tan(angle) - angle
+
+
+def require_angles(pressure_angle: float, helix_angle: float) -> None:
+    """Raise GearGeometryError for tool angles [rad] outside 10 .. 35 deg (normal) and 0 .. 45 deg (helix)."""
+    for name, angle, low, high in (
+        ("pressure_angle", pressure_angle, 10.0, 35.0),
+        ("helix_angle", helix_angle, 0.0, 45.0),
+    ):
+        if not low <= degrees(angle) <= high:
+            raise GearGeometryError(
+                f"{name} = {degrees(angle):.3f} deg must lie in {low:.0f}..{high:.0f} deg; "
+                "give the amount of the angle without sign of hand"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,6 +62,26 @@ class CylindricalGear:
     tip_diameter: float
     rack: Rack
     thickness_allowance: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_angles(self.pressure_angle, self.helix_angle)
+        for name in ("normal_module", "teeth"):
+            if not getattr(self, name) > 0:
+                raise GearGeometryError(
+                    f"{name} = {getattr(self, name)} must be positive; correct the gear data"
+                )
+        alpha, rack = self.pressure_angle, self.rack
+        tip_land = 0.25 * pi - rack.dedendum * tan(alpha) - rack.tip_radius * (1 - sin(alpha)) / cos(alpha)
+        if not tip_land > -5e-3:
+            raise GearGeometryError(
+                f"rack: half the tool tip is {tip_land:.4f} modules wide, it must not be negative with "
+                f"dedendum = {rack.dedendum} and tip_radius = {rack.tip_radius}; reduce one of them"
+            )
+        if not self.reference_radius > self._root_feed:
+            raise GearGeometryError(
+                f"profile_shift = {self.profile_shift:.3f} with dedendum = {rack.dedendum} leaves no root on "
+                f"{self.teeth} teeth; raise the shift or the tooth number"
+            )
 
     @property
     def transverse_module(self) -> float:

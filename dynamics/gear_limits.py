@@ -1,6 +1,5 @@
 """What a gear pair must respect to be makeable and to mesh, and what is worth a warning."""
 
-from math import degrees, radians
 from typing import TYPE_CHECKING
 
 from dynamics.cylindrical_gear import GearGeometryError
@@ -30,15 +29,6 @@ def require_sizes(pair: "GearPair") -> None:
     for name, (value, unit) in positive.items():
         if not value > 0.0:
             raise GearGeometryError(f"{name} = {value} {unit} must be positive; correct the gear data")
-    for name, angle, low, high in (
-        ("pressure_angle", pair.pressure_angle, radians(10.0), radians(35.0)),
-        ("helix_angle", pair.helix_angle, 0.0, radians(45.0)),
-    ):
-        if not low <= angle <= high:
-            raise GearGeometryError(
-                f"{name} = {degrees(angle):.3f} deg must lie in {degrees(low):.0f}..{degrees(high):.0f} deg; "
-                "give the angle without sign of hand"
-            )
     for i in (0, 1):
         if not 0.0 <= pair.bore_diameters[i] < 2.0 * pair.root_radii[i]:
             raise GearGeometryError(

@@ -6,7 +6,7 @@ from typing import Literal
 
 from scipy.optimize import brentq
 
-from dynamics.cylindrical_gear import CylindricalGear, GearGeometryError, involute
+from dynamics.cylindrical_gear import CylindricalGear, GearGeometryError, involute, require_angles
 
 TipCut = Literal["both", "wheel", "pinion"]
 
@@ -71,6 +71,7 @@ def shift_sum(
     centre_distance: float,
 ) -> float:
     """Sum of the profile shifts x1 + x2 [-] that mesh without backlash on ``centre_distance`` [m]."""
+    require_angles(pressure_angle, helix_angle)
     alpha_t = atan(tan(pressure_angle) / cos(helix_angle))
     smallest = 0.5 * normal_module * sum(teeth) / cos(helix_angle) * cos(alpha_t)
     if not centre_distance > smallest:
