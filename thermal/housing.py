@@ -27,11 +27,9 @@ import math
 from functools import lru_cache, partial
 from typing import Literal
 
-import numpy as np
-
-from thermal.fe.mesh import IndexArray, NamedMesh
+from thermal.fe.mesh import MeshError, disjoint_union
 from thermal.housing_geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
-from thermal.housing_mesh import Component, MeshError, gmsh_session, mesh_component
+from thermal.housing_mesh import gmsh_session, mesh_component
 from thermal.housing_solids import MeshSizes, bend_axes, draw_housing, draw_shaft, housing_size, shaft_size
 from thermal.housing_stations import bearing_stations, gear_stations, seal_stations, shaft_stations
 from thermal.housing_surfaces import (
@@ -93,7 +91,7 @@ def build_gearbox(geometry: HousingGeometry, fidelity: Fidelity | MeshSizes = "q
     fidelity : quick (about 10 k nodes for a usual gearbox), standard (30 k), reference (150 k), or sizes
 
     The same input gives the same arrays in every process; a model built before is returned again from memory,
-    so do not write into it. Raises GeometryError (ValueError), MeshError (RuntimeError) and, where gmsh or a
+    so do not write into it. Raises GeometryError (ValueError), MeshError (ValueError) and, where gmsh or a
     system library it needs is missing, the loader's ImportError or OSError.
     """
     return _build(geometry, fidelity if isinstance(fidelity, MeshSizes) else mesh_sizes(geometry, fidelity))
@@ -117,7 +115,7 @@ def _build(geometry: HousingGeometry, sizes: MeshSizes) -> GearboxModel:
             ),
         ]  # fmt: skip
     return GearboxModel(
-        mesh=_join(components),
+        mesh=disjoint_union(*components),
         shafts=shaft_stations(geometry),
         bearings=bearing_stations(geometry),
         seals=seal_stations(geometry),
@@ -125,21 +123,3 @@ def _build(geometry: HousingGeometry, sizes: MeshSizes) -> GearboxModel:
         fixed_body="housing" if geometry.field is None else "field",
         foot_surface="housing_foot" if geometry.field is None else "field_bottom",
     )
-
-
-def _join(components: list[Component]) -> NamedMesh:
-    """One mesh of components that share no nodes."""
-    points = np.concatenate([component.points for component in components])
-    cells, bodies, surfaces = [], {}, {}
-    node, cell = 0, 0
-    for component in components:
-        cells.append(component.cells + np.int32(node))
-        bodies.update({name: _shift(numbers, cell) for name, numbers in component.bodies.items()})
-        surfaces.update({name: _shift(facets, node) for name, facets in component.surfaces.items()})
-        node += len(component.points)
-        cell += len(component.cells)
-    return NamedMesh(points=points, cells=np.concatenate(cells), bodies=bodies, surfaces=surfaces)
-
-
-def _shift(numbers: IndexArray, by: int) -> IndexArray:
-    return np.ascontiguousarray(numbers + np.int32(by), dtype=np.int32)

@@ -4,8 +4,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from thermal.housing_curving import BendAxis
 from thermal.housing_geometry import SIDES, GeometryError, HousingGeometry, ShaftGeometry
-from thermal.housing_mesh import BendAxis, SizeLaw
+from thermal.housing_mesh import SizeLaw
 from thermal.housing_surfaces import shaft_zones
 
 
@@ -141,7 +142,7 @@ def housing_size(g: HousingGeometry, sizes: MeshSizes) -> SizeLaw:
 
 
 def shaft_size(g: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> SizeLaw:
-    """Element size at the vertices of one shaft; elements in its bore are up to three times as long as wide."""
+    """Element size at the vertices of one shaft; in its bore they are up to three times longer than wide."""
     thinnest = min(zone.radius for zone in shaft_zones(g, shaft))
 
     def size(x: float, y: float, z: float) -> float:
