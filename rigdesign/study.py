@@ -211,4 +211,5 @@ def _record(result: RunResult) -> Record:
 
 def _progress_line(task: _Task, failed: bool, record: Record) -> str:
     values = ", ".join(f"{path.rsplit('.', 1)[-1]} {value}" for path, value in task.values.items())
-    return f"{values}: {record['error'] if failed else record['verdict']}"
+    outcome = str(record["error"]).partition("\n")[0] if failed else record["verdict"]
+    return f"{values}: {outcome}"

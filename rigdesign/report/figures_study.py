@@ -1,7 +1,8 @@
 """The plot of a study: how much of every limit is left over the varied input."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import product
+from math import isnan, nan
 from typing import TYPE_CHECKING
 
 from rigdesign.report.drawing import (
@@ -56,24 +57,25 @@ def study_figure(variations: "Sequence[Variation]", points: "Sequence[StudyPoint
     unit = f" [{unit_text(numbers[1])}]" if numbers and numbers[1] else ""
     finish(axes, f"{plain(first.path)}{unit}", "margin, 1 − utilisation [% of the limit]")
     legend_right(axes)
-    figure.subplots_adjust(left=0.08, right=0.68, top=0.96, bottom=0.12)
+    figure.subplots_adjust(left=0.08, right=0.68, top=0.93, bottom=0.12)
     return figure
 
 
 def _curves_of_checks(axes: "Axes", positions: list[float], points: "Sequence[StudyPoint]") -> None:
-    curves: dict[str, list[tuple[float, float]]] = {}
+    curves: dict[str, dict[float, float]] = {}
     titles: dict[str, str] = {}
     for x, point in zip(positions, points, strict=True):
         for check in point.record.get("checks", ()):
             if check["utilisation"] is not None:
-                curves.setdefault(check["id"], []).append((x, _margin(check["utilisation"])))
+                curve = curves.setdefault(check["id"], dict.fromkeys(positions, nan))
+                curve[x] = _margin(check["utilisation"])
                 titles[check["id"]] = check["title"]
-    nearest = sorted(curves, key=lambda identity: min(margin for _, margin in curves[identity]))
+    nearest = sorted(curves, key=lambda identity: _lowest(curves[identity].values()))
     for identity in nearest[NAMED_CURVES:]:
-        axes.plot(*zip(*curves[identity], strict=True), color=GRID, linewidth=1.0, zorder=1.5)
+        axes.plot(*zip(*curves[identity].items(), strict=True), color=GRID, linewidth=1.0, zorder=1.5)
     for colour, identity in zip(SERIES, nearest[:NAMED_CURVES], strict=False):
         axes.plot(
-            *zip(*curves[identity], strict=True),
+            *zip(*curves[identity].items(), strict=True),
             "o-",
             color=colour,
             markersize=3.5,
@@ -88,17 +90,12 @@ def _curves_of_minimum(
 ) -> None:
     others = list(product(*(variation.values for variation in variations[1:])))
     for number, combination in enumerate(others):
-        members = points[number :: len(others)]
-        curve = [
-            (x, _smallest(point)) for x, point in zip(positions, members, strict=True) if not point.failed
-        ]
-        shown = [(x, margin) for x, margin in curve if margin is not None]
-        if not shown:
-            continue
+        margins = [_smallest(point) for point in points[number :: len(others)]]
         colour = SERIES[number] if number < len(SERIES) else GRID
         label = _label(", ".join(combination)) if number < len(SERIES) else None
-        axes.plot(*zip(*shown, strict=True), "o-", markersize=3.5, color=colour, label=label)
-    axes.set_title("Smallest margin of all checks")
+        axes.plot(positions, margins, "o-", markersize=3.5, color=colour, label=label)
+    names = ", ".join(variation.path for variation in variations[1:])
+    axes.set_title(f"Smallest margin of all checks; curves: {plain(names)}")
 
 
 def _failed_points(
@@ -111,9 +108,14 @@ def _failed_points(
                   label="a point without result")  # fmt: skip
 
 
-def _smallest(point: "StudyPoint") -> float | None:
-    margins = [_margin(c["utilisation"]) for c in point.record["checks"] if c["utilisation"] is not None]
-    return min(margins, default=None)
+def _smallest(point: "StudyPoint") -> float:
+    """Smallest margin of a point; NaN, a gap in the curve, where there is none."""
+    checks = point.record.get("checks", ())
+    return _lowest(_margin(check["utilisation"]) for check in checks if check["utilisation"] is not None)
+
+
+def _lowest(margins: Iterable[float]) -> float:
+    return min((margin for margin in margins if not isnan(margin)), default=nan)
 
 
 def _margin(utilisation: float) -> float:

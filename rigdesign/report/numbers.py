@@ -70,7 +70,12 @@ def limit_text(check: Check) -> str:
 
 def margin_text(check: Check) -> str:
     """The distance to the limit; between two temperatures it is in kelvin."""
-    return quantity_text(check.margin, "K" if check.unit == "degC" else check.unit)
+    return quantity_text(check.margin, margin_unit(check.unit))
+
+
+def margin_unit(unit: str) -> str:
+    """Unit of the difference of two values."""
+    return "K" if unit == "degC" else unit
 
 
 def symbol_parts(key: str) -> tuple[str, str]:

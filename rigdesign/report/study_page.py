@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rigdesign import __version__
 from rigdesign.report.drawing import drawing_style, inline_svg
+from rigdesign.report.numbers import margin_unit
 from rigdesign.report.output import staged
 from rigdesign.report.tables import csv_text
 
@@ -49,7 +50,8 @@ def study_csv(variations: "Sequence[Variation]", points: "Sequence[StudyPoint]")
     header = [variation.path for variation in variations]
     header += ["status", "verdict", "first_failing_check", "max_temperature [degC]"]
     for identity, unit in checks.items():
-        header += [f"{identity} value [{unit}]", f"{identity} margin [{unit}]", f"{identity} utilisation [1]"]
+        header += [f"{identity} value [{unit}]", f"{identity} margin [{margin_unit(unit)}]"]
+        header += [f"{identity} utilisation [1]"]
         header += [f"{identity} verdict"]
     return csv_text([*header, "error"], (_row(point, checks) for point in points))
 

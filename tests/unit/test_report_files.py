@@ -142,12 +142,12 @@ def test_curves_hold_what_the_result_holds(written):
     out, result = written
     names = {path.name for path in (out / "curves").iterdir()}
     assert names == {
-        "checks.csv", "losses.csv", "oil.csv", "heat.csv", "seal_gaps.csv", "ramp.csv", "dynamic_factor_test.csv",
-        "dynamic_factor_reference.csv", "root_stress_test_pinion.csv", "root_stress_test_wheel.csv",
-    }  # fmt: skip
-    rows = list(
-        csv.DictReader((out / "curves/dynamic_factor_test.csv").read_text(encoding="utf-8").splitlines())
-    )
+        *("checks.csv", "losses.csv", "oil.csv", "heat.csv", "seal_gaps.csv", "ramp.csv"),
+        *("dynamic_factor_test.csv", "dynamic_factor_reference.csv"),
+        *("root_stress_test_pinion.csv", "root_stress_test_wheel.csv"),
+    }
+    lines = (out / "curves/dynamic_factor_test.csv").read_text(encoding="utf-8").splitlines()
+    rows = list(csv.DictReader(lines))
     points = result.dynamics.gearboxes["test"].dynamic_factor
     assert len(rows) == 2 * len(points)
     assert float(rows[7]["max/mean [1]"]) == pytest.approx(points[7].simulated, rel=1e-9)
