@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from rigdesign.case.fields import (
     Flow,
@@ -19,6 +19,7 @@ from rigdesign.case.fields import (
     Text,
     TorsionalDamping,
     Velocity,
+    fault,
 )
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.housing import Housing
@@ -94,6 +95,16 @@ class HeatSplit(Part):
     windage_into_gears: Share
     seal_into_shaft: Share
     seal_into_housing: Share
+
+    @model_validator(mode="after")
+    def _seal_heat_fits(self) -> "HeatSplit":
+        total = self.seal_into_shaft + self.seal_into_housing
+        if total > 1.0:
+            raise fault(
+                f"seal_into_shaft and seal_into_housing add up to {total:g}, more than the whole",
+                "write shares whose sum is at most 1; the rest goes into the oil",
+            )
+        return self
 
 
 class Gearbox(Part):

@@ -73,8 +73,8 @@ class RecknagelPlate(_Condition):
     """Horizontal plate to still room air."""
 
     law: Literal["recknagel_plate"]
-    correlation: Literal["quarter_power", "turbulent"] = "quarter_power"
-    """quarter_power: 2.0 dT^(1/4); turbulent: Nu = 0.125 Ra^(1/3)."""
+    correlation: Literal["dimensional", "turbulent"] = "dimensional"
+    """dimensional: 2.0 dT^(1/4); turbulent: Nu = 0.125 Ra^(1/3)."""
 
 
 class IsoTr14179(_Condition):

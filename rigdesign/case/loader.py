@@ -1,5 +1,6 @@
 """Loads a case: file -> tree -> marks off -> validated -> rules that span keys; every fault at once."""
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -36,15 +37,26 @@ def changed(case: Case, path: str, value: object) -> Case:
     """A copy of ``case`` with the value at ``path`` replaced; see ``Case.with_value``."""
     tree = case.origin.tree
     plain, _, _ = take_off(dict(tree))
-    keys = path.split(".")
-    slot = slot_at(Case, plain, keys)
-    if slot is None:
+    places = _places(path, plain)
+    if not places:
         meant = nearest_paths(path, known_paths(Case, plain))
         remedy = (
             "did you mean " + " or ".join(meant) + "?" if meant else "see the schema for the paths of a case"
         )
         raise CaseError([Fault(path, "", "no such path in this case", remedy)], str(case.path))
-    return _build(_replaced(tree, keys, _coerced(value, slot)), case.path)
+    for place, slot in places.items():
+        tree = _replaced(tree, place.split("."), _coerced(value, slot))
+    return _build(tree, case.path)
+
+
+def _places(path: str, plain: Mapping[str, Any]) -> dict[str, Slot]:
+    """The place a path names, or all that fit it where ``*`` stands for any name."""
+    names = [path]
+    if "*" in path:
+        expression = re.compile(re.escape(path).replace(r"\*", r"[^.]+"))
+        names = [known for known in known_paths(Case, plain) if expression.fullmatch(known)]
+    slots = {name: slot_at(Case, plain, name.split(".")) for name in names}
+    return {name: slot for name, slot in slots.items() if slot is not None}
 
 
 def _build(tree: Mapping[str, Any], file: Path) -> Case:

@@ -102,7 +102,8 @@ class Case(Part):
 
         Parameters
         ----------
-        path : dotted path, e.g. ``gearboxes.test.oil.inlet_temperature``; list items by name or number
+        path : dotted path, e.g. ``gearboxes.test.oil.inlet_temperature``; list items by name or number; ``*``
+            stands for every name, ``gearboxes.test.bearings.*.diametral_clearance``
         value : what the file would hold (``"120 degC"``, ``0.4``); a text is read as number or true/false
             where the key holds one
 

@@ -181,6 +181,16 @@ def test_with_value_changes_one_value_of_a_copy(prototype: Case) -> None:
     assert case.path == prototype.path
 
 
+def test_with_value_changes_all_parts_a_star_stands_for(prototype: Case) -> None:
+    case = prototype.with_value("gearboxes.test.bearings.*.diametral_clearance", "100 um")
+    changed = [bearing.diametral_clearance for bearing in case.gearboxes["test"].bearings.values()]
+    assert changed == pytest.approx([100e-6] * 4)
+    kept = [bearing.diametral_clearance for bearing in case.gearboxes["reference"].bearings.values()]
+    assert kept == pytest.approx([80e-6] * 4)
+    with pytest.raises(CaseError, match=r"bearings\.\*\.clearance: no such path"):
+        prototype.with_value("gearboxes.test.bearings.*.clearance", "100 um")
+
+
 def test_with_value_keeps_the_reason_of_an_assumption(prototype: Case) -> None:
     case = prototype.with_value("losses.chamber_density", "30 kg/m3")
     record = {record.path: record for record in case.assumptions}["losses.chamber_density"]

@@ -159,6 +159,12 @@ BAD = [
         "needs the coupling",
         "name a coupling",
     ),
+    (
+        "gearboxes.test.heat_split.seal_into_shaft = 0.9",
+        "gearboxes.test.heat_split",
+        "add up to 1.15",
+        "at most 1",
+    ),
     # gears
     (
         'gearboxes.reference.meshes.main.centre_distance = "90 mm"',
