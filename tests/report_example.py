@@ -1,5 +1,7 @@
 """A synthetic result in the shape of a real one, for tests of writers, report and study. Not a prediction."""
 
+from functools import cache
+
 import numpy as np
 
 from rigdesign import results as r
@@ -45,6 +47,7 @@ def voxel_mesh(body_of_voxel, names, spacing):
     )
 
 
+@cache
 def gearbox_field(spacing=0.025):
     """A box on a plate with two square shafts through it, warm on one side."""
     names = ["housing", "clamping_field", "shaft_pinion", "shaft_wheel"]

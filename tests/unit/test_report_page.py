@@ -174,9 +174,16 @@ def test_everything_from_the_case_is_escaped():
     [
         {"dynamics": None},
         {"thermal": [], "growth": [], "fields": [], "coupling": []},
-        {"losses": [], "oil": [], "cooler": {}},
-        {"checks": [], "assumptions": [], "warnings": [], "not_modelled": [], "hand_checks": []},
-        {"checks": [check for check in checks() if check.verdict == "not applicable"]},
+        {"losses": [], "oil": [], "cooler": {}, "dynamics": None},
+        {
+            "checks": [],
+            "assumptions": [],
+            "warnings": [],
+            "not_modelled": [],
+            "hand_checks": [],
+            "dynamics": None,
+        },
+        {"checks": [check for check in checks() if check.verdict == "not applicable"], "dynamics": None},
     ],
 )
 def test_a_result_without_a_part_still_has_its_page(changes):

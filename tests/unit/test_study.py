@@ -265,3 +265,17 @@ def _alive(pid):
         return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
     except OSError:
         return False
+
+
+def test_interrupt_ends_the_workers_at_once(tmp_path):
+    script = tmp_path / "driver.py"
+    script.write_text(DRIVER.format(root=str(ROOT)))
+    process = subprocess.Popen(
+        [sys.executable, str(script), str(tmp_path / "out")], stderr=subprocess.DEVNULL
+    )
+    log = tmp_path / "out.log"
+    _wait(lambda: _stored(tmp_path / "out") >= 1)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=20) != 0
+    _wait(lambda: not any(_alive(int(line.split()[1])) for line in log.read_text().splitlines()))
+    assert 1 <= _stored(tmp_path / "out") < POINTS
