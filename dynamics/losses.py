@@ -13,6 +13,17 @@ from numpy.typing import ArrayLike, NDArray
 from dynamics.tooth_friction import FrictionCoefficient
 from dynamics.tooth_sliding import PairStiffness, ToothPath, sliding_speed, tooth_loss_factor
 
+__all__ = [
+    "Loss",
+    "LossError",
+    "ToothPath",
+    "mesh_loss",
+    "sliding_power",
+    "sliding_speed",
+    "squeeze_loss",
+    "tooth_loss_factor",
+]
+
 Array = NDArray[np.float64]
 
 
