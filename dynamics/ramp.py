@@ -75,8 +75,8 @@ class Stage:
         if self.direction is not None and self.direction != actual:
             start, end = self.speed if self.kind == "speed" else self.torque
             raise ScheduleError(
-                f"stage {self.name!r}: says that the {self.kind} is {self.direction} but it goes from {start:g} "
-                f"to {end:g}, which is {actual}; swap the values or correct the direction"
+                f"stage {self.name!r}: says that the {self.kind} is {self.direction} but it goes from "
+                f"{start:g} to {end:g}, which is {actual}; swap the values or correct the direction"
             )
         if self.held:
             raise ScheduleError(
@@ -124,8 +124,8 @@ class Schedule:
             ):
                 if not math.isclose(end, start, rel_tol=1e-9, abs_tol=1e-9):
                     raise ScheduleError(
-                        f"stage {after.name!r}: {quantity} starts at {start:g} but stage {before.name!r} ends "
-                        f"at {end:g}; make them equal or put a stage in between"
+                        f"stage {after.name!r}: {quantity} starts at {start:g} but stage {before.name!r} "
+                        f"ends at {end:g}; make them equal or put a stage in between"
                     )
 
     @property
