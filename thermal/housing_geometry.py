@@ -25,6 +25,8 @@ Side = Literal["front", "rear"]
 SIDES: tuple[Side, Side] = ("front", "rear")
 MINIMUM_LAND = 1e-3
 """Least length or thickness [m] that geometry may leave between two features."""
+SMALLEST_STEP = 1e-6
+"""Protrusion [m] below which a bearing counts as flush with its wall."""
 
 
 class GeometryError(ValueError):
@@ -231,7 +233,9 @@ class HousingGeometry:
 
     def bearing_depths(self, shaft: ShaftGeometry) -> tuple[float, float]:
         """Outer and inner edge of a bearing, measured inwards from the outer end face [m]."""
-        inner = max(self.end_wall_thickness, self.end_seal_width + shaft.bearing_width)
+        needed = self.end_seal_width + shaft.bearing_width
+        flush = needed <= self.end_wall_thickness + SMALLEST_STEP
+        inner = self.end_wall_thickness if flush else needed
         return inner - shaft.bearing_width, inner
 
     def protrusion(self, shaft: ShaftGeometry) -> float:
