@@ -17,7 +17,9 @@ FAULT = "rigdesign"
 class Part(BaseModel):
     """A table of the case file: every key known, every value of its type, nothing changed afterwards."""
 
-    model_config = ConfigDict(strict=True, frozen=True, extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(
+        strict=True, frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True
+    )
 
 
 def fault(problem: str, remedy: str) -> PydanticCustomError:
@@ -117,7 +119,7 @@ Inertia = Annotated[float, Quantity("inertia", at_least="0 kg m2", at_most="1000
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 """A part of a whole, 0 to 1."""
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0.0)]
 Count = Annotated[int, Field(gt=0)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=60)]
 """Name of a part: lower-case letters, digits and underscores."""

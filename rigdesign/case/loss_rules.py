@@ -36,6 +36,11 @@ def loss_faults(case: "Case") -> Iterator[Fault]:
             "a constant friction needs its coefficient",
             "add it, e.g. 0.04",
         )
+    if losses.friction.law == "doleschel" and losses.friction.doleschel is None:
+        yield Fault(
+            "losses.friction.doleschel", "", "Doleschel's law needs the constants of the oil",
+            "add [losses.friction.doleschel], or take the law schlenk or michaelis",
+        )  # fmt: skip
     for name, loss in losses.given.items():
         at = f"losses.given.{name}"
         if loss.gearbox not in case.gearboxes:

@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from rigdesign.case.fields import Density, Name, Part, Power
+from rigdesign.case.fields import Density, Name, Part, Positive, Power
 
 LossKind = Literal["mesh", "bearing", "windage", "seal", "oil_acceleration", "squeeze"]
 
@@ -22,6 +22,20 @@ class GivenLoss(Part):
     """Stages it holds for; all when empty."""
 
 
+class DoleschelConstants(Part):
+    """Constants of one oil from its FZG efficiency test (Doleschel, TU Munich 2003)."""
+
+    solid: Positive
+    """Friction coefficient of solid contact at 1000 N/mm2 and 0.2 m/s."""
+    solid_pressure_exponent: float
+    solid_speed_exponent: float
+    fluid: Positive
+    """Friction coefficient of the full film at 1000 N/mm2, 8.3 m/s and 20 mPa s."""
+    fluid_pressure_exponent: float
+    fluid_speed_exponent: float
+    fluid_viscosity_exponent: float
+
+
 class ToothFriction(Part):
     """Friction coefficient of the tooth contact, used in the torque loop and for the loss."""
 
@@ -30,6 +44,8 @@ class ToothFriction(Part):
     """X_L; that of the oil when left out."""
     coefficient: float | None = Field(default=None, ge=0.0, le=0.5)
     """Friction coefficient when the law is ``constant``."""
+    doleschel: DoleschelConstants | None = None
+    """Oil constants when the law is ``doleschel``."""
 
 
 class Losses(Part):

@@ -69,7 +69,9 @@ class MarkFault:
 
 def is_marked(node: object) -> bool:
     """Whether a table is a value with marks and not a part of the case."""
-    return isinstance(node, dict) and "value" in node and set(node) <= KEYS
+    if not isinstance(node, dict) or "value" not in node or not set(node) <= KEYS:
+        return False
+    return len(node) > 1 or not isinstance(node["value"], dict)
 
 
 def take_off(tree: dict[str, Any]) -> tuple[dict[str, Any], tuple[Mark, ...], tuple[MarkFault, ...]]:

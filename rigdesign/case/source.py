@@ -40,7 +40,10 @@ def read_tree(file: Path) -> dict[str, Any]:
         current = _base(content.pop("extends", None), current)
     tree = chain.pop()
     while chain:
-        tree = merge(tree, chain.pop())
+        try:
+            tree = merge(tree, chain.pop())
+        except CaseError as error:
+            raise CaseError(str(error), str(file)) from None
     return tree
 
 

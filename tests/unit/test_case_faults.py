@@ -277,6 +277,14 @@ BAD = [
         "no such stage",
         "known: bracing, to_transition_speed",
     ),
+    (
+        "gearboxes.test.gears.pinion.profile_shift = nan",
+        "gearboxes.test.gears.pinion.profile_shift",
+        "finite",
+        "a number",
+    ),
+    ("test_plan.load_cycles = inf", "test_plan.load_cycles", "finite", "a number"),
+    ('losses.friction.law = "doleschel"', "losses.friction.doleschel", "constants of the oil", "schlenk"),
     ('losses.friction.law = "constant"', "losses.friction.coefficient", "needs its coefficient", "0.04"),
     # a check on a part that is not there
     (
