@@ -128,7 +128,7 @@ def seal_gap_figure(growth: list[GrowthResult]) -> "Figure":
             axes,
             "angle about the shaft axis [°]",
             "radial gap, local [mm]",
-            f"{plain(item.gearbox)}, {plain(item.stage)}",
+            f"Gearbox {plain(item.gearbox)}, stage {plain(item.stage)}",
         )
         legend_right(axes)
     figure.subplots_adjust(left=0.085, right=0.76, top=1 - 0.28 / height, bottom=0.47 / height, hspace=0.5)
