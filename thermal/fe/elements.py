@@ -246,12 +246,13 @@ class SurfaceElements:
         parts = (values * self.weights) @ self.values
         return _gather(self.facets, parts, len(self._elements.mesh.points))
 
-    def add_mass(self, fine: FloatArray, coarse: FloatArray | None, coefficient: FloatArray) -> None:
-        """Add the integral of c u v to matrix values of both spaces; coefficient : (n_f, n_q) [W/(m2 K)]."""
-        weights = coefficient * self.weights
-        assembly.add_facet_mass(fine, self.slots, self.values, weights)
-        if coarse is not None:
-            assembly.add_facet_mass(coarse, self.corner_slots, self.corner_values, weights)
+    def add_mass(self, values: FloatArray, coefficient: FloatArray) -> None:
+        """Add the integral of c u v to second-order matrix values; coefficient : (n_f, n_q) [W/(m2 K)]."""
+        assembly.add_facet_mass(values, self.slots, self.values, coefficient * self.weights)
+
+    def add_coarse_mass(self, values: FloatArray, coefficient: FloatArray) -> None:
+        """Add the integral of c u v to the values of the linear matrix."""
+        assembly.add_facet_mass(values, self.corner_slots, self.corner_values, coefficient * self.weights)
 
 
 def _gather(nodes: IndexArray, parts: FloatArray, n_nodes: int) -> FloatArray:

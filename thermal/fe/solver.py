@@ -7,6 +7,7 @@ for the smoother; Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., al
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from scipy.sparse.linalg import splu
 from thermal.fe.mesh import FloatArray
 
 Matrix = sparse.csr_array | sparse.bsr_array
+M = TypeVar("M", sparse.csr_array, sparse.bsr_array)
 BoolArray = NDArray[np.bool_]
 Operator = Callable[[FloatArray], FloatArray]
 
@@ -52,7 +54,7 @@ class LowRank:
         return np.asarray(self.left @ (self.right.T @ x))
 
 
-def constrain(matrix: Matrix, fixed: BoolArray) -> Matrix:
+def constrain(matrix: M, fixed: BoolArray) -> M:
     """Replace rows and columns of ``fixed`` (n,) unknowns by their diagonal. The input is left as it is.
 
     A right-hand side that is zero there then gives a solution that is zero there.
