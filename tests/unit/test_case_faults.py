@@ -258,6 +258,12 @@ BAD = [
         "only a dwell",
         "dwell",
     ),
+    (
+        'schedule.stages = [{ name = "test", drive_torque = "9 N m" }]',
+        "schedule.stages.test.drive_torque",
+        "is speed controlled",
+        "run_up stage only",
+    ),
     # losses
     (
         'losses.basis = "input"',
