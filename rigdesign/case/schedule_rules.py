@@ -47,7 +47,8 @@ def schedule_faults(case: "Case") -> Iterator[Fault]:
                 yield Fault(path, given, f"changes in a {stage.kind} stage, {before}", _direction(stage.kind))
         if stage.drive_torque is not None and stage.kind != "run_up":
             yield Fault(
-                f"{at}.drive_torque", show(stage.drive_torque, "torque"), f"a {stage.kind} stage is speed controlled",
+                f"{at}.drive_torque", show(stage.drive_torque, "torque"),
+                f"a {stage.kind} stage is speed controlled",
                 "give a drive torque to a run_up stage only",
             )  # fmt: skip
         if stage.held and stage.kind != "dwell":
