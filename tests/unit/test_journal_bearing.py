@@ -4,6 +4,8 @@ import math
 from dataclasses import replace
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from dynamics.journal_bearing import (
     BearingError,
@@ -218,3 +220,29 @@ def test_impossible_operation(changes: dict[str, float], word: str) -> None:
 def test_no_balance_is_said(heat: float) -> None:
     with pytest.raises(BearingNotConvergedError, match="film temperature"):
         solve(heat_from_bodies=heat)
+
+
+FACTOR = st.floats(min_value=0.1, max_value=10.0)
+
+
+@settings(max_examples=60, deadline=None, derandomize=True, database=None)
+@given(size=FACTOR, clearance=FACTOR, load=FACTOR, speed=FACTOR, flow=FACTOR, heat=st.floats(-2e3, 2e3))
+def test_any_bearing_gives_a_balanced_state_or_says_why_not(
+    size: float, clearance: float, load: float, speed: float, flow: float, heat: float
+) -> None:
+    """Each number times 0.1 to 10: a closed heat balance of finite numbers, or an error that says why not."""
+    try:
+        bearing = JournalBearing(
+            diameter=40e-3 * size, width=30e-3 * size, diametral_clearance=80e-6 * clearance * size
+        )
+        state = solve(
+            bearing, load=2000.0 * load, rpm=12000.0 * speed, flow=2.0 * flow, heat_from_bodies=heat
+        )
+    except (BearingError, BearingNotConvergedError) as error:
+        assert ";" in str(error)
+        return
+    carried = DENSITY * HEAT_CAPACITY * state.flow * (state.outlet_temperature - INLET)
+    assert carried == pytest.approx(state.power + heat, rel=1e-6, abs=1e-3)
+    assert 0.0 < state.minimum_film <= 0.5 * bearing.diametral_clearance
+    assert state.drag_torque >= state.petroff_torque > 0.0
+    assert all(math.isfinite(value) for value in vars(state).values() if isinstance(value, float))
