@@ -126,9 +126,10 @@ def dynamic_factor(
 
 def _exact_reduced_mass(pair: GearPair) -> float:
     """Reduced mass per face width [kg/mm] of the bodies as they are, width beyond the common one included."""
-    b = pair.face_width
-    masses = [inertia / (b * radius**2) for inertia, radius in zip(pair.inertias, pair.base_radii)]
-    return 1e-3 * masses[0] * masses[1] / (masses[0] + masses[1])
+    (inertia_1, inertia_2), (r_1, r_2) = pair.inertias, pair.base_radii
+    return iso6336_1_2006.m_red_exact(
+        inertia_1 * MM**2, inertia_2 * MM**2, r_1 * MM, r_2 * MM, pair.face_width * MM
+    )
 
 
 def dynamic_factor_curve(

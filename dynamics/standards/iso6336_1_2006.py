@@ -186,13 +186,11 @@ def m_red(data: MeshData) -> float:
     return pi / 8.0 * ratio * data.d_m1**2 / (pinion + wheel)
 
 
-def m_red_exact(J_1: float, J_2: float, r_b1: float, r_b2: float, b_1: float, b_2: float, b: float) -> float:
-    """Reduced mass per common face width b [kg/mm] from moments of inertia [kg mm2] of the whole bodies.
+def m_red_exact(J_1: float, J_2: float, r_b1: float, r_b2: float, b: float) -> float:
+    """Reduced mass per common face width b [kg/mm] from the moments of inertia of both bodies [kg mm2].
 
-    Each m* = J / (b r_b^2); the widths b_1, b_2 enter only through J and are not needed beyond a check.
+    m* = J / (b r_b^2) of each gear (clause 6.5.3); a wheel wider than the mesh counts with all its width.
     """
-    if not min(b_1, b_2) >= b:
-        raise ValueError(f"b = {b} mm must not exceed the face widths {b_1}, {b_2} mm; give the common width")
     m_1, m_2 = J_1 / (b * r_b1**2), J_2 / (b * r_b2**2)
     return m_1 * m_2 / (m_1 + m_2)
 

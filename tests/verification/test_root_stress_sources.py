@@ -97,12 +97,14 @@ def test_local_lever_of_a_helical_gear_at_the_virtual_load_point(index):
 
 
 def test_truncated_flank_moves_the_load_point_of_the_uhcf_pinion():
-    """The wheel's form circle ends the path before the pinion's tip; D follows it, the standard's d_en not."""
+    """The wheel's form circle ends the path before the pinion's tip; D follows, d_en does not."""
     pair = uhcf(0.0)
     influence = root_influence(pair, 0)
     real = influence.at(pair.path.outer_single_contact) * 180.0 / pair.base_radii[0] / influence.width
     missing = pair.path.tip_end - pair.path.end
-    rated = influence.at(pair.path.outer_single_contact + missing) * 180 / pair.base_radii[0] / influence.width
+    rated = (
+        influence.at(pair.path.outer_single_contact + missing) * 180 / pair.base_radii[0] / influence.width
+    )
     assert missing == pytest.approx(43e-6, abs=1e-6)
     assert rated == pytest.approx(iso_rating.root_stress(pair, 180.0, 0).sigma_F0 * 1e6, rel=1e-4)
     assert 0.985 < real / rated < 1.0

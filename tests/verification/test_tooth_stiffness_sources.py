@@ -14,14 +14,14 @@ from dynamics.gear import GearPair, Rack
 from dynamics.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.tooth_stiffness import pair_stiffness, single_pair_stiffness
 
-UHCF = dict(
-    normal_module=1e-3,
-    teeth=(99, 102),
-    centre_distance=99.5e-3,
-    face_widths=(7e-3, 15e-3),
-    profile_shift_1=0.0,
-    tip_shortening=(0.0, 0.70545e-3),
-)
+UHCF = {
+    "normal_module": 1e-3,
+    "teeth": (99, 102),
+    "centre_distance": 99.5e-3,
+    "face_widths": (7e-3, 15e-3),
+    "profile_shift_1": 0.0,
+    "tip_shortening": (0.0, 0.70545e-3),
+}
 
 
 def equal_pair(module, teeth, width, tip_radius=0.38, bore=0.0):

@@ -1,0 +1,52 @@
+import numpy as np
+import pytest
+
+from dynamics.gear import GearPair
+from dynamics.root_stress import root_influence, root_stress_history, root_stress_over_face
+
+PAIR = GearPair.from_centre_distance(
+    normal_module=1e-3,
+    teeth=(99, 102),
+    centre_distance=99.5e-3,
+    face_widths=(7e-3, 15e-3),
+    profile_shift_1=0.0,
+    contact_ratio=1.26,
+    tip_cut="wheel",
+)
+
+
+def test_stress_grows_towards_the_own_tip():
+    pinion, wheel = (root_influence(PAIR, index) for index in (0, 1))
+    assert np.all(np.diff(pinion.value) > 0.0)
+    assert np.all(np.diff(wheel.value) < 0.0)
+    assert (pinion.width, wheel.width) == pytest.approx((7e-3, 9e-3))
+    assert pinion.at(1.0) == pinion.value[-1]
+
+
+def test_history_is_force_times_influence():
+    influence = root_influence(PAIR, 0)
+    force = np.array([0.0, 1000.0, 2000.0])
+    path = np.array([1e-3, 2e-3, 3e-3])
+    stress = root_stress_history(influence, force, path)
+    assert stress == pytest.approx(force / 7e-3 * influence.at(path))
+    both = root_stress_history(influence, np.stack([force, force], 1), np.stack([path, path], 1))
+    assert both == pytest.approx(2.0 * stress)
+
+
+def test_uniform_slices_give_the_stress_of_the_whole_face():
+    influence = root_influence(PAIR, 0)
+    path = np.array([1e-3, 3e-3])
+    slices = np.full((2, 5), 200.0)
+    local = root_stress_over_face(influence, slices, path, np.zeros(5), 7e-3)
+    whole = root_stress_history(influence, np.full(2, 1000.0), path)
+    assert local == pytest.approx(np.repeat(whole[:, None], 5, axis=1))
+
+
+def test_impossible_histories_are_refused():
+    influence = root_influence(PAIR, 0)
+    with pytest.raises(ValueError, match="one shape"):
+        root_stress_history(influence, [1.0, 2.0], [1e-3])
+    with pytest.raises(ValueError, match="must not be negative"):
+        root_stress_history(influence, [-1.0], [1e-3])
+    with pytest.raises(ValueError, match="slice_forces"):
+        root_stress_over_face(influence, np.ones((2, 4)), [1e-3, 2e-3], np.zeros(5), 7e-3)
