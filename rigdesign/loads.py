@@ -4,12 +4,16 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from dynamics.bracing import Mode, ShiftedGear, brace
 from dynamics.flank import Microgeometry, cumulative_pitch, mesh_law
 from dynamics.gear import GearPair
 from dynamics.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.losses import ToothPath
 from dynamics.mesh_law import MeshLaw
+from dynamics.response_curve import CurvePoint, periodic_response
+from dynamics.static_loop import NotConverged
 from dynamics.tooth_friction import (
+    Doleschel,
     FrictionCoefficient,
     FrictionLaw,
     GivenFriction,
@@ -19,6 +23,7 @@ from dynamics.tooth_friction import (
 )
 from dynamics.tooth_stiffness import PairStiffness, pair_stiffness
 from rigdesign.case.gears import FlankModification, Gear
+from rigdesign.oil import Oil
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 
@@ -65,20 +70,6 @@ def warm_pair(rig: Rig, name: str, speed: float, feedback: Feedback) -> GearPair
     )
 
 
-def tooth_path(pair: GearPair) -> ToothPath:
-    """The path of contact as the loss integral needs it."""
-    return ToothPath(
-        base_radius_1=pair.base_radii[0],
-        base_radius_2=pair.base_radii[1],
-        start=pair.path.start,
-        end=pair.path.end,
-        base_pitch=pair.base_pitch,
-        working_pressure_angle=pair.working_pressure_angle,
-        face_width=pair.face_width,
-        base_helix_angle=pair.base_helix_angle,
-    )
-
-
 def _mesh_model(
     rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, kind: str
 ) -> MeshModel:
@@ -103,7 +94,7 @@ def _mesh_model(
         micro=(microgeometry(gears[0], pair, 0), microgeometry(gears[1], pair, 1)),
         n_slices=numerics.slices_helical if pair.helix_angle else numerics.slices_spur,
         damping=entry.damping,
-        friction=tooth_path(pair).transverse_friction(friction.value),
+        friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
         offset=feedback.tooth_growth[name] * math.tan(pair.base_helix_angle),
     )
     return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law)
@@ -119,25 +110,30 @@ def mesh_friction(
     oil = rig.oils[box.oil.oil]
     stream = f"{name.split('.')[0]}.gear_oil"
     temperature = 0.5 * (box.oil.inlet_temperature + feedback.oil_outlet[stream])
-    contact = tooth_path(pair).contact(
+    contact = ToothPath.of_pair(pair).contact(
         max(abs(feedback.mesh_torque[name]), LEAST_TORQUE),
         rig.shaft_speed(gears[0].shaft, point.speed),
         reference_diameter_1=2.0 * pair.reference_radii[0],
         roughness=0.5 * (gears[0].flank_roughness + gears[1].flank_roughness),
         viscosity=oil.dynamic_viscosity(temperature),
     )
-    return friction_coefficient(contact, friction_law(rig))
+    return friction_coefficient(contact, friction_law(rig, oil))
 
 
-def friction_law(rig: Rig) -> FrictionLaw:
-    """The friction law of the case."""
+def friction_law(rig: Rig, oil: Oil) -> FrictionLaw:
+    """The friction law of the case for this oil."""
     friction = rig.case.losses.friction
-    if friction.law == "constant":
-        assert friction.coefficient is not None
-        return GivenFriction(value=friction.coefficient)
-    if friction.law == "michaelis":
-        return Michaelis(lubricant_factor=friction.lubricant_factor)
-    return Schlenk(lubricant_factor=friction.lubricant_factor)
+    factor = oil.lubricant_factor if friction.lubricant_factor is None else friction.lubricant_factor
+    match friction.law:
+        case "constant":
+            assert friction.coefficient is not None
+            return GivenFriction(value=friction.coefficient)
+        case "michaelis":
+            return Michaelis(lubricant_factor=factor)
+        case "doleschel":
+            assert friction.doleschel is not None
+            return Doleschel(**dict(friction.doleschel), pressure_viscosity=oil.pressure_viscosity)
+    return Schlenk(lubricant_factor=factor)
 
 
 def microgeometry(gear: Gear, pair: GearPair, index: int) -> Microgeometry:
@@ -174,5 +170,91 @@ def signed_torque(rig: Rig, point: OperatingPoint) -> float:
 
 def first_torques(rig: Rig, point: OperatingPoint) -> Mapping[str, float]:
     """Mesh torques before any response: the same tooth force in every mesh of the loop."""
-    force = signed_torque(rig, point) / rig.pairs[rig.control_mesh_name].base_radii[0]
+    force = signed_torque(rig, point) / rig.pairs[rig.control_mesh].base_radii[0]
     return {name: force * pair.base_radii[0] for name, pair in rig.pairs.items()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """How the loop is braced: the torque that is controlled, or the twist [rad] or shift [m] that is held."""
+
+    mode: Mode
+    twist: float = 0.0
+    shift: float = 0.0
+
+
+def shifted_gear(rig: Rig) -> ShiftedGear | None:
+    """The helical gear whose axial shift braces the loop; None if the case names none."""
+    power = rig.case.drivetrain
+    if power is None or power.bracing.shifted_gear is None:
+        return None
+    box_name, gear = power.bracing.shifted_gear.split(".")
+    for index, name in enumerate(rig.mesh_names):
+        if name.split(".")[0] != box_name:
+            continue
+        box, mesh = rig.mesh(name)
+        entry = box.meshes[mesh]
+        if gear in (entry.pinion, entry.wheel):
+            pair = rig.pairs[name]
+            return ShiftedGear(
+                mesh=index,
+                helix_angle=pair.helix_angle,
+                base_helix_angle=pair.base_helix_angle,
+                working_radius=pair.working_radii[0 if gear == entry.pinion else 1],
+                halves=2 if entry.double_helical else 1,
+                floating_partner=power.bracing.partner_floats,
+                spline_friction=power.bracing.spline_friction_coefficient,
+                spline_radius=power.bracing.spline_pitch_radius or 0.0,
+            )
+    raise ValueError(f"drivetrain.bracing.shifted_gear = {power.bracing.shifted_gear}: this gear is in no mesh")
+
+
+def brace_cold(rig: Rig, point: OperatingPoint, cold: Feedback) -> Setting:
+    """Setting that makes the asked torque in the cold loop; held ever after in the held modes."""
+    assert rig.case.drivetrain is not None and rig.system is not None
+    mode = rig.case.drivetrain.bracing.mode
+    if mode == "torque_controlled":
+        return Setting(mode=mode)
+    laws = laws_of(mesh_models(rig, point, cold))
+    state = brace(rig.system, laws, signed_torque(rig, point), mode, gear=shifted_gear(rig))
+    return Setting(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
+
+
+def respond(
+    rig: Rig,
+    point: OperatingPoint,
+    models: Sequence[MeshModel],
+    drags: Mapping[str, float],
+    setting: Setting,
+) -> CurvePoint:
+    """Periodic response at one operating point.
+
+    Raises
+    ------
+    NotConverged
+        Neither harmonic balance nor time integration settles.
+    """
+    assert rig.system is not None
+    controlled = setting.mode == "torque_controlled"
+    curve = periodic_response(
+        rig.system,
+        shifted_laws(rig, models, setting),
+        [rig.pinion_speed(point.speed)],
+        signed_torque(rig, point) if controlled else None,
+        twist=None if controlled else setting.twist,
+        period=rig.case.numerics.response_period,
+        drag_torques=drags,
+    )
+    if curve.failed:
+        raise NotConverged(f"periodic response at stage {point.stage!r}: {curve.failed[0][1]}")
+    return curve.points[0]
+
+
+def shifted_laws(rig: Rig, models: Sequence[MeshModel], setting: Setting) -> list[MeshLaw]:
+    """Mesh laws with the held axial shift in the mesh of the shifted gear."""
+    laws = laws_of(models)
+    gear = shifted_gear(rig)
+    if gear is not None and setting.shift:
+        law = laws[gear.mesh]
+        laws[gear.mesh] = law._replace(offset=law.offset + gear.approach_per_shift * setting.shift)
+    return laws

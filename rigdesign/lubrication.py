@@ -2,24 +2,23 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from dynamics.gear import GearPair
 from dynamics.journal_bearing import BearingState, JournalBearing, solve_bearing
-from dynamics.losses import Loss, mesh_loss, squeeze_loss
-from dynamics.oil_jet import oil_acceleration
+from dynamics.losses import Loss, ToothPath, mesh_loss, squeeze_loss
+from dynamics.oil_jet import JET_ANGLES, oil_acceleration
+from dynamics.response_curve import CurvePoint
 from dynamics.seal_loss import gap_seal_loss, lip_seal_loss
 from dynamics.windage import GearRotor, Mist, gear_windage
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.loads import MeshModel, tooth_path
+from rigdesign.loads import MeshModel
 from rigdesign.oil import oil_outlet
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 from thermal.air import air
 
 GRAVITY = 9.81
-JET_ANGLES = {"into_mesh": 0.0, "radial": 0.5 * math.pi, "out_of_mesh": math.pi}
-"""Angle between jet and pitch line velocity [rad]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,12 +131,13 @@ def _lever(box: Gearbox, shaft: str, position: float | None, gear_position: floa
 def drag_torques(losses: Sequence[PlacedLoss], rig: Rig, speed: float) -> dict[str, float]:
     """Torque with which each bearing, gear windage and seal brakes its shaft [N m], by drivetrain name.
 
-    Oil acceleration brakes the pinion of its mesh. Meshes brake by themselves, through tooth friction.
+    Oil acceleration and squeezing brake the pinion of their mesh. Tooth friction is not among ``losses``: the
+    mesh law holds it. Constant bearing drag is in the damping matrix.
     """
     torques: dict[str, float] = {}
     constant = rig.case.losses.bearing_drag == "constant"
     for placed in losses:
-        if placed.loss.kind in ("mesh", "squeeze") or (placed.loss.kind == "bearing" and constant):
+        if placed.loss.kind == "bearing" and constant:
             continue
         name, shaft = _brake(rig, placed)
         omega = rig.shaft_speed(shaft, speed)
@@ -149,7 +149,7 @@ def drag_torques(losses: Sequence[PlacedLoss], rig: Rig, speed: float) -> dict[s
 def _brake(rig: Rig, placed: PlacedLoss) -> tuple[str, str]:
     """Drag load of the drivetrain and shaft on which a loss acts."""
     box = rig.case.gearboxes[placed.gearbox]
-    if placed.loss.kind == "oil_acceleration":
+    if placed.loss.kind in ("oil_acceleration", "squeeze"):
         pinion = box.meshes[placed.part].pinion
         return f"{placed.gearbox}.{pinion}", box.gears[pinion].shaft
     if placed.loss.kind == "seal":
@@ -163,10 +163,11 @@ def rotating_losses(
     rig: Rig,
     point: OperatingPoint,
     feedback: Feedback,
-    pairs: Mapping[str, GearPair],
+    models: Sequence[MeshModel],
     bearings: Mapping[str, BearingState],
 ) -> list[PlacedLoss]:
-    """Every loss but the tooth friction: bearings, windage, oil acceleration, seals."""
+    """Every loss that brakes a shaft from outside the teeth: bearings, windage, oil, seals, squeezing."""
+    pairs = {model.name: model.pair for model in models}
     losses: list[PlacedLoss] = []
     for name, state in bearings.items():
         box_name, part = name.split(".")
@@ -175,53 +176,63 @@ def rotating_losses(
         losses += _windage(rig, box_name, box, point, feedback, pairs)
         losses += _oil_jets(rig, box_name, box, point, pairs)
         losses += _seals(rig, box_name, box, point, feedback)
+    losses += _squeezing(rig, point, models)
     return [_given(rig, point, loss) for loss in losses]
 
 
 def mesh_losses(
-    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], sliding: Mapping[str, float] | None = None
+    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], response: CurvePoint | None = None
 ) -> list[PlacedLoss]:
-    """Sliding and squeezing of every mesh.
+    """Sliding and damping of every mesh.
 
-    sliding : mean sliding power by mesh [W] from the dynamic tooth forces; integrated over the static path
-        of contact where it is left out
+    response : gives mu F_N v_g of the dynamic tooth forces and the damping work; without it the sliding is
+        integrated over the path of contact at the mean load
     """
     losses = []
-    for model in models:
+    for index, model in enumerate(models):
+        loss = static_mesh_loss(rig, point, model)
+        if response is not None:
+            source = f"mu F_N v_g of the dynamic tooth forces; {model.friction.source}"
+            loss = replace(
+                loss,
+                power=float(response.friction_power[index]),
+                details=loss.details | {"static_power": loss.power, "source": source},
+            )
         box_name, mesh = model.name.split(".")
-        box = rig.case.gearboxes[box_name]
-        shaft = box.gears[box.meshes[mesh].pinion].shaft
-        torque = rig.torque_ratio * point.torque / rig.pairs[rig.control_mesh_name].base_radii[0]
-        static = mesh_loss(
-            model.name,
-            tooth_path(model.pair),
-            torque * model.pair.base_radii[0],
-            rig.shaft_speed(shaft, point.speed),
-            model.friction,
-            model.stiffness.at,
-        )
-        loss = static
-        if sliding is not None:
-            details = static.details | {"static_power": static.power, "source": "mu F_N v_g of the dynamic tooth forces"}
-            loss = Loss(
-                place=static.place, kind="mesh", power=sliding[model.name], details=details, warnings=static.warnings
+        share = rig.case.gearboxes[box_name].heat_split.mesh_into_gears
+        placed = PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=share * loss.power)
+        losses.append(_given(rig, point, placed))
+        if response is not None:
+            damping = Loss(
+                place=model.name,
+                kind="mesh_damping",
+                power=float(response.damping_power[index]),
+                details={"source": "work of the mesh damper in the periodic response"},
             )
-        placed = _given(
-            rig,
-            point,
-            PlacedLoss(
-                gearbox=box_name, part=mesh, loss=loss, into_body=box.heat_split.mesh_into_gears * loss.power
-            ),
-        )
-        losses.append(placed)
-        share = rig.case.losses.squeeze_share
-        if share > 0.0:
-            losses.append(
-                PlacedLoss(
-                    gearbox=box_name, part=mesh, loss=squeeze_loss(model.name, placed.loss, share), into_body=0.0
-                )
-            )
+            losses.append(PlacedLoss(gearbox=box_name, part=mesh, loss=damping, into_body=0.0))
     return losses
+
+
+def static_mesh_loss(rig: Rig, point: OperatingPoint, model: MeshModel) -> Loss:
+    """Sliding loss at the mean load, integrated over the path of contact."""
+    box, mesh = rig.mesh(model.name)
+    force = rig.torque_ratio * point.torque / rig.pairs[rig.control_mesh].base_radii[0]
+    return mesh_loss(
+        model.name,
+        ToothPath.of_pair(model.pair),
+        force * model.pair.base_radii[0],
+        rig.shaft_speed(box.gears[box.meshes[mesh].pinion].shaft, point.speed),
+        model.friction,
+        model.stiffness.at,
+    )
+
+
+def _squeezing(rig: Rig, point: OperatingPoint, models: Sequence[MeshModel]) -> Iterator[PlacedLoss]:
+    share = rig.case.losses.squeeze_share
+    for model in models if share > 0.0 else ():
+        box_name, mesh = model.name.split(".")
+        loss = squeeze_loss(model.name, static_mesh_loss(rig, point, model), share)
+        yield PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=0.0)
 
 
 def oil_streams(
@@ -292,14 +303,7 @@ def _windage(
     for mesh_name, mesh in box.meshes.items():
         pair = pairs[f"{box_name}.{mesh_name}"]
         for index, gear_name in enumerate((mesh.pinion, mesh.wheel)):
-            member = pair.gears[index]
-            rotor = GearRotor(
-                pitch_radius=member.reference_radius,
-                tip_radius=member.tip_radius,
-                face_width=pair.face_widths[index],
-                teeth=member.teeth,
-                tip_space_angle=2.0 * math.pi / member.teeth - 2.0 * member.half_angle(member.tip_radius),
-            )
+            rotor = GearRotor.of_pair(pair, index)
             omega = rig.shaft_speed(box.gears[gear_name].shaft, point.speed)
             loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
             share = box.heat_split.windage_into_gears

@@ -113,20 +113,19 @@ def _reference_radius(gear: str, box: str, case: Case, pairs: Mapping[str, GearP
 
 def _meshes(case: Case, pairs: Mapping[str, GearPair]) -> list[dyn.MeshConnection]:
     meshes = []
-    for box_name, box in case.gearboxes.items():
-        for name, mesh in box.meshes.items():
-            pair = pairs[f"{box_name}.{name}"]
-            pinion, wheel = pair.gears
-            meshes.append(
-                dyn.MeshConnection(
-                    name=f"{box_name}.{name}",
-                    pinion=f"{box_name}.{mesh.pinion}",
-                    wheel=f"{box_name}.{mesh.wheel}",
-                    base_radii=(pinion.base_radius, wheel.base_radius),
-                    teeth=(pinion.teeth, wheel.teeth),
-                    centre_distance=pair.centre_distance,
-                )
+    for full, pair in pairs.items():
+        box_name, name = full.split(".")
+        mesh = case.gearboxes[box_name].meshes[name]
+        meshes.append(
+            dyn.MeshConnection(
+                name=full,
+                pinion=f"{box_name}.{mesh.pinion}",
+                wheel=f"{box_name}.{mesh.wheel}",
+                base_radii=pair.base_radii,
+                teeth=pair.teeth,
+                centre_distance=pair.centre_distance,
             )
+        )
     return meshes
 
 

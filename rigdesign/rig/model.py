@@ -17,7 +17,10 @@ from rigdesign.oil import OILS, Oil
 from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.speeds import speed_ratios
+from thermal.conduction import ConductionSetup
+from thermal.housing import build_gearbox
 from thermal.housing_geometry import HousingGeometry
+from thermal.stations import GearboxModel
 
 Fidelity = Literal["quick", "standard", "reference"]
 
@@ -56,26 +59,38 @@ class Rig:
             if box.housing is not None
         }
 
+    @cached_property
+    def models(self) -> Mapping[str, GearboxModel]:
+        """Meshed housing of every gearbox that has one."""
+        return {name: build_gearbox(geometry, self.fidelity) for name, geometry in self.geometries.items()}
+
+    @cached_property
+    def conduction(self) -> Mapping[str, ConductionSetup]:
+        """Conduction matrices of every housing, assembled once."""
+        return {
+            name: ConductionSetup(model.mesh, {b: m.conductivity for b, m in self.body_materials(name).items()})
+            for name, model in self.models.items()
+        }
+
+    def body_materials(self, name: str) -> dict[str, Material]:
+        """Material of every body of a housing."""
+        box = self.case.gearboxes[name]
+        housing = box.housing
+        assert housing is not None
+        named = {"housing": housing.material, "field": housing.field.material}
+        named |= {f"shaft_{shaft}": entry.material for shaft, entry in housing.shafts.items()}
+        named |= {f"gear_{gear.shaft}": gear.material for gear in box.gears.values()}
+        return {body: self.materials[named[body]] for body in self.models[name].mesh.bodies}
+
     @property
     def mesh_names(self) -> tuple[str, ...]:
-        """``gearbox.mesh`` in the order of the case, which is that of the drivetrain."""
+        """``gearbox.mesh`` in the order of the drivetrain, the one that counts first."""
         return tuple(self.pairs)
 
     @property
-    def control_mesh(self) -> int:
-        """Index of the mesh whose torque the case states."""
-        return self.mesh_names.index(self.control_mesh_name)
-
-    @property
-    def control_mesh_name(self) -> str:
-        """The first mesh of the gear at which torque and speed count."""
-        power = self.case.drivetrain
-        if power is None:
-            return self.mesh_names[0]
-        box, gear = power.torque_at.split(".")
-        return next(
-            f"{box}.{name}" for name, mesh in self.case.gearboxes[box].meshes.items() if gear in (mesh.pinion, mesh.wheel)
-        )
+    def control_mesh(self) -> str:
+        """The mesh whose torque the case states: the first of all."""
+        return next(iter(self.pairs))
 
     @property
     def torque_ratio(self) -> float:
@@ -84,8 +99,8 @@ class Rig:
         if power is None:
             return 1.0
         gear = power.torque_at.split(".")[1]
-        box, mesh = self.mesh(self.control_mesh_name)
-        pair = self.pairs[self.control_mesh_name]
+        box, mesh = self.mesh(self.control_mesh)
+        pair = self.pairs[self.control_mesh]
         return 1.0 if box.meshes[mesh].pinion == gear else pair.teeth[0] / pair.teeth[1]
 
     def mesh(self, name: str) -> tuple[Gearbox, str]:
@@ -103,6 +118,11 @@ class Rig:
     def shaft_speed(self, shaft: str, speed: float) -> float:
         """Speed of a shaft [rad/s] at the stated speed [rad/s]."""
         return self.speed_ratios[shaft] * speed
+
+    def pinion_speed(self, speed: float) -> float:
+        """Speed of the pinion of the first mesh [rad/s] at the stated speed [rad/s]."""
+        box, mesh = self.mesh(self.control_mesh)
+        return self.shaft_speed(box.gears[box.meshes[mesh].pinion].shaft, speed)
 
     def drive_speed(self, speed: float) -> float:
         """Speed of the motor [rad/s] at the stated speed [rad/s]."""
@@ -151,6 +171,8 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     oils = dict(OILS) | {name: _custom_oil(case, name) for name in case.oils}
     materials = dict(MATERIALS) | {name: _custom_material(case, name) for name in case.materials}
     pairs = build_pairs(case, materials)
+    control = _control_mesh(case)
+    pairs = {control: pairs[control]} | pairs
     return Rig(
         case=case,
         fidelity=fidelity,
@@ -159,6 +181,16 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         pairs=pairs,
         speed_ratios=speed_ratios(case),
     )
+
+
+def _control_mesh(case: Case) -> str:
+    """The first mesh of the gear at which torque and speed count; of all, without a drivetrain."""
+    wanted = None if case.drivetrain is None else case.drivetrain.torque_at.split(".")
+    for box_name, box in case.gearboxes.items():
+        for name, mesh in box.meshes.items():
+            if wanted is None or (wanted[0] == box_name and wanted[1] in (mesh.pinion, mesh.wheel)):
+                return f"{box_name}.{name}"
+    raise ValueError(f"drivetrain.torque_at = {wanted}: this gear is in no mesh; name one that is")
 
 
 def _custom_oil(case: Case, name: str) -> Oil:

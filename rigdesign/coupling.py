@@ -1,0 +1,100 @@
+"""The coupling loop: passes at one operating point until nothing moves any more."""
+
+from dataclasses import dataclass
+
+from rigdesign.cold import cold_feedback
+from rigdesign.errors import NotConvergedError
+from rigdesign.loads import Setting, brace_cold
+from rigdesign.passes import PassResult, feedback_of, heat_residual, one_pass
+from rigdesign.rig.model import Rig
+from rigdesign.state import Feedback, OperatingPoint, growth_change, temperature_change, torque_change
+
+
+@dataclass(frozen=True, kw_only=True)
+class Residual:
+    """Largest changes of one pass: temperature [K], length [m], mean torque relative [-]."""
+
+    temperature: float
+    growth: float
+    torque: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointResult:
+    """The settled state of one operating point."""
+
+    point: OperatingPoint
+    cold: PassResult
+    """The first pass: nothing warm yet."""
+    last: PassResult
+    setting: Setting | None
+    residuals: tuple[Residual, ...]
+
+
+def solve_point(
+    rig: Rig,
+    point: OperatingPoint,
+    *,
+    start: Feedback | None = None,
+    hold: frozenset[str] = frozenset(),
+) -> PointResult:
+    """Repeat the pass until temperatures, lengths and torques stay within the tolerances of the case.
+
+    Parameters
+    ----------
+    start : feedback of a neighbouring point; the cold rig when left out
+    hold : arrows of the loop that are cut, by field of `Feedback`: they keep their cold values
+
+    Raises
+    ------
+    NotConvergedError
+        The passes of the case are used up; the message shows the residuals of the last ones.
+    """
+    numerics = rig.case.numerics
+    cold = cold_feedback(rig, point)
+    setting = None if rig.case.drivetrain is None else brace_cold(rig, point, cold)
+    feedback = cold if start is None else start.hold(hold, cold)
+    residuals: list[Residual] = []
+    first: PassResult | None = None
+    done: PassResult | None = None
+    for _ in range(numerics.coupling_passes):
+        done = one_pass(rig, point, feedback, setting, done)
+        first = first or done
+        after = feedback_of(rig, done).hold(hold, cold)
+        heat = 0.0 if {"bearing_heat", "wall_heat"} & hold else heat_residual(rig, done)
+        residuals.append(
+            Residual(
+                temperature=max(temperature_change(feedback, after), heat),
+                growth=growth_change(feedback, after),
+                torque=torque_change(feedback, after),
+            )
+        )
+        feedback = after
+        if _settled(residuals[-1], rig):
+            return PointResult(
+                point=point, cold=first, last=done, setting=setting, residuals=tuple(residuals)
+            )
+    raise NotConvergedError(_history(point, residuals, rig))
+
+
+def _settled(residual: Residual, rig: Rig) -> bool:
+    numerics = rig.case.numerics
+    return (
+        residual.temperature <= numerics.temperature_tolerance
+        and residual.growth <= numerics.growth_tolerance
+        and residual.torque <= numerics.torque_tolerance
+    )
+
+
+def _history(point: OperatingPoint, residuals: list[Residual], rig: Rig) -> str:
+    numerics = rig.case.numerics
+    lines = "; ".join(
+        f"pass {len(residuals) - i}: {r.temperature:.3g} K, {1e6 * r.growth:.3g} um, {r.torque:.2g} of the torque"
+        for i, r in enumerate(reversed(residuals[-4:]))
+    )
+    return (
+        f"coupling at stage {point.stage!r} did not settle in {len(residuals)} passes (limits "
+        f"{numerics.temperature_tolerance:g} K, {1e6 * numerics.growth_tolerance:g} um, "
+        f"{numerics.torque_tolerance:g}): {lines}; raise numerics.coupling_passes, or feed more oil if a film or "
+        "stream swings"
+    )

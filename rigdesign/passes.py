@@ -1,0 +1,187 @@
+"""One pass round the loop at an operating point: warm gears, loads, losses, oil, temperatures, growth."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from dynamics.journal_bearing import BearingState
+from dynamics.response_curve import CurvePoint
+from rigdesign.growth import HousingGrowth, expand_housing, hot_clearances, uniform_growth
+from rigdesign.loads import MeshModel, Setting, mesh_models, respond
+from rigdesign.lubrication import (
+    OilStream,
+    PlacedLoss,
+    drag_torques,
+    mesh_losses,
+    oil_streams,
+    rotating_losses,
+    solve_bearings,
+)
+from rigdesign.rig.model import Rig
+from rigdesign.state import Feedback, OperatingPoint
+from rigdesign.temperatures import HousingField, body_mean, heat_into_films, heat_into_oil, solve_housing
+
+
+@dataclass(frozen=True, kw_only=True)
+class PassResult:
+    """Everything one pass computed from one feedback."""
+
+    point: OperatingPoint
+    feedback: Feedback
+    """What the pass started from."""
+    models: tuple[MeshModel, ...]
+    bearings: Mapping[str, BearingState]
+    drags: Mapping[str, float]
+    response: CurvePoint | None
+    losses: tuple[PlacedLoss, ...]
+    streams: tuple[OilStream, ...]
+    fields: Mapping[str, HousingField]
+    growth: Mapping[str, HousingGrowth]
+    bearing_heat: Mapping[str, float]
+    """Heat the solids gave to each film in this pass [W], before relaxation."""
+    wall_heat: Mapping[str, float]
+    """Heat the solids gave to each oil stream [W], before relaxation."""
+
+
+def one_pass(
+    rig: Rig,
+    point: OperatingPoint,
+    feedback: Feedback,
+    setting: Setting | None,
+    before: PassResult | None = None,
+) -> PassResult:
+    """Compute one pass; ``before`` gives the temperature fields to start from."""
+    models = mesh_models(rig, point, feedback)
+    bearings = solve_bearings(rig, point, feedback)
+    turning = rotating_losses(rig, point, feedback, models, bearings)
+    drags = drag_torques(turning, rig, point.speed)
+    response = None if setting is None else respond(rig, point, models, drags, setting)
+    losses = (*turning, *mesh_losses(rig, point, models, response))
+    fields = {
+        name: solve_housing(
+            rig, name, point, feedback, bearings, losses, None if before is None else before.fields[name]
+        )
+        for name in rig.models
+    }
+    bearing_heat = {name: 0.0 for name in bearings}
+    wall_heat = dict.fromkeys(feedback.wall_heat, 0.0)
+    for field in fields.values():
+        bearing_heat |= heat_into_films(field)
+        wall_heat |= heat_into_oil(field)
+    return PassResult(
+        point=point,
+        feedback=feedback,
+        models=models,
+        bearings=bearings,
+        drags=drags,
+        response=response,
+        losses=losses,
+        streams=tuple(oil_streams(rig, losses, feedback.bearing_heat, feedback.wall_heat)),
+        fields=fields,
+        growth={name: expand_housing(rig, field) for name, field in fields.items()},
+        bearing_heat=bearing_heat,
+        wall_heat=wall_heat,
+    )
+
+
+def feedback_of(rig: Rig, done: PassResult) -> Feedback:
+    """What a pass hands to the next; heats are relaxed by what the oil can take up (`relaxed_heat`)."""
+    old = done.feedback
+    gear_temperature: dict[str, float] = {}
+    centre_distance: dict[str, float] = {}
+    clearance: dict[str, float] = {}
+    tooth_growth = dict.fromkeys(rig.pairs, 0.0)
+    for name, box in rig.case.gearboxes.items():
+        if name in done.fields:
+            field, growth = done.fields[name], done.growth[name]
+            gear_temperature |= {
+                f"{name}.{gear}": body_mean(rig, field, f"gear_{entry.shaft}") for gear, entry in box.gears.items()
+            }
+            centre_distance |= growth.centre_distance
+            tooth_growth |= growth.tooth_growth
+        else:
+            streams = {stream.name: stream for stream in done.streams}
+            bulk = streams[f"{name}.gear_oil"].outlet
+            gear_temperature |= {f"{name}.{gear}": bulk for gear in box.gears}
+            centre_distance |= uniform_growth(rig, name, streams[f"{name}.bearing_oil"].outlet)
+    clearance |= hot_clearances(rig, done.point.speed, done.growth)
+    torque = old.mesh_torque
+    if done.response is not None:
+        torque = dict(zip(rig.mesh_names, map(float, done.response.mean)))
+    return Feedback(
+        gear_temperature=gear_temperature,
+        centre_distance=centre_distance,
+        bearing_clearance=clearance,
+        bearing_heat={
+            name: relaxed(old.bearing_heat[name], heat, 0.5 * _film_slope(rig, done, name))
+            for name, heat in done.bearing_heat.items()
+        },
+        wall_heat={
+            name: relaxed(old.wall_heat[name], heat, _stream_slope(rig, done, name))
+            for name, heat in done.wall_heat.items()
+        },
+        oil_outlet={stream.name: stream.outlet for stream in done.streams},
+        mesh_torque=torque,
+        tooth_growth=tooth_growth,
+    )
+
+
+def relaxed(old: float, new: float, slope: float) -> float:
+    """Heat after a step that stays stable however little oil flows.
+
+    slope : film conductance over heat capacity flow, h A / (rho c Q): how strongly the heat of one pass
+        answers the oil temperature it caused. The step 1 / (1 + slope) damps at most that answer.
+    """
+    return old + (new - old) / (1.0 + slope)
+
+
+def heat_residual(rig: Rig, done: PassResult) -> float:
+    """Largest temperature error [K] that the heats of the last pass would still make in an oil stream or film."""
+    old = done.feedback
+    films = (
+        0.5 * abs(heat - old.bearing_heat[name]) / _bearing_capacity(rig, name)
+        for name, heat in done.bearing_heat.items()
+    )
+    walls = (
+        abs(heat - old.wall_heat[name]) / _stream_capacity(rig, name) for name, heat in done.wall_heat.items()
+    )
+    return max((*films, *walls), default=0.0)
+
+
+def with_outlets(feedback: Feedback, done: PassResult) -> Feedback:
+    """The feedback with the oil outlets of a finished pass."""
+    return replace(feedback, oil_outlet={stream.name: stream.outlet for stream in done.streams})
+
+
+def _bearing_capacity(rig: Rig, name: str) -> float:
+    """Heat capacity flow rho c Q of the oil of one bearing [W/K]."""
+    box = rig.case.gearboxes[name.split(".")[0]]
+    entry = box.bearing_oil
+    oil = rig.oils[entry.oil]
+    return oil.density(entry.inlet_temperature) * oil.heat_capacity(entry.inlet_temperature) * entry.flow
+
+
+def _stream_capacity(rig: Rig, name: str) -> float:
+    """Heat capacity flow of a whole oil stream of a gearbox [W/K]."""
+    box_name, kind = name.split(".")
+    box = rig.case.gearboxes[box_name]
+    entry, count = (box.oil, len(box.meshes)) if kind == "gear_oil" else (box.bearing_oil, len(box.bearings))
+    oil = rig.oils[entry.oil]
+    return oil.density(entry.inlet_temperature) * oil.heat_capacity(entry.inlet_temperature) * entry.flow * count
+
+
+def _film_slope(rig: Rig, done: PassResult, name: str) -> float:
+    box, part = name.split(".")
+    return _conductance(done, box, f"bearing_film:{part}") / _bearing_capacity(rig, name)
+
+
+def _stream_slope(rig: Rig, done: PassResult, name: str) -> float:
+    box, kind = name.split(".")
+    return _conductance(done, box, kind) / _stream_capacity(rig, name)
+
+
+def _conductance(done: PassResult, box: str, kind: str) -> float:
+    """Sum of h A over the films of one kind [W/K]."""
+    if box not in done.fields:
+        return 0.0
+    rows = done.fields[box].solution.balance.rows
+    return sum(row.coefficient.value * row.area for row in rows if row.kind == kind and row.coefficient)

@@ -1,0 +1,157 @@
+"""The time run over the whole schedule: once, after the coupling loop, with the warm rig of its last point."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.ramp import Kind, Schedule, Stage
+from dynamics.response import Command, DragCurve, TimeResponse, run_schedule
+from rigdesign.case.schedule import StageValues
+from rigdesign.errors import NotConvergedError
+from rigdesign.loads import Setting, shifted_laws
+from rigdesign.lubrication import drag_torques, rotating_losses, solve_bearings
+from rigdesign.passes import PassResult
+from rigdesign.rig.model import Rig
+from rigdesign.state import Feedback, OperatingPoint
+
+KINDS: Mapping[str, Kind] = {
+    "load": "torque", "unload": "torque", "run_up": "speed", "run_down": "speed", "dwell": "hold"
+}  # fmt: skip
+DRAG_SHARES = (0.02, 0.0625, 0.125, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0)
+"""Shares of the highest speed at which drag torques are computed for the run."""
+SPEED_TOLERANCE = 0.01
+"""Share of the test speed that may be missing at the end of a run-up."""
+SLOT = 0.01
+"""Length of the envelope slots [s]."""
+COMMAND_INTERVAL = 1e-3
+"""Interval of the command samples [s]."""
+
+
+def schedule_of(rig: Rig) -> Schedule:
+    """The stages of the case as a schedule.
+
+    Raises
+    ------
+    ScheduleError
+        Stages that contradict themselves.
+    """
+    return Schedule(stages=tuple(_stage(rig, stage) for stage in rig.case.schedule.resolved()))
+
+
+def _stage(rig: Rig, stage: StageValues) -> Stage:
+    ratio = rig.torque_ratio
+    return Stage(
+        name=stage.name,
+        kind=KINDS[stage.kind],
+        speed=(rig.pinion_speed(stage.speed_start), rig.pinion_speed(stage.speed_end)),
+        torque=(ratio * stage.torque_start, ratio * stage.torque_end),
+        duration=stage.duration,
+        held=stage.held,
+    )
+
+
+def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -> TimeResponse:
+    """March over the schedule with the warm gears and films of ``warm``.
+
+    Raises
+    ------
+    NotConvergedError
+        The motor does not reach a speed the schedule asks for; the message shows the torque balance.
+    """
+    assert rig.system is not None and rig.case.drivetrain is not None
+    schedule = schedule_of(rig)
+    command = schedule.command(COMMAND_INTERVAL)
+    numerics = rig.case.numerics
+    controlled = setting.mode == "torque_controlled"
+    motor = rig.case.drivetrain.motor
+    laws = shifted_laws(rig, warm.models, setting)
+    response = run_schedule(
+        rig.system,
+        laws,
+        Command(
+            time=command.time,
+            speed=command.speed,
+            torque=command.torque if controlled else None,
+            twist=None if controlled else np.full_like(command.time, setting.twist),
+        ),
+        torque_limit=motor.torque_limit,
+        drags=drag_curves(rig, warm, feedback),
+        sample_rate=numerics.sample_rate,
+        substeps=numerics.internal_steps,
+        slot=SLOT,
+        keep_channels=False,
+    )
+    _require_speed(rig, schedule, response)
+    return response
+
+
+def drag_curves(rig: Rig, warm: PassResult, feedback: Feedback) -> dict[str, DragCurve]:
+    """Drag torque over speed of every place that brakes, with the films at their own balance at each speed.
+
+    A jet that is faster than the teeth at low speed pushes them; that help is left out of the run.
+    """
+    top = max(stage.speed_end for stage in rig.case.schedule.resolved())
+    speeds = [share * top for share in DRAG_SHARES]
+    tables = [drags_at(rig, warm, feedback, speed) for speed in speeds]
+    curves = {}
+    for name in tables[-1]:
+        shaft = _shaft_of_drag(rig, name)
+        place = np.array([0.0, *(rig.shaft_speed(shaft, speed) for speed in speeds)])
+        torque = [max(table.get(name, 0.0), 0.0) for table in tables]
+        curves[name] = DragCurve(speed=place, torque=np.array([torque[0], *torque]))
+    return curves
+
+
+def drags_at(rig: Rig, warm: PassResult, feedback: Feedback, speed: float) -> dict[str, float]:
+    """Drag torques at one speed [N m] under the load of the warm point."""
+    point = replace(warm.point, speed=speed)
+    bearings = solve_bearings(rig, point, feedback)
+    return drag_torques(rotating_losses(rig, point, feedback, warm.models, bearings), rig, speed)
+
+
+def _shaft_of_drag(rig: Rig, name: str) -> str:
+    box_name, *rest = name.split(".")
+    box = rig.case.gearboxes[box_name]
+    if rest[0] == "seals":
+        return box.seals[rest[1]].shaft
+    if rest[0] in box.bearings:
+        return box.bearings[rest[0]].shaft
+    return box.gears[rest[0]].shaft
+
+
+def _require_speed(rig: Rig, schedule: Schedule, response: TimeResponse) -> None:
+    """Every run-up must reach its speed before the next stage begins."""
+    limit = SPEED_TOLERANCE * max(max(stage.speed) for stage in schedule.stages)
+    ends = schedule.starts[1:]
+    for stage, end in zip(schedule.stages, ends):
+        if stage.kind != "speed":
+            continue
+        at = min(int(np.searchsorted(response.time, end)), len(response.time) - 1)
+        missing = stage.speed[1] - float(response.speed[at])
+        if missing > limit:
+            drag = sum(float(torque[at]) for torque in response.drag_torque.values())
+            raise NotConvergedError(
+                f"stage {stage.name!r} does not reach its speed: {response.speed[at] * 30 / np.pi:.0f} of "
+                f"{stage.speed[1] * 30 / np.pi:.0f} rpm at {end:.2f} s. Torque balance: motor "
+                f"{response.drive_torque[at]:.2f} N m (drivetrain.motor.torque_limit "
+                f"{rig.case.drivetrain.motor.torque_limit if rig.case.drivetrain else 0:.2f} N m), drag of bearings, "
+                f"windage, oil and seals {drag:.2f} N m, the rest tooth friction and acceleration; raise the limit "
+                "or give the stage more time"
+            )
+
+
+def stage_names(schedule: Schedule, time: NDArray[np.float64]) -> list[str]:
+    """Stage at each time [s]."""
+    index = schedule.at(time).stage
+    return [schedule.stages[i].name for i in index]
+
+
+def held_points(rig: Rig) -> list[OperatingPoint]:
+    """Operating points of the stages marked held; the last dwell if none is."""
+    stages = rig.case.schedule.resolved()
+    held: Sequence[StageValues] = [stage for stage in stages if stage.held] or stages[-1:]
+    return [
+        OperatingPoint(stage=stage.name, speed=stage.speed_end, torque=stage.torque_end) for stage in held
+    ]
