@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from math import pi, tan
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +13,10 @@ from dynamics.tip_contact import path_reach, tip_separation
 from dynamics.tooth_stiffness import PairStiffness
 
 Array = NDArray[np.float64]
+Engagement = Literal["corner", "path"]
+
+RAMP_LENGTH = 0.05
+"""Length in base pitches over which pairs are let in without corner contact."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,6 +73,7 @@ def mesh_law(
     phase: float = 0.0,
     tooth_offset_2: int = 0,
     reach: float | None = None,
+    engagement: Engagement = "corner",
 ) -> MeshLaw:
     """Mesh law of ``pair`` with the micro-geometry of pinion and wheel.
 
@@ -79,6 +85,8 @@ def mesh_law(
     misalignment : gap per face width [rad], growing with z over the common width
     reach : tip separation at the ends of the grid, the largest approach the law is good for [m]; default 0.15
         normal modules, at least 0.1 mm, at most 0.3 mm
+    engagement : ``corner``: deflected teeth meet early at the tip corners; ``path``: pairs carry on the
+        active path only, as the stiffness course of the standards has it, let in over 5 % of a base pitch
 
     A pair that jams (negative backlash, see ``GearPair.warnings``) gets zero play. Gears of unequal growth
     keep the ratio of their tooth numbers; the difference of their base pitches becomes a gap along the path.
@@ -93,9 +101,10 @@ def mesh_law(
     width = pair.face_width
     face = ((np.arange(slices) + 0.5) / slices - 0.5) * width
     wanted = min(max(0.15 * pair.normal_module, 1e-4), 3e-4) if reach is None else reach
-    first, last = path_reach(pair, wanted)
+    first, last = _grid_ends(pair, wanted, engagement)
     path = np.linspace(first, last, n_path)
-    gap = tip_separation(pair, path) + path * pair.base_pitch_difference / pair.base_pitch
+    gap = tip_separation(pair, path) if engagement == "corner" else _ramp(pair, path, wanted)
+    gap = gap + path * pair.base_pitch_difference / pair.base_pitch
     gap = gap + misalignment * face[:, None]
     for index, gear in enumerate(micro):
         gap = gap + flank_modification(pair, gear, index, path, face)
@@ -148,6 +157,19 @@ def flank_modification(pair: GearPair, gear: Microgeometry, index: int, path: Ar
     lead = 2.0 * face[:, None] / pair.face_widths[index]
     across = gear.lead_crowning * lead**2 + 0.5 * gear.helix_slope * lead
     return np.asarray(removed[None, :] + across + gear.profile_twist * lead * profile[None, :])
+
+
+def _grid_ends(pair: GearPair, reach: float, engagement: Engagement) -> tuple[float, float]:
+    if engagement == "corner":
+        return path_reach(pair, reach)
+    margin = RAMP_LENGTH * pair.base_pitch
+    return pair.path.start - margin, pair.path.end + margin
+
+
+def _ramp(pair: GearPair, path: Array, reach: float) -> Array:
+    """Gap [m] growing with the square of the distance to the active path, ``reach`` at the grid ends."""
+    outside = np.maximum(np.maximum(pair.path.start - path, path - pair.path.end), 0.0)
+    return np.asarray(reach * (outside / (RAMP_LENGTH * pair.base_pitch)) ** 2)
 
 
 def _law_radius(pair: GearPair, index: int) -> float:

@@ -224,6 +224,46 @@ def test_impossible_microgeometry_is_refused(micro, words):
         mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), micro=(micro, Microgeometry()))
 
 
+def loaded_mesh(law, force, travel):
+    """Approach [m] of the static mesh and the number of pairs that carry ``force`` [N] at a pinion travel."""
+    places = travel + law.base_pitch * np.arange(-4, 5)
+    places = places[(places > path_of(law)[0]) & (places < path_of(law)[-1])]
+    stiffness = np.array([np.interp(places, path_of(law), row) for row in law.stiffness])
+    gap = np.array([np.interp(places, path_of(law), row) for row in law.gap])
+    low, high = 0.0, 3e-4
+    for _ in range(60):
+        approach = 0.5 * (low + high)
+        carried = float((stiffness * np.maximum(approach - gap, 0.0)).sum())
+        low, high = (approach, high) if carried < force else (low, approach)
+    return approach, int(np.any(approach > gap, axis=0).sum())
+
+
+def test_deflected_teeth_meet_before_the_path_and_share_the_load():
+    """At 180 Nm the fine-pitch gear deflects some 30 um; the tip gap reaches that a base pitch outside."""
+    force = 180.0 / TEST_GEAR.base_radii[0]
+    travels = 1e-3 + np.linspace(0.0, 1.0, 40, endpoint=False) * TEST_GEAR.base_pitch
+    laws = {
+        kind: mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), micro=PUBLISHED, engagement=kind)
+        for kind in ("corner", "path")
+    }
+    mesh = {kind: [loaded_mesh(law, force, travel) for travel in travels] for kind, law in laws.items()}
+    approach = {kind: np.array([a for a, _ in mesh[kind]]) for kind in mesh}
+    pairs = {kind: np.mean([n for _, n in mesh[kind]]) for kind in mesh}
+    assert 1.26 <= pairs["path"] < 1.26 + 0.1
+    assert 1.9 < pairs["corner"] < 2.4
+    assert np.ptp(approach["corner"]) < 3e-6 < 10e-6 < np.ptp(approach["path"])
+    # light load: the crowned flanks carry one pair after the other, the corners stay apart
+    light = [loaded_mesh(laws["corner"], 10.0, travel)[1] for travel in travels]
+    assert np.mean(light) < 1.3
+
+
+def test_law_without_corner_contact_keeps_the_mean_stiffness():
+    law = mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), engagement="path")
+    check_mesh_law(law)
+    assert law.gap[0, [0, -1]] == pytest.approx(0.15e-3)
+    assert law.mean_stiffness == pytest.approx(mesh_stiffness(TEST_GEAR, 180.0) * 7e-3)
+
+
 def test_impossible_resolution_is_refused():
     with pytest.raises(ValueError, match="n_slices = 0"):
         mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), n_slices=0)
