@@ -75,6 +75,7 @@ def solve_bearings(rig: Rig, point: OperatingPoint, feedback: Feedback) -> dict[
                 diameter=entry.diameter,
                 width=entry.width,
                 diametral_clearance=feedback.bearing_clearance[name],
+                feed_share=entry.feed_share,
             ),
             loads[name],
             rig.shaft_speed(entry.shaft, point.speed),

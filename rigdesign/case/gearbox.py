@@ -68,8 +68,10 @@ class JournalBearing(Part):
     """Distance of its middle from the start of its shaft in the drivetrain."""
     radial_load: Force | None = None
     """Load at the held stages; from the tooth forces when left out."""
+    feed_share: Share = 1.0
+    """Share of the oil fed that cools the film; 1 as ISO 7902 assumes, less where oil passes by."""
     torsional_damping: TorsionalDamping | None = None
-    """Drag torque over speed; computed from the film when left out."""
+    """Drag torque over speed, used where ``losses.bearing_drag`` is constant."""
     radial_stiffness: LinearStiffness | None = None
     """For the record: the drivetrain is torsional."""
     radial_damping: LinearDamping | None = None

@@ -18,6 +18,7 @@ from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.speeds import speed_ratios
 from thermal.conduction import ConductionSetup
+from thermal.expansion import ExpansionSetup
 from thermal.housing import build_gearbox
 from thermal.housing_geometry import HousingGeometry
 from thermal.stations import GearboxModel
@@ -69,6 +70,21 @@ class Rig:
         """Conduction matrices of every housing, assembled once."""
         return {
             name: ConductionSetup(model.mesh, {b: m.conductivity for b, m in self.body_materials(name).items()})
+            for name, model in self.models.items()
+        }
+
+    @cached_property
+    def expansion(self) -> Mapping[str, ExpansionSetup]:
+        """Stiffness and supports of every housing, assembled once."""
+        return {
+            name: ExpansionSetup(
+                model,
+                {
+                    b: (m.elastic_modulus, m.poisson_ratio, m.expansion_coefficient)
+                    for b, m in self.body_materials(name).items()
+                },
+                self.conduction[name].elements,
+            )
             for name, model in self.models.items()
         }
 
