@@ -121,7 +121,9 @@ def period_length(laws: Sequence[MeshLaw], ratios: Sequence[float], kind: Period
         turned = cycle / abs(ratio)
         whole = next((k for k in range(1, 1000) if abs(k * turned - round(k * turned)) < 1e-6), None)
         if whole is None:
-            raise ValueError("period 'hunting_cycle': the pinions have no common cycle below 1000 turns; use 'mesh'")
+            raise ValueError(
+                "period 'hunting_cycle': the pinions have no common cycle below 1000 turns; use 'mesh'"
+            )
         turns = lcm(turns, round(whole * turned))
     return float(turns)
 
@@ -162,7 +164,9 @@ def periodic_by_time(
         For impossible input, see ``period_length`` and ``wound_state``.
     """
     if not speed > 0.0:
-        raise ValueError(f"speed = {speed} rad/s must be positive; turn the direction of all freedoms instead")
+        raise ValueError(
+            f"speed = {speed} rad/s must be positive; turn the direction of all freedoms instead"
+        )
     if (torque is None) == (twist is None):
         raise ValueError("give either the mean torque of the first mesh or the bracing twist")
     drags = dict(drag_torques or {})
@@ -170,9 +174,14 @@ def periodic_by_time(
     length = 2.0 * pi / speed * period_length(laws, [ratios[p] for p in system.mesh_ports[:, 0]], period)
     steps = max(least_steps, ceil(length * internal_rate))
     model = model or modal_model(system, laws, slow_loads(system, tuple(drags)), cutoff=cutoff)
-    wound, drive, stiffness = wound_state(system, laws, speed=speed, torque=torque, twist=twist, drag_torques=drags)
+    wound, drive, stiffness = wound_state(
+        system, laws, speed=speed, torque=torque, twist=twist, drag_torques=drags
+    )
     if start is not None:
-        wound, drive = _restarted(start, speed, ratios, wound if twist is not None else None), start.drive_torque
+        wound, drive = (
+            _restarted(start, speed, ratios, wound if twist is not None else None),
+            start.drive_torque,
+        )
     march = TimeMarch(
         system, laws, wound, step=length / steps, substeps=steps, drags=tuple(drags), drive_torque=drive,
         drag_torques=tuple(drags.values()), model=model,

@@ -23,6 +23,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
+from dynamics.kernels import DiscreteModes
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
 
@@ -77,19 +78,14 @@ class ModalModel:
 
 @dataclass(frozen=True, kw_only=True)
 class Propagator:
-    """The modal model at one step length, in the layout of ``kernels.march`` (see there)."""
+    """The modal model at one step length [s], in the layout of ``dynamics.kernels``.
+
+    hold : (n_modes, n_inputs) part of the modal state that follows the inputs at once: z = w + hold u
+    """
 
     step: float
-    decay: Array
-    inputs: Array
-    rows: Array
-    through_old: Array
-    through_new: Array
-    slow_inputs: Array
-    slow_old: Array
-    slow_new: Array
+    modes: DiscreteModes
     hold: ComplexArray
-    """(n_modes, n_inputs) part of the modal state that follows the inputs at once: z = w + hold u."""
 
 
 def modal_model(
@@ -191,18 +187,17 @@ def discretise(model: ModalModel, step: float, *, with_losses: bool = True) -> P
         through_old[at] = (seen[at] @ integral).real + dropped - dropped_rate
         through_new[at] = (seen[at] @ (step**2 * phi_3 * model.inputs)).real + dropped + dropped_rate
     fast = 2 * model.n_meshes
-    return Propagator(
-        step=step,
+    discrete = DiscreteModes(
         decay=np.ascontiguousarray(np.stack((decay.real, decay.imag))),
         inputs=_real_columns(driven[:, :fast]),
-        rows=np.ascontiguousarray(np.hstack((rows.real, -rows.imag))),
+        rows=np.vstack((np.hstack((rows.real, -rows.imag)), np.zeros((-n_rows % 4, 2 * rows.shape[1])))),
         through_old=np.ascontiguousarray(through_old[:, :fast]),
         through_new=np.ascontiguousarray(through_new[:, :fast]),
         slow_inputs=_real_columns(driven[:, fast:]),
         slow_old=np.ascontiguousarray(through_old[:, fast:]),
         slow_new=np.ascontiguousarray(through_new[:, fast:]),
-        hold=hold,
     )
+    return Propagator(step=step, modes=discrete, hold=hold)
 
 
 def modal_state(

@@ -41,11 +41,13 @@ class SpeedControl:
     """Speed controller of the motor: torque = proportional * error + integral * integrated error, limited.
 
     proportional : [N m s/rad]; integral : [N m/rad]; torque_limit : largest motor torque [N m]
+    time_constant : of the average over the measured speed, which keeps the torsional vibration out [s]
     """
 
     proportional: float
     integral: float
     torque_limit: float
+    time_constant: float = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,25 +134,44 @@ class TimeMarch:
         self.unsettled = 0
         self._record_all = record_all
         n_meshes, n_slow = len(self.laws), 2 + len(self.drags)
-        self._slow = np.array([drive_torque, start.twist, *(drag_torques or [0.0] * len(self.drags))], float)
-        self._offset = self.packed.offsets.copy()
-        self._ports = np.zeros((n_meshes, 6))
-        for mesh, (law, (pinion, wheel)) in enumerate(zip(self.laws, system.mesh_ports)):
-            x = law.base_radius_1 * start.angles[pinion] - law.base_radius_2 * start.angles[wheel]
-            reaction = evaluate_mesh(
-                law, start.angles[pinion], x + law.offset, start.speeds[pinion], start.speeds[wheel]
-            )
-            torques = float(reaction.torque_1[0]), float(reaction.torque_2[0])
-            self._ports[mesh] = (*torques, *torques, x, start.angles[pinion])
-        self._state = modal_state(self.model, self.propagator, start.angles, start.speeds, self._inputs())
-        self._floor = np.array([1e-12 * law.mean_stiffness * law.base_radius_1 for law in self.laws])
+        self._laws_packed = [pack_meshes([law]) for law in self.laws]
         loads = slow_loads(system, drags)
         n_power = 2 * n_meshes + n_slow + 1 if accounts else 0
-        self._powers = np.zeros(n_power + n_slow)
-        self._powers[n_power:] = loads.T @ start.speeds
-        self._work = np.zeros(n_power)
-        self._memory = np.zeros(3)
-        self._memory[2] = self.mean_torque_of_first_mesh()
+        ports = np.zeros((n_meshes, 6))
+        damping = np.zeros((n_meshes, 2))
+        powers = np.zeros(n_power)
+        for mesh, (law, (pinion, wheel)) in enumerate(zip(self.laws, system.mesh_ports)):
+            x = law.base_radius_1 * start.angles[pinion] - law.base_radius_2 * start.angles[wheel]
+            rate = law.base_radius_1 * start.speeds[pinion] - law.base_radius_2 * start.speeds[wheel]
+            reaction = evaluate_mesh(
+                self._laws_packed[mesh], start.angles[pinion], x + law.offset, start.speeds[pinion], start.speeds[wheel]
+            )  # fmt: skip
+            torques = float(reaction.torque_1[0]), float(reaction.torque_2[0])
+            ports[mesh] = (*torques, *torques, x, start.angles[pinion])
+            damping[mesh, 1] = rate
+            powers[2 * mesh : 2 * mesh + 2] = (reaction.friction_power[0], reaction.damping_power[0])[
+                :n_power
+            ]
+        slow = np.array([drive_torque, start.twist, *(drag_torques or [0.0] * len(self.drags))], float)
+        speeds = loads.T @ start.speeds
+        if accounts:
+            powers[2 * n_meshes : -1] = slow * speeds
+            powers[-1] = start.speeds @ system.damping @ start.speeds
+        self._carried = kernels.Carried(
+            state=np.zeros(2 * len(self.model.eigenvalues)),
+            ports=ports,
+            slow=slow,
+            offset=self.packed.offsets.copy(),
+            memory=np.zeros(4),
+            speeds=speeds,
+            powers=powers,
+            work=np.zeros(n_power),
+            damping=damping,
+        )
+        self._carried.state[:] = modal_state(
+            self.model, self.propagator, start.angles, start.speeds, self._inputs()
+        )
+        self._carried.memory[2:] = self.mean_torque_of_first_mesh(), speeds[0]
 
     def advance(
         self,
@@ -175,29 +196,42 @@ class TimeMarch:
         n_meshes, n_slow = len(self.laws), 2 + len(self.drags)
         n_samples = len(given)
         sample_time = self.step * self.substeps
-        control = np.zeros(5)
+        control = np.zeros(6)
         if speed_control is not None:
-            control[:3] = (
-                speed_control.proportional, speed_control.integral * sample_time, speed_control.torque_limit
+            control[:4] = (
+                speed_control.proportional, speed_control.integral * sample_time, speed_control.torque_limit,
+                min(1.0, sample_time / speed_control.time_constant),
             )  # fmt: skip
         if torque_control is not None:
-            share = sample_time / torque_control.time_constant
-            control[3:] = 0.25 * share / torque_control.stiffness, share
+            share = min(1.0, sample_time / torque_control.time_constant)
+            control[4:] = 0.25 * share / torque_control.stiffness, share
         tables = np.zeros((len(self.drags), 2)) if drag_tables is None else np.ascontiguousarray(drag_tables)
-        ends = np.ones(len(self.drags)) if drag_speeds is None else drag_speeds
-        followed = np.tile(self._offset, (n_samples, 1)) if offsets is None else np.ascontiguousarray(offsets)
+        ends = np.ones(len(self.drags)) if drag_speeds is None else np.asarray(drag_speeds, float)
+        held = (
+            np.tile(self._carried.offset, (n_samples, 1))
+            if offsets is None
+            else np.ascontiguousarray(offsets)
+        )
         history = np.empty((n_meshes, 6 if self._record_all else 1, n_samples * self.substeps))
         samples = np.empty((n_samples, 2 * n_slow))
-        p = self.propagator
+        orders = kernels.Orders(
+            given=np.ascontiguousarray(given, float),
+            offsets=held,
+            control=control,
+            drags=tables,
+            per_drag_step=(tables.shape[1] - 1) / ends,
+        )
         self.unsettled += kernels.march(
-            self.packed.values, self.packed.counts, self.packed.tables, self._floor,
-            p.decay, p.inputs, p.rows, p.through_old, p.through_new, p.slow_inputs, p.slow_old, p.slow_new,
-            self.step, self.substeps, np.ascontiguousarray(given, float), followed, control,
-            tables, (tables.shape[1] - 1) / np.asarray(ends, float),
-            self._state, self._ports, self._slow, self._offset, self._memory, self._powers, self._work,
-            history, samples,
-        )  # fmt: skip
-        if not np.all(np.isfinite(self._ports)):
+            self.packed,
+            self.propagator.modes,
+            orders,
+            self._carried,
+            self.step,
+            self.substeps,
+            history,
+            samples,
+        )
+        if not np.all(np.isfinite(self._carried.ports)):
             raise FloatingPointError(
                 "the march left the finite numbers; check inertias, stiffness and mesh tables"
             )
@@ -209,66 +243,75 @@ class TimeMarch:
 
     def mean_torque_of_first_mesh(self) -> float:
         """Torque of the first mesh at its pinion at this instant, friction left out [N m]."""
-        law, ports = self.laws[0], self._ports[0]
-        force = evaluate_mesh(law, ports[5], ports[4] + self._offset[0], 0.0, 0.0)
+        law, ports = self.laws[0], self._carried.ports[0]
+        force = evaluate_mesh(self._laws_packed[0], ports[5], ports[4] + self._carried.offset[0], 0.0, 0.0)
         return float(law.base_radius_1 * (force.force_front[0] - force.force_back[0]))
 
     def accounts(self) -> Accounts:
         """Return work and losses since the start; zeros if the march keeps no accounts."""
         n = len(self.laws)
-        if len(self._work) == 0:
+        if len(self._carried.work) == 0:
             return Accounts(np.zeros(n), np.zeros(n), np.zeros(2 + len(self.drags)), 0.0)
-        work = self._work
+        work = self._carried.work
         return Accounts(
             work[0 : 2 * n : 2].copy(), work[1 : 2 * n : 2].copy(), work[2 * n : -1].copy(), float(work[-1])
         )
 
     def energy(self) -> float:
         """Kinetic energy plus elastic energy of joints and tooth contacts at this instant [J]."""
-        scaled = scaled_state(self.model, self.propagator, self._state, self._inputs())
+        scaled = scaled_state(self.model, self.propagator, self._carried.state, self._inputs())
         stored = 0.5 * float(scaled @ scaled)
-        for law, ports, offset in zip(self.laws, self._ports, self._offset):
-            stored += float(evaluate_mesh(law, ports[5], ports[4] + offset, 0.0, 0.0).energy[0])
+        for packed, ports, offset in zip(self._laws_packed, self._carried.ports, self._carried.offset):
+            stored += float(evaluate_mesh(packed, ports[5], ports[4] + offset, 0.0, 0.0).energy[0])
         return stored
 
     def state(self) -> DriveState:
         """Return angles, speeds and twist at this instant; each line is placed by one of its mesh ports."""
         model = self.model
-        scaled = scaled_state(model, self.propagator, self._state, self._inputs())
+        scaled = scaled_state(model, self.propagator, self._carried.state, self._inputs())
         n, rigid = len(model.inertia), model.n_lines
         elastic = scaled[n:] / model.frequencies[rigid:]
         angles = model.shapes[:, rigid:] @ elastic
         placed: set[int] = set()
         for mesh in range(len(self.laws)):
             law = self.laws[mesh]
-            turned = self._ports[mesh, 5], 0.0
-            turned = turned[0], (law.base_radius_1 * turned[0] - self._ports[mesh, 4]) / law.base_radius_2
+            turned = self._carried.ports[mesh, 5], 0.0
+            turned = (
+                turned[0],
+                (law.base_radius_1 * turned[0] - self._carried.ports[mesh, 4]) / law.base_radius_2,
+            )
             for port, angle in zip(model.mesh_ports[mesh], turned):
                 line = int(np.argmax(np.abs(model.shapes[port, :rigid])))
                 if line not in placed:
                     members = model.shapes[:, line] != 0.0
                     angles[members] += angle - angles[port]
                     placed.add(line)
-        return DriveState(angles=angles, speeds=model.shapes @ scaled[:n], twist=float(self._slow[1]))
+        return DriveState(angles=angles, speeds=model.shapes @ scaled[:n], twist=float(self._carried.slow[1]))
+
+    def preset_speed_integral(self, torque: float) -> None:
+        """Let the speed controller start from a motor torque [N m]."""
+        self._carried.memory[0] = torque
 
     def pinion_angle(self) -> float:
         """Angle of the pinion of the first mesh at this instant [rad]."""
-        return float(self._ports[0, 5])
+        return float(self._carried.ports[0, 5])
 
     def kick(self, speeds: Array) -> None:
         """Add ``speeds`` (n,) [rad/s] to the motion at once."""
         nothing = np.zeros(self.model.inputs.shape[1])
-        self._state += modal_state(self.model, self.propagator, np.zeros_like(speeds), speeds, nothing)
+        self._carried.state += modal_state(
+            self.model, self.propagator, np.zeros_like(speeds), speeds, nothing
+        )
 
     def set_slow(self, drive_torque: float, twist: float) -> None:
         """Change motor torque and twist at once, without a ramp over the next sample."""
         before = self._inputs()
-        self._slow[:2] = drive_torque, twist
+        self._carried.slow[:2] = drive_torque, twist
         shift = self.propagator.hold @ (before - self._inputs())
-        self._state += np.concatenate((shift.real, shift.imag))
+        self._carried.state += np.concatenate((shift.real, shift.imag))
 
     def _inputs(self) -> Array:
-        return np.concatenate((self._ports[:, :2].ravel(), self._slow))
+        return np.concatenate((self._carried.ports[:, :2].ravel(), self._carried.slow))
 
 
 def slow_loads(system: LinearSystem, drags: Sequence[str]) -> Array:

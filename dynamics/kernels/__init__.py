@@ -4,12 +4,28 @@ The disk cache of a compiled function is keyed by its own file: after an edit of
 """
 
 from dynamics.kernels.contact import (
+    LANES,
     N_COUNTS,
+    N_PHASE,
     N_VALUES,
-    Tables,
+    NEVER,
+    PackedMeshes,
     mesh_reactions,
     tooth_pair_forces,
 )
-from dynamics.kernels.march import march
+from dynamics.kernels.march import Carried, DiscreteModes, Orders, march
 
-__all__ = ["N_COUNTS", "N_VALUES", "Tables", "march", "mesh_reactions", "tooth_pair_forces"]
+__all__ = [
+    "LANES",
+    "NEVER",
+    "N_COUNTS",
+    "N_PHASE",
+    "N_VALUES",
+    "Carried",
+    "DiscreteModes",
+    "Orders",
+    "PackedMeshes",
+    "march",
+    "mesh_reactions",
+    "tooth_pair_forces",
+]

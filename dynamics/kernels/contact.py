@@ -1,16 +1,22 @@
-"""Contact of one gear mesh, flank by flank, on the packed tables of ``dynamics.mesh_force.PackedMeshes``.
+"""Contact of one gear mesh, flank by flank, on the packed tables ``PackedMeshes``.
 
-With ``sign`` +1 in front and -1 on the back, ``play`` 0 in front and the backlash
-behind, the penetration is ``d = sign x - play - e(s)`` and the path position moves with
-``ds/dt = sign r_b1 omega_1``. From the potential ``k(s) d^2 / 2``
+With ``sign`` +1 in front and -1 on the back, ``play`` 0 in front and the backlash behind, the penetration is
+``d = sign x - play - e(s)`` and the path position moves with ``ds/dt = sign r_b1 omega_1``. From the potential
+``k(s) d^2 / 2``
 
     tau_1 = -sign r_b1 [ F (1 - e') + k' d^2 / 2 ],   tau_2 = sign r_b2 F,   F = max(0, k d + c (d/dt) d)
 
 and friction adds ``-mu F g rho_1`` and ``+mu F g rho_2`` with the direction ``g`` of the sliding speed
 ``v_g = omega_1 rho_1 - omega_2 rho_2``, ``rho_1 = T1C + s``, ``rho_2 = T2C - s``.
+
+A mesh whose teeth are all alike is tabulated over its phase within one base pitch, all contacts of a phase beside
+each other; a mesh with individual teeth looks every contact up on the path. Either way the contacts of a flank are
+listed in groups of LANES, row after row, which the compiler turns into vector instructions; a last group is filled
+up with contacts that never touch.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -19,21 +25,46 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+
+class PackedMeshes(NamedTuple):
+    """Tables of all meshes of a drivetrain; packed by ``dynamics.mesh_force.pack_meshes``."""
+
+    values: Array
+    """(n_meshes, N_VALUES) plain numbers."""
+    counts: Integers
+    """(n_meshes, N_COUNTS) sizes and first rows in the tables below."""
+    cells: Array
+    """(n_cells, 8) cubic coefficients of stiffness and gap over the fraction of a path cell."""
+    shifts: Array
+    """Slice shifts of all meshes [m]."""
+    deviations: Array
+    """(n_cells, 4) cubic coefficients of the deviation of single teeth."""
+    scales: Array
+    """Stiffness scales of single teeth [-]."""
+    phase_starts: Integers
+    """First group of every phase cell, front and back of each mesh, and one past the last."""
+    phase_data: Array
+    """Groups (N_PHASE, LANES), flat: cubic of stiffness, cubic of gap, path position at the start of the cell."""
+    offsets: Array
+    """(n_meshes,) imposed approach [m]."""
+
+
 # columns of PackedMeshes.values
 R1, R2, PITCH, PHASE, BACK_PHASE, BACKLASH, START, PER_STEP = 0, 1, 2, 3, 4, 5, 6, 7
-DAMP_TIME, FRICTION, ROLL_1, ROLL_2, PER_REVERSAL, LEAST_GAP, DERIVATIVE = 8, 9, 10, 11, 12, 13, 14
-N_VALUES = 15
+DAMP_TIME, FRICTION, ROLL_1, ROLL_2, PER_REVERSAL, LEAST_GAP, DERIVATIVE, FLOOR = 8, 9, 10, 11, 12, 13, 14, 15
+N_VALUES = 16
 # columns of PackedMeshes.counts
 N_SLICES, N_CELLS, CELLS_AT, SHIFTS_AT, INDIVIDUAL, TEETH_1, TEETH_2, OFFSET_2 = 0, 1, 2, 3, 4, 5, 6, 7
 ROWS_1, DEVIATION_1_AT, ROWS_2, DEVIATION_2_AT = 8, 9, 10, 11
-SCALES_1, SCALES_1_AT, SCALES_2, SCALES_2_AT, CAPACITY = 12, 13, 14, 15, 16
-N_COUNTS = 17
-# rows of the contact list: stiffness, gap, gap slope, lever factors, half stiffness slope, friction power
+SCALES_1, SCALES_1_AT, SCALES_2, SCALES_2_AT, GROUPS = 12, 13, 14, 15, 16
+N_PHASES, FRONT_AT, BACK_AT = 17, 18, 19
+N_COUNTS = 20
+N_PHASE = 9
+LANES = 16
+NEVER = 1e30  # gap of a lane that holds no contact
+# rows of a group of listed contacts: stiffness, gap, gap slope, lever factors, half stiffness slope, friction power per force
 LIST_K, LIST_E, LIST_DE, LIST_M1, LIST_M2, LIST_HK, LIST_POWER = 0, 1, 2, 3, 4, 5, 6
 N_LIST = 7
-
-Tables = tuple[Array, Array, Array, Array]
-"""``cells``, ``shifts``, ``deviations``, ``scales`` of ``PackedMeshes``."""
 
 # NaN and infinity keep their meaning; only the order of sums is free
 LOOSE = {"reassoc", "contract", "nsz", "arcp"}
@@ -42,114 +73,145 @@ LOOSE = {"reassoc", "contract", "nsz", "arcp"}
 @njit(cache=True, fastmath=LOOSE, inline="always")
 def sliding_direction(ratio: float) -> float:
     """Return the smooth sign of ``ratio``: a cubic inside +-1, exactly +-1 outside."""
-    if ratio >= 1.0:
-        return 1.0
-    if ratio <= -1.0:
-        return -1.0
+    ratio = ratio if ratio < 1.0 else 1.0
+    ratio = ratio if ratio > -1.0 else -1.0
     return ratio * (1.5 - 0.5 * ratio * ratio)
 
 
 @njit(cache=True, fastmath=LOOSE)
-def list_contacts(
-    values: Array,
-    counts: Integers,
-    tables: Tables,
-    sign: float,
-    theta_1: float,
-    omega_1: float,
-    omega_2: float,
-    at: int,
-    out: Array,
-    pairs: Integers,
-) -> int:
-    """Write what every (pair, slice) on the path of one flank offers at the angle ``theta_1`` into ``out``.
+def list_by_phase(
+    values: Array, counts: Integers, starts: Integers, data: Array, m: int, sign: float, theta_1: float,
+    omega_1: float, omega_2: float, out: Array,
+) -> int:  # fmt: skip
+    """List the contacts of one flank of mesh ``m``, all teeth alike, at the angle ``theta_1``.
 
-    ``values``, ``counts``: one row of the packed tables; ``out``: (N_LIST, capacity) list that is filled from
-    column ``at``; ``pairs``: (2, capacity) pair and slice of each entry, or of zero length if unwanted.
-    Returns the column after the last entry.
+    ``out`` receives groups of (N_LIST, LANES), flat; returns their number.
     """
-    cells, shifts, deviations, scales = tables
-    n_slices = counts[N_SLICES]
-    n_cells = counts[N_CELLS]
-    individual = counts[INDIVIDUAL]
-    per_step = values[PER_STEP]
-    r_1 = values[R1]
-    friction = values[FRICTION]
-    derivative = values[DERIVATIVE]
-    pitch = values[PITCH] * per_step
-    per_pitch = 1.0 / pitch
-    step = 1.0 / per_step
-    travel = (values[PHASE] if sign > 0.0 else values[BACK_PHASE]) + sign * r_1 * theta_1 - values[START]
-    mu_1 = sign * friction / r_1
-    mu_2 = sign * friction / values[R2]
-    column = at
-    error = np.empty(4)
-    for i in range(n_slices):
-        whole = (travel - sign * shifts[counts[SHIFTS_AT] + i]) * per_step
-        turn = math.floor(whole * per_pitch)
+    n_phases = counts[m, N_PHASES]
+    pitch = values[m, PITCH]
+    origin = values[m, PHASE] if sign > 0.0 else values[m, BACK_PHASE]
+    turned = (origin + sign * values[m, R1] * theta_1) / pitch
+    place = (turned - math.floor(turned)) * n_phases
+    j = min(int(place), n_phases - 1)
+    f = place - j
+    row = (counts[m, FRONT_AT] if sign > 0.0 else counts[m, BACK_AT]) + j
+    n_groups = starts[row + 1] - starts[row]
+    # a view, so that the compiler knows the indices below to be positive
+    block = data[N_PHASE * LANES * starts[row] : N_PHASE * LANES * starts[row + 1]]
+    per_step = n_phases / pitch
+    derivative = values[m, DERIVATIVE]
+    half = 0.5 * per_step * derivative
+    ahead = f * pitch / n_phases
+    friction = values[m, FRICTION]
+    mu_1 = sign * friction / values[m, R1]
+    mu_2 = sign * friction / values[m, R2]
+    roll_1, roll_2, per_reversal = (
+        values[m, ROLL_1] + ahead,
+        values[m, ROLL_2] - ahead,
+        values[m, PER_REVERSAL],
+    )
+    for group in range(n_groups):
+        a = N_PHASE * LANES * group
+        b = N_LIST * LANES * group
+        for i in range(LANES):
+            k_1, k_2, k_3 = block[a + LANES + i], block[a + 2 * LANES + i], block[a + 3 * LANES + i]
+            e_1, e_2, e_3 = block[a + 5 * LANES + i], block[a + 6 * LANES + i], block[a + 7 * LANES + i]
+            slope = (e_1 + f * (2.0 * e_2 + 3.0 * f * e_3)) * per_step
+            rho_1 = roll_1 + block[a + 8 * LANES + i]
+            rho_2 = roll_2 - block[a + 8 * LANES + i]
+            sliding = omega_1 * rho_1 - omega_2 * rho_2
+            direction = sliding_direction(sliding * per_reversal)
+            out[b + LIST_K * LANES + i] = block[a + i] + f * (k_1 + f * (k_2 + f * k_3))
+            out[b + LIST_E * LANES + i] = block[a + 4 * LANES + i] + f * (e_1 + f * (e_2 + f * e_3))
+            out[b + LIST_DE * LANES + i] = slope
+            out[b + LIST_M1 * LANES + i] = 1.0 - slope * derivative + mu_1 * direction * rho_1
+            out[b + LIST_M2 * LANES + i] = 1.0 + mu_2 * direction * rho_2
+            out[b + LIST_HK * LANES + i] = half * (k_1 + f * (2.0 * k_2 + 3.0 * f * k_3))
+            out[b + LIST_POWER * LANES + i] = friction * direction * sliding
+    return n_groups
+
+
+@njit(cache=True, fastmath=LOOSE)
+def list_on_path(
+    values: Array, counts: Integers, cells: Array, shifts: Array, deviations: Array, scales: Array, m: int,
+    sign: float, theta_1: float, omega_1: float, omega_2: float, out: Array, pairs: Integers,
+) -> int:  # fmt: skip
+    """List the contacts of a flank with individual teeth like ``list_by_phase``.
+
+    ``pairs`` (2, LANES * groups, or 0) receives tooth pair and slice of each; lanes without contact get slice -1.
+    """
+    n_cells = counts[m, N_CELLS]
+    per_step = values[m, PER_STEP]
+    derivative = values[m, DERIVATIVE]
+    pitch = values[m, PITCH] * per_step
+    origin = (values[m, PHASE] if sign > 0.0 else values[m, BACK_PHASE]) - values[m, START]
+    travel = origin + sign * values[m, R1] * theta_1
+    friction = values[m, FRICTION]
+    column = 0
+    for i in range(counts[m, N_SLICES]):
+        whole = (travel - sign * shifts[counts[m, SHIFTS_AT] + i]) * per_step
+        turn = math.floor(whole / pitch)
         place = whole - turn * pitch
-        row = counts[CELLS_AT] + i * n_cells
+        row = counts[m, CELLS_AT] + i * n_cells
         while place < n_cells:
             j = min(max(int(place), 0), n_cells - 1)
             f = place - j
-            cell = cells[row + j]
-            k = cell[0] + f * (cell[1] + f * (cell[2] + f * cell[3]))
-            dk = cell[1] + f * (2.0 * cell[2] + 3.0 * f * cell[3])
-            e = cell[4] + f * (cell[5] + f * (cell[6] + f * cell[7]))
-            de = cell[5] + f * (2.0 * cell[6] + 3.0 * f * cell[7])
+            c = row + j
+            k = cells[c, 0] + f * (cells[c, 1] + f * (cells[c, 2] + f * cells[c, 3]))
+            dk = cells[c, 1] + f * (2.0 * cells[c, 2] + 3.0 * f * cells[c, 3])
+            e = cells[c, 4] + f * (cells[c, 5] + f * (cells[c, 6] + f * cells[c, 7]))
+            de = cells[c, 5] + f * (2.0 * cells[c, 6] + 3.0 * f * cells[c, 7])
             pair = int(turn) if sign > 0.0 else -int(turn)
-            if individual != 0:
-                row_1 = counts[DEVIATION_1_AT] + (pair % counts[ROWS_1]) * n_cells + j
-                row_2 = counts[DEVIATION_2_AT] + ((pair + counts[OFFSET_2]) % counts[ROWS_2]) * n_cells + j
-                for part in range(4):
-                    error[part] = deviations[row_1, part] + deviations[row_2, part]
-                e += error[0] + f * (error[1] + f * (error[2] + f * error[3]))
-                de += error[1] + f * (2.0 * error[2] + 3.0 * f * error[3])
-                scale = scales[counts[SCALES_1_AT] + pair % counts[SCALES_1]]
-                scale *= scales[counts[SCALES_2_AT] + (pair + counts[OFFSET_2]) % counts[SCALES_2]]
-                k *= scale
-                dk *= scale
-            out[LIST_K, column] = k
-            out[LIST_E, column] = e
-            out[LIST_DE, column] = de * per_step
-            out[LIST_HK, column] = 0.5 * dk * per_step * derivative
-            lever_1 = 1.0 - de * per_step * derivative
-            if friction != 0.0:
-                s = values[START] + place * step
-                rho_1 = values[ROLL_1] + s
-                rho_2 = values[ROLL_2] - s
-                sliding = omega_1 * rho_1 - omega_2 * rho_2
-                direction = sliding_direction(sliding * values[PER_REVERSAL])
-                out[LIST_M1, column] = lever_1 + mu_1 * direction * rho_1
-                out[LIST_M2, column] = 1.0 + mu_2 * direction * rho_2
-                out[LIST_POWER, column] = friction * direction * sliding
-            else:
-                out[LIST_M1, column] = lever_1
-                out[LIST_M2, column] = 1.0
-                out[LIST_POWER, column] = 0.0
+            mate = pair + counts[m, OFFSET_2]
+            a = counts[m, DEVIATION_1_AT] + (pair % counts[m, ROWS_1]) * n_cells + j
+            b = counts[m, DEVIATION_2_AT] + (mate % counts[m, ROWS_2]) * n_cells + j
+            d_1 = deviations[a, 1] + deviations[b, 1]
+            d_2 = deviations[a, 2] + deviations[b, 2]
+            d_3 = deviations[a, 3] + deviations[b, 3]
+            e += deviations[a, 0] + deviations[b, 0] + f * (d_1 + f * (d_2 + f * d_3))
+            de = (de + d_1 + f * (2.0 * d_2 + 3.0 * f * d_3)) * per_step
+            scale = scales[counts[m, SCALES_1_AT] + pair % counts[m, SCALES_1]]
+            scale *= scales[counts[m, SCALES_2_AT] + mate % counts[m, SCALES_2]]
+            s = values[m, START] + place / per_step
+            rho_1 = values[m, ROLL_1] + s
+            rho_2 = values[m, ROLL_2] - s
+            sliding = omega_1 * rho_1 - omega_2 * rho_2
+            direction = sliding_direction(sliding * values[m, PER_REVERSAL])
+            at = (column // LANES) * N_LIST * LANES + column % LANES
+            out[at + LIST_K * LANES] = k * scale
+            out[at + LIST_E * LANES] = e
+            out[at + LIST_DE * LANES] = de
+            out[at + LIST_M1 * LANES] = (
+                1.0 - de * derivative + sign * friction / values[m, R1] * direction * rho_1
+            )
+            out[at + LIST_M2 * LANES] = 1.0 + sign * friction / values[m, R2] * direction * rho_2
+            out[at + LIST_HK * LANES] = 0.5 * dk * scale * per_step * derivative
+            out[at + LIST_POWER * LANES] = friction * direction * sliding
             if pairs.shape[1] > 0:
                 pairs[0, column] = pair
                 pairs[1, column] = i
             column += 1
             turn -= 1.0
             place += pitch
-    return column
+    n_groups = (column + LANES - 1) // LANES
+    for empty in range(column, n_groups * LANES):
+        at = (empty // LANES) * N_LIST * LANES + empty % LANES
+        for row in range(N_LIST):
+            out[at + row * LANES] = 0.0
+        out[at + LIST_E * LANES] = NEVER
+        if pairs.shape[1] > 0:
+            pairs[1, empty] = -1
+    return n_groups
 
 
 @njit(cache=True, fastmath=LOOSE)
 def sum_flank(
-    contacts: Array,
-    first: int,
-    last: int,
-    reach: float,
-    rate: float,
-    path_speed: float,
-    damp_time: float,
-) -> tuple[float, float, float, float, float, float, float, float]:
-    """Sum the contacts ``first`` to ``last`` of one flank pressed by ``reach`` and closing with ``rate``.
+    contacts: Array, n_groups: int, reach: float, rate: float, path_speed: float, damp_time: float
+) -> tuple[float, float, float, float, float, float, float, float, float]:
+    """Sum the listed contacts of one flank pressed by ``reach`` and closing with ``rate``.
 
-    ``damp_time`` = damping / mean stiffness [s]. Returns (force, a_1, a_2, k_1, k_2, k_d, friction power,
-    damping power): ``a_1 = sum F m_1 + k' d^2 / 2``, ``a_2 = sum F m_2`` are the torques per base radius,
+    ``damp_time`` = damping / mean stiffness [s]. Returns (force, a_1, a_2, k_1, k_2, k_d, friction power, damping
+    power, damping force): ``a_1 = sum F m_1 + k' d^2 / 2``, ``a_2 = sum F m_2`` are the torques per base radius,
     ``k_1 = sum k m_1``, ``k_2 = sum k m_2`` their slopes over ``reach``; ``a_1`` has ``k_d = sum k' d`` more.
     """
     force = 0.0
@@ -160,96 +222,98 @@ def sum_flank(
     k_d = 0.0
     friction_power = 0.0
     damping_power = 0.0
-    for i in range(first, last):
-        depth = reach - contacts[LIST_E, i]
-        closing = rate - contacts[LIST_DE, i] * path_speed
-        k = contacts[LIST_K, i]
-        depth = depth if depth > 0.0 else 0.0
-        f = k * (depth + damp_time * closing)
-        f = f if (depth > 0.0 and f > 0.0) else 0.0
-        k_p = k if f > 0.0 else 0.0
-        m_1 = contacts[LIST_M1, i]
-        m_2 = contacts[LIST_M2, i]
-        slope = contacts[LIST_HK, i] * depth
-        force += f
-        a_1 += f * m_1 + slope * depth
-        a_2 += f * m_2
-        k_1 += k_p * m_1
-        k_2 += k_p * m_2
-        k_d += 2.0 * slope
-        friction_power += f * contacts[LIST_POWER, i]
-        damping_power += (f - k * depth) * closing
-    return (force, a_1, a_2, k_1, k_2, k_d, friction_power, damping_power)
+    damping_force = 0.0
+    for group in range(n_groups):
+        at = N_LIST * LANES * group
+        for i in range(LANES):
+            closing = rate - contacts[at + LIST_DE * LANES + i] * path_speed
+            depth = reach - contacts[at + LIST_E * LANES + i]
+            depth = depth if depth > 0.0 else 0.0
+            k = contacts[at + LIST_K * LANES + i]
+            k = k if depth > 0.0 else 0.0
+            f = k * (depth + damp_time * closing)
+            f = f if f > 0.0 else 0.0
+            k_p = k if f > 0.0 else 0.0
+            m_1 = contacts[at + LIST_M1 * LANES + i]
+            m_2 = contacts[at + LIST_M2 * LANES + i]
+            slope = contacts[at + LIST_HK * LANES + i] * depth
+            damped = f - k * depth
+            force += f
+            a_1 += f * m_1 + slope * depth
+            a_2 += f * m_2
+            k_1 += k_p * m_1
+            k_2 += k_p * m_2
+            k_d += 2.0 * slope
+            friction_power += f * contacts[at + LIST_POWER * LANES + i]
+            damping_power += damped * closing
+            damping_force += damped
+    return (force, a_1, a_2, k_1, k_2, k_d, friction_power, damping_power, damping_force)
 
 
 @njit(cache=True, fastmath=LOOSE)
 def path_slopes(
-    contacts: Array,
-    first: int,
-    last: int,
-    reach: float,
-    rate: float,
-    path_speed: float,
-    damp_time: float,
+    contacts: Array, n_groups: int, reach: float, rate: float, path_speed: float, damp_time: float
 ) -> tuple[float, float, float]:
     """Return (da_1/ds, da_2/ds, elastic energy) of one flank at fixed reach, rate and friction levers."""
     slope_1 = 0.0
     slope_2 = 0.0
     energy = 0.0
-    for i in range(first, last):
-        depth = reach - contacts[LIST_E, i]
-        if depth <= 0.0:
-            continue
-        k = contacts[LIST_K, i]
-        gap_slope = contacts[LIST_DE, i]
-        stiffness_slope = 2.0 * contacts[LIST_HK, i]
-        pressed = depth + damp_time * (rate - gap_slope * path_speed)
-        energy += 0.5 * k * depth * depth
-        slope_1 -= stiffness_slope * depth * gap_slope
-        if pressed > 0.0:
+    for group in range(n_groups):
+        at = N_LIST * LANES * group
+        for i in range(LANES):
+            depth = reach - contacts[at + LIST_E * LANES + i]
+            depth = depth if depth > 0.0 else 0.0
+            k = contacts[at + LIST_K * LANES + i]
+            k = k if depth > 0.0 else 0.0
+            gap_slope = contacts[at + LIST_DE * LANES + i]
+            stiffness_slope = 2.0 * contacts[at + LIST_HK * LANES + i]
+            pressed = depth + damp_time * (rate - gap_slope * path_speed)
             df = stiffness_slope * pressed - k * gap_slope
-            slope_1 += df * contacts[LIST_M1, i]
-            slope_2 += df * contacts[LIST_M2, i]
+            df = df if (depth > 0.0 and pressed > 0.0) else 0.0
+            energy += 0.5 * k * depth * depth
+            slope_1 += df * contacts[at + LIST_M1 * LANES + i] - stiffness_slope * depth * gap_slope
+            slope_2 += df * contacts[at + LIST_M2 * LANES + i]
     return slope_1, slope_2, energy
 
 
 @njit(cache=True, fastmath=LOOSE)
 def mesh_reactions(
-    values: Array,
-    counts: Integers,
-    tables: Tables,
-    theta_1: Array,
-    reach: Array,
-    omega_1: Array,
-    omega_2: Array,
-    out: Array,
+    meshes: PackedMeshes, theta_1: Array, reach: Array, omega_1: Array, omega_2: Array, out: Array
 ) -> None:
-    """Evaluate one mesh at many states; ``out`` (n, 13) in the order of ``dynamics.mesh_force.MeshReaction``.
+    """Evaluate the first mesh at many states; ``out`` (n, 13) in the order of ``MeshReaction``.
 
-    ``reach`` is the approach including the offset of the law, shape (n,).
+    ``reach`` (n,) is the approach including the offset of the law.
     """
-    contacts = np.empty((N_LIST, counts[CAPACITY]))
+    values, counts = meshes.values, meshes.counts
+    cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
+    starts, data = meshes.phase_starts, meshes.phase_data
+    contacts = np.empty(counts[0, GROUPS] * N_LIST * LANES)
     no_pairs = np.empty((2, 0), np.int64)
-    r_1 = values[R1]
-    r_2 = values[R2]
-    damp_time = values[DAMP_TIME]
+    r_1 = values[0, R1]
+    r_2 = values[0, R2]
+    damp_time = values[0, DAMP_TIME]
     for n in range(theta_1.shape[0]):
         w_1 = omega_1[n]
         w_2 = omega_2[n]
-        for column in range(13):
+        for column in range(out.shape[1]):
             out[n, column] = 0.0
         for side in range(2):
             sign = 1.0 - 2.0 * side
-            pressed = sign * reach[n] - side * values[BACKLASH]
-            if pressed <= values[LEAST_GAP]:
+            pressed = sign * reach[n] - side * values[0, BACKLASH]
+            if pressed <= values[0, LEAST_GAP]:
                 continue
-            count = list_contacts(values, counts, tables, sign, theta_1[n], w_1, w_2, 0, contacts, no_pairs)
+            if counts[0, INDIVIDUAL] != 0:
+                groups = list_on_path(
+                    values, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], w_1, w_2, contacts, no_pairs
+                )  # fmt: skip
+            else:
+                groups = list_by_phase(values, counts, starts, data, 0, sign, theta_1[n], w_1, w_2, contacts)
             rate = sign * (r_1 * w_1 - r_2 * w_2)
             path_speed = sign * r_1 * w_1
-            force, a_1, a_2, k_1, k_2, k_d, friction_power, damping_power = sum_flank(
-                contacts, 0, count, pressed, rate, path_speed, damp_time
+            force, a_1, a_2, k_1, k_2, k_d, friction_power, damping_power, _ = sum_flank(
+                contacts, groups, pressed, rate, path_speed, damp_time
             )
-            slope_1, slope_2, energy = path_slopes(contacts, 0, count, pressed, rate, path_speed, damp_time)
+            slope_1, slope_2, energy = path_slopes(contacts, groups, pressed, rate, path_speed, damp_time)
             out[n, 0] -= sign * r_1 * a_1
             out[n, 1] += sign * r_2 * a_2
             out[n, 2 + side] += force
@@ -266,9 +330,7 @@ def mesh_reactions(
 
 @njit(cache=True, fastmath=LOOSE)
 def tooth_pair_forces(
-    values: Array,
-    counts: Integers,
-    tables: Tables,
+    meshes: PackedMeshes,
     theta_1: Array,
     reach: Array,
     omega_1: Array,
@@ -277,22 +339,27 @@ def tooth_pair_forces(
     force: Array,
 ) -> None:
     """Fill ``force`` (n, n_pairs, n_slices, 2), front and back; ``lowest`` (n,) is the pair of column 0."""
-    contacts = np.empty((N_LIST, counts[CAPACITY]))
-    pairs = np.empty((2, counts[CAPACITY]), np.int64)
-    damp_time = values[DAMP_TIME]
+    values, counts = meshes.values, meshes.counts
+    cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
+    contacts = np.empty(counts[0, GROUPS] * N_LIST * LANES)
+    pairs = np.empty((2, counts[0, GROUPS] * LANES), np.int64)
     for n in range(theta_1.shape[0]):
         for side in range(2):
             sign = 1.0 - 2.0 * side
-            pressed = sign * reach[n] - side * values[BACKLASH]
-            if pressed <= values[LEAST_GAP]:
+            pressed = sign * reach[n] - side * values[0, BACKLASH]
+            if pressed <= values[0, LEAST_GAP]:
                 continue
-            count = list_contacts(values, counts, tables, sign, theta_1[n], 0.0, 0.0, 0, contacts, pairs)
-            path_speed = sign * values[R1] * omega_1[n]
-            rate = sign * (values[R1] * omega_1[n] - values[R2] * omega_2[n])
-            for i in range(count):
-                depth = pressed - contacts[LIST_E, i]
-                closing = rate - contacts[LIST_DE, i] * path_speed
-                f = contacts[LIST_K, i] * (depth + damp_time * closing)
+            groups = list_on_path(
+                values, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], omega_1[n], omega_2[n],
+                contacts, pairs,
+            )  # fmt: skip
+            path_speed = sign * values[0, R1] * omega_1[n]
+            rate = sign * (values[0, R1] * omega_1[n] - values[0, R2] * omega_2[n])
+            for i in range(groups * LANES):
+                at = (i // LANES) * N_LIST * LANES + i % LANES
+                depth = pressed - contacts[at + LIST_E * LANES]
+                closing = rate - contacts[at + LIST_DE * LANES] * path_speed
+                f = contacts[at + LIST_K * LANES] * (depth + values[0, DAMP_TIME] * closing)
                 column = pairs[0, i] - lowest[n]
-                if depth > 0.0 and f > 0.0 and 0 <= column < force.shape[1]:
+                if pairs[1, i] >= 0 and depth > 0.0 and f > 0.0 and 0 <= column < force.shape[1]:
                     force[n, column, pairs[1, i], side] = f

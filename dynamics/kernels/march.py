@@ -2,7 +2,13 @@
 
 Arrays come from ``dynamics.propagator`` (discretised modes) and ``dynamics.mesh_force`` (packed mesh laws); names,
 units and validation live above.
+
+The modal state ``w`` (real parts, then imaginary parts) obeys ``w' = decay w + inputs tau + slow``. Outputs at the
+end of a step are ``rows w + through_old tau + through_new tau_new``: of each mesh approach rate, pinion speed and the
+steps of approach and pinion angle, then the speed of every slow input, then joint rates whose squares are losses.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,15 +16,19 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import (
     BACKLASH,
-    CAPACITY,
     DAMP_TIME,
+    FLOOR,
+    GROUPS,
+    INDIVIDUAL,
+    LANES,
     LEAST_GAP,
     LOOSE,
     N_LIST,
     R1,
     R2,
-    Tables,
-    list_contacts,
+    PackedMeshes,
+    list_by_phase,
+    list_on_path,
     sliding_direction,
     sum_flank,
 )
@@ -26,90 +36,84 @@ from dynamics.kernels.contact import (
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+MOST_ITERATIONS = 12
+TOLERANCE = 1e-8
+
+
+class DiscreteModes(NamedTuple):
+    """Modes at one step length; see ``dynamics.propagator.discretise``."""
+
+    decay: Array
+    """(2, n_modes) real and imaginary part."""
+    inputs: Array
+    """(2 n_meshes, 2 n_modes)"""
+    rows: Array
+    """(n_rows filled up with zeros to a multiple of 4, 2 n_modes)"""
+    through_old: Array
+    """(n_rows, 2 n_meshes)"""
+    through_new: Array
+    slow_inputs: Array
+    """(n_slow, 2 n_modes)"""
+    slow_old: Array
+    """(n_rows, n_slow)"""
+    slow_new: Array
+
+
+class Orders(NamedTuple):
+    """What a march is told, values at the end of each sample."""
+
+    given: Array
+    """(n_samples, 4) motor torque, twist, speed of the drive, torque of the first mesh."""
+    offsets: Array
+    """(n_samples, n_meshes) imposed approach."""
+    control: Array
+    """Proportional gain, integral gain per sample, torque limit (0: no control), share of the averaged speed;
+    bracing gain per sample (0: no control), share of the averaged torque."""
+    drags: Array
+    """(n_drags, n_table) drag torque over speed."""
+    per_drag_step: Array
+
+
+class Carried(NamedTuple):
+    """What a march carries on; every array is written."""
+
+    state: Array
+    """(2 n_modes,) modal state."""
+    ports: Array
+    """(n_meshes, 6) tau_1, tau_2, both one step earlier, approach, pinion angle."""
+    slow: Array
+    """(n_slow,) motor torque, twist, drags."""
+    offset: Array
+    """(n_meshes,) imposed approach."""
+    memory: Array
+    """Integral of the speed controller, correction of the twist, averaged torque, averaged speed."""
+    speeds: Array
+    """(n_slow,) speed of every slow input."""
+    powers: Array
+    """Last powers: friction and damping of each mesh, every slow input, joints; empty without accounts."""
+    work: Array
+    """Their integrals."""
+    damping: Array
+    """(n_meshes, 2) last damping force and approach rate."""
+
 
 @njit(cache=True, fastmath=LOOSE)
-def _flanks(
-    values: Array,
-    counts: Integers,
-    contacts: Array,
-    filled: Integers,
-    reach: float,
-    rate: float,
-    omega_1: float,
-) -> tuple[float, float, float, float, float, float, float, float, float]:
-    """Sum both listed flanks of one mesh.
-
-    Returns (tau_1, tau_2, d tau_1/dx, d tau_2/dx, d tau_1/dv, d tau_2/dv, front - back force, friction power,
-    damping power).
-    """
-    damp_time = values[DAMP_TIME]
-    tau_1, tau_2, x_1, x_2, v_1, v_2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    net, friction_power, damping_power = 0.0, 0.0, 0.0
-    for side in range(2):
-        if filled[side] == 0:
-            continue
-        sign = 1.0 - 2.0 * side
-        force, a_1, a_2, k_1, k_2, k_d, lost, damped = sum_flank(
-            contacts[side],
-            0,
-            filled[side],
-            sign * reach - side * values[BACKLASH],
-            sign * rate,
-            sign * values[R1] * omega_1,
-            damp_time,
-        )
-        tau_1 -= sign * a_1
-        tau_2 += sign * a_2
-        x_1 -= k_1 + k_d
-        x_2 += k_2
-        v_1 -= k_1
-        v_2 += k_2
-        net += sign * force
-        friction_power += lost
-        damping_power += damped
-    r_1 = values[R1]
-    r_2 = values[R2]
-    return (
-        r_1 * tau_1, r_2 * tau_2, r_1 * x_1, r_2 * x_2, r_1 * damp_time * v_1, r_2 * damp_time * v_2,
-        net, friction_power, damping_power,
-    )  # fmt: skip
-
-
-@njit(cache=True, fastmath=LOOSE)
-def _dot(row: Array, state: Array) -> float:
-    total = 0.0
-    for i in range(state.shape[0]):
-        total += row[i] * state[i]
-    return total
-
-
-@njit(cache=True, fastmath=LOOSE)
-def _slow_inputs(
-    given: Array,
-    speeds: Array,
-    control: Array,
-    memory: Array,
-    drags: Array,
-    per_drag_step: Array,
-    torque: float,
+def _slow_targets(
+    given: Array, control: Array, drags: Array, per_drag_step: Array, memory: Array, speeds: Array, torque: float,
     target: Array,
-) -> None:
-    """Fill ``target`` with the slow inputs at the end of a sample: motor, bracing, drags (order of ``loads``).
-
-    ``given``: (3 + n) commanded motor torque, bracing, speed and asked torque; ``control``: (proportional, integral
-    share per sample, torque limit, bracing gain, averaging share); ``memory``: (integral, bracing, mean torque).
-    """
+) -> None:  # fmt: skip
+    """Fill the slow inputs at the end of a sample: controlled motor torque and twist, drags at their speed."""
+    target[0] = given[0]
     if control[2] > 0.0:
-        error = given[2] - speeds[0]
+        memory[3] += control[3] * (speeds[0] - memory[3])
+        error = given[2] - memory[3]
         wish = given[0] + control[0] * error + memory[0]
         target[0] = min(max(wish, -control[2]), control[2])
         if target[0] == wish or error * wish < 0.0:
             memory[0] += control[1] * error
-    else:
-        target[0] = given[0]
-    if control[3] > 0.0:
-        memory[2] += control[4] * (torque - memory[2])
-        memory[1] += control[3] * (given[3] - memory[2])
+    if control[4] > 0.0:
+        memory[2] += control[5] * (torque - memory[2])
+        memory[1] += control[4] * (given[3] - memory[2])
     target[1] = given[1] + memory[1]
     last = drags.shape[1] - 1
     for i in range(drags.shape[0]):
@@ -121,187 +125,294 @@ def _slow_inputs(
 
 
 @njit(cache=True, fastmath=LOOSE)
+def _hold_slow(
+    slow_inputs: Array, slow_old: Array, slow_new: Array, slow: Array, target: Array, substeps: int, pull: Array,
+    pull_step: Array, base: Array, slope: Array,
+) -> None:  # fmt: skip
+    """Prepare what the slow inputs, linear over the sample, add to modes and outputs in each step."""
+    pull[:] = 0.0
+    pull_step[:] = 0.0
+    base[:] = 0.0
+    slope[:] = 0.0
+    for k in range(slow.shape[0]):
+        change = (target[k] - slow[k]) / substeps
+        for i in range(pull.shape[0]):
+            pull[i] += slow_inputs[k, i] * slow[k]
+            pull_step[i] += slow_inputs[k, i] * change
+        for r in range(base.shape[0]):
+            base[r] += slow_old[r, k] * slow[k] + slow_new[r, k] * (slow[k] + change)
+            slope[r] += (slow_old[r, k] + slow_new[r, k]) * change
+
+
+@njit(cache=True, fastmath=LOOSE)
+def _free_outputs(
+    rows: Array, through: Array, state: Array, ports: Array, base: Array, slope: Array, sub: int, wanted: int,
+    outputs: Array,
+) -> None:  # fmt: skip
+    """Fill the first ``wanted`` outputs at the end of the step as if the new mesh torques were zero."""
+    n = state.shape[0]
+    for quad in range((wanted + 3) // 4):
+        r = 4 * quad
+        s_0 = 0.0
+        s_1 = 0.0
+        s_2 = 0.0
+        s_3 = 0.0
+        for i in range(n):
+            s_0 += rows[r, i] * state[i]
+            s_1 += rows[r + 1, i] * state[i]
+            s_2 += rows[r + 2, i] * state[i]
+            s_3 += rows[r + 3, i] * state[i]
+        outputs[r] = s_0
+        outputs[r + 1] = s_1
+        outputs[r + 2] = s_2
+        outputs[r + 3] = s_3
+    for r in range(wanted):
+        total = base[r] + sub * slope[r]
+        for m in range(ports.shape[0]):
+            total += through[r, 2 * m] * ports[m, 0] + through[r, 2 * m + 1] * ports[m, 1]
+        outputs[r] += total
+
+
+@njit(cache=True, fastmath=LOOSE)
+def _advance(decay: Array, inputs: Array, state: Array, ports: Array, pull: Array, pull_step: Array) -> None:
+    """Take the modal state over one step."""
+    n = decay.shape[1]
+    for i in range(n):
+        real = decay[0, i] * state[i] - decay[1, i] * state[n + i] + pull[i]
+        imag = decay[1, i] * state[i] + decay[0, i] * state[n + i] + pull[n + i]
+        state[i] = real
+        state[n + i] = imag
+    for m in range(ports.shape[0]):
+        first = ports[m, 0]
+        second = ports[m, 1]
+        for i in range(2 * n):
+            state[i] += inputs[2 * m, i] * first + inputs[2 * m + 1, i] * second
+    for i in range(2 * n):
+        pull[i] += pull_step[i]
+
+
+@njit(cache=True, fastmath=LOOSE)
+def _torques_of_mesh(
+    values: Array, m: int, contacts: Array, groups: Integers, reach: float, rate: float, omega_1: float,
+    reaction: Array,
+) -> None:  # fmt: skip
+    """Fill ``reaction``: tau_1, tau_2, their slopes over approach (2) and rate (2), net force, friction power,
+    damping power, damping force of both flanks, the contacts listed in rows ``2 m`` and ``2 m + 1``."""
+    r_1, r_2, damp_time = values[m, R1], values[m, R2], values[m, DAMP_TIME]
+    for i in range(10):
+        reaction[i] = 0.0
+    for side in range(2):
+        if groups[m, side] == 0:
+            continue
+        sign = 1.0 - 2.0 * side
+        force, a_1, a_2, k_1, k_2, k_d, friction_power, damping_power, damping = sum_flank(
+            contacts[2 * m + side], groups[m, side], sign * reach - side * values[m, BACKLASH], sign * rate,
+            sign * r_1 * omega_1, damp_time,
+        )  # fmt: skip
+        reaction[0] -= sign * r_1 * a_1
+        reaction[1] += sign * r_2 * a_2
+        reaction[2] -= r_1 * (k_1 + k_d)
+        reaction[3] += r_2 * k_2
+        reaction[4] -= r_1 * k_1 * damp_time
+        reaction[5] += r_2 * k_2 * damp_time
+        reaction[6] += sign * force
+        reaction[7] += friction_power
+        reaction[8] += damping_power
+        reaction[9] += sign * damping
+
+
+@njit(cache=True, fastmath=LOOSE)
+def _newton_step(reaction: Array, through: Array, m: int, tau: Array) -> float:
+    """Correct the two torques of mesh ``m``; return by how much the contact may still move them [N m].
+
+    The correction moves the approach by the compliance of one step, a share ``gain`` of what it would need; what
+    can be wrong after it (another set of contacts, another mesh) is that share of the correction.
+    """
+    row = 4 * m
+    q = 2 * m
+    g_11 = reaction[2] * through[row + 2, q] + reaction[4] * through[row, q]
+    g_12 = reaction[2] * through[row + 2, q + 1] + reaction[4] * through[row, q + 1]
+    g_21 = reaction[3] * through[row + 2, q] + reaction[5] * through[row, q]
+    g_22 = reaction[3] * through[row + 2, q + 1] + reaction[5] * through[row, q + 1]
+    e_1 = reaction[0] - tau[q]
+    e_2 = reaction[1] - tau[q + 1]
+    scale = 1.0 / ((1.0 - g_11) * (1.0 - g_22) - g_12 * g_21)
+    tau[q] += ((1.0 - g_22) * e_1 + g_12 * e_2) * scale
+    tau[q + 1] += ((1.0 - g_11) * e_2 + g_21 * e_1) * scale
+    gain = abs(g_11) + abs(g_12) + abs(g_21) + abs(g_22)
+    return gain * (abs(e_1) + abs(e_2))
+
+
+@njit(cache=True, fastmath=LOOSE)
+def _account(
+    work: Array, powers: Array, fresh: Array, damping: Array, slow: Array, target: Array, share: float, step: float,
+    outputs: Array, reactions: Array, rates: Array,
+) -> None:  # fmt: skip
+    """Add the work of one step to the accounts.
+
+    Powers are integrated by trapezoids. The march lets a mesh torque vary linearly over the step, so the work of the
+    damping force is its trapezoid less ``step dF dv / 12`` (the mean of a straight line times a smooth curve).
+    """
+    n_meshes, n_slow = damping.shape[0], slow.shape[0]
+    first = 4 * n_meshes
+    for m in range(n_meshes):
+        fresh[2 * m] = reactions[m, 7]
+        fresh[2 * m + 1] = reactions[m, 8]
+    for k in range(n_slow):
+        fresh[2 * n_meshes + k] = (slow[k] + share * (target[k] - slow[k])) * outputs[first + k]
+    joints = 0.0
+    for r in range(first + n_slow, outputs.shape[0]):
+        joints += outputs[r] * outputs[r]
+    fresh[2 * n_meshes + n_slow] = joints
+    for k in range(fresh.shape[0]):
+        work[k] += 0.5 * step * (powers[k] + fresh[k])
+        powers[k] = fresh[k]
+    for m in range(n_meshes):
+        change = (reactions[m, 9] - damping[m, 0]) * (rates[m] - damping[m, 1])
+        work[2 * m + 1] -= step * change / 12.0
+        damping[m, 0] = reactions[m, 9]
+        damping[m, 1] = rates[m]
+
+
+@njit(cache=True, fastmath=LOOSE)
 def march(
-    values: Array, counts: Integers, tables: Tables, floor: Array, decay: Array, inputs: Array, rows: Array,
-    through_old: Array, through_new: Array, slow_inputs: Array, slow_old: Array, slow_new: Array, step: float,
-    substeps: int, given: Array, offsets: Array, control: Array, drags: Array, per_drag_step: Array,
-    state: Array, ports: Array, slow: Array, offset: Array, memory: Array, powers: Array, work: Array,
+    meshes: PackedMeshes, modes: DiscreteModes, orders: Orders, carried: Carried, step: float, substeps: int,
     history: Array, samples: Array,
 ) -> int:  # fmt: skip
-    """March the modal state over ``len(given)`` samples of ``substeps`` steps; returns the unsettled steps.
+    """March over ``len(orders.given)`` samples of ``substeps`` steps; return the number of unsettled steps.
 
-    The modal state ``w`` (real parts, then imaginary parts) obeys ``w' = decay w + inputs tau + slow``, the
-    outputs at the end of a step are ``rows w + through_old tau + through_new tau_new``: of each mesh approach
-    rate, pinion speed and the steps of approach and pinion angle, then the speed of every slow input, then the
-    joint rates whose squares are losses. ``ports`` (n_meshes, 6): tau_1, tau_2, both one step earlier,
-    approach, pinion angle. ``work``: friction, damping of each mesh, work of each slow input, joint loss;
-    ``powers`` the same at the last step. ``state, ports, slow, offset, memory, powers, work`` are carried on.
-    ``history`` (n_meshes, 1 or 6, steps): front - back force [, approach, pinion angle, approach rate, pinion
-    speed, tau_1]; ``samples`` (n_samples, 2 n_slow): slow inputs, then their speeds.
+    Each step: outputs and modal state for the old mesh torques; contacts listed at the predicted angles; Newton on
+    the new torques with these contacts held; accounts. ``history`` (n_meshes, 1 or 6, steps): front - back force
+    [, approach, pinion angle, approach rate, pinion speed, tau_1]; ``samples`` (n_samples, 2 n_slow): slow inputs,
+    then their speeds.
     """
-    n_meshes = values.shape[0]
+    # fields once into plain names: reading them in the loop would count references
+    values, counts, starts, data = meshes.values, meshes.counts, meshes.phase_starts, meshes.phase_data
+    cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
+    decay, inputs, rows, through_old = modes.decay, modes.inputs, modes.rows, modes.through_old
+    through = modes.through_new
+    state, ports, slow, powers, damping = (
+        carried.state,
+        carried.ports,
+        carried.slow,
+        carried.powers,
+        carried.damping,
+    )
+    account = carried.work
+    given, imposed = orders.given, orders.offsets
+
+    n_meshes, n_slow, n_rows = values.shape[0], slow.shape[0], through.shape[0]
     n_inputs = 2 * n_meshes
-    n_slow = slow.shape[0]
-    n_rows = rows.shape[0]
-    n_modes = decay.shape[1]
     first_slow = 4 * n_meshes
-    n_kept = history.shape[1]
-    capacity = 1
+    most = 1
     for m in range(n_meshes):
-        capacity = max(capacity, counts[m, CAPACITY])
-    contacts = np.zeros((n_meshes, 2, N_LIST, capacity))
-    filled = np.zeros((n_meshes, 2), np.int64)
+        most = max(most, counts[m, GROUPS])
+    contacts = np.zeros((2 * n_meshes, most * N_LIST * LANES))
+    groups = np.zeros((n_meshes, 2), np.int64)
     no_pairs = np.empty((2, 0), np.int64)
-    outputs = np.zeros(n_rows)
-    base = np.zeros(n_rows)
-    slope = np.zeros(n_rows)
-    pull = np.zeros(2 * n_modes)
-    pull_step = np.zeros(2 * n_modes)
-    tau = np.zeros(n_inputs)
-    tau_old = np.zeros(n_inputs)
-    target = np.zeros(n_slow)
-    speeds = np.zeros(n_slow)
-    fresh = np.zeros(powers.shape[0])
+    pull, pull_step = np.zeros(state.shape[0]), np.zeros(state.shape[0])
+    base, slope = np.zeros(n_rows), np.zeros(n_rows)
+    outputs = np.zeros(rows.shape[0])
+    tau, target, fresh = np.zeros(n_inputs), np.zeros(n_slow), np.zeros(account.shape[0])
+    reactions, rates, reaches = np.zeros((n_meshes, 10)), np.zeros(n_meshes), np.zeros(n_meshes)
+    mean_torque = carried.memory[2]
     unsettled = 0
     at = 0
-    mean_torque = 0.0
-    for k in range(n_slow):
-        speeds[k] = powers[powers.shape[0] - n_slow + k]
-    n_power = powers.shape[0] - n_slow
     for sample in range(given.shape[0]):
-        _slow_inputs(given[sample], speeds, control, memory, drags, per_drag_step, mean_torque, target)
-        for i in range(2 * n_modes):
-            pull[i] = 0.0
-            pull_step[i] = 0.0
-        for k in range(n_slow):
-            change = (target[k] - slow[k]) / substeps
-            for i in range(2 * n_modes):
-                pull[i] += slow_inputs[k, i] * slow[k]
-                pull_step[i] += slow_inputs[k, i] * change
-        for r in range(n_rows):
-            base[r] = 0.0
-            slope[r] = 0.0
-            for k in range(n_slow):
-                change = (target[k] - slow[k]) / substeps
-                base[r] += slow_old[r, k] * slow[k] + slow_new[r, k] * (slow[k] + change)
-                slope[r] += (slow_old[r, k] + slow_new[r, k]) * change
+        _slow_targets(
+            given[sample], orders.control, orders.drags, orders.per_drag_step, carried.memory, carried.speeds,
+            mean_torque, target,
+        )  # fmt: skip
+        _hold_slow(
+            modes.slow_inputs, modes.slow_old, modes.slow_new, slow, target, substeps, pull, pull_step, base, slope
+        )  # fmt: skip
         mean_torque = 0.0
         for sub in range(substeps):
             share = (sub + 1.0) / substeps
+            wanted = n_rows if account.shape[0] > 0 or sub == substeps - 1 else first_slow
+            _free_outputs(rows, through_old, state, ports, base, slope, sub, wanted, outputs)
+            _advance(decay, inputs, state, ports, pull, pull_step)
             for m in range(n_meshes):
-                tau_old[2 * m] = ports[m, 0]
-                tau_old[2 * m + 1] = ports[m, 1]
                 tau[2 * m] = 2.0 * ports[m, 0] - ports[m, 2]
                 tau[2 * m + 1] = 2.0 * ports[m, 1] - ports[m, 3]
-            wanted = n_rows if n_power > 0 or sub == substeps - 1 else first_slow
-            for r in range(wanted):
-                total = base[r] + sub * slope[r] + _dot(rows[r], state)
-                for k in range(n_inputs):
-                    total += through_old[r, k] * tau_old[k]
-                outputs[r] = total
-            for i in range(n_modes):
-                real = decay[0, i] * state[i] - decay[1, i] * state[n_modes + i] + pull[i]
-                imag = decay[1, i] * state[i] + decay[0, i] * state[n_modes + i] + pull[n_modes + i]
-                state[i] = real
-                state[n_modes + i] = imag
-                pull[i] += pull_step[i]
-                pull[n_modes + i] += pull_step[n_modes + i]
-            for m in range(n_meshes):
-                first = tau_old[2 * m]
-                second = tau_old[2 * m + 1]
-                for i in range(2 * n_modes):
-                    state[i] += inputs[2 * m, i] * first + inputs[2 * m + 1, i] * second
             settled = False
-            for attempt in range(12):
-                worst = 0.0
+            attempt = 0
+            while attempt < MOST_ITERATIONS and not settled:
+                settled = True
                 for m in range(n_meshes):
                     row = 4 * m
-                    rate = outputs[row] + (offsets[sample, m] - offset[m]) / (substeps * step)
+                    moved = imposed[sample, m] - carried.offset[m]
+                    rate = outputs[row] + moved / (substeps * step)
                     omega_1 = outputs[row + 1]
-                    x = ports[m, 4] + outputs[row + 2]
+                    reach = ports[m, 4] + outputs[row + 2] + carried.offset[m] + share * moved
                     for k in range(n_inputs):
-                        rate += through_new[row, k] * tau[k]
-                        omega_1 += through_new[row + 1, k] * tau[k]
-                        x += through_new[row + 2, k] * tau[k]
-                    reach = x + offset[m] + share * (offsets[sample, m] - offset[m])
+                        rate += through[row, k] * tau[k]
+                        omega_1 += through[row + 1, k] * tau[k]
+                        reach += through[row + 2, k] * tau[k]
                     if attempt == 0:
                         theta = ports[m, 5] + outputs[row + 3]
                         for k in range(n_inputs):
-                            theta += through_new[row + 3, k] * tau[k]
+                            theta += through[row + 3, k] * tau[k]
                         omega_2 = (values[m, R1] * omega_1 - rate) / values[m, R2]
                         margin = values[m, LEAST_GAP] - 2.0 * step * abs(rate)
                         for side in range(2):
                             sign = 1.0 - 2.0 * side
-                            filled[m, side] = 0
-                            if sign * reach - side * values[m, BACKLASH] > margin:
-                                filled[m, side] = list_contacts(
-                                    values[m], counts[m], tables, sign, theta, omega_1, omega_2, 0,
-                                    contacts[m, side], no_pairs,
+                            groups[m, side] = 0
+                            if sign * reach - side * values[m, BACKLASH] <= margin:
+                                continue
+                            if counts[m, INDIVIDUAL] != 0:
+                                groups[m, side] = list_on_path(
+                                    values, counts, cells, shifts, deviations, scales, m, sign, theta, omega_1,
+                                    omega_2, contacts[2 * m + side], no_pairs,
                                 )  # fmt: skip
-                    t_1, t_2, x_1, x_2, v_1, v_2, net, lost, damped = _flanks(
-                        values[m], counts[m], contacts[m], filled[m], reach, rate, omega_1
-                    )
-                    # Newton on the two torques of this mesh, the other meshes follow by iteration
-                    q = 2 * m
-                    a = 1.0 - x_1 * through_new[row + 2, q] - v_1 * through_new[row, q]
-                    b = -x_1 * through_new[row + 2, q + 1] - v_1 * through_new[row, q + 1]
-                    c = -x_2 * through_new[row + 2, q] - v_2 * through_new[row, q]
-                    d = 1.0 - x_2 * through_new[row + 2, q + 1] - v_2 * through_new[row, q + 1]
-                    e_1 = t_1 - tau[q]
-                    e_2 = t_2 - tau[q + 1]
-                    determinant = 1.0 / (a * d - b * c)
-                    tau[q] += (d * e_1 - b * e_2) * determinant
-                    tau[q + 1] += (a * e_2 - c * e_1) * determinant
-                    worst = max(worst, abs(e_1) - 1e-9 * abs(t_1) - floor[m])
-                    history[m, 0, at] = net
-                    if n_kept > 1:
-                        history[m, 1, at] = reach
-                        history[m, 3, at] = rate
-                        history[m, 4, at] = omega_1
-                        history[m, 5, at] = t_1
-                    fresh[2 * m] = lost
-                    fresh[2 * m + 1] = damped
-                if worst <= 0.0:
-                    settled = True
-                    break
+                            else:
+                                groups[m, side] = list_by_phase(
+                                    values, counts, starts, data, m, sign, theta, omega_1, omega_2,
+                                    contacts[2 * m + side],
+                                )  # fmt: skip
+                    _torques_of_mesh(values, m, contacts, groups, reach, rate, omega_1, reactions[m])
+                    open_error = _newton_step(reactions[m], through, m, tau)
+                    if open_error > TOLERANCE * abs(reactions[m, 0]) + values[m, FLOOR]:
+                        settled = False
+                    rates[m] = rate
+                    reaches[m] = reach
+                attempt += 1
             if not settled:
                 unsettled += 1
             for m in range(n_meshes):
-                x = outputs[4 * m + 2]
-                theta = outputs[4 * m + 3]
+                row = 4 * m
+                x_step, theta_step, omega_1 = outputs[row + 2], outputs[row + 3], outputs[row + 1]
                 for k in range(n_inputs):
-                    x += through_new[4 * m + 2, k] * tau[k]
-                    theta += through_new[4 * m + 3, k] * tau[k]
-                ports[m, 2] = tau_old[2 * m]
-                ports[m, 3] = tau_old[2 * m + 1]
+                    x_step += through[row + 2, k] * tau[k]
+                    theta_step += through[row + 3, k] * tau[k]
+                    omega_1 += through[row + 1, k] * tau[k]
+                ports[m, 2] = ports[m, 0]
+                ports[m, 3] = ports[m, 1]
                 ports[m, 0] = tau[2 * m]
                 ports[m, 1] = tau[2 * m + 1]
-                ports[m, 4] += x
-                ports[m, 5] += theta
-                if n_kept > 1:
+                ports[m, 4] += x_step
+                ports[m, 5] += theta_step
+                history[m, 0, at] = reactions[m, 6]
+                if history.shape[1] > 1:
+                    history[m, 1, at] = reaches[m]
                     history[m, 2, at] = ports[m, 5]
-            mean_torque += history[0, 0, at] * values[0, R1] / substeps
+                    history[m, 3, at] = rates[m]
+                    history[m, 4, at] = omega_1
+                    history[m, 5, at] = reactions[m, 0]
             for r in range(first_slow, wanted):
                 for k in range(n_inputs):
-                    outputs[r] += through_new[r, k] * tau[k]
-            if n_power > 0:
-                joint = 0.0
-                for r in range(first_slow + n_slow, n_rows):
-                    joint += outputs[r] * outputs[r]
-                for k in range(n_slow):
-                    applied = slow[k] + share * (target[k] - slow[k])
-                    fresh[n_inputs + k] = applied * outputs[first_slow + k]
-                fresh[n_inputs + n_slow] = joint
-                for k in range(n_power):
-                    work[k] += 0.5 * step * (powers[k] + fresh[k])
-                    powers[k] = fresh[k]
+                    outputs[r] += through[r, k] * tau[k]
+            if account.shape[0] > 0:
+                _account(
+                    account, powers, fresh, damping, slow, target, share, step, outputs[:n_rows], reactions, rates
+                )  # fmt: skip
+            mean_torque += reactions[0, 6] * values[0, R1] / substeps
             at += 1
         for k in range(n_slow):
             slow[k] = target[k]
-            speeds[k] = outputs[first_slow + k]
-            powers[n_power + k] = speeds[k]
-            samples[sample, k] = slow[k]
-            samples[sample, n_slow + k] = speeds[k]
+            carried.speeds[k] = outputs[first_slow + k]
+            samples[sample, k] = target[k]
+            samples[sample, n_slow + k] = outputs[first_slow + k]
         for m in range(n_meshes):
-            offset[m] = offsets[sample, m]
+            carried.offset[m] = imposed[sample, m]
     return unsettled

@@ -1,0 +1,157 @@
+"""Mesh laws packed into the tables of the compiled loops.
+
+The tables of a law become monotone cubics (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980): the stiffness stays
+between its points and never turns negative, force and derivative torque are continuous, and both come from the same
+polynomial, hence from one potential. With straight pieces instead the energy error of a march no longer falls at
+second order, because the derivative torques jump at every table point.
+
+If all teeth are alike the contacts of every slice and pair are tabulated over the phase within one base pitch.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from dynamics import kernels
+from dynamics.kernels import PackedMeshes
+from dynamics.mesh_law import MeshLaw, check_mesh_law
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+def pack_meshes(laws: Sequence[MeshLaw], *, derivative_torques: bool = True) -> PackedMeshes:
+    """Return the packed tables of all ``laws``.
+
+    With ``derivative_torques=False`` the torques ``F de/dtheta`` and ``d^2 dk/dtheta / 2`` are left out: the
+    negative control of the energy test, of no other use.
+
+    Raises
+    ------
+    ValueError
+        If a law is impossible (see ``check_mesh_law``).
+    """
+    for law in laws:
+        check_mesh_law(law)
+    values = np.array([_values(law, derivative_torques) for law in laws])
+    counts = np.zeros((len(laws), kernels.N_COUNTS), np.int64)
+    cells: list[Array] = []
+    shifts: list[Array] = []
+    deviations: list[Array] = []
+    scales: list[Array] = []
+    starts: list[int] = [0]
+    blocks: list[Array] = []
+    for mesh, law in enumerate(laws):
+        n_slices, n_path = law.stiffness.shape
+        deviation_at, scale_at = sum(map(len, deviations)), sum(map(len, scales))
+        individual = has_individual_teeth(law)
+        n_phases = 0 if individual else max(8, int(np.ceil(law.base_pitch / law.path_step)))
+        front_at = len(starts) - 1
+        for sign in (1.0, -1.0) if n_phases else ():
+            for block in _phase_blocks(law, sign, n_phases):
+                blocks.append(block)
+                starts.append(starts[-1] + block.shape[0])
+        counts[mesh] = (
+            n_slices, n_path - 1, sum(map(len, cells)), sum(map(len, shifts)), individual,
+            law.teeth_1, law.teeth_2, law.tooth_offset_2,
+            len(law.deviation_1), deviation_at,
+            len(law.deviation_2), deviation_at + len(law.deviation_1) * (n_path - 1),
+            len(law.scale_1), scale_at, len(law.scale_2), scale_at + len(law.scale_1),
+            most_groups(law),
+            n_phases, front_at, front_at + n_phases,
+        )  # fmt: skip
+        cells.append(np.hstack((_cells(law.stiffness), _cells(law.gap))))
+        shifts.append(np.asarray(law.slice_shift, float))
+        deviations.append(np.vstack((_cells(law.deviation_1), _cells(law.deviation_2))))
+        scales.append(np.concatenate((law.scale_1, law.scale_2)).astype(float))
+    return PackedMeshes(
+        values=values,
+        counts=counts,
+        cells=np.vstack(cells),
+        shifts=np.concatenate(shifts),
+        deviations=np.vstack(deviations),
+        scales=np.concatenate(scales),
+        phase_starts=np.array(starts, np.int64),
+        phase_data=np.concatenate([np.zeros(1), *(block.ravel() for block in blocks)])[1:].copy(),
+        offsets=np.array([law.offset for law in laws], float),
+    )
+
+
+def has_individual_teeth(law: MeshLaw) -> bool:
+    """Return whether a tooth of the law differs from the others by deviation or stiffness."""
+    tables = (law.deviation_1, law.deviation_2, law.scale_1 - 1.0, law.scale_2 - 1.0)
+    return any(bool(np.any(table)) for table in tables)
+
+
+def most_groups(law: MeshLaw) -> int:
+    """Return how many groups of contacts one flank can have on the path at once."""
+    n_slices, n_path = law.stiffness.shape
+    contacts = n_slices * (int(law.path_step * (n_path - 1) / law.base_pitch) + 2)
+    return -(-contacts // kernels.LANES)
+
+
+def _values(law: MeshLaw, derivative_torques: bool) -> tuple[float, ...]:
+    least_gap = float(law.gap.min() + law.deviation_1.min() + law.deviation_2.min())
+    reversal = max(law.friction_reversal_speed, 1e-9)
+    return (
+        law.base_radius_1, law.base_radius_2, law.base_pitch, law.phase, law.back_phase, law.backlash,
+        law.path_start, 1.0 / law.path_step, law.damping / law.mean_stiffness, law.friction,
+        law.rolling_radius_1, law.rolling_radius_2, 1.0 / reversal, least_gap, float(derivative_torques),
+        1e-12 * law.mean_stiffness * law.base_radius_1,
+    )  # fmt: skip
+
+
+def _cubic(table: Array) -> PchipInterpolator:
+    """Return the monotone cubic of (rows, n_path) over the index of the path point."""
+    return PchipInterpolator(np.arange(table.shape[1]), table, axis=1)
+
+
+def _cells(table: Array) -> Array:
+    """Return (rows * cells, 4): coefficients of the monotone cubic over the fraction of each cell."""
+    coefficients: Array = np.moveaxis(_cubic(table).c[::-1], 0, -1)  # (n_cells, rows, 4)
+    return np.ascontiguousarray(coefficients.swapaxes(0, 1).reshape(-1, 4))
+
+
+def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[Array]:
+    """Return for every phase cell the contacts on the path of one flank, (n_groups, N_PHASE, LANES) each.
+
+    The cubics are carried from the path to the phase by value and slope at both ends of the phase cell.
+    """
+    n_path = law.stiffness.shape[1]
+    width = law.base_pitch / n_phases
+    stiffness, gap = _cubic(law.stiffness), _cubic(law.gap)
+    # path position of each (cell, slice, pair) at the start of the phase cell, in path steps
+    reach = n_path * law.path_step + law.base_pitch
+    lag = sign * law.slice_shift
+    lowest = int(np.floor((-lag.max() - law.path_start - reach) / law.base_pitch)) - 1
+    highest = int(np.ceil((law.base_pitch - lag.min() - law.path_start) / law.base_pitch)) + 1
+    turns = np.arange(lowest, highest + 1)
+    begin = np.arange(n_phases)[:, None, None] * width
+    place = (begin - lag[:, None] - turns * law.base_pitch - law.path_start) / law.path_step
+    middle = place + 0.5 * width / law.path_step
+    on_path = (middle >= 0.0) & (middle <= n_path - 1)
+    blocks = []
+    for cell in range(n_phases):
+        slices, pairs = np.nonzero(on_path[cell])
+        at = place[cell, slices, pairs]
+        steps = width / law.path_step
+        groups = -(-len(at) // kernels.LANES)
+        lanes = np.zeros((kernels.N_PHASE, groups * kernels.LANES))
+        lanes[4] = kernels.NEVER
+        lanes[0:4, : len(at)] = _hermite(stiffness, at, slices, steps)
+        lanes[4:8, : len(at)] = _hermite(gap, at, slices, steps)
+        lanes[8, : len(at)] = law.path_start + at * law.path_step
+        blocks.append(lanes.reshape(kernels.N_PHASE, groups, kernels.LANES).swapaxes(0, 1))
+    return blocks
+
+
+def _hermite(cubic: PchipInterpolator, at: Array, rows: Integers, width: float) -> tuple[Array, ...]:
+    """Return cubic coefficients over the fraction of [at, at + width] from values and slopes at both ends."""
+    last = cubic.x[-1]
+    ends = [np.clip(at + shift, 0.0, last) for shift in (0.0, width)]
+    own = np.arange(len(at))
+    v_0, v_1 = (cubic(end)[rows, own] for end in ends)
+    d_0, d_1 = (cubic.derivative()(end)[rows, own] * width for end in ends)
+    return v_0, d_0, 3.0 * (v_1 - v_0) - 2.0 * d_0 - d_1, 2.0 * (v_0 - v_1) + d_0 + d_1
