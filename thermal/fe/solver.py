@@ -18,6 +18,9 @@ from thermal.fe.mesh import FloatArray
 
 Matrix = sparse.csr_array | sparse.bsr_array
 M = TypeVar("M", sparse.csr_array, sparse.bsr_array)
+SMOOTHED_RANGE = 20.0
+"""Largest eigenvalue over the smallest one that the smoother damps; iterations hardly depend on it."""
+
 BoolArray = NDArray[np.bool_]
 Operator = Callable[[FloatArray], FloatArray]
 
@@ -150,7 +153,7 @@ class TwoLevelMultigrid:
     def _smooth(self, x: FloatArray, residual: FloatArray) -> FloatArray:
         """Chebyshev iteration on the upper part of the spectrum; ``residual`` belongs to ``x``."""
         upper = self._largest
-        lower = upper / 10.0
+        lower = upper / SMOOTHED_RANGE
         centre, half = 0.5 * (upper + lower), 0.5 * (upper - lower)
         rho = half / centre
         step = (self._inverse @ residual) / centre

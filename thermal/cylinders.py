@@ -1,0 +1,109 @@
+"""How cylinders about an axis along x move and swell: bores, journals, seals, gear rims.
+
+Facets of a coarse mesh may lie off the cylinder they stand for. The displacement read there is carried to the
+cylinder with the free strain, so uniform heating gives the same growth on every mesh.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermal.fe.elements import SurfaceElements
+from thermal.fe.mesh import FloatArray
+from thermal.fe.reference import triangle_values
+from thermal.stations import Point
+
+
+@dataclass(frozen=True)
+class CylinderMotion:
+    """Displacement of a cylinder in the first harmonics of its circumference.
+
+    The radial displacement is fitted by u_r = a0 + a1 cos(p) + b1 sin(p) + a2 cos(2p) + b2 sin(2p),
+    area-weighted, with the angle p from +y towards +z: to first order it alone makes the new shape.
+    """
+
+    shift: tuple[float, float, float]
+    """Of the centre [m]: mean of u_x, and the first harmonic of u_r in y and z."""
+    radius_growth: float
+    """Growth of the mean radius, a0 [m]."""
+    ovality: float
+    """Largest minus smallest diameter of the second harmonic [m]."""
+    turn: float
+    """Mean rotation about the axis [rad]."""
+
+
+def cylinder_motion(
+    surface: SurfaceElements, points: FloatArray, displacement: FloatArray, strain: FloatArray, centre: Point
+) -> CylinderMotion:
+    """Fit the motion of a whole cylinder about the x-line through ``centre``.
+
+    points, displacement : (n_nodes, 3) [m] cold coordinates and displacement
+    strain : (n_nodes,) free thermal strain
+    """
+    area = surface.weights.ravel()
+    across = (surface.at_points(points) - np.array(centre)).reshape(-1, 3)[:, 1:]
+    moved = surface.at_points(displacement).reshape(-1, 3)
+    radius = np.hypot(across[:, 0], across[:, 1])
+    cos, sin = (across / radius[:, None]).T
+    radial = moved[:, 1] * cos + moved[:, 2] * sin
+    radial += surface.at_points(strain).ravel() * (_radius(surface, points, centre) - radius)
+    basis = np.column_stack([np.ones_like(cos), cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
+    root = np.sqrt(area)
+    a0, a1, b1, a2, b2 = np.linalg.lstsq(basis * root[:, None], radial * root)[0].tolist()
+    tangential = moved[:, 2] * cos - moved[:, 1] * sin
+    return CylinderMotion(
+        shift=(float(moved[:, 0] @ area / area.sum()), a1, b1),
+        radius_growth=a0,
+        ovality=4.0 * float(np.hypot(a2, b2)),
+        turn=float((tangential / radius) @ area / area.sum()),
+    )
+
+
+def axial_range(surface: SurfaceElements, points: FloatArray) -> tuple[float, float]:
+    """Least and greatest x of a surface [m]; points : (n_nodes, 3)."""
+    x = points[surface.nodes, 0]
+    return float(x.min()), float(x.max())
+
+
+def radial_displacement(
+    surface: SurfaceElements,
+    points: FloatArray,
+    displacement: FloatArray,
+    strain: FloatArray,
+    centre: Point,
+    angles: FloatArray,
+    x: float,
+) -> FloatArray:
+    """Radial displacement (n,) [m] of a cylinder in section ``x`` at ``angles`` (n,) [rad], +y to +z.
+
+    Interpolated with the shape functions of the facet that covers each point of the unrolled cylinder; the
+    other arguments are those of `cylinder_motion`.
+    """
+    corners = points[surface.facets[:, :3]] - np.array(centre)
+    phi = np.arctan2(corners[:, :, 2], corners[:, :, 1])
+    start = phi[:, :1]
+    phi = start + np.remainder(phi - start + np.pi, 2.0 * np.pi) - np.pi
+    middle = phi.mean(axis=1)
+    turned = middle + np.remainder(angles[:, None] - middle + np.pi, 2.0 * np.pi) - np.pi
+    radius = _radius(surface, points, centre)
+    edge_1 = np.column_stack([radius * (phi[:, 1] - phi[:, 0]), corners[:, 1, 0] - corners[:, 0, 0]])
+    edge_2 = np.column_stack([radius * (phi[:, 2] - phi[:, 0]), corners[:, 2, 0] - corners[:, 0, 0]])
+    det = edge_1[:, 0] * edge_2[:, 1] - edge_1[:, 1] * edge_2[:, 0]
+    to_1 = radius * (turned - phi[:, 0])
+    to_2 = x - centre[0] - corners[:, 0, 0]
+    xi = (to_1 * edge_2[:, 1] - to_2 * edge_2[:, 0]) / det
+    eta = (to_2 * edge_1[:, 0] - to_1 * edge_1[:, 1]) / det
+    best = np.argmax(np.minimum(np.minimum(xi, eta), 1.0 - xi - eta), axis=1)
+    rows = np.arange(len(angles))
+    shapes = triangle_values(np.column_stack([xi[rows, best], eta[rows, best]]))
+    nodes = surface.facets[best]
+    moved = np.einsum("na,nai->ni", shapes, displacement[nodes])
+    place = np.einsum("na,nai->ni", shapes, points[nodes] - np.array(centre))
+    swell = np.einsum("na,na->n", shapes, strain[nodes]) * (radius - np.hypot(place[:, 1], place[:, 2]))
+    return np.asarray(moved[:, 1] * np.cos(angles) + moved[:, 2] * np.sin(angles) + swell)
+
+
+def _radius(surface: SurfaceElements, points: FloatArray, centre: Point) -> float:
+    """Radius [m] of the cylinder: mean distance of its corner nodes from the axis."""
+    corners = points[surface.facets[:, :3]] - np.array(centre)
+    return float(np.hypot(corners[:, :, 1], corners[:, :, 2]).mean())

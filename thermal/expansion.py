@@ -1,0 +1,79 @@
+"""Thermal expansion of a gearbox: displacement field, rigid placement of the shafts, clearances.
+
+Pieces that share no nodes are solved together but supported each for itself: the housing on its foot, every
+shaft at its locating bearing. The housing is then placed so that its foot does not shift or turn on average,
+and every shaft as a rigid body so that its axis passes through the displaced centres of its bearing bores and
+its locating journal sits axially in its bore. Bearing clearance and film position are not part of this: the
+axis runs through the middle of the bores.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermal.elastic import ElasticError
+from thermal.expansion_setup import ExpansionSetup
+from thermal.fe.mesh import FloatArray
+from thermal.growth import BearingGrowth, CentreDistance, GearGrowth, SealGrowth, ShaftGrowth
+from thermal.hot_shape import HotShape
+from thermal.stations import GearboxModel
+
+__all__ = ["Expansion", "ExpansionSetup", "expand"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Expansion:
+    """Hot shape of a gearbox."""
+
+    displacement: FloatArray
+    """(n_nodes, 3) [m], relative to the foot, shafts placed in their bearings."""
+    bearings: dict[str, BearingGrowth]
+    seals: dict[str, SealGrowth]
+    shafts: dict[str, ShaftGrowth]
+    gears: dict[str, GearGrowth]
+    centre_distances: tuple[CentreDistance, ...]
+    """Every two gears of different shafts whose widths overlap."""
+    largest_reaction: float
+    """Of the statically determinate supports [N]; zero but for the tolerance of the solver."""
+    iterations: int
+
+
+def expand(
+    model: GearboxModel,
+    temperature: FloatArray,
+    reference_temperature: float,
+    elastic: Mapping[str, tuple[float, float, float]],
+    *,
+    reuse: ExpansionSetup | None = None,
+    tolerance: float = 1e-9,
+) -> Expansion:
+    """Expand a gearbox from ``reference_temperature`` [K], at which the model's dimensions hold.
+
+    temperature : (n_nodes,) [K]
+    elastic : body -> (Young's modulus [Pa], Poisson's ratio, expansion coefficient [1/K])
+    reuse : setup of the same model and materials; tolerance : of the linear solve's residual
+
+    Raises ElasticError (a ValueError) for input that cannot be computed, NotConverged (a RuntimeError with
+    its residuals) if the linear solve stalls.
+    """
+    setup = ExpansionSetup(model, elastic) if reuse is None else reuse
+    if not setup.matches(model, elastic):
+        raise ElasticError("the setup to reuse belongs to another model or other materials; make a new one")
+    if temperature.shape != (len(model.mesh.points),) or not np.isfinite(temperature).all():
+        raise ElasticError(
+            f"temperature of shape {temperature.shape}: need one finite value per node, "
+            f"({len(model.mesh.points)},)"
+        )
+    solution = setup.elastic.solve(temperature, reference_temperature, tolerance)
+    shape = HotShape(setup, temperature, reference_temperature, solution.values)
+    return Expansion(
+        displacement=shape.displacement,
+        bearings={b.name: shape.bearing(b) for b in model.bearings},
+        seals={s.name: shape.seal(s) for s in model.seals},
+        shafts={s.name: shape.shaft(s) for s in model.shafts},
+        gears={g.name: shape.gear(g) for g in model.gears},
+        centre_distances=shape.centre_distances(),
+        largest_reaction=float(np.abs(solution.reactions).max()),
+        iterations=solution.iterations,
+    )

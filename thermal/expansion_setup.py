@@ -1,0 +1,102 @@
+"""Stiffness and supports of a gearbox, made once for all its temperature fields."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from thermal.elastic import ElasticError, ElasticSetup, three_two_one
+from thermal.fe.elements import FiniteElements
+from thermal.fe.solver import BoolArray
+from thermal.stations import BearingStation, GearboxModel, ShaftStation
+
+
+class ExpansionSetup:
+    """Stiffness, supports and multigrid of a gearbox, made once and used for every temperature field.
+
+    elastic : body -> (Young's modulus [Pa], Poisson's ratio, expansion coefficient [1/K])
+    elements : share the spaces of a ConductionSetup on the same mesh
+    Raises MeshError for a bad mesh and ElasticError for bad materials, stations that name unknown shafts,
+    bodies or surfaces, a shaft without exactly one locating bearing, and loose pieces.
+    """
+
+    def __init__(
+        self,
+        model: GearboxModel,
+        elastic: Mapping[str, tuple[float, float, float]],
+        elements: FiniteElements | None = None,
+    ) -> None:
+        _check_stations(model)
+        self.model = model
+        self.elements = FiniteElements(model.mesh) if elements is None else elements
+        self.locating = {s.name: _locating(model, s) for s in model.shafts}
+        self.piece_of_node = np.zeros(len(model.mesh.points), dtype=np.int64)
+        self.piece_of_node[model.mesh.cells] = self.elements.components[:, None]
+        self.housing = self._piece_of(model.fixed_body)
+        """Number of the housing's piece."""
+        self.piece = self._pieces()
+        """Shaft name -> number of its piece."""
+        self.elastic = ElasticSetup(self.elements, elastic, self._supports())
+
+    def _piece_of(self, body: str) -> int:
+        found = np.unique(self.elements.components[self.model.mesh.bodies[body]])
+        if len(found) > 1:
+            raise ElasticError(f"body {body!r} falls into {len(found)} pieces; make them separate bodies")
+        return int(found[0])
+
+    def _pieces(self) -> dict[str, int]:
+        """Shaft name -> piece; every piece must be the housing's or one shaft's."""
+        pieces = {shaft.name: self._piece_of(shaft.body) for shaft in self.model.shafts}
+        owners = [self.housing, *pieces.values()]
+        if len(set(owners)) < len(owners):
+            raise ElasticError("a shaft shares nodes with another shaft or the housing; mesh them separately")
+        for body in self.model.mesh.bodies:
+            if self._piece_of(body) not in owners:
+                raise ElasticError(
+                    f"body {body!r} shares no nodes with the housing or a shaft; join it to what carries it"
+                )
+        return pieces
+
+    def _supports(self) -> BoolArray:
+        surfaces = [self.model.foot_surface, *(b.journal_surface for b in self.locating.values())]
+        fixed = np.zeros((len(self.model.mesh.points), 3), dtype=np.bool_)
+        for name in surfaces:
+            nodes = np.intersect1d(self.elements.surfaces[name].nodes, self.elements.corners)
+            for node, directions in three_two_one(self.model.mesh.points, nodes.astype(np.int32)):
+                fixed[node, list(directions)] = True
+        return fixed
+
+    def matches(self, model: GearboxModel, elastic: Mapping[str, tuple[float, float, float]]) -> bool:
+        """Whether the setup was made for this model and these materials."""
+        same = {name: tuple(values) for name, values in elastic.items()}
+        return self.model is model and same == {n: tuple(m) for n, m in self.elastic.elastic.items()}
+
+
+def _locating(model: GearboxModel, shaft: ShaftStation) -> BearingStation:
+    found = [b for b in model.bearings if b.shaft == shaft.name and b.locating]
+    if len(found) != 1:
+        raise ElasticError(f"shaft {shaft.name!r} has {len(found)} locating bearings; it needs exactly one")
+    return found[0]
+
+
+def _check_stations(model: GearboxModel) -> None:
+    """Check that all names in the stations exist."""
+    surfaces, bodies = model.mesh.surfaces, model.mesh.bodies
+    shafts = {shaft.name for shaft in model.shafts}
+    wanted = [("surface", model.foot_surface, surfaces), ("body", model.fixed_body, bodies)]
+    for s in model.shafts:
+        wanted += [("body", s.body, bodies)]
+        wanted += [("surface", name, surfaces) for name in (s.start_surface, s.end_surface)]
+    for b in model.bearings:
+        wanted += [("surface", name, surfaces) for name in (b.bore_surface, b.journal_surface)]
+    for seal in model.seals:
+        wanted += [("surface", name, surfaces) for name in (seal.bore_surface, seal.shaft_surface)]
+    for gear in model.gears:
+        wanted += [("body", gear.body, bodies), ("surface", gear.rim_surface, surfaces)]
+    for kind, name, known in wanted:
+        if name not in known:
+            raise ElasticError(f"a station names {kind} {name!r}, which the mesh does not have")
+    named = [(b.name, b.shaft) for b in model.bearings]
+    named += [(s.name, s.shaft) for s in model.seals] + [(g.name, g.shaft) for g in model.gears]
+    for name, of_shaft in named:
+        if of_shaft not in shafts:
+            raise ElasticError(f"station {name!r} names shaft {of_shaft!r}, which does not exist")

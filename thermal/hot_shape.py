@@ -1,0 +1,211 @@
+"""The hot gearbox: shafts placed in their bearings, clearances read from the displacement field."""
+
+from itertools import combinations
+
+import numpy as np
+
+from thermal.cylinders import CylinderMotion, axial_range, cylinder_motion, radial_displacement
+from thermal.elastic import ElasticError, rigid_motion
+from thermal.expansion_setup import ExpansionSetup
+from thermal.fe.mesh import FloatArray
+from thermal.growth import (
+    BearingGrowth,
+    CentreDistance,
+    GearGrowth,
+    SealGrowth,
+    ShaftGrowth,
+    concentric_gap_change,
+    free_growth,
+    length_mean,
+)
+from thermal.stations import BearingStation, GearStation, Point, SealStation, ShaftStation
+
+SEAL_ANGLES = 72
+"""Angles around a seal at which its gap is given."""
+
+
+class HotShape:
+    """Places the shafts and reads clearances from one displacement field."""
+
+    def __init__(
+        self, setup: ExpansionSetup, temperature: FloatArray, reference: float, displacement: FloatArray
+    ) -> None:
+        self.setup = setup
+        self.model = setup.model
+        self.points = setup.model.mesh.points
+        self.surfaces = setup.elements.surfaces
+        self.temperature = temperature
+        self.reference = reference
+        self.strain = setup.elastic.free_strain(temperature, reference)
+        self.displacement = displacement.copy()
+        self._place_housing()
+        self.bores = {b.name: self._motion(b.bore_surface, b.centre) for b in self.model.bearings}
+        for shaft in self.model.shafts:
+            self._place_shaft(shaft)
+
+    def _motion(self, surface: str, centre: Point) -> CylinderMotion:
+        return cylinder_motion(self.surfaces[surface], self.points, self.displacement, self.strain, centre)
+
+    def _place_housing(self) -> None:
+        """Take out the mean shift and rotation of the foot."""
+        foot = self.surfaces[self.model.foot_surface]
+        at = foot.at_points(self.points).reshape(-1, 3)
+        moved = foot.at_points(self.displacement).reshape(-1, 3)
+        centre, shift, rotation = rigid_motion(at, moved, foot.weights.ravel())
+        self._move(self.setup.housing, centre, -shift, -rotation)
+
+    def _move(self, piece: int, centre: FloatArray, shift: FloatArray, rotation: FloatArray) -> None:
+        """Add a small rigid motion about ``centre`` to one piece."""
+        nodes = np.flatnonzero(self.setup.piece_of_node == piece)
+        self.displacement[nodes] += shift + np.cross(rotation, self.points[nodes] - centre)
+
+    def _bearings(self, shaft: str) -> list[BearingStation]:
+        return [b for b in self.model.bearings if b.shaft == shaft]
+
+    def _place_shaft(self, shaft: ShaftStation) -> None:
+        """Move a shaft and what shares its nodes until its axis passes through its bore centres."""
+        locating = self.setup.locating[shaft.name]
+        bearings = self._bearings(shaft.name)
+        gaps, turn = [], 0.0
+        for bearing in bearings:
+            journal = self._motion(bearing.journal_surface, bearing.centre)
+            gaps.append(np.subtract(self.bores[bearing.name].shift, journal.shift))
+            if bearing is locating:
+                turn = journal.turn
+        arms = np.array([b.centre[0] - locating.centre[0] for b in bearings])
+        offset, slope = _line(arms, np.array(gaps)[:, 1:])
+        shift = np.array([gaps[bearings.index(locating)][0], *offset])
+        rotation = np.array([-turn, -slope[1], slope[0]])
+        self._move(self.setup.piece[shaft.name], np.array(locating.centre), shift, rotation)
+
+    def bearing(self, station: BearingStation) -> BearingGrowth:
+        """Read one bearing."""
+        bore = self.bores[station.name]
+        journal = self._motion(station.journal_surface, station.centre)
+        return BearingGrowth(
+            name=station.name,
+            bore_shift=bore.shift,
+            bore_growth=2.0 * bore.radius_growth,
+            bore_ovality=bore.ovality,
+            journal_growth=2.0 * journal.radius_growth,
+        )
+
+    def seal(self, station: SealStation) -> SealGrowth:
+        """Read one seal: bore minus shaft at fixed angles in three sections."""
+        angles: FloatArray = np.linspace(0.0, 2.0 * np.pi, SEAL_ANGLES, endpoint=False)
+        bore, shaft = self.surfaces[station.bore_surface], self.surfaces[station.shaft_surface]
+        ranges = np.array([axial_range(bore, self.points), axial_range(shaft, self.points)])
+        first, last = float(ranges[:, 0].max()), float(ranges[:, 1].min())
+        if last <= first:
+            raise ElasticError(
+                f"seal {station.name!r}: bore and shaft surface do not face each other along x"
+            )
+        fields = (self.points, self.displacement, self.strain)
+        gaps = [
+            station.radial_gap
+            + radial_displacement(bore, *fields, station.centre, angles, x)
+            - radial_displacement(shaft, *fields, station.centre, angles, x)
+            for x in (first, 0.5 * (first + last), last)
+        ]
+        axial = self._axial(station.shaft_surface) - self._axial(station.bore_surface)
+        by_hand = concentric_gap_change(
+            0.5 * station.shaft_diameter,
+            (self._expansion(station.bore_surface), bore.mean(self.temperature)),
+            (self._expansion(station.shaft_surface), shaft.mean(self.temperature)),
+            self.reference,
+        )
+        return SealGrowth(
+            name=station.name,
+            cold_gap=station.radial_gap,
+            angles=angles,
+            gaps=np.array(gaps),
+            axial_shift=axial,
+            gap_by_hand=station.radial_gap + by_hand,
+        )
+
+    def shaft(self, station: ShaftStation) -> ShaftGrowth:
+        """Read the lengthening of one shaft."""
+        locating = self.setup.locating[station.name]
+        datum = self._axial(locating.journal_surface)
+        others = [b for b in self._bearings(station.name) if b is not locating]
+        shaft = housing = 0.0
+        if others:
+            far = max(others, key=lambda b: abs(b.centre[0] - locating.centre[0]))
+            sign = np.sign(far.centre[0] - locating.centre[0])
+            shaft = float(sign * (self._axial(far.journal_surface) - datum))
+            housing = float(sign * (self.bores[far.name].shift[0] - self.bores[locating.name].shift[0]))
+        alpha = self.setup.elastic.elastic[station.body].expansion
+        by_hand = []
+        for end in (station.start, station.end):
+            mean = length_mean(self.setup.elements, self.temperature, station.body, locating.centre[0], end)
+            by_hand.append(free_growth(alpha, abs(end - locating.centre[0]), mean, self.reference))
+        return ShaftGrowth(
+            name=station.name,
+            start=datum - self._axial(station.start_surface),
+            end=self._axial(station.end_surface) - datum,
+            start_by_hand=by_hand[0],
+            end_by_hand=by_hand[1],
+            between_bearings=shaft,
+            housing_between_bearings=housing,
+        )
+
+    def gear(self, station: GearStation) -> GearGrowth:
+        """Read one gear body."""
+        return GearGrowth(
+            name=station.name,
+            bulk_temperature=self.setup.elements.body_mean(self.temperature, station.body),
+            rim_growth=self._motion(station.rim_surface, station.centre).radius_growth,
+        )
+
+    def centre_distances(self) -> tuple[CentreDistance, ...]:
+        """Read the axes of all pairs of gears that face each other."""
+        found = []
+        for a, b in combinations(self.model.gears, 2):
+            overlap = 0.5 * (a.face_width + b.face_width) - abs(a.centre[0] - b.centre[0])
+            if a.shaft != b.shaft and overlap > 0.0:
+                found.append(self._centre_distance(a, b))
+        return tuple(found)
+
+    def _centre_distance(self, a: GearStation, b: GearStation) -> CentreDistance:
+        plane = 0.5 * (a.centre[0] + b.centre[0])
+        shift_a, slope_a = self._axis(a.shaft, plane)
+        shift_b, slope_b = self._axis(b.shaft, plane)
+        cold = np.subtract(b.centre, a.centre)[1:]
+        distance = float(np.hypot(*cold))
+        along = cold / distance
+        opening = slope_b - slope_a
+        return CentreDistance(
+            gear_a=a.name,
+            gear_b=b.name,
+            cold=distance,
+            hot=float(np.hypot(*(cold + shift_b - shift_a))),
+            inclination=float(opening @ along),
+            skew=float(along[0] * opening[1] - along[1] * opening[0]),
+        )
+
+    def _axis(self, shaft: str, x: float) -> tuple[FloatArray, FloatArray]:
+        """Displacement (2,) [m] of a hot axis in y and z at ``x`` and its slope (2,), from bore centres."""
+        bearings = self._bearings(shaft)
+        arms = np.array([b.centre[0] - x for b in bearings])
+        return _line(arms, np.array([self.bores[b.name].shift[1:] for b in bearings]))
+
+    def _axial(self, surface: str) -> float:
+        return self.surfaces[surface].mean(self.displacement[:, 0])
+
+    def _expansion(self, surface: str) -> float:
+        """Expansion coefficient [1/K] of the body a surface bounds."""
+        facet = self.model.mesh.surfaces[surface][0, :3]
+        cell = np.flatnonzero(np.isin(self.model.mesh.cells, facet).sum(axis=1) == 3)[0]
+        bodies = self.model.mesh.bodies.items()
+        return next(self.setup.elastic.elastic[body].expansion for body, cells in bodies if cell in cells)
+
+
+def _line(arms: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Offset and slope (2,) of the straight line through ``values`` (n, 2) at ``arms`` (n,), least squares.
+
+    One bearing gives no slope.
+    """
+    if len(arms) == 1:
+        return values[0], np.zeros(2)
+    fit = np.linalg.lstsq(np.column_stack([np.ones_like(arms), arms]), values)[0]
+    return fit[0], fit[1]
