@@ -112,6 +112,7 @@ def solve_periodic(
     start: HarmonicSolution,
     *,
     drag_torques: Mapping[str, float] | None = None,
+    excitation: Complex | None = None,
     tolerance: float = 1e-5,
     max_iterations: int = 40,
 ) -> HarmonicSolution:
@@ -119,6 +120,7 @@ def solve_periodic(
 
     speed : mean speed of the drive freedom [rad/s]; start : state whose coefficients are taken, see
     ``resample``
+    excitation : (n_ports, top + 1) one-sided harmonics of further torques on the mesh bodies [N m]
 
     Raises NotConverged with the residual reached. A stalled iteration counts as converged below
     STALL_LIMIT; its residual stands in the result.
@@ -141,8 +143,9 @@ def solve_periodic(
     for iteration in range(max_iterations):
         ports[:, 0] = rest[:n_ports]
         reactions = _evaluate(model, grid, speed, base, ports)
-        miss = np.einsum("kij,jk->ik", receptance, reactions.torque[:, 1:]) - ports[:, 1:]
-        load = np.append(reactions.torque[:, 0].real, 0.0)
+        torque = reactions.torque if excitation is None else reactions.torque + excitation
+        miss = np.einsum("kij,jk->ik", receptance, torque[:, 1:]) - ports[:, 1:]
+        load = np.append(torque[:, 0].real, 0.0)
         balance = model.stiffness @ rest - load - model.twist * twist - drag
         balance[-1] -= drive
         asked = 0.0

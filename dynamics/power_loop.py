@@ -57,8 +57,8 @@ def check_loops(drivetrain: "Drivetrain") -> None:
         known = distances.setdefault(frozenset((a, b)), (mesh.name, mesh.centre_distance))
         if abs(known[1] - mesh.centre_distance) > DISTANCE_TOLERANCE:
             raise DrivetrainError(
-                f"mesh {mesh.name!r}: centre distance = {mesh.centre_distance} m: mesh {known[0]!r} holds "
-                f"the same two lines at {known[1]} m, the shafts cannot be parallel; make the two equal"
+                f"mesh {mesh.name!r}: centre distance = {mesh.centre_distance:.6g} m: {known[0]!r} holds "
+                f"the same two lines at {known[1]:.6g} m, the shafts cannot be parallel; make the two equal"
             )
     _check_polygons(drivetrain, {pair: distance for pair, (_, distance) in distances.items()})
 
@@ -82,7 +82,7 @@ def _check_mesh(mesh: "MeshConnection") -> None:
         )
     if not mesh.centre_distance > r_1 + r_2:
         raise DrivetrainError(
-            f"mesh {mesh.name!r}: centre distance = {mesh.centre_distance} m: must exceed the sum of the "
+            f"mesh {mesh.name!r}: centre distance = {mesh.centre_distance:.6g} m: must exceed the sum of the "
             f"base radii {r_1 + r_2:.6g} m; correct centre distance or gears"
         )
 
@@ -133,8 +133,8 @@ def _check_polygons(drivetrain: "Drivetrain", distances: dict[frozenset[int], fl
         around = _shortest_way(start, goal, {p: d for p, d in distances.items() if p != pair})
         if direct > around + DISTANCE_TOLERANCE:
             raise DrivetrainError(
-                f"centre distance between {names[start]!r} and {names[goal]!r} = {direct} m: the way round "
-                f"the loop is only {around:.6g} m long, it cannot close; shorten this or lengthen the others"
+                f"centre distance between {names[start]!r} and {names[goal]!r} = {direct:.6g} m: the way "
+                f"round the loop is only {around:.6g} m long, it cannot close; shorten this or lengthen the others"
             )
 
 

@@ -1,0 +1,123 @@
+"""Static closure of the power loop: twist times loop stiffness is the torque, stiffness by series sum."""
+
+import math
+
+import numpy as np
+import pytest
+
+from dynamics.drivetrain import assemble
+from dynamics.linear_system import LinearSystem
+from dynamics.mesh_force import evaluate_mesh
+from dynamics.mesh_law import MeshLaw
+from dynamics.shaft import STEEL_SHEAR_MODULUS
+from dynamics.static_loop import port_model, solve_static
+from tests.rig_example import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, SHAFTS, prototype, prototype_laws
+
+
+def constant(law: MeshLaw) -> MeshLaw:
+    """The same mesh with one pair of constant stiffness, no gap, no backlash and no friction."""
+    return law._replace(
+        path_start=0.0,
+        path_step=law.base_pitch / 4,
+        stiffness=np.full((1, 5), law.mean_stiffness),
+        gap=np.zeros((1, 5)),
+        slice_shift=np.zeros(1),
+        deviation_1=np.zeros((1, 5)),
+        deviation_2=np.zeros((1, 5)),
+        backlash=0.0,
+        friction=0.0,
+        damping=0.0,
+    )
+
+
+def series_stiffness() -> float:
+    """Stiffness of the loop on the pinion line by hand: sections from gear to coupling, meshes, splines."""
+    compliance = {"pinion": 0.0, "wheel": 0.0}
+    for name, (sections, flange, gear) in SHAFTS.items():
+        line = name.split("_")[1]
+        low, high = sorted((gear[0], flange[0]))
+        start = 0.0
+        for length, diameter in sections:
+            inside = max(0.0, min(start + length, high) - max(start, low)) * 1e-3
+            compliance[line] += inside / (STEEL_SHEAR_MODULUS * math.pi * (diameter * 1e-3) ** 4 / 32.0)
+            start += length
+        compliance[line] += 1.0 / 1e6
+    compliance["pinion"] += 1.0 / 138e3
+    compliance["wheel"] += 1.0 / 290e3
+    ratio = 102 / 99
+    meshes = 1.0 / (1.14e8 * BASE_RADIUS_TEST**2) + 1.0 / (7.09e8 * BASE_RADIUS_REFERENCE**2)
+    # the wheel line carries ratio times the torque and turns by 1 / ratio as seen from the pinion line
+    return 1.0 / (compliance["pinion"] + compliance["wheel"] * ratio**2 + meshes)
+
+
+def rig() -> tuple[LinearSystem, tuple[MeshLaw, MeshLaw]]:
+    first, second = prototype_laws(friction=0.0)
+    return assemble(prototype()), (constant(first), constant(second))
+
+
+@pytest.mark.parametrize("torque", [180.0, 10.0, -90.0])
+def test_twist_times_loop_stiffness_is_the_torque(torque: float) -> None:
+    system, laws = rig()
+    state = solve_static(port_model(system, laws), torque=torque)
+    assert state.twist * series_stiffness() == pytest.approx(torque, rel=1e-8)
+    assert state.mean_torque == pytest.approx([torque, -torque], rel=1e-9)
+    assert np.abs(state.drive).max() < 1e-9 * abs(torque)
+
+
+def test_backlash_adds_its_windup() -> None:
+    """Front flank in one mesh, back flank in the other: the loop first turns through the play."""
+    system, laws = rig()
+    played = (laws[0], laws[1]._replace(backlash=50e-6))
+    closed = solve_static(port_model(system, laws), torque=180.0)
+    open_ = solve_static(port_model(system, played), torque=180.0)
+    assert open_.twist - closed.twist == pytest.approx(50e-6 / BASE_RADIUS_REFERENCE, rel=1e-8)
+
+
+def test_held_twist_gives_the_torque_back() -> None:
+    system, laws = assemble(prototype()), prototype_laws(friction=0.0)
+    model = port_model(system, laws)
+    wound = solve_static(model, torque=180.0)
+    held = solve_static(model, twist=wound.twist)
+    assert held.mean_torque == pytest.approx(wound.mean_torque, rel=1e-9)
+
+
+def test_drive_torque_of_slow_rotation_is_friction_over_speed() -> None:
+    """Virtual work: what the motor gives over a mesh period is what friction takes."""
+    system, laws = assemble(prototype()), prototype_laws(friction=0.04)
+    model = port_model(system, laws)
+    angles = np.arange(512) / 512 * 2.0 * np.pi / (99 * model.ratios[0])
+    state = solve_static(model, torque=180.0, angles=angles, speed=78.5)
+    lossless = solve_static(
+        port_model(system, [law._replace(friction=0.0) for law in laws]),
+        torque=180.0,
+        angles=angles,
+        speed=78.5,
+    )
+    assert lossless.drive.mean() == pytest.approx(0.0, abs=2e-3)
+    taken = 0.0
+    for m, law in enumerate(laws):
+        speeds = model.ratios[2 * m : 2 * m + 2] * 78.5
+        reaction = evaluate_mesh(
+            law._replace(damping=0.0),
+            model.ratios[2 * m] * angles + state.ports[:, 2 * m],
+            state.approach[:, m],
+            speeds[0],
+            speeds[1],
+        )
+        taken += float(reaction.friction_power.mean())
+    assert state.drive.mean() * 78.5 == pytest.approx(taken, rel=5e-3)
+    assert taken > 20.0
+
+
+def test_twist_inside_the_backlash_carries_nothing() -> None:
+    system, laws = rig()
+    state = solve_static(port_model(system, (laws[0], laws[1]._replace(backlash=1e-3))), twist=1e-4)
+    assert np.abs(state.torque).max() < 1e-9
+
+
+def test_torque_or_twist_must_be_given() -> None:
+    system, laws = rig()
+    with pytest.raises(ValueError, match="either the torque or the twist"):
+        solve_static(port_model(system, laws))
+    with pytest.raises(ValueError, match="1 mesh laws for 2 meshes"):
+        port_model(system, laws[:1])
