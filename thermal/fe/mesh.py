@@ -116,9 +116,10 @@ def second_order(
 ) -> NamedMesh:
     """Raise a mesh of 4-node tetrahedra to second order with straight edges.
 
-    points : (n, 3) [m]; tetrahedra : (n_cells, 4); bodies and surface_corners as in named_mesh. The corner
-    nodes keep their numbers, mid-side nodes follow.
+    points : (n, 3) [m]; tetrahedra : (n_cells, 4) in any orientation; bodies and surface_corners as in
+    named_mesh. The corner nodes keep their numbers, mid-side nodes follow.
     """
+    tetrahedra = _turned(points, tetrahedra, (0, 2, 1, 3))
     edges = np.sort(tetrahedra[:, np.array(CELL_EDGES)].reshape(-1, 2), axis=1)
     unique, which = np.unique(edges, axis=0, return_inverse=True)
     mids = 0.5 * (points[unique[:, 0]] + points[unique[:, 1]])
@@ -142,7 +143,15 @@ def from_scikit_fem(mesh: Any) -> NamedMesh:
     corners = {name: mesh.facets[:, ix].T for name, ix in facets.items()}
     if len(mesh.dofs.element_dofs) == 4:
         return second_order(mesh.p.T, mesh.t.T, bodies, corners)
-    return named_mesh(mesh.doflocs.T, mesh.dofs.element_dofs.T, bodies, corners)
+    cells = _turned(mesh.doflocs.T, mesh.dofs.element_dofs.T, (0, 2, 1, 3, 6, 5, 4, 7, 9, 8))
+    return named_mesh(mesh.doflocs.T, cells, bodies, corners)
+
+
+def _turned(points: FloatArray, cells: IndexArray, order: tuple[int, ...]) -> IndexArray:
+    """Cells with the nodes of left-handed ones put into ``order``."""
+    edges = points[cells[:, 1:4]] - points[cells[:, :1]]
+    left_handed = np.linalg.det(edges) < 0.0
+    return np.where(left_handed[:, None], cells[:, list(order)], cells)
 
 
 def box_mesh(
