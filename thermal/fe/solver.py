@@ -18,7 +18,7 @@ from thermal.fe.mesh import FloatArray
 
 Matrix = sparse.csr_array | sparse.bsr_array
 M = TypeVar("M", sparse.csr_array, sparse.bsr_array)
-SMOOTHED_RANGE = 20.0
+SMOOTHED_RANGE = 10.0
 """Largest eigenvalue over the smallest one that the smoother damps; iterations hardly depend on it."""
 
 BoolArray = NDArray[np.bool_]

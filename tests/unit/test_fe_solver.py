@@ -1,0 +1,161 @@
+"""Multigrid gives what a direct solver gives, in a number of iterations that does not grow with the mesh."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy import sparse
+
+from thermal.fe.elements import FiniteElements
+from thermal.fe.mesh import box_mesh
+from thermal.fe.solver import (
+    LowRank,
+    NotConverged,
+    TwoLevelMultigrid,
+    conjugate_gradient,
+    constrain,
+    gmres,
+    solve_direct,
+)
+
+
+def heat_problem(divisions: int, held: bool = False):
+    """Matrix, load and multigrid of a box with a film on one face, or with that face held at zero."""
+    elements = FiniteElements(box_mesh((1.0, 1.5, 1.0), (divisions,) * 3))
+    k = np.full(len(elements.mesh.cells), 45.0)
+    fine, coarse = elements.conduction(k, elements.fine), elements.conduction(k, elements.coarse)
+    face = elements.surfaces["z_min"]
+    fixed = np.zeros(len(elements.mesh.points), dtype=bool)
+    if held:
+        fixed[face.nodes] = True
+    else:
+        face.add_mass(fine, np.full_like(face.weights, 50.0))
+        face.add_coarse_mass(coarse, np.full_like(face.weights, 50.0))
+    matrix = constrain(elements.fine.matrix(fine), fixed)
+    held_corners = fixed[elements.corners]
+    linear = constrain(elements.coarse.matrix(coarse), held_corners)
+    multigrid = TwoLevelMultigrid(matrix, linear, elements.prolongation, fixed, held_corners)
+    return elements, matrix, np.where(fixed, 0.0, elements.body_load("box")), multigrid
+
+
+def elastic_problem(divisions: int):
+    """The box clamped on one face, heated unevenly."""
+    elements = FiniteElements(box_mesh((1.0, 1.5, 1.0), (divisions,) * 3))
+    n = len(elements.mesh.cells)
+    young, poisson = np.full(n, 210e9), np.full(n, 0.3)
+    fixed = np.zeros((len(elements.mesh.points), 3), dtype=bool)
+    fixed[elements.surfaces["z_min"].nodes] = True
+    held_corners = fixed[elements.corners].ravel()
+    blocks = [elements.elasticity(young, poisson, level) for level in (elements.fine, elements.coarse)]
+    matrix = constrain(elements.fine.block_matrix(blocks[0]), fixed.ravel())
+    linear = constrain(elements.coarse.block_matrix(blocks[1]), held_corners)
+    multigrid = TwoLevelMultigrid(matrix, linear, elements.prolongation, fixed.ravel(), held_corners)
+    excess = 100.0 * np.sin(3.0 * elements.mesh.points).sum(axis=1)
+    load = elements.expansion_load(np.full(n, 6e6), excess).ravel()
+    return matrix, np.where(fixed.ravel(), 0.0, load), multigrid
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_heat_multigrid_equals_direct(held: bool) -> None:
+    _, matrix, load, multigrid = heat_problem(5, held)
+    solution = conjugate_gradient(matrix, load, multigrid, tolerance=1e-12)
+    direct = solve_direct(matrix, load)
+    assert_allclose(solution.values, direct, rtol=0.0, atol=1e-10 * np.abs(direct).max())
+
+
+def test_elastic_multigrid_equals_direct() -> None:
+    matrix, load, multigrid = elastic_problem(4)
+    solution = conjugate_gradient(matrix, load, multigrid, tolerance=1e-12)
+    direct = solve_direct(matrix, load)
+    assert_allclose(solution.values, direct, rtol=0.0, atol=1e-10 * np.abs(direct).max())
+
+
+def test_heat_takes_seven_iterations_at_any_size() -> None:
+    counts = []
+    for divisions in (4, 8, 12):
+        _, matrix, load, multigrid = heat_problem(divisions)
+        counts.append(conjugate_gradient(matrix, load, multigrid, tolerance=1e-8).iterations)
+    assert max(counts) <= 7
+    assert max(counts) - min(counts) <= 1
+
+
+def test_mechanics_takes_sixteen_iterations_at_any_size() -> None:
+    counts = []
+    for divisions in (4, 8):
+        matrix, load, multigrid = elastic_problem(divisions)
+        counts.append(conjugate_gradient(matrix, load, multigrid, tolerance=1e-8).iterations)
+    assert max(counts) <= 16
+    assert max(counts) - min(counts) <= 2
+
+
+def test_cycle_is_symmetric_and_positive() -> None:
+    _, matrix, _, multigrid = heat_problem(3, held=True)
+    rng = np.random.default_rng(1)
+    a, b = rng.standard_normal((2, matrix.shape[0]))
+    assert a @ multigrid(b) == pytest.approx(b @ multigrid(a), rel=1e-12)
+    assert a @ multigrid(a) > 0.0
+
+
+def test_constrained_matrix_keeps_the_rest_and_its_input() -> None:
+    elements = FiniteElements(box_mesh((1.0, 1.0, 1.0), (1, 1, 1)))
+    blocks = elements.elasticity(np.full(6, 2.0), np.full(6, 0.3), elements.fine)
+    matrix = elements.fine.block_matrix(blocks)
+    before = matrix.toarray()
+    fixed = np.zeros(matrix.shape[0], dtype=bool)
+    fixed[[0, 4, 17]] = True
+    after = constrain(matrix, fixed).toarray()
+    expected = before.copy()
+    expected[fixed], expected[:, fixed] = 0.0, 0.0
+    expected[fixed, fixed] = before[fixed, fixed]
+    assert_array_equal(after, expected)
+    assert_array_equal(matrix.toarray(), before)
+
+
+def test_gmres_with_small_rank_part_equals_direct() -> None:
+    elements, matrix, load, multigrid = heat_problem(4)
+    top, side = elements.surfaces["z_max"], elements.surfaces["x_min"]
+    part = LowRank(
+        sparse.csc_array(np.column_stack([30.0 * top.shares, -8.0 * side.shares])),
+        sparse.csc_array(np.column_stack([side.shares, top.shares])),
+    )
+
+    def operator(x: np.ndarray) -> np.ndarray:
+        return matrix @ x + part @ x
+
+    multigrid.set_low_rank(part)
+    solution = gmres(operator, load, multigrid, tolerance=1e-12)
+    full = matrix.toarray() + part.left.toarray() @ part.right.toarray().T
+    assert_allclose(solution.values, np.linalg.solve(full, load), rtol=1e-9)
+    with_part = solution.iterations
+    multigrid.set_low_rank(None)
+    without = gmres(operator, load, multigrid, tolerance=1e-12).iterations
+    plain = gmres(lambda x: matrix @ x, load, multigrid, tolerance=1e-12).iterations
+    assert with_part <= plain + 1
+    assert without > with_part
+
+
+def test_zero_load_needs_no_iteration() -> None:
+    _, matrix, load, multigrid = heat_problem(2)
+    for solution in (
+        conjugate_gradient(matrix, 0.0 * load, multigrid),
+        gmres(lambda x: matrix @ x, 0.0 * load, multigrid),
+    ):
+        assert solution.iterations == 0
+        assert not solution.values.any()
+
+
+def test_a_stalled_solve_reports_its_history() -> None:
+    _, matrix, load, _ = heat_problem(3)
+    for solve in (
+        lambda: conjugate_gradient(matrix, load, lambda r: r, max_iterations=3),
+        lambda: gmres(lambda x: matrix @ x, load, lambda r: r, max_iterations=3),
+    ):
+        with pytest.raises(NotConverged, match="after 3 iterations is above 1e-10") as failure:
+            solve()
+        assert len(failure.value.residuals) == 4
+        assert isinstance(failure.value, RuntimeError)
+
+
+def test_solutions_are_the_same_bits_every_time() -> None:
+    first, second = (heat_problem(4) for _ in range(2))
+    results = [conjugate_gradient(m, b, g).values.tobytes() for _, m, b, g in (first, second)]
+    assert results[0] == results[1]
