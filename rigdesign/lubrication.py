@@ -11,7 +11,7 @@ from dynamics.oil_jet import JET_ANGLES, oil_acceleration
 from dynamics.response_curve import CurvePoint
 from dynamics.seal_loss import gap_seal_loss, lip_seal_loss
 from dynamics.windage import GearRotor, Mist, gear_windage
-from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.gearbox import Gearbox, HeatSplit
 from rigdesign.loads import MeshModel
 from rigdesign.oil import oil_outlet
 from rigdesign.rig.model import Rig
@@ -200,7 +200,7 @@ def mesh_losses(
                 details=loss.details | {"static_power": loss.power, "source": source},
             )
         box_name, mesh = model.name.split(".")
-        share = rig.case.gearboxes[box_name].heat_split.mesh_into_gears
+        share = body_split(rig, box_name).mesh_into_gears
         placed = PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=share * loss.power)
         losses.append(_given(rig, point, placed))
         if response is not None:
@@ -307,7 +307,7 @@ def _windage(
             rotor = GearRotor.of_pair(pair, index)
             omega = rig.shaft_speed(box.gears[gear_name].shaft, point.speed)
             loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
-            share = box.heat_split.windage_into_gears
+            share = body_split(rig, box_name).windage_into_gears
             yield PlacedLoss(gearbox=box_name, part=gear_name, loss=loss, into_body=share * loss.power)
 
 
@@ -377,6 +377,14 @@ def _seals(
         yield PlacedLoss(gearbox=box_name, part=name, loss=loss, into_body=body)
 
 
+def body_split(rig: Rig, name: str) -> HeatSplit:
+    """How losses of a gearbox divide; without a housing all heat ends in the oil."""
+    box = rig.case.gearboxes[name]
+    if box.housing is not None:
+        return box.heat_split
+    return HeatSplit(mesh_into_gears=0.0, windage_into_gears=0.0, seal_into_shaft=0.0, seal_into_housing=0.0)
+
+
 def _given(rig: Rig, point: OperatingPoint, placed: PlacedLoss) -> PlacedLoss:
     """The loss of the case in place of the computed one, where the case gives it."""
     for entry in rig.case.losses.given.values():
@@ -399,7 +407,7 @@ def _given(rig: Rig, point: OperatingPoint, placed: PlacedLoss) -> PlacedLoss:
 
 
 def _split(rig: Rig, placed: PlacedLoss) -> float:
-    split = rig.case.gearboxes[placed.gearbox].heat_split
+    split = body_split(rig, placed.gearbox)
     return {
         "mesh": split.mesh_into_gears,
         "windage": split.windage_into_gears,

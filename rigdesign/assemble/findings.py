@@ -1,0 +1,136 @@
+"""Warnings of the run: what left its range, what an audit says, each once."""
+
+import math
+from collections.abc import Iterable, Iterator
+
+from dynamics.modes import sampling_audit
+from rigdesign.assemble.curves import iso_factor
+from rigdesign.checks.subject import Subject
+from rigdesign.results import Warning
+from rigdesign.temperatures import HousingField
+from thermal.audit import audit_conditions, radiation_too_small
+from thermal.boundary import Film, Radiation
+
+
+def warnings_of(subject: Subject) -> list[Warning]:
+    """All warnings of the run in a fixed order."""
+    found = [
+        *(Warning(id="gear", text=text) for text in _gears(subject)),
+        *(Warning(id="iso_6336_1", text=text) for text in _iso(subject)),
+        *(Warning(id="loss", text=text) for text in _losses(subject)),
+        *(Warning(id="oil", text=text) for text in _oils(subject)),
+        *(Warning(id="damping", text=text) for text in _damping(subject)),
+        *(Warning(id="sampling", text=text) for text in _sampling(subject)),
+        *(Warning(id="film", text=text) for text in _films(subject)),
+        *(Warning(id="heat_audit", text=text) for text in _audits(subject)),
+    ]
+    return list({(warning.id, warning.text): warning for warning in found}.values())
+
+
+def _gears(subject: Subject) -> Iterator[str]:
+    for model in subject.test.last.models:
+        for text in subject.rig.pairs[model.name].warnings:
+            yield f"{model.name}, cold: {text}"
+        for text in model.pair.warnings:
+            yield f"{model.name}, hot: {text}"
+        for text in model.stiffness.warnings:
+            yield f"{model.name}: {text}"
+
+
+def _iso(subject: Subject) -> Iterator[str]:
+    for model in subject.test.last.models:
+        box, mesh = subject.rig.mesh(model.name)
+        speed = subject.rig.shaft_speed(box.gears[box.meshes[mesh].pinion].shaft, subject.test.point.speed)
+        torque = subject.test.last.feedback.mesh_torque[model.name]
+        for text in iso_factor(subject.rig, model.name, torque, speed).warnings:
+            yield f"{model.name}: {text}"
+
+
+def _losses(subject: Subject) -> Iterator[str]:
+    for point in subject.points:
+        for placed in point.last.losses:
+            for text in placed.loss.warnings:
+                yield f"{placed.name}, stage {point.point.stage}: {text}"
+
+
+def _oils(subject: Subject) -> Iterator[str]:
+    for point in subject.points:
+        for name, box in subject.case.gearboxes.items():
+            for stream in point.last.streams:
+                box_name, kind = stream.name.split(".")
+                if box_name == name:
+                    entry = box.oil if kind == "gear_oil" else box.bearing_oil
+                    for text in subject.rig.oils[entry.oil].warnings(stream.outlet):
+                        yield f"{stream.name}, stage {point.point.stage}: {text}"
+
+
+def _damping(subject: Subject) -> Iterator[str]:
+    if subject.dynamics is not None:
+        yield from (row["warning"] for row in subject.dynamics.damping_audit if row["warning"])
+
+
+def _sampling(subject: Subject) -> Iterator[str]:
+    drivetrain = subject.rig.drivetrain
+    if drivetrain is not None:
+        speed = subject.rig.drive_speed(subject.test.point.speed)
+        audits = sampling_audit(drivetrain, speed, subject.case.numerics.sample_rate)
+        yield from (audit.warning for audit in audits if audit.warning)
+
+
+def _films(subject: Subject) -> Iterator[str]:
+    for field in _fields(subject):
+        yield from field.solution.warnings
+
+
+def _audits(subject: Subject) -> Iterator[str]:
+    """Radiation counted twice, and radiation below what any field gives."""
+    for field in _fields(subject):
+        yield from audit_conditions(field.conditions)
+        rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
+        films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
+        for condition in field.conditions:
+            if not isinstance(condition, Radiation) or condition.surface not in films:
+                continue
+            film, own = films[condition.surface], rows[(condition.surface, condition.kind)]
+            convection = rows[(film.surface, film.kind)]
+            if convection.coefficient is None or condition.surroundings_temperature != film.fluid_temperature:
+                continue
+            text = radiation_too_small(
+                condition.surface,
+                convection=-convection.power,
+                radiation=-own.power,
+                emissivity=condition.emissivity,
+                film=convection.coefficient.value,
+                ambient=film.fluid_temperature,
+            )
+            if text is not None:
+                yield text
+
+
+def _fields(subject: Subject) -> Iterable[HousingField]:
+    for point in subject.points:
+        yield from point.last.fields.values()
+
+
+def not_modelled(subject: Subject) -> list[str]:
+    """What the verdict knows nothing of."""
+    items = [
+        "bending and tilting of shafts: the drivetrain is torsional, journal stiffness does not enter the loads",
+        "static position of the journals in their films: axes run through the middle of the hot bores",
+        "gear body and web flexibility beyond the tooth, coupling of neighbouring tooth slices",
+        "temperature over time: steady states at the held stages only",
+        "oil flow distribution, aeration and sump level: films are given by surface",
+    ]
+    without = [name for name, box in subject.case.gearboxes.items() if box.housing is None]
+    if without:
+        items.append(
+            f"housing of {', '.join(without)}: gears at the temperature of their oil outlet, all losses into the oil"
+        )
+    if subject.run is None:
+        items.append("dynamic loads: the losses are given")
+    for name, box in subject.case.gearboxes.items():
+        if any(mesh.double_helical for mesh in box.meshes.values()):
+            items.append(f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2")
+    return items
+
+

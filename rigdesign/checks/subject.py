@@ -1,0 +1,53 @@
+"""What the checks look at: the case, the solved points, the assembled results."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from rigdesign.assemble.dynamics import DynamicRun
+from rigdesign.case.model import Case
+from rigdesign.coupling import PointResult
+from rigdesign.results import DynamicsResult, GrowthResult, ThermalResult
+from rigdesign.rig.model import Rig
+
+
+@dataclass(frozen=True, kw_only=True)
+class Subject:
+    """A solved rig."""
+
+    rig: Rig
+    points: Sequence[PointResult]
+    run: DynamicRun | None
+    """None when the losses are given: no drivetrain, no loads."""
+    dynamics: DynamicsResult | None
+    thermal: Sequence[ThermalResult]
+    growth: Sequence[GrowthResult]
+    cooler: Mapping[str, float]
+
+    @property
+    def case(self) -> Case:
+        """The case."""
+        return self.rig.case
+
+    @property
+    def test(self) -> PointResult:
+        """The held point with the highest torque."""
+        return max(self.points, key=lambda point: abs(point.point.torque))
+
+    def assumed(self, *prefixes: str) -> tuple[str, ...]:
+        """Paths of the assumptions under any of these parts of the case."""
+        return tuple(
+            record.path
+            for record in self.case.assumptions
+            if any(record.path == prefix or record.path.startswith(f"{prefix}.") for prefix in prefixes)
+        )
+
+
+NO_LOADS = "losses are given (losses.basis = input): there are no dynamic loads"
+NO_LIMIT = "the case states no limit"
+NO_HOUSING = "no gearbox has a housing: there are no temperatures and clearances"
+
+
+def worst(items: Iterable[tuple[float, str]], *, smallest: bool = False) -> tuple[float, str]:
+    """The governing value and where it occurs; the first of equals."""
+    ordered = sorted(items, key=lambda item: item[0], reverse=not smallest)
+    return ordered[0]

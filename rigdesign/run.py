@@ -1,0 +1,178 @@
+"""The main job on one page: a case in, a verdict with everything behind it out."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+
+from dynamics.ramp import Schedule
+from rigdesign.assemble import heat
+from rigdesign.assemble.curves import solve_curves
+from rigdesign.assemble.dynamics import DynamicRun, dynamics_result
+from rigdesign.assemble.findings import not_modelled, warnings_of
+from rigdesign.assemble.hand import hand_checks
+from rigdesign.case.model import Case
+from rigdesign.checks import Subject, all_checks
+from rigdesign.coupling import PointResult, solve_point
+from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError
+from rigdesign.loads import mesh_models
+from rigdesign.lubrication import mesh_losses, rotating_losses, solve_bearings
+from rigdesign.ramp_run import held_points, run_ramp, schedule_of
+from rigdesign.results import AssumptionRecord, Check, LossRow, RunResult
+from rigdesign.rig.model import Fidelity, Rig, build_rig
+from rigdesign.rules import overall
+from rigdesign.state import OperatingPoint
+from rigdesign.system import gmsh_remedy, missing_gmsh_libraries
+
+Progress = Callable[[str], None]
+
+
+def run_case(case: Case, fidelity: Fidelity = "standard", progress: Progress | None = None) -> RunResult:
+    """Compute a case and hold it against its limits.
+
+    Parameters
+    ----------
+    case : from `load_case`
+    fidelity : size of the models
+    progress : called with what is being computed
+
+    Raises
+    ------
+    CaseError
+        A case that cannot be computed: gears that do not mesh, a loop or housing that does not close.
+    NotConvergedError
+        An iteration that does not settle, a speed the motor does not reach.
+    MissingLibraryError
+        A system library that gmsh needs.
+    """
+    say = progress or (lambda message: None)
+    with _solver_errors(case):
+        return _run(case, fidelity, say, _Clock())
+
+
+def _run(case: Case, fidelity: Fidelity, say: Progress, clock: "_Clock") -> RunResult:
+    say("building the rig")
+    rig = build_rig(case, fidelity)
+    schedule: Schedule = schedule_of(rig)
+    for name in rig.models:
+        say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
+    clock.lap("rig_and_mesh")
+    points = []
+    for point in held_points(rig):
+        say(f"coupling loads, losses, temperatures and growth at stage {point.stage}")
+        start = points[-1].last.feedback if points else None
+        points.append(solve_point(rig, point, start=start))
+    clock.lap("coupling")
+    run = None if rig.drivetrain is None else _dynamic_run(rig, tuple(points), say, clock)
+    say("assembling the result")
+    last = max(points, key=lambda point: abs(point.point.torque))
+    subject = Subject(
+        rig=rig,
+        points=points,
+        run=run,
+        dynamics=None if run is None else dynamics_result(rig, run),
+        thermal=[heat.thermal_result(rig, p, field) for p in points for field in p.last.fields.values()],
+        growth=[heat.growth_result(rig, p, name) for p in points for name in p.last.growth],
+        cooler=heat.cooler(rig, last.last),
+    )
+    checks = all_checks(subject)
+    clock.lap("checks")
+    return RunResult(
+        case={"name": case.name, "title": case.title, "path": case.path.name, "hash": case.hash},
+        fidelity=fidelity,
+        verdict=overall(checks),
+        checks=checks,
+        dynamics=subject.dynamics,
+        losses=_all_losses(rig, schedule, points),
+        oil=[row for p in points for row in heat.oil_rows(p.point.stage, p.last.streams)],
+        cooler=dict(subject.cooler),
+        thermal=list(subject.thermal),
+        growth=list(subject.growth),
+        coupling=[heat.coupling_history(p) for p in points],
+        hand_checks=hand_checks(subject),
+        assumptions=_assumptions(case, checks),
+        overrides=list(case.overrides),
+        not_modelled=not_modelled(subject),
+        warnings=warnings_of(subject),
+        timings_s=clock.laps,
+        fields=[field for p in points for field in heat.fields_of(rig, p)],
+    )
+
+
+def _dynamic_run(rig: Rig, points: tuple[PointResult, ...], say: Progress, clock: "_Clock") -> DynamicRun:
+    """Response over speed and the time run over the schedule, once, with the warm rig."""
+    test = max(points, key=lambda point: abs(point.point.torque))
+    say("response over speed")
+    curves = solve_curves(rig, test.last)
+    clock.lap("response_over_speed")
+    say("time run over the schedule")
+    assert test.setting is not None
+    ramp = run_ramp(rig, test.last, test.setting, test.last.feedback)
+    clock.lap("time_run")
+    return DynamicRun(points=points, curves=curves, ramp=ramp)
+
+
+def _all_losses(rig: Rig, schedule: Schedule, points: list[PointResult]) -> list[LossRow]:
+    """Losses by place at the end of every stage: coupled at the held ones, with their warm rig at the others."""
+    held = {point.point.stage: point for point in points}
+    test = max(points, key=lambda point: abs(point.point.torque))
+    rows = []
+    for stage in rig.case.schedule.resolved():
+        if stage.name in held:
+            rows += heat.loss_rows(stage.name, held[stage.name].last.losses)
+            continue
+        point = OperatingPoint(stage=stage.name, speed=stage.speed_end, torque=stage.torque_end)
+        if point.speed > 0.0:
+            rows += _stage_losses(rig, point, test)
+    return rows
+
+
+def _stage_losses(rig: Rig, point: OperatingPoint, test: PointResult) -> list[LossRow]:
+    share = point.torque / test.point.torque if test.point.torque else 0.0
+    feedback = replace(
+        test.last.feedback,
+        mesh_torque={name: share * torque for name, torque in test.last.feedback.mesh_torque.items()},
+        bearing_heat=dict.fromkeys(test.last.feedback.bearing_heat, 0.0),
+    )
+    models = mesh_models(rig, point, feedback)
+    turning = rotating_losses(rig, point, feedback, models, solve_bearings(rig, point, feedback))
+    return heat.loss_rows(point.stage, [*turning, *mesh_losses(rig, point, models)])
+
+
+def _assumptions(case: Case, checks: list[Check]) -> list[AssumptionRecord]:
+    """The case's assumptions with the checks that rest on them."""
+    return [
+        replace(record, decides=tuple(check.id for check in checks if record.path in check.assumptions))
+        for record in case.assumptions
+    ]
+
+
+class _Clock:
+    """Seconds of each part of the run."""
+
+    def __init__(self) -> None:
+        self.laps: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def lap(self, name: str) -> None:
+        now = time.perf_counter()
+        self.laps[name] = round(now - self._last, 3)
+        self._last = now
+
+
+@contextmanager
+def _solver_errors(case: Case) -> Iterator[None]:
+    """Turn what the solvers raise into the tool's errors."""
+    try:
+        yield
+    except RigdesignError:
+        raise
+    except (OSError, ImportError) as error:
+        missing = missing_gmsh_libraries()
+        raise MissingLibraryError(f"{gmsh_remedy(missing)} ({error})") from error
+    except ValueError as error:
+        raise CaseError(str(error), str(case.path)) from error
+    except RuntimeError as error:
+        raise NotConvergedError(str(error)) from error
+
+
