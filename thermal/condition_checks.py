@@ -73,9 +73,7 @@ def check_heat_paths(
     Raises ConditionError naming the bodies whose temperature nothing determines.
     """
     mesh = elements.mesh
-    piece_of_node = np.zeros(len(mesh.points), dtype=np.int64)
-    piece_of_node[mesh.cells] = elements.components[:, None]
-    piece = {name: int(piece_of_node[nodes[0, 0]]) for name, nodes in mesh.surfaces.items()}
+    piece = {name: surface.piece for name, surface in elements.surfaces.items()}
     n = int(elements.components.max()) + 1
     pairs = [(piece[name], n) for name in grounded] + [(piece[a], piece[b]) for a, b in links]
     rows, columns = np.array(pairs, dtype=np.int64).reshape(-1, 2).T

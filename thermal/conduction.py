@@ -96,7 +96,7 @@ def solve_steady(
     problem = ConductionProblem(setup.elements, setup.fine, setup.coarse, conditions)
     temperature, residuals, iterations = _newton(problem, problem.start(initial), tolerance, max_steps)
     balance = heat_balance(setup.elements, conditions, temperature, problem.reactions(temperature))
-    if balance.closure > CLOSURE and abs(balance.imbalance) > problem.roundoff(temperature):
+    if balance.closure > CLOSURE and balance.worst_piece > problem.roundoff(temperature):
         raise NotConverged(
             f"heat balance open by {balance.closure:.3g} of the heat turned over, above {CLOSURE:g}; "
             "lower the tolerance",

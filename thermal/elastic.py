@@ -168,8 +168,7 @@ def rigid_motion(
 
 def _check_held(elements: FiniteElements, fixed: BoolArray) -> None:
     mesh = elements.mesh
-    piece = np.zeros(len(mesh.points), dtype=np.int64)
-    piece[mesh.cells] = elements.components[:, None]
+    piece = elements.piece_of_node
     held = np.bincount(piece, fixed.sum(axis=1), minlength=int(piece.max()) + 1)
     for number in np.flatnonzero(held < 6):
         names = [b for b, cells in mesh.bodies.items() if (elements.components[cells] == number).any()]

@@ -29,8 +29,6 @@ class ExpansionSetup:
         self.model = model
         self.elements = FiniteElements(model.mesh) if elements is None else elements
         self.locating = {s.name: _locating(model, s) for s in model.shafts}
-        self.piece_of_node = np.zeros(len(model.mesh.points), dtype=np.int64)
-        self.piece_of_node[model.mesh.cells] = self.elements.components[:, None]
         self.housing = self._piece_of(model.fixed_body)
         """Number of the housing's piece."""
         self.piece = self._pieces()

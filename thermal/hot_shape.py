@@ -56,7 +56,7 @@ class HotShape:
 
     def _move(self, piece: int, centre: FloatArray, shift: FloatArray, rotation: FloatArray) -> None:
         """Add a small rigid motion about ``centre`` to one piece."""
-        nodes = np.flatnonzero(self.setup.piece_of_node == piece)
+        nodes = np.flatnonzero(self.setup.elements.piece_of_node == piece)
         self.displacement[nodes] += shift + np.cross(rotation, self.points[nodes] - centre)
 
     def _bearings(self, shaft: str) -> list[BearingStation]:

@@ -128,6 +128,13 @@ class FiniteElements:
         )
         return np.asarray(label[self.coarse.cells[:, 0]], dtype=np.int32)
 
+    @cached_property
+    def piece_of_node(self) -> IndexArray:
+        """(n_nodes,) number of the connected piece each node belongs to."""
+        pieces = np.empty(len(self.mesh.points), dtype=np.int32)
+        pieces[self.mesh.cells] = self.components[:, None]
+        return pieces
+
     def per_cell(self, values: dict[str, float]) -> FloatArray:
         """(n_cells,) value of each cell from one value per body."""
         result = np.empty(len(self.mesh.cells))
@@ -215,6 +222,11 @@ class SurfaceElements:
         """[m2]"""
         self.shares = self.load(np.ones_like(self.weights))
         """(n_nodes,) integral of each shape function over the surface [m2]; sums to the area."""
+
+    @property
+    def piece(self) -> int:
+        """Number of the connected piece the surface bounds."""
+        return int(self._elements.piece_of_node[self.facets[0, 0]])
 
     @cached_property
     def slots(self) -> IndexArray:
