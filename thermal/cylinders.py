@@ -19,11 +19,12 @@ class CylinderMotion:
     """Displacement of a cylinder in the first harmonics of its circumference.
 
     The radial displacement is fitted by u_r = a0 + a1 cos(p) + b1 sin(p) + a2 cos(2p) + b2 sin(2p),
-    area-weighted, with the angle p from +y towards +z: to first order it alone makes the new shape.
+    area-weighted, with the angle p from +y towards +z: to first order it alone makes the new shape. The terms
+    a0, a1, b1 may vary linearly along the axis, and u_x along and across it; values are those at the centre.
     """
 
     shift: tuple[float, float, float]
-    """Of the centre [m]: mean of u_x, and the first harmonic of u_r in y and z."""
+    """Of the centre [m]: u_x, and the first harmonic of u_r in y and z."""
     radius_growth: float
     """Growth of the mean radius, a0 [m]."""
     ovality: float
@@ -41,18 +42,23 @@ def cylinder_motion(
     strain : (n_nodes,) free thermal strain
     """
     area = surface.weights.ravel()
-    across = (surface.at_points(points) - np.array(centre)).reshape(-1, 3)[:, 1:]
+    along, *rest = (surface.at_points(points) - np.array(centre)).reshape(-1, 3).T
+    across = np.column_stack(rest)
     moved = surface.at_points(displacement).reshape(-1, 3)
     radius = np.hypot(across[:, 0], across[:, 1])
     cos, sin = (across / radius[:, None]).T
     radial = moved[:, 1] * cos + moved[:, 2] * sin
     radial += surface.at_points(strain).ravel() * (_radius(surface, points, centre) - radius)
-    basis = np.column_stack([np.ones_like(cos), cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
+    one = np.ones_like(cos)
+    tilted = np.column_stack([one, along, cos, sin])
+    basis = np.column_stack([one, cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
+    basis = np.hstack([basis, along[:, None] * basis[:, :3]])
     root = np.sqrt(area)
-    a0, a1, b1, a2, b2 = np.linalg.lstsq(basis * root[:, None], radial * root)[0].tolist()
+    a0, a1, b1, a2, b2 = np.linalg.lstsq(basis * root[:, None], radial * root)[0][:5].tolist()
+    axial = np.linalg.lstsq(tilted * root[:, None], moved[:, 0] * root)[0]
     tangential = moved[:, 2] * cos - moved[:, 1] * sin
     return CylinderMotion(
-        shift=(float(moved[:, 0] @ area / area.sum()), a1, b1),
+        shift=(float(axial[0]), a1, b1),
         radius_growth=a0,
         ovality=4.0 * float(np.hypot(a2, b2)),
         turn=float((tangential / radius) @ area / area.sum()),

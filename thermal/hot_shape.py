@@ -107,7 +107,10 @@ class HotShape:
             - radial_displacement(shaft, *fields, station.centre, angles, x)
             for x in (first, 0.5 * (first + last), last)
         ]
-        axial = self._axial(station.shaft_surface) - self._axial(station.bore_surface)
+        axial = (
+            self._motion(station.shaft_surface, station.centre).shift[0]
+            - self._motion(station.bore_surface, station.centre).shift[0]
+        )
         by_hand = concentric_gap_change(
             0.5 * station.shaft_diameter,
             (self._expansion(station.bore_surface), bore.mean(self.temperature)),
@@ -126,13 +129,13 @@ class HotShape:
     def shaft(self, station: ShaftStation) -> ShaftGrowth:
         """Read the lengthening of one shaft."""
         locating = self.setup.locating[station.name]
-        datum = self._axial(locating.journal_surface)
+        datum = self._motion(locating.journal_surface, locating.centre).shift[0]
         others = [b for b in self._bearings(station.name) if b is not locating]
         shaft = housing = 0.0
         if others:
             far = max(others, key=lambda b: abs(b.centre[0] - locating.centre[0]))
             sign = np.sign(far.centre[0] - locating.centre[0])
-            shaft = float(sign * (self._axial(far.journal_surface) - datum))
+            shaft = float(sign * (self._motion(far.journal_surface, far.centre).shift[0] - datum))
             housing = float(sign * (self.bores[far.name].shift[0] - self.bores[locating.name].shift[0]))
         alpha = self.setup.elastic.elastic[station.body].expansion
         by_hand = []
