@@ -25,6 +25,8 @@ SPEED_TOLERANCE = 0.01
 """Share of the test speed that may be missing at the end of a run-up."""
 SLOT = 0.01
 """Length of the envelope slots [s]."""
+LEAST_TORQUE = 1.0
+"""Bracing torque [N m] that is kept at standstill: the flanks just touch."""
 COMMAND_INTERVAL = 1e-3
 """Interval of the command samples [s]."""
 
@@ -73,7 +75,7 @@ def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -
         Command(
             time=command.time,
             speed=command.speed,
-            torque=command.torque if controlled else None,
+            torque=np.maximum(command.torque, LEAST_TORQUE) if controlled else None,
             twist=None if controlled else np.full_like(command.time, setting.twist),
         ),
         torque_limit=motor.torque_limit,

@@ -6,6 +6,7 @@ from typing import Literal
 Basis = Literal["predicted", "fitted", "arithmetic", "input", "verification"]
 RowVerdict = Literal["gate held", "gate missed", "goal met", "goal missed", "shown", "not modelled"]
 Published = float | tuple[float, float]
+Bound = Literal["at least", "at most"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,6 +55,7 @@ def compare(
     gate: float | None = None,
     goal: float | None = None,
     window: tuple[float, float] | None = None,
+    bound: Bound | None = None,
     published_text: str | None = None,
     free_parameters: int = 0,
     assumptions: str = "",
@@ -61,7 +63,8 @@ def compare(
     """Row of a number we compute and a publication prints.
 
     ``gate`` and ``goal`` are relative tolerances: a gate must hold, a goal is reported. ``window`` is a gate
-    on the computed value itself. With none of them the row is shown only. ``published_text`` replaces the
+    on the computed value itself. With none of them the row is shown only. ``bound`` says that the
+    published number is a limit, on whose right side there is no deviation. ``published_text`` replaces the
     number as printed ("above 1.5").
 
     Raises ValueError if more than one of gate, goal and window is given.
@@ -69,6 +72,8 @@ def compare(
     if sum(limit is not None for limit in (gate, goal, window)) > 1:
         raise ValueError(f"row {id}: give one of gate, goal and window")
     deviation = _deviation(published, computed)
+    if bound is not None:
+        deviation = min(deviation, 0.0) if bound == "at least" else max(deviation, 0.0)
     verdict: RowVerdict = "shown"
     if gate is not None:
         verdict = "gate held" if abs(deviation) <= gate else "gate missed"

@@ -11,12 +11,9 @@ Found by these rows:
 
 from collections.abc import Iterator, Sequence
 
-from dynamics.mesh_law import MeshLaw
 from dynamics.modes import Crossing, damping_audit, order_crossings, sampling_audit, shaft_frequencies
-from rigdesign.cold import cold_feedback
-from rigdesign.loads import laws_of, mesh_models
-from rigdesign.state import OperatingPoint
-from rigdesign.validation.prototype import RPM, TEST_TORQUE, Prototype
+from rigdesign.validation.courses import TOP_SPEED, simulation_laws
+from rigdesign.validation.prototype import RPM, Prototype
 from rigdesign.validation.rows import ValidationRow, compare, stated
 
 TABLE_2 = {
@@ -26,7 +23,6 @@ TABLE_2 = {
     "reference_wheel": (3563.9, 5092.0, 6895.0),
 }
 """Torsional frequencies [Hz]."""
-TOP_SPEED = 12000.0
 
 # (id, speed in rpm that follows from Table 2, shaft, mode, harmonic of the mesh frequency, P2's words)
 CROSSINGS = (
@@ -94,13 +90,6 @@ def _crossing(crossings: Sequence[Crossing], shaft: str, mode: int, harmonic: in
 
 def _drive_speed(prototype: Prototype) -> float:
     return prototype.simulated.drive_speed(TOP_SPEED * RPM)
-
-
-def simulation_laws(prototype: Prototype, stiffness: str | None = None) -> list[MeshLaw]:
-    """Mesh laws of P2's simulation: cold gears at 12,000 rpm and 180 N m."""
-    rig = prototype.simulated
-    point = OperatingPoint(stage="P2", speed=TOP_SPEED * RPM, torque=TEST_TORQUE)
-    return laws_of(mesh_models(rig, point, cold_feedback(rig, point), stiffness))
 
 
 def _damping(prototype: Prototype) -> Iterator[ValidationRow]:

@@ -1,0 +1,44 @@
+"""Rows of P2's ramp: the stages of Figure 9 as the shipped schedule has them and the ramp rules judge them."""
+
+from collections.abc import Iterator
+
+from dynamics.ramp import RampLimits, ramp_rules
+from rigdesign.ramp_run import schedule_of
+from rigdesign.validation.prototype import RPM, Prototype
+from rigdesign.validation.rows import ValidationRow, compare, stated
+
+SOURCE = "P2, Figure 9"
+P2_LIMITS = RampLimits(
+    standstill_torque=10.0,
+    start_torque_limit=10.0,
+    transition_speed=750.0 * RPM,
+    run_up_share=0.5,
+    test_torque=180.0,
+    test_speed=12000.0 * RPM,
+)
+
+
+def ramp_rows(prototype: Prototype) -> Iterator[ValidationRow]:
+    """Five numbers of the ramp and how many of its rules the schedule keeps."""
+    case = prototype.rig.case
+    stages = {stage.name: stage for stage in case.schedule.resolved()}
+    values = (
+        ("standstill-torque", "torque at standstill", 10.0, stages["bracing"].torque_end, "N m"),
+        ("transition-speed", "speed of the first run-up", 750.0, stages["to_transition_speed"].speed_end / RPM, "rpm"),
+        ("half-torque", "torque while running up", 90.0, stages["half_torque"].torque_end, "N m"),
+        ("test-speed", "speed of the second run-up", 12000.0, stages["run_up"].speed_end / RPM, "rpm"),
+        ("full-torque", "torque at test speed", 180.0, stages["full_torque"].torque_end, "N m"),
+    )
+    for name, quantity, published, computed, unit in values:
+        yield compare(
+            id=f"P2-ramp-{name}", quantity=quantity, source=SOURCE, published=published, computed=computed, unit=unit,
+            basis="input", assumptions="input of the shipped schedule; durations are not printed",
+        )  # fmt: skip
+    rules = ramp_rules(schedule_of(prototype.rig), P2_LIMITS)
+    held = sum(rule.holds for rule in rules)
+    yield stated(
+        id="P2-ramp-rules", quantity=f"ramp rules of P2 that the schedule keeps, of {len(rules)}", source=SOURCE,
+        published="the order of the five steps", computed=float(held), unit="1", basis="input",
+        window=(float(len(rules)), float(len(rules))),
+        assumptions="; ".join(f"{rule.text} {rule.value:g} {rule.comparison} {rule.limit:g} N m" for rule in rules),
+    )  # fmt: skip
