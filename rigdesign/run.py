@@ -1,9 +1,15 @@
-"""The main job on one page: a case in, a verdict with everything behind it out."""
+"""The main job on one page: a case in, a verdict with everything behind it out.
+
+Linear algebra runs on one thread: the matrices are small, and threads that wait for each other cost more than
+they give and make the last digits of a result depend on the machine's load.
+"""
 
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+
+from threadpoolctl import threadpool_limits
 
 from dynamics.ramp import Schedule
 from rigdesign.assemble import heat
@@ -46,7 +52,7 @@ def run_case(case: Case, fidelity: Fidelity = "standard", progress: Progress | N
         A system library that gmsh needs.
     """
     say = progress or (lambda message: None)
-    with _solver_errors(case):
+    with _solver_errors(case), threadpool_limits(limits=1):
         return _run(case, fidelity, say, _Clock())
 
 

@@ -18,6 +18,7 @@ from dynamics.modes import (
     shaft_frequencies,
 )
 from dynamics.response import TimeResponse
+from dynamics.static_loop import port_model, solve_static
 from rigdesign.assemble import root
 from rigdesign.assemble.curves import Curves, factor_points, iso_factor
 from rigdesign.cold import cold_feedback
@@ -153,24 +154,21 @@ def root_stresses(rig: Rig, run: DynamicRun, mesh: int) -> tuple[list[RootStress
     assert system is not None
     last = run.test.last
     model = last.models[mesh]
-    state = root.static_state(system, last.models, signed_torque(rig, run.test.point))
-    static = [root.static_stress(model, state, system, last.models, mesh, gear) for gear in (0, 1)]
     assert last.response is not None
+    ports = port_model(system, laws_of(last.models))
+    state = solve_static(ports, torque=signed_torque(rig, run.test.point))
+    static = root.static_stress(model, state, ports, mesh)
+    dynamic = root.dynamic_stress(model, last.response, mesh)
     names = rig.mesh_gears(rig.mesh_names[mesh])
     histories = [
-        root.history(
-            names[gear].split(".")[1],
-            model.pair.base_radii[gear],
-            root.dynamic_stress(model, last.response, mesh, gear),
-            static[gear],
-        )
+        root.history(names[gear].split(".")[1], model.pair.base_radii[gear], dynamic[gear], static[gear])
         for gear in (0, 1)
     ]
     factors = []
     for point in run.curves.response.points:
+        stresses = root.dynamic_stress(model, point, mesh)
         row = {"speed_rpm": point.speed * RPM}
-        for gear, key in enumerate(root.GEARS):
-            row[key] = root.peak(root.dynamic_stress(model, point, mesh, gear)) / root.peak(static[gear])
+        row |= {key: root.peak(stresses[i]) / root.peak(static[i]) for i, key in enumerate(root.GEARS)}
         factors.append(row)
     return histories, factors
 
