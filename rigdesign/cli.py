@@ -126,9 +126,12 @@ def validate(*, out: Path | None = None, json: bool = False, quick: bool = False
     quick
         Leave out the rows that need a run of the prototype case.
     """
+    from rigdesign.report import prepare_output
     from rigdesign.terminal import Progress, print_validation
-    from rigdesign.validate import validation_document, validation_rows, write_validation
+    from rigdesign.validation import validation_document, validation_rows, write_validation
 
+    if out is not None:
+        prepare_output(out)
     with Progress() as progress:
         rows = validation_rows(with_run=not quick, progress=progress)
     if out is not None:

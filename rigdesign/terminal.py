@@ -15,9 +15,16 @@ from rigdesign.results import Check, RunResult
 
 if TYPE_CHECKING:
     from rigdesign.system import Finding
-    from rigdesign.validate import ValidationRow
+    from rigdesign.validation import ValidationRow
 
 STYLES = {"pass": "green", "warn": "yellow", "fail": "bold red", "not applicable": "dim"}
+
+VALIDATION_STYLES = {
+    "gate held": "green", "goal met": "green", "goal missed": "yellow", "gate missed": "bold red",
+    "not modelled": "dim",
+}  # fmt: skip
+FILE_WIDTH = 200
+"""Columns of the validation table where the output is no terminal."""
 
 
 class Progress:
@@ -69,7 +76,9 @@ def print_checks(result: RunResult, out: Path | None) -> None:
     console.print(table)
     for check in result.checks:
         if check.verdict in ("fail", "warn"):
-            console.print(Text(f"{check.verdict}: ", STYLES[check.verdict]) + Text(f"{check.title}: {check.reason}"))
+            console.print(
+                Text(f"{check.verdict}: ", STYLES[check.verdict]) + Text(f"{check.title}: {check.reason}")
+            )
     for record in result.warnings:
         console.print(Text(f"note {record.id}: ", "yellow") + Text(record.text))
     console.print(Text("verdict: ") + Text(result.verdict, STYLES[result.verdict]))
@@ -110,21 +119,43 @@ def print_findings(findings: Sequence["Finding"]) -> None:
 
 def print_validation(rows: Sequence["ValidationRow"]) -> None:
     """Published numbers beside ours; the headline counts predicted rows only."""
+    from rigdesign.validation import headline
+
     console = Console(highlight=False)
+    if not console.is_terminal:
+        console = Console(highlight=False, width=FILE_WIDTH)
     table = Table(title="published numbers beside ours", title_justify="left", pad_edge=False)
-    for heading in ("id", "quantity", "published", "computed", "unit", "deviation", "verdict", "basis"):
-        table.add_column(heading)
+    for heading, justify in (
+        ("id", "left"), ("quantity", "left"), ("published", "right"), ("computed", "right"), ("unit", "left"),
+        ("deviation", "right"), ("verdict", "left"), ("basis", "left"),
+    ):  # fmt: skip
+        table.add_column(heading, justify=justify)  # type: ignore[arg-type]
     for row in rows:
         deviation = "" if row.deviation is None else f"{100 * row.deviation:+.2f} %"
-        style = {"gate missed": "bold red", "not modelled": "dim"}.get(row.verdict, "")
-        table.add_row(
-            row.id, row.quantity, row.published_text, row.computed_text, row.unit, deviation,
-            Text(row.verdict, style), row.basis,
-        )  # fmt: skip
+        cells = (row.id, row.quantity, row.published_text, row.computed_text, row.unit, deviation)
+        style = VALIDATION_STYLES.get(row.verdict, "")
+        table.add_row(*map(Text, cells), Text(row.verdict, style), Text(row.basis))
     console.print(table)
     for row in rows:
-        if row.assumptions:
+        if row.assumptions and row.verdict != "not modelled":
             console.print(Text(f"{row.id}: ", "bold") + Text(row.assumptions))
-    predicted = [row for row in rows if row.basis == "predicted" and row.deviation is not None]
-    within = sum(row.verdict in ("gate held", "goal met") for row in predicted)
-    console.print(f"predicted rows within their goal: {within} of {len(predicted)}")
+    for reason, names in _reasons(rows).items():
+        console.print(Text(f"not modelled ({', '.join(names)}): ", "dim") + Text(reason))
+    count = headline(rows)
+    console.print(f"gates: {count['gates_held']} held, {count['gates_missed']} missed")
+    for row in rows:
+        if row.verdict == "gate missed":
+            console.print(Text(f"gate missed: {row.id}, {row.quantity}", "bold red"))
+    console.print(
+        f"predicted rows within their goal: {count['predicted_met']} of {count['predicted_with_goal']}; "
+        f"not modelled: {count['not_modelled']} of {count['rows']} rows"
+    )
+
+
+def _reasons(rows: Sequence["ValidationRow"]) -> dict[str, list[str]]:
+    """Ids of the rows without a model by the reason."""
+    reasons: dict[str, list[str]] = {}
+    for row in rows:
+        if row.verdict == "not modelled":
+            reasons.setdefault(row.assumptions, []).append(row.id)
+    return reasons

@@ -27,14 +27,27 @@ def benchmark_rows() -> Iterator[ValidationRow]:
         assumptions="18 x 30 x 1 bricks of tetrahedra; converged 18.2538 degC",
     )  # fmt: skip
     missing = (
-        ("T1", "hot spot in a membrane, stress beside the spot", "50", "MPa", "plane-stress membrane with a spot"),
+        (
+            "T1",
+            "hot spot in a membrane, stress beside the spot",
+            "50",
+            "MPa",
+            "plane-stress membrane with a spot",
+        ),
         ("T3", "one-dimensional transient, x = 0.08 m, 32 s", "36.6", "degC", "temperature over time"),
         ("T-axi", "axisymmetric with flux, r = z = 0.04 m", "332.97", "K", "axisymmetric mesh"),
-        ("LE11", "axial stress at A of the cylinder, taper and sphere", "-105", "MPa", "thermal stress recovery"),
+        (
+            "LE11",
+            "axial stress at A of the cylinder, taper and sphere",
+            "-105",
+            "MPa",
+            "thermal stress recovery",
+        ),
     )
     for name, quantity, published, unit, what in missing:
         yield not_modelled(
-            id=f"NAFEMS-{name}", quantity=f"{name}, {quantity}", source=SOURCE, published=published, unit=unit,
+            id=f"NAFEMS-{name}", quantity=f"{name}, {quantity}", source=SOURCE, published=published,
+            unit=unit,
             basis="verification", reason=f"{what}: not modelled yet",
         )  # fmt: skip
 
@@ -51,7 +64,7 @@ def _t2() -> float:
 
 
 def _t4() -> float:
-    """Temperature [degC] at (0.6, 0.2): plate 0.6 x 1 m, k 52, bottom 100 degC, right and top h 750 to 0 degC."""
+    """Temperature [degC] at (0.6, 0.2): plate 0.6 x 1 m, k 52, bottom 100 degC, h 750 to 0 degC right and top."""
     mesh = box_mesh((0.6, 1.0, 0.02), (18, 30, 1))
     film = constant(750.0, SOURCE)
     conditions = [

@@ -66,7 +66,7 @@ class Course:
 
 
 def simulation_models(prototype: Prototype, stiffness: str | None = None) -> tuple[MeshModel, ...]:
-    """Meshes of P2's simulation: cold gears at 12,000 rpm and 180 N m; ``stiffness`` as in ``mesh_models``."""
+    """Meshes of P2's simulation: cold, 12,000 rpm, 180 N m; ``stiffness`` as in ``mesh_models``."""
     rig, point = _point(prototype)
     return mesh_models(rig, point, cold_feedback(rig, point), stiffness)
 
@@ -83,12 +83,10 @@ def _point(prototype: Prototype) -> tuple[Rig, OperatingPoint]:
 def course(
     prototype: Prototype, laws: Sequence[MeshLaw], speeds: Array, methods: tuple[Method, ...] = BOTH
 ) -> Course:
-    """Periodic response of P2's rig over ``speeds`` [rpm] at 180 N m; speeds without a solution are left out."""
+    """Periodic response of P2's rig over ``speeds`` [rpm] at 180 N m, without the speeds that find none."""
     rig, point = _point(prototype)
     assert rig.system is not None
-    curve = periodic_response(
-        rig.system, laws, speeds * RPM, signed_torque(rig, point), methods=methods
-    )
+    curve = periodic_response(rig.system, laws, speeds * RPM, signed_torque(rig, point), methods=methods)
     points = curve.points
     return Course(
         speed=np.round(curve.speeds / RPM, 6),
@@ -124,9 +122,14 @@ def reshaped(
             first, second = (replace(m, profile_crowning=0.0, lead_crowning=0.0) for m in (first, second))
         laws.append(
             mesh_law(
-                model.pair, stiffness=model.stiffness, micro=(first, second), n_slices=len(model.law.slice_shift),
-                damping=model.law.damping, friction=model.law.friction, engagement=engagement,
-            )  # fmt: skip
+                model.pair,
+                stiffness=model.stiffness,
+                micro=(first, second),
+                n_slices=len(model.law.slice_shift),
+                damping=model.law.damping,
+                friction=model.law.friction,
+                engagement=engagement,
+            )
         )
     return laws
 

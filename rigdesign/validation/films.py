@@ -1,13 +1,13 @@
 """Rows of the heat-transfer coefficients, the oil and the printed heat flows of P2's main rig.
 
 Found by these rows:
- - Formula 2 gives both printed housing coefficients with f_k = 1 and h = 0.40 m only if the cold temperature
-   difference is 45 K; P2 says about 40 K, which gives 14.69.
- - 6.3 W/m2K of the clamping field is met by two correlations that part at smaller differences; it was taken at
-   100 K while the field is solved with some 20 to 30 K.
+ - Formula 2 gives both printed housing coefficients with f_k = 1 and h = 0.40 m only if the cold
+   temperature difference is 45 K; P2 says about 40 K, which gives 14.69.
+ - 6.3 W/m2K of the clamping field is met by two correlations that part at smaller differences; it was taken
+   at 100 K while the field is solved with some 20 to 30 K.
  - The field's radiation of 706 W is impossible beside 1179 W of convection at 6.3 W/m2K with eps 0.94, one
-   surface and one ambient: any temperature field radiates at least 1005 W (about 1.5 times as much convecting
-   as radiating surface would explain it).
+   surface and one ambient: any temperature field radiates at least 1005 W (about 1.5 times as much
+   convecting as radiating surface would explain it).
  - The listed flows add up to 4264 W, printed as 4.2 kW; 733 l/min stand beside "more than 750 l/min".
 """
 
@@ -22,7 +22,8 @@ from thermal.audit import least_radiation
 ZERO = 273.15
 AMBIENT = 20.0 + ZERO
 FIGURE_11, FIGURE_12 = "P2, Figure 11", "P2, Figure 12"
-HEAT_FLOWS = {"field convection": 1179.0, "field radiation": 706.0, "housing warm": 800.0, "housing cold": 962.0,
+HEAT_FLOWS = {"field convection": 1179.0, "field radiation": 706.0, "housing warm": 800.0, "housing "
+"cold": 962.0,
               "housing radiation": 617.0}  # fmt: skip
 """Heat to the room [W]."""
 OIL_POWER, OIL_FLOW = 390e3, 733e-3 / 60.0
@@ -52,7 +53,8 @@ def _housing_films() -> Iterator[ValidationRow]:
     yield compare(
         id="P2-alpha-cold-40K", quantity="film of the cold housing at P2's about 40 K", source=FIGURE_11,
         published=15.09, computed=housing(AMBIENT + 40.0, AMBIENT).value, unit="W/(m2 K)", basis="arithmetic",
-        assumptions="one f_k and h cannot give both printed values at 100 and 40 K: their ratio is 1.292, the "
+        assumptions="one f_k and h cannot give both printed values at 100 and 40 K: their ratio is 1.292, "
+        "the "
         "formula's 1.328",
     )  # fmt: skip
     plates = {
@@ -61,7 +63,8 @@ def _housing_films() -> Iterator[ValidationRow]:
     }
     for kind, (hot, mild) in plates.items():
         yield compare(
-            id=f"P2-alpha-field-{kind}", quantity=f"film of the clamping field, {kind} plate law", source=FIGURE_11,
+            id=f"P2-alpha-field-{kind}", quantity=f"film of the clamping field, {kind} plate law",
+            source=FIGURE_11,
             published=6.3, computed=hot, unit="W/(m2 K)", basis="fitted", free_parameters=1,
             assumptions="Recknagel's formula is not printed; "
             f"at the 25 K a solved field has it gives {mild:.2f}",
@@ -73,7 +76,8 @@ def _inner_films() -> Iterator[ValidationRow]:
     cylinder = convection.rotating_cylinder_jungnickel(12000.0 * pi / 30.0, 0.080)
     gap = convection.narrow_gap_jungnickel(12000.0 * pi / 30.0, 0.040, 0.6e-3)
     laws = (
-        ("gears", 150.0, convection.series(oil, oil), 1e-9, "arithmetic", 1, "300 in series with 300 (Formula 3)"),
+        ("gears", 150.0, convection.series(oil, oil), 1e-9, "arithmetic", 1,
+         "300 in series with 300 (Formula 3)"),
         ("contact", 75.0, convection.series(oil, hundred), 1e-9, "arithmetic", 1,
          "300 in series with 100 (Formula 3); 150 with 150 gives it as well"),
         ("nut", 68.0, convection.series(cylinder, gap), None, "fitted", 2,
@@ -98,12 +102,15 @@ def _oil() -> Iterator[ValidationRow]:
             id=f"P2-oil-{name}", quantity=f"oil temperature rise at 390 kW and 733 l/min, {name}",
             source="P2, lubrication and cooling", published=20.0, computed=rise, unit="K", basis="arithmetic",
             window=(15.5, 19.0), free_parameters=1,
-            assumptions=f"density and heat capacity of {name} at 90 degC, between the circuits of 40 and 140 degC; "
+            assumptions=f"density and heat capacity of {name} at 90 degC, between the circuits of 40 and 140 "
+            f"degC; "
             "P2 does not name the oil",
         )  # fmt: skip
     yield compare(
-        id="P2-oil-flow", quantity="total oil flow, sum of the circuits against the rig data", source="P2, Figure 4",
-        published=750.0, published_text="above 750", bound="at least", computed=733.0, unit="l/min", basis="arithmetic",
+        id="P2-oil-flow", quantity="total oil flow, sum of the circuits against the rig data",
+        source="P2, Figure 4",
+        published=750.0, published_text="above 750", bound="at least", computed=733.0, unit="l/min",
+        basis="arithmetic",
         assumptions="P2 prints 733 l/min in the text and more than 750 l/min in Figure 4",
     )  # fmt: skip
 
@@ -112,27 +119,33 @@ def _heat_arithmetic() -> Iterator[ValidationRow]:
     yield compare(
         id="P2-heat-sum", quantity="heat to the room, sum of Figure 12", source=FIGURE_12, published=4200.0,
         published_text="4.2 kW", computed=sum(HEAT_FLOWS.values()), unit="W", basis="arithmetic",
-        assumptions=" + ".join(f"{heat:g}" for heat in HEAT_FLOWS.values()) + " W; 4.2 kW is cut off, not rounded",
+        assumptions=" + ".join(f"{heat:g}" for heat in HEAT_FLOWS.values()) + " W; 4.2 kW is cut off, not "
+        "rounded",
     )  # fmt: skip
     least = least_radiation(0.94, AMBIENT, 6.3, HEAT_FLOWS["field convection"])
     yield compare(
         id="P2-heat-field-radiation", quantity="least radiation of the clamping field beside its convection",
-        source=FIGURE_12, published=HEAT_FLOWS["field radiation"], computed=least, unit="W", basis="arithmetic",
-        assumptions="4 eps sigma T0^3 / alpha of the convection, a lower bound for every temperature field: the "
+        source=FIGURE_12, published=HEAT_FLOWS["field radiation"], computed=least, unit="W",
+        basis="arithmetic",
+        assumptions="4 eps sigma T0^3 / alpha of the convection, a lower bound for every temperature field: "
+        "the "
         "printed pair is impossible on one surface in one ambient",
     )  # fmt: skip
     least = least_radiation(0.6, AMBIENT, 19.5, HEAT_FLOWS["housing warm"])
     least += least_radiation(0.6, AMBIENT, 15.09, HEAT_FLOWS["housing cold"])
     yield compare(
         id="P2-heat-housing-radiation", quantity="least radiation of the housing beside its convection",
-        source=FIGURE_12, published=HEAT_FLOWS["housing radiation"], computed=least, unit="W", basis="arithmetic",
-        assumptions="a lower bound that the printed value keeps; Formula 2 most likely contains radiation already, so "
+        source=FIGURE_12, published=HEAT_FLOWS["housing radiation"], computed=least, unit="W",
+        basis="arithmetic",
+        assumptions="a lower bound that the printed value keeps; Formula 2 most likely contains radiation "
+        "already, so "
         "that the printed 617 W are counted twice",
     )  # fmt: skip
     yield stated(
         id="P2-heat-wall-oil", quantity="heat the oil must give to the walls in Figure 12", source=FIGURE_12,
         published="oil defined as input", unit="W", basis="arithmetic",
         computed=sum(HEAT_FLOWS.values()) + 345.23 - 1000.0,
-        assumptions="to room and bearings 4609 W, sources 500 + 2 x 250 W: the rest comes from 160 degC oil on the "
+        assumptions="to room and bearings 4609 W, sources 500 + 2 x 250 W: the rest comes from 160 degC oil "
+        "on the "
         "walls, not from the 80 kW of the meshes",
     )  # fmt: skip

@@ -1,14 +1,14 @@
 """Rows of the gears of P2: contact ratios, resonance speeds and K_V by ISO 6336-1, root stress.
 
 Found by these rows:
- - With full addendum the reference gear has a total contact ratio of 5.97, not 5.59; the printed value and the
-   printed resonance speed both need tips cut to eps_alpha 1.45, against P2's "lack of head shortening".
- - The printed resonance speed of the reference gear needs the low-load stiffness factor of DIN 3990 off although
-   F_t/b = 91 N/mm; with the factor, which is our default, the speed is 1.2 % lower.
+ - With full addendum the reference gear has a total contact ratio of 5.97, not 5.59; the printed value and
+   the printed resonance speed both need tips cut to eps_alpha 1.45, against P2's "lack of head shortening".
+ - The printed resonance speed of the reference gear needs the low-load stiffness factor of DIN 3990 off
+   although F_t/b = 91 N/mm; with the factor, which is our default, the speed is 1.2 % lower.
  - "K_V up to 1.25 at 2500 rpm" is the end of the subcritical straight line: 2500 rpm is N = 0.846 of 0.85.
  - Both gears lie outside the range of the stiffness regression (x1 + x2 = -0.96 and -0.91, limit -0.5).
- - At 180 N m the nominal root stress of the test gear is 1.8 GPa: a limited-life load for case-hardened steel,
-   no ultra-high-cycle one.
+ - At 180 N m the nominal root stress of the test gear is 1.8 GPa: a limited-life load for case-hardened
+   steel, no ultra-high-cycle one.
 """
 
 from collections.abc import Iterator
@@ -48,20 +48,25 @@ def _contact_ratios(prototype: Prototype) -> Iterator[ValidationRow]:
     source = "P2, system behavior over speed"
     yield compare(
         id="P2-eps-TG", quantity="total contact ratio, test gear", source=source, published=1.26,
-        computed=prototype.test_pair.total_contact_ratio, unit="1", basis="input", gate=1e-6, free_parameters=1,
-        assumptions="input of the case: wheel tips shortened until it holds, about 0.7 normal modules on the radius",
+        computed=prototype.test_pair.total_contact_ratio, unit="1", basis="input", gate=1e-6,
+        free_parameters=1,
+        assumptions="input of the case: wheel tips shortened until it holds, about 0.7 normal modules on the "
+        "radius",
     )  # fmt: skip
     cut, full = prototype.reference_pair, prototype.full_reference_pair
     yield compare(
-        id="P2-eps-RG", quantity="total contact ratio, reference gear, tips cut", source=source, published=5.59,
+        id="P2-eps-RG", quantity="total contact ratio, reference gear, tips cut", source=source,
+        published=5.59,
         computed=cut.total_contact_ratio, unit="1", basis="input", free_parameters=1,
-        assumptions=f"input of the case: tips of both gears cut to eps_alpha {cut.transverse_contact_ratio:.3f}; "
+        assumptions=f"input of the case: tips of both gears cut to eps_alpha "
+        f"{cut.transverse_contact_ratio:.3f}; "
         f"eps_beta is {cut.overlap_ratio:.3f}",
     )  # fmt: skip
     yield compare(
         id="P2-eps-RG-full", quantity="total contact ratio, reference gear, full addendum", source=source,
         published=5.59, computed=full.total_contact_ratio, unit="1", basis="arithmetic",
-        assumptions="P2 says that the reference gear lacks head shortening; its number contradicts that: with full "
+        assumptions="P2 says that the reference gear lacks head shortening; its number contradicts that: "
+        "with full "
         f"addendum eps_alpha is {full.transverse_contact_ratio:.3f} (variant full_addendum.toml)",
     )  # fmt: skip
 
@@ -75,8 +80,10 @@ def _test_resonance(prototype: Prototype) -> Iterator[ValidationRow]:
     source = "P2, comparison of MBS and standard"
     pair = prototype.test_pair
     yield compare(
-        id="P2-nE-TG", quantity="resonance speed n_E1, test gear, x1 = 0", source=source, published=TEST_RESONANCE,
-        computed=resonance_speed(pair, TEST_OPTIONS), unit="rpm", basis="fitted", gate=5e-3, free_parameters=2,
+        id="P2-nE-TG", quantity="resonance speed n_E1, test gear, x1 = 0", source=source,
+        published=TEST_RESONANCE,
+        computed=resonance_speed(pair, TEST_OPTIONS), unit="rpm", basis="fitted", gate=5e-3,
+        free_parameters=2,
         assumptions=f"split x1 = 0 and tip cut of the wheel chosen; {SOLID}. x1 = -0.71 meets it as well; "
         "x1 + x2 = -0.961 is outside the stiffness regression (limit -0.5)",
     )  # fmt: skip
@@ -87,10 +94,12 @@ def _test_resonance(prototype: Prototype) -> Iterator[ValidationRow]:
         assumptions=f"x1 = x2 = {prototype.equal_shifts.profile_shifts[0]:.4f}; {SOLID}",
     )  # fmt: skip
     yield compare(
-        id="P2-nE-TG-bored", quantity="resonance speed n_E1, test gear, bores of the fitted shafts", source=source,
+        id="P2-nE-TG-bored", quantity="resonance speed n_E1, test gear, bores of the fitted shafts",
+        source=source,
         published=TEST_RESONANCE, computed=resonance_speed(prototype.rig.pairs[TEST_MESH], TEST_OPTIONS),
         unit="rpm", basis="fitted", free_parameters=4,
-        assumptions="x1 = 0; ring bodies 41.92 and 57.54 mm bore as the case file has them: P2's value is that of "
+        assumptions="x1 = 0; ring bodies 41.92 and 57.54 mm bore as the case file has them: P2's value is "
+        "that of "
         "solid discs",
     )  # fmt: skip
 
@@ -100,11 +109,14 @@ def _reference_resonance(prototype: Prototype) -> Iterator[ValidationRow]:
     with_factor = replace(REFERENCE_OPTIONS, low_load_factor=True)
     readings = (
         ("P2-nE-RG", "tips cut, x1 = x2", prototype.reference_pair, REFERENCE_OPTIONS, 0.01,
-         "P2's evident reading: eps_alpha 1.448, both tips cut, no low-load stiffness factor; split as shipped"),
+         "P2's evident reading: eps_alpha 1.448, both tips cut, no low-load stiffness factor; split as "
+         "shipped"),
         ("P2-nE-RG-x1-0", "tips cut, x1 = 0", prototype.unshifted_reference_pair, REFERENCE_OPTIONS, 0.01,
          "the same with the split of the test gear"),
-        ("P2-nE-RG-low-load", "tips cut, x1 = x2, low-load factor", prototype.reference_pair, with_factor, None,
-         "default of the tool: F_t/b = 91 N/mm lies below 100, DIN 3990 lowers the stiffness by the power 0.25"),
+        ("P2-nE-RG-low-load", "tips cut, x1 = x2, low-load factor", prototype.reference_pair, with_factor,
+         None,
+         "default of the tool: F_t/b = 91 N/mm lies below 100, DIN 3990 lowers the stiffness by the power "
+         "0.25"),
         ("P2-nE-RG-x1-0-low-load", "tips cut, x1 = 0, low-load factor", prototype.unshifted_reference_pair,
          with_factor, None, "the same with the split of the test gear"),
         ("P2-nE-RG-full", "full addendum, x1 = x2", prototype.full_reference_pair, REFERENCE_OPTIONS,
@@ -115,7 +127,8 @@ def _reference_resonance(prototype: Prototype) -> Iterator[ValidationRow]:
     for identity, text, pair, options, gate, why in readings:
         yield compare(
             id=identity, quantity=f"resonance speed n_E1, reference gear, {text}", source=source,
-            published=REFERENCE_RESONANCE, computed=resonance_speed(pair, options), unit="rpm", basis="fitted",
+            published=REFERENCE_RESONANCE, computed=resonance_speed(pair, options), unit="rpm",
+            basis="fitted",
             gate=gate, free_parameters=3, assumptions=f"{why}; {SOLID}",
         )  # fmt: skip
     yield compare(
@@ -143,8 +156,10 @@ def _test_factors(prototype: Prototype) -> Iterator[ValidationRow]:
         ]
         yield compare(
             id=identity, quantity=f"K_V ISO 6336-1 B, test gear, {text}", source="P2, Figure 8",
-            published=published, computed=factors[0], unit="1", basis="fitted", window=window, free_parameters=2,
-            assumptions=f"ISO 1328-1:2013 grade 5 chosen, C_a 7 um as printed, run-in 7.5 %; {why}; with C_a 3.5 um "
+            published=published, computed=factors[0], unit="1", basis="fitted", window=window,
+            free_parameters=2,
+            assumptions=f"ISO 1328-1:2013 grade 5 chosen, C_a 7 um as printed, run-in 7.5 %; {why}; with C_a "
+            f"3.5 um "
             f"{factors[1]:.3f}, 14 um {factors[2]:.3f}",
         )  # fmt: skip
 
@@ -155,7 +170,8 @@ def _reference_factors(prototype: Prototype) -> Iterator[ValidationRow]:
     factor = dynamic_factor(prototype.reference_pair, TEST_TORQUE, speed, REFERENCE_OPTIONS)
     weighted = dynamic_factor(prototype.reference_pair, TEST_TORQUE, speed, low_load)
     yield compare(
-        id="P2-KV-RG-super", quantity="K_V ISO 6336-1 B, supercritical, reference gear", source="P2, Figure 8",
+        id="P2-KV-RG-super", quantity="K_V ISO 6336-1 B, supercritical, reference gear",
+        source="P2, Figure 8",
         published=1.32, computed=factor.K_V, unit="1", basis="fitted", window=(1.30, 1.36), free_parameters=2,
         assumptions="grade 5, C_a 5 um, low-load factor off; N >= 1.5 begins at "
         f"{1.5 * factor.n_E1:.0f} rpm, not at P2's 4500; with the low-load factor {weighted.K_V:.3f}",
@@ -165,9 +181,11 @@ def _reference_factors(prototype: Prototype) -> Iterator[ValidationRow]:
 def _root_stress(prototype: Prototype) -> ValidationRow:
     stress = root_stress(prototype.test_pair, TEST_TORQUE, 0)
     return stated(
-        id="P2-sigma-F0", quantity="nominal root stress of the test pinion at 180 N m", source="P2, introduction",
+        id="P2-sigma-F0", quantity="nominal root stress of the test pinion at 180 N m",
+        source="P2, introduction",
         published="ultra-high-cycle load, no stress printed", computed=stress.sigma_F0, unit="MPa",
         basis="arithmetic",
-        assumptions=f"ISO 6336-3:2006 method B, Y_F {stress.Y_F:.3f}, Y_S {stress.Y_S:.3f}, before every K factor; "
+        assumptions=f"ISO 6336-3:2006 method B, Y_F {stress.Y_F:.3f}, Y_S {stress.Y_S:.3f}, before every K "
+        f"factor; "
         "twice what case-hardened steel endures, so 180 N m is a limited-life load",
     )  # fmt: skip

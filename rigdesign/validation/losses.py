@@ -1,8 +1,8 @@
 """Rows of the tooth-loss factor: FZG gears of DIN ISO 14635 and P2's test gear with its open profile shifts.
 
-Found by these rows: the often quoted 0.3043 of FZG-A is Ohlendorf's formula, which counts one sign wrong where
-the pitch point lies in double contact; its own load sharing integrates to 0.3006. The split of P2's profile
-shifts, which is not printed, decides the mesh loss of the test gear by a factor of 2.8.
+Found by these rows: the often quoted 0.3043 of FZG-A is Ohlendorf's formula, which counts one sign wrong
+where the pitch point lies in double contact; its own load sharing integrates to 0.3006. The split of P2's
+profile shifts, which is not printed, decides the mesh loss of the test gear by a factor of 2.8.
 """
 
 from collections.abc import Iterator
@@ -23,11 +23,13 @@ def loss_rows(prototype: Prototype) -> Iterator[ValidationRow]:
         computed=tooth_loss_factor(path_c), unit="1", assumptions="rigid load sharing, no dynamics",
     )  # fmt: skip
     yield compare_printed(
-        id="FZG-A-HV", quantity="tooth-loss factor, FZG-A, Ohlendorf's formula", source=SOURCE, printed="0.3043",
+        id="FZG-A-HV", quantity="tooth-loss factor, FZG-A, Ohlendorf's formula", source=SOURCE,
+        printed="0.3043",
         computed=ohlendorf_factor(path_a, 16), unit="1", assumptions="closed formula, for comparison only",
     )  # fmt: skip
     yield compare(
-        id="FZG-A-HV-integral", quantity="tooth-loss factor, FZG-A, integral", source=SOURCE, published=0.3043,
+        id="FZG-A-HV-integral", quantity="tooth-loss factor, FZG-A, integral", source=SOURCE,
+        published=0.3043,
         computed=tooth_loss_factor(path_a), unit="1", basis="verification",
         assumptions="the pitch point lies in double contact, where the closed formula counts a sign wrong",
     )  # fmt: skip
@@ -36,7 +38,8 @@ def loss_rows(prototype: Prototype) -> Iterator[ValidationRow]:
         ("equal", "x1 = x2", prototype.equal_shifts),
     ):
         yield stated(
-            id=f"P2-HV-{identity}", quantity=f"tooth-loss factor, test gear of P2, {text}", source="P2, Figure 7",
+            id=f"P2-HV-{identity}", quantity=f"tooth-loss factor, test gear of P2, {text}",
+            source="P2, Figure 7",
             published="split of the profile shifts not printed", unit="1", basis="arithmetic",
             computed=tooth_loss_factor(ToothPath.of_pair(pair)),
             assumptions="the heat of the test mesh is proportional to it",

@@ -38,7 +38,7 @@ def case_folder(name: str = "uhcf_prototype") -> Path:
 
 @dataclass(frozen=True)
 class Prototype:
-    """The prototype in the readings that P2 leaves open; everything is computed once, when first asked for."""
+    """The prototype in the readings that P2 leaves open; everything is computed once, when asked for."""
 
     folder: Path
 
@@ -95,9 +95,7 @@ class Prototype:
 
 def _solid(pair: GearPair) -> GearPair:
     """Bodies as ISO 6336-1 takes them without further data: solid discs of steel."""
-    return replace(
-        pair, bore_diameters=(0.0, 0.0), densities=(7830.0, 7830.0), youngs_moduli=(206e9, 206e9)
-    )
+    return replace(pair, bore_diameters=(0.0, 0.0), densities=(7830.0, 7830.0), youngs_moduli=(206e9, 206e9))
 
 
 TEST_OPTIONS = RatingOptions(grade=5, tip_relief=7e-6, low_load_factor=False)

@@ -1,4 +1,4 @@
-"""Rows of P2's ramp: the stages of Figure 9 as the shipped schedule has them and the ramp rules judge them."""
+"""Rows of P2's ramp: the stages of Figure 9 in the shipped schedule, judged by the ramp rules."""
 
 from collections.abc import Iterator
 
@@ -24,21 +24,30 @@ def ramp_rows(prototype: Prototype) -> Iterator[ValidationRow]:
     stages = {stage.name: stage for stage in case.schedule.resolved()}
     values = (
         ("standstill-torque", "torque at standstill", 10.0, stages["bracing"].torque_end, "N m"),
-        ("transition-speed", "speed of the first run-up", 750.0, stages["to_transition_speed"].speed_end / RPM, "rpm"),
+        (
+            "transition-speed",
+            "speed of the first run-up",
+            750.0,
+            stages["to_transition_speed"].speed_end / RPM,
+            "rpm",
+        ),
         ("half-torque", "torque while running up", 90.0, stages["half_torque"].torque_end, "N m"),
         ("test-speed", "speed of the second run-up", 12000.0, stages["run_up"].speed_end / RPM, "rpm"),
         ("full-torque", "torque at test speed", 180.0, stages["full_torque"].torque_end, "N m"),
     )
     for name, quantity, published, computed, unit in values:
         yield compare(
-            id=f"P2-ramp-{name}", quantity=quantity, source=SOURCE, published=published, computed=computed, unit=unit,
+            id=f"P2-ramp-{name}", quantity=quantity, source=SOURCE, published=published, computed=computed,
+            unit=unit,
             basis="input", assumptions="input of the shipped schedule; durations are not printed",
         )  # fmt: skip
     rules = ramp_rules(schedule_of(prototype.rig), P2_LIMITS)
     held = sum(rule.holds for rule in rules)
     yield stated(
-        id="P2-ramp-rules", quantity=f"ramp rules of P2 that the schedule keeps, of {len(rules)}", source=SOURCE,
+        id="P2-ramp-rules", quantity=f"ramp rules of P2 that the schedule keeps, of {len(rules)}",
+        source=SOURCE,
         published="the order of the five steps", computed=float(held), unit="1", basis="input",
         window=(float(len(rules)), float(len(rules))),
-        assumptions="; ".join(f"{rule.text} {rule.value:g} {rule.comparison} {rule.limit:g} N m" for rule in rules),
+        assumptions="; ".join(f"{rule.text} {rule.value:g} {rule.comparison} {rule.limit:g} N "
+        f"m" for rule in rules),
     )  # fmt: skip

@@ -1,19 +1,22 @@
 """Rows of the simulated dynamics: K_V over speed, torque amplitudes, response peaks, mutual influence.
 
 Found by these rows:
- - Figures 7 and 8 of P2 use different readings of one torque: 150 and 50 N m are K_V 1.83 and 1.28 as zero-to-peak
-   and 1.42 and 1.14 as half peak-to-peak, Figure 8 shows 1.5 and 1.2, between the two.
- - The subcritical K_V of the test gear stays below P2's. It hangs on the mesh damping first (1.8 with 300 N s/m,
-   1.25 with P2's 1000), then on how teeth come into contact: with early contact of the deflected teeth at the tip
-   corners the step of the mesh stiffness is soft, with pairs let in on the active path only it is an impact and
-   K_V exceeds 3 (with 100 N s/m as well). Scaling of the stiffness, crowning and friction move it by a few per cent. Bending modes of the
-   shafts, to which P2 attributes that range, are not in the torsional model.
- - The supercritical K_V of the test gear is made by the mesh damper: teeth close at the tip corners with a rate that
-   grows with the speed (1.07 with 300, 1.14 with 1000, 1.56 with 3000 N s/m at 12,000 rpm).
- - The gearboxes do influence each other: without the excitation of the test mesh the reference gear's main peak
-   is gone. The dampers of Table 1 make the couplings rigid above 80 Hz, so the loop passes everything on.
- - Response peaks lie at modes of the closed loop, not at the frequencies of free shafts that P2 compares with:
-   its resonances at 1796, 2353 and 4705 rpm are found within 5 %, that of the test gear at 1219 rpm is not.
+ - Figures 7 and 8 of P2 use different readings of one torque: 150 and 50 N m are K_V 1.83 and 1.28 as
+   zero-to-peak and 1.42 and 1.14 as half peak-to-peak, Figure 8 shows 1.5 and 1.2, between the two.
+ - The subcritical K_V of the test gear stays below P2's. It hangs on the mesh damping first (1.8 with 300 N
+   s/m, 1.25 with P2's 1000), then on how teeth come into contact: with early contact of the deflected teeth
+   at the tip corners the step of the mesh stiffness is soft, with pairs let in on the active path only it
+   is an impact and K_V exceeds 3 (with 100 N s/m as well). Scaling of the stiffness, crowning and friction
+   move it by a few per cent. Bending modes of the shafts, to which P2 attributes that range, are not in the
+   torsional model.
+ - The supercritical K_V of the test gear is made by the mesh damper: teeth close at the tip corners with a
+   rate that grows with the speed (1.07 with 300, 1.14 with 1000, 1.56 with 3000 N s/m at 12,000 rpm).
+ - The gearboxes do influence each other: without the excitation of the test mesh the reference gear's main
+   peak is gone. The dampers of Table 1 make the couplings rigid above 80 Hz, so the loop passes everything
+   on.
+ - Response peaks lie at modes of the closed loop, not at the frequencies of free shafts that P2 compares
+   with: its resonances at 1796, 2353 and 4705 rpm are found within 5 %, that of the test gear at 1219 rpm
+   is not.
 """
 
 from collections.abc import Iterator
@@ -27,7 +30,6 @@ from rigdesign.validation.courses import (
     MAIN,
     ROUGH,
     SUBCRITICAL,
-    SUPERCRITICAL,
     TOP_SPEED,
     Course,
     course,
@@ -45,7 +47,8 @@ GOAL = 0.15
 FIGURE_7, FIGURE_8 = "P2, Figure 7", "P2, Figure 8"
 ABOVE_3000, ABOVE_4000 = (3000.0, TOP_SPEED), (4000.0, TOP_SPEED)
 WHOLE = (750.0, TOP_SPEED)
-MODEL = "torsional loop, P2's Table 1, stiffness scaled to ISO c_gamma_alpha, corner contact, 180 N m, no deviations"
+MODEL = "torsional loop, P2's Table 1, stiffness scaled to ISO c_gamma_alpha, corner contact, 180 N m, no "
+"deviations"
 
 
 def response_rows(prototype: Prototype) -> Iterator[ValidationRow]:
@@ -74,9 +77,11 @@ def response_rows(prototype: Prototype) -> Iterator[ValidationRow]:
     yield _influence("test", 0, main, course(prototype, [laws[0], smooth(laws[1])], FINE))
     yield compare(
         id="P2-drive", quantity="drive torque at 12,000 rpm and 180 N m", source="P2, dynamic simulation",
-        published=9.0, published_text="9, reaches 12,000 rpm", bound="at most", computed=float(main.drive[-1]),
+        published=9.0, published_text="9, reaches 12,000 rpm", bound="at most",
+        computed=float(main.drive[-1]),
         unit="N m", basis="predicted", free_parameters=1,
-        assumptions="P2 runs up with 9 N m, so the losses must stay below; eight bearings of 0.0007 N m s/rad "
+        assumptions="P2 runs up with 9 N m, so the losses must stay below; eight bearings of 0.0007 N m "
+        "s/rad "
         "(number assumed), tooth friction by Schlenk, mesh damping; no windage, as in P2's simulation",
     )  # fmt: skip
 
@@ -90,8 +95,10 @@ def _amplitude_readings() -> Iterator[ValidationRow]:
             yield compare(
                 id=f"P2-KVsim-reading-{amplitude:.0f}-{name.replace(' ', '-')}",
                 quantity=f"K_V from {amplitude:.0f} N m of Figure 7 as {name}, {place}", source=FIGURE_8,
-                published=published, published_text=text, computed=1.0 + share * amplitude / TEST_TORQUE, unit="1",
-                basis="arithmetic", assumptions="1 + amplitude / 180 N m or 1 + half of it; Figures 7 and 8 of P2 "
+                published=published, published_text=text, computed=1.0 + share * amplitude / TEST_TORQUE,
+                unit="1",
+                basis="arithmetic", assumptions="1 + amplitude / 180 N m or 1 + half of it; Figures 7 and 8 "
+                "of P2 "
                 "agree in neither reading",
             )  # fmt: skip
 
@@ -104,7 +111,8 @@ def _simulated_factors(
         ("TG-sub", "test gear, subcritical maximum", 0, SUBCRITICAL, 1.5, "above 1.5",
          "bending modes of the shafts, to which P2 attributes this range, are not modelled"),
         ("TG-main", "test gear, main resonance", 0, MAIN, 1.3, "about 1.3",
-         f"the mesh mode of the closed loop lies at {mesh_mode:.0f} Hz, {60.0 * mesh_mode / 99.0:.0f} rpm, since the "
+         f"the mesh mode of the closed loop lies at {mesh_mode:.0f} Hz, {60.0 * mesh_mode / 99.0:.0f} rpm, "
+         f"since the "
          "dampers of Table 1 make the gears one body with their shafts"),
         ("TG-super", "test gear, 12,000 rpm", 0, (TOP_SPEED, TOP_SPEED), 1.2, "about 1.2",
          "made by the mesh damper at the closing tip corners"),
@@ -121,8 +129,10 @@ def _simulated_factors(
         bound: Bound | None = "at least" if identity == "TG-sub" else None
         yield compare(
             id=f"P2-KVsim-{identity}", quantity=f"simulated K_V (max/mean), {text}", source=FIGURE_8,
-            published=published, published_text=printed, computed=value, unit="1", basis="predicted", goal=GOAL,
-            bound=bound, assumptions=f"{MODEL}; at {speed:.0f} rpm, half peak-to-peak {half:.3f}. Hangs on: {hangs}"
+            published=published, published_text=printed, computed=value, unit="1", basis="predicted",
+            goal=GOAL,
+            bound=bound, assumptions=f"{MODEL}; at {speed:.0f} rpm, half peak-to-peak {half:.3f}. Hangs on: "
+            f"{hangs}"
             + (f"; {why}" if why else ""),
         )  # fmt: skip
         yield compare(
@@ -143,9 +153,11 @@ def _amplitudes(main: Course) -> Iterator[ValidationRow]:
     for identity, text, mesh, limits, published, printed, bound in places:
         for name, value in zip(("max-mean", "max-min"), main.amplitude(mesh, limits)):
             yield compare(
-                id=f"P2-dM-{identity}-{name}", quantity=f"torque amplitude {name.replace('-', ' - ')}, {text}",
+                id=f"P2-dM-{identity}-{name}", quantity=f"torque amplitude {name.replace('-', ' - ')}, "
+                f"{text}",
                 source=FIGURE_7, published=published, published_text=printed, computed=value, unit="N m",
-                basis="predicted", bound=bound, assumptions="P2 does not say whether its amplitude is zero-to-peak or "
+                basis="predicted", bound=bound, assumptions="P2 does not say whether its amplitude is "
+                "zero-to-peak or "
                 "peak-to-peak; hangs on the same as P2-KVsim",
             )  # fmt: skip
 
@@ -160,16 +172,19 @@ def _peaks(main: Course) -> Iterator[ValidationRow]:
         nearest = float(peaks[int(np.argmin(np.abs(peaks - published)))])
         found = "" if abs(nearest / published - 1.0) < 0.15 else "no peak there in this model; "
         yield compare(
-            id=f"P2-peak-{identity}", quantity=f"response peak nearest to P2's resonance {identity}", source=FIGURE_7,
+            id=f"P2-peak-{identity}", quantity=f"response peak nearest to P2's resonance {identity}",
+            source=FIGURE_7,
             published=published, computed=nearest, unit="rpm", basis="predicted",
-            assumptions=f"{found}peaks of K_V that stand out by 0.01: {', '.join(f'{peak:.0f}' for peak in peaks)} rpm; P2 "
+            assumptions=f"{found}peaks of K_V that stand out by 0.01: "
+            f"{', '.join(f'{peak:.0f}' for peak in peaks)} rpm; P2 "
             "identifies its peaks with free shafts, here they are modes of the closed loop",
         )  # fmt: skip
     value, speed = main.highest(1, (1000.0, 4500.0))
     yield compare(
         id="P2-nE-RG-sim", quantity="speed of the strongest peak of the reference gear", source="P2, text",
         published=REFERENCE_RESONANCE, computed=speed, unit="rpm", basis="predicted",
-        assumptions=f"P2: its simulation agrees with n_E of ISO 6336-1. K_V {value:.3f} there; splines that Table 1's "
+        assumptions=f"P2: its simulation agrees with n_E of ISO 6336-1. K_V {value:.3f} there; splines that "
+        f"Table 1's "
         "dampers make rigid add the inertia of the shafts to that of the gears",
     )  # fmt: skip
 
@@ -181,7 +196,8 @@ def _late_resonances(main: Course) -> Iterator[ValidationRow]:
         yield stated(
             id=f"P2-free-{name}", quantity=f"highest K_V above 4000 rpm, {name} gear", source="P2, text",
             published="no further significant resonance", computed=value, unit="1", basis="predicted",
-            assumptions=f"at {speed:.0f} rpm; peaks at {', '.join(f'{peak:.0f}' for peak in late) or 'no speed'} rpm. "
+            assumptions=f"at {speed:.0f} rpm; peaks at "
+            f"{', '.join(f'{peak:.0f}' for peak in late) or 'no speed'} rpm. "
             "Table 2 puts the second mode of the reference pinion at 4705 rpm",
         )  # fmt: skip
 
@@ -192,7 +208,8 @@ def _influence(name: str, mesh: int, main: Course, alone: Course) -> ValidationR
     change = np.abs(main.factor[first, mesh] / alone.factor[second, mesh] - 1.0)
     at = int(np.argmax(change))
     return stated(
-        id=f"P2-free-influence-{name}", quantity=f"largest influence of the other gearbox on K_V of the {name} gear",
+        id=f"P2-free-influence-{name}", quantity=f"largest influence of the other gearbox on K_V of the "
+        f"{name} gear",
         source="P2, text", published="the gearboxes do not influence each other", computed=float(change[at]),
         unit="1", basis="predicted",
         assumptions=f"other mesh replaced by a constant spring; at {both[at]:.0f} rpm K_V "

@@ -1,12 +1,14 @@
 """Rows of the drivetrain's audits: torsional frequencies, order crossings, damping, sampling.
 
 Found by these rows:
- - P2's resonance 4 of the reference gear belongs to 4705 rpm by its own Table 2, above its "no resonances above
-   4000 rpm"; first-order crossings go on to 5847 rpm.
- - 40 kHz are 2.02 samples per mesh period at 12,000 rpm: the second mesh harmonic is above half the sample rate.
- - The dampers of Table 1 bridge splines and couplings above 160 and 77 Hz (damping ratios of 9 to 22): these joints
-   are rigid at every speed, so their stiffness cannot show and their damping is no detail.
- - One mesh damping for both gears is a damping ratio of about 0.12 in the test and 0.02 in the reference mesh.
+ - P2's resonance 4 of the reference gear belongs to 4705 rpm by its own Table 2, above its "no resonances
+   above 4000 rpm"; first-order crossings go on to 5847 rpm.
+ - 40 kHz are 2.02 samples per mesh period at 12,000 rpm: the second mesh harmonic is above half the sample
+   rate.
+ - The dampers of Table 1 bridge splines and couplings above 160 and 77 Hz (damping ratios of 9 to 22):
+   these joints are rigid at every speed, so their stiffness cannot show and their damping is no detail.
+ - One mesh damping for both gears is a damping ratio of about 0.12 in the test and 0.02 in the reference
+   mesh.
 """
 
 from collections.abc import Iterator, Sequence
@@ -51,7 +53,8 @@ def shaft_rows(prototype: Prototype) -> Iterator[ValidationRow]:
         for mode, published in enumerate(printed, start=1):
             yield compare(
                 id=f"P2-T2-{shaft}-{mode}", quantity=f"torsional frequency {mode}, shaft {shaft}",
-                source="P2, Table 2", published=published, computed=float(frequencies[shaft][mode - 1]), unit="Hz",
+                source="P2, Table 2", published=published, computed=float(frequencies[shaft][mode - 1]),
+                unit="Hz",
                 basis="fitted", gate=0.02, free_parameters=10,
                 assumptions="sections of the shafts are assumed and fitted to this table (fit_shafts.py)",
             )  # fmt: skip
@@ -61,31 +64,35 @@ def shaft_rows(prototype: Prototype) -> Iterator[ValidationRow]:
             id=f"P2-cross-{identity}", quantity=f"order crossing, {text}", source="P2, text and Table 2",
             published=speed, computed=_crossing(crossings, shaft, mode, harmonic) / RPM, unit="rpm",
             basis="arithmetic", gate=0.02, free_parameters=10,
-            assumptions=f"60 f / (99 h), mode {mode} of shaft {shaft}, h = {harmonic}{REMARKS.get(identity, '')}",
+            assumptions=f"60 f / (99 h), mode {mode} of shaft {shaft}, h = "
+            f"{harmonic}{REMARKS.get(identity, '')}",
         )  # fmt: skip
     highest = max((c for c in crossings if c.harmonic == 1), key=lambda crossing: crossing.speed)
     yield stated(
         id="P2-cross-highest", quantity="highest crossing of a shaft frequency by f_z", source="P2, Table 2",
-        published="no resonances above 4000 rpm", computed=highest.speed / RPM, unit="rpm", basis="arithmetic",
-        assumptions=f"mode {highest.mode} of shaft {highest.shaft}; a crossing is no resonance yet, the response "
+        published="no resonances above 4000 rpm", computed=highest.speed / RPM, unit="rpm",
+        basis="arithmetic",
+        assumptions=f"mode {highest.mode} of shaft {highest.shaft}; a crossing is no resonance yet, the "
+        f"response "
         "rows P2-free say what it does",
     )  # fmt: skip
     yield from _damping(prototype)
     audit = sampling_audit(drivetrain, _drive_speed(prototype), 40e3)[0]
     yield stated(
-        id="P2-sampling", quantity="samples per mesh period at 40 kHz and 12,000 rpm", source="P2, dynamic simulation",
-        published="tooth meshing reproduced with sufficient accuracy", computed=audit.samples_per_mesh, unit="1",
+        id="P2-sampling", quantity="samples per mesh period at 40 kHz and 12,000 rpm",
+        source="P2, dynamic simulation",
+        published="tooth meshing reproduced with sufficient accuracy", computed=audit.samples_per_mesh,
+        unit="1",
         basis="arithmetic", window=(2.015, 2.025),
-        assumptions=f"f_z = {audit.mesh_frequency:.0f} Hz; enough for one harmonic and no waveform; as an integration "
+        assumptions=f"f_z = {audit.mesh_frequency:.0f} Hz; enough for one harmonic and no waveform; as an "
+        f"integration "
         "step it makes 68 % error, so the tool steps at least 8 times finer",
     )  # fmt: skip
 
 
 def _crossing(crossings: Sequence[Crossing], shaft: str, mode: int, harmonic: int) -> float:
     """Speed [rad/s] of one entry of the crossing list."""
-    return next(
-        c.speed for c in crossings if (c.shaft, c.mode, c.harmonic) == (shaft, mode, harmonic)
-    )
+    return next(c.speed for c in crossings if (c.shaft, c.mode, c.harmonic) == (shaft, mode, harmonic))
 
 
 def _drive_speed(prototype: Prototype) -> float:
@@ -104,5 +111,6 @@ def _damping(prototype: Prototype) -> Iterator[ValidationRow]:
             published="only a small influence of the damping values", computed=record.damping_ratio, unit="1",
             basis="arithmetic",
             assumptions=f"corner frequency {record.corner_frequency:.3g} Hz, undamped it would resonate at "
-            f"{record.own_frequency:.4g} Hz" + (": the damper makes the joint rigid" if record.warning else ""),
+            f"{record.own_frequency:.4g} Hz" + (": the damper makes the joint "
+            "rigid" if record.warning else ""),
         )  # fmt: skip
