@@ -29,8 +29,8 @@ def pinion_ratios(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
         slip = ratios[pinion] * law.base_radius_1 - ratios[wheel] * law.base_radius_2
         if abs(slip) > 1e-9 * abs(ratios[pinion] * law.base_radius_1):
             raise ValueError(
-                f"mesh {mesh} cannot turn with the others: r_b1 omega_1 - r_b2 omega_2 = {slip:.3e} m/s per rad/s of the "
-                "drive, limit 0; correct tooth numbers or base radii"
+                f"mesh {mesh} cannot turn with the others: r_b1 omega_1 - r_b2 omega_2 = {slip:.3e} m/s "
+                "per rad/s of the drive, limit 0; correct tooth numbers or base radii"
             )
     scaled: Array = ratios / ratios[system.mesh_ports[0, 0]]
     return scaled
@@ -47,14 +47,15 @@ def wound_state(
 ) -> tuple[DriveState, float, float]:
     """Return start state, drive torque [N m] and loop stiffness [N m/rad] at a pinion speed [rad/s].
 
-    Either the torque of the first mesh [N m] or the bracing twist [rad] is given. Newton's method on windup, motor
-    torque and twist with the contacts at the angle 0, tooth friction left out. The loop stiffness is the change of
-    the torque of the first mesh per twist.
+    Either the torque of the first mesh [N m] or the bracing twist [rad] is given. Newton's method on
+    windup, motor torque and twist with the contacts at the angle 0, tooth friction left out. The loop
+    stiffness is the change of the torque of the first mesh per twist.
 
     Raises
     ------
     ValueError
-        If neither or both are given, the lines cannot turn together, or the bracing does not load the first mesh.
+        If neither or both are given, the lines cannot turn together, or the bracing does not load the first
+        mesh.
     NotConverged
         If the static state is not found, for instance because the twist leaves the flanks open.
     """
@@ -116,8 +117,8 @@ class _Winding:
                 reach = reach + np.clip(step, -limit, limit)
             force, stiffness = self._contact(reach)
         raise NotConverged(
-            f"static state: contact forces still change by {np.abs(asked - reach).max() * stiffness.max() / scale:.1e}, "
-            "limit 1e-9; the twist leaves the flanks open: raise twist or torque"
+            "static state: contact forces still change by "
+            f"{np.abs(asked - reach).max() * stiffness.max() / scale:.1e} of the largest, limit 1e-9; the twist leaves the flanks open: raise twist or torque"
         )
 
     def loop_stiffness(self, unknowns: Array) -> float:
@@ -149,7 +150,7 @@ class _Winding:
             matrix[n + 1, :n] = stiffness[0] * self._approach[0]
             right[n + 1] = torque / radius - preload[0]
         try:
-            solution: Array = np.linalg.solve(matrix, right)
+            solution = np.asarray(np.linalg.solve(matrix, right), float)
         except np.linalg.LinAlgError:
             raise ValueError(
                 "the bracing twist does not load the first mesh; give a twist_load that winds it"

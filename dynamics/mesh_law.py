@@ -18,7 +18,8 @@ potential
     W = sum over flanks, pairs and slices of  k(s) max(0, penetration)^2 / 2                          [J]
 
 so that an angle-dependent stiffness neither creates nor destroys energy (ASME JMD 2005, Oh/Grosh/Barber).
-Damping acts in contact only, each contact force is clipped at zero, friction follows the sliding direction.
+Damping acts in contact only and grows over the first micrometre of it, each contact force is clipped at
+zero, friction follows the sliding direction.
 """
 
 from typing import NamedTuple
@@ -81,6 +82,9 @@ class MeshLaw(NamedTuple):
     """The same for the wheel, T2C [m]."""
     friction_reversal_speed: float
     """Sliding speed over which friction changes sign at the pitch point [m/s]."""
+    damping_depth: float = 1e-6
+    """Penetration over which the damping of a contact grows to its full value [m], so that a tooth that
+    touches with some speed starts at zero force (Hunt and Crossley, ASME J. Appl. Mech. 42, 1975)."""
 
 
 def check_mesh_law(law: MeshLaw) -> None:
@@ -92,6 +96,7 @@ def check_mesh_law(law: MeshLaw) -> None:
         "base_pitch": law.base_pitch,
         "path_step": law.path_step,
         "mean_stiffness": law.mean_stiffness,
+        "damping_depth": law.damping_depth,
         "teeth_1": law.teeth_1,
         "teeth_2": law.teeth_2,
     }

@@ -1,11 +1,12 @@
 """Mesh laws packed into the tables of the compiled loops.
 
-The tables of a law become monotone cubics (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980): the stiffness stays
-between its points and never turns negative, force and derivative torque are continuous, and both come from the same
-polynomial, hence from one potential. With straight pieces instead the energy error of a march no longer falls at
-second order, because the derivative torques jump at every table point.
+The tables of a law become monotone cubics (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980): the
+stiffness stays between its points and never turns negative, force and derivative torque are continuous, and
+both come from the same polynomial, hence from one potential. With straight pieces instead the energy error
+of a march no longer falls at second order, because the derivative torques jump at every table point.
 
-If all teeth are alike the contacts of every slice and pair are tabulated over the phase within one base pitch.
+If all teeth are alike the contacts of every slice and pair are tabulated over the phase within one base
+pitch.
 """
 
 from collections.abc import Sequence
@@ -43,16 +44,18 @@ def pack_meshes(laws: Sequence[MeshLaw], *, derivative_torques: bool = True) -> 
     scales: list[Array] = []
     starts: list[int] = [0]
     blocks: list[Array] = []
+    in_cell: list[int] = []
     for mesh, law in enumerate(laws):
         n_slices, n_path = law.stiffness.shape
         deviation_at, scale_at = sum(map(len, deviations)), sum(map(len, scales))
         individual = has_individual_teeth(law)
-        n_phases = 0 if individual else max(8, int(np.ceil(law.base_pitch / law.path_step)))
+        n_phases = 0 if individual else phase_count(law)
         front_at = len(starts) - 1
         for sign in (1.0, -1.0) if n_phases else ():
             for block in _phase_blocks(law, sign, n_phases):
-                blocks.append(block)
-                starts.append(starts[-1] + block.shape[0])
+                starts.append(starts[-1] + len(block[0]))
+                blocks.append(block[0])
+                in_cell.append(block[1])
         counts[mesh] = (
             n_slices, n_path - 1, sum(map(len, cells)), sum(map(len, shifts)), individual,
             law.teeth_1, law.teeth_2, law.tooth_offset_2,
@@ -74,6 +77,7 @@ def pack_meshes(laws: Sequence[MeshLaw], *, derivative_torques: bool = True) -> 
         deviations=np.vstack(deviations),
         scales=np.concatenate(scales),
         phase_starts=np.array(starts, np.int64),
+        phase_counts=np.array(in_cell, np.int64),
         phase_data=np.concatenate([np.zeros(1), *(block.ravel() for block in blocks)])[1:].copy(),
         offsets=np.array([law.offset for law in laws], float),
     )
@@ -85,10 +89,15 @@ def has_individual_teeth(law: MeshLaw) -> bool:
     return any(bool(np.any(table)) for table in tables)
 
 
+def phase_count(law: MeshLaw) -> int:
+    """Return into how many cells a base pitch is divided: as fine as the path."""
+    return max(8, int(np.ceil(law.base_pitch / law.path_step - 1e-9)))
+
+
 def most_groups(law: MeshLaw) -> int:
     """Return how many groups of contacts one flank can have on the path at once."""
     n_slices, n_path = law.stiffness.shape
-    contacts = n_slices * (int(law.path_step * (n_path - 1) / law.base_pitch) + 2)
+    contacts = int(n_slices) * (int(law.path_step * (n_path - 1) / law.base_pitch) + 2)
     return -(-contacts // kernels.LANES)
 
 
@@ -99,7 +108,8 @@ def _values(law: MeshLaw, derivative_torques: bool) -> tuple[float, ...]:
         law.base_radius_1, law.base_radius_2, law.base_pitch, law.phase, law.back_phase, law.backlash,
         law.path_start, 1.0 / law.path_step, law.damping / law.mean_stiffness, law.friction,
         law.rolling_radius_1, law.rolling_radius_2, 1.0 / reversal, least_gap, float(derivative_torques),
-        1e-12 * law.mean_stiffness * law.base_radius_1,
+        1e-12 * law.mean_stiffness * law.base_radius_1, 1.0 / law.base_pitch, 1.0 / law.base_radius_1,
+        1.0 / law.base_radius_2, law.base_pitch / phase_count(law), 1.0 / law.damping_depth,
     )  # fmt: skip
 
 
@@ -114,8 +124,8 @@ def _cells(table: Array) -> Array:
     return np.ascontiguousarray(coefficients.swapaxes(0, 1).reshape(-1, 4))
 
 
-def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[Array]:
-    """Return for every phase cell the contacts on the path of one flank, (n_groups, N_PHASE, LANES) each.
+def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[tuple[Array, int]]:
+    """Return for every phase cell the contacts on the path of one flank: groups (n, N_PHASE, LANES), number.
 
     The cubics are carried from the path to the phase by value and slope at both ends of the phase cell.
     """
@@ -139,11 +149,10 @@ def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[Array]:
         steps = width / law.path_step
         groups = -(-len(at) // kernels.LANES)
         lanes = np.zeros((kernels.N_PHASE, groups * kernels.LANES))
-        lanes[4] = kernels.NEVER
         lanes[0:4, : len(at)] = _hermite(stiffness, at, slices, steps)
         lanes[4:8, : len(at)] = _hermite(gap, at, slices, steps)
         lanes[8, : len(at)] = law.path_start + at * law.path_step
-        blocks.append(lanes.reshape(kernels.N_PHASE, groups, kernels.LANES).swapaxes(0, 1))
+        blocks.append((lanes.reshape(kernels.N_PHASE, groups, kernels.LANES).swapaxes(0, 1), len(at)))
     return blocks
 
 

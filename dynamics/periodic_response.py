@@ -1,9 +1,11 @@
-"""Periodic response by time integration: run at constant mean speed until nothing changes from block to block.
+"""Periodic response by time integration: run at constant mean speed until nothing changes from block to
+block.
 
-The mean speed is held without a controller in the loop: after each block of periods the motor torque is corrected
-by the momentum that was gained or lost, and the small error of the mean speed is taken out of the rigid motion.
-At the end motor torque times speed is what the drivetrain loses, known from momentum alone. The bracing twist is
-corrected in the same way until the first mesh carries the asked mean torque.
+The mean speed is held without a controller in the loop: after each block of periods the motor torque is
+corrected by the momentum that was gained or lost, and the small error of the mean speed is taken out of the
+rigid motion.
+At the end motor torque times speed is what the drivetrain loses, known from momentum alone. The bracing
+twist is corrected in the same way until the first mesh carries the asked mean torque.
 """
 
 from collections.abc import Mapping, Sequence
@@ -31,7 +33,8 @@ LEAST_STEPS = 64
 
 @dataclass(frozen=True, kw_only=True)
 class PeriodicResponse:
-    """One period of the response at constant mean speed; arrays are (n_meshes, n_steps) unless said otherwise.
+    """One period of the response at constant mean speed; arrays are (n_meshes, n_steps) unless said
+    otherwise.
 
     speed : of the pinion of the first mesh [rad/s]; period : [s]
     time : (n_steps,) [s], at the end of each internal step
@@ -93,8 +96,8 @@ def period_length(laws: Sequence[MeshLaw], ratios: Sequence[float], kind: Period
     Parameters
     ----------
     ratios : speed of the pinion of each mesh per speed of the first pinion [-]
-    kind : one tooth of the first mesh, one revolution of the first pinion, or the turns after which the same teeth
-        of every mesh meet again
+    kind : one tooth of the first mesh, one revolution of the first pinion, or the turns after which the
+        same teeth of every mesh meet again
 
     Raises ValueError if ``mesh`` or ``revolution`` is no period of all meshes.
     """
@@ -103,8 +106,8 @@ def period_length(laws: Sequence[MeshLaw], ratios: Sequence[float], kind: Period
         for mesh, (law, ratio) in enumerate(zip(laws, ratios)):
             if abs(law.teeth_1 * abs(ratio) / first - 1.0) > 1e-9:
                 raise ValueError(
-                    f"period 'mesh': mesh {mesh} has {law.teeth_1 * abs(ratio) / first:.6g} times the mesh frequency of the "
-                    "first, limit 1; use 'revolution' or 'hunting_cycle'"
+                    f"period 'mesh': mesh {mesh} has {law.teeth_1 * abs(ratio) / first:.6g} times the mesh "
+                    "frequency of the first, limit 1; use 'revolution' or 'hunting_cycle'"
                 )
         return 1.0 / first
     if kind == "revolution":
@@ -112,7 +115,8 @@ def period_length(laws: Sequence[MeshLaw], ratios: Sequence[float], kind: Period
             teeth = law.teeth_1 * abs(ratio)
             if abs(teeth - round(teeth)) > 1e-6:
                 raise ValueError(
-                    f"period 'revolution': mesh {mesh} passes {teeth:.6g} teeth in it, must be whole; use 'hunting_cycle'"
+                    f"period 'revolution': mesh {mesh} passes {teeth:.6g} teeth in it, must be whole; "
+                    "use 'hunting_cycle'"
                 )
         return 1.0
     turns = 1
@@ -209,15 +213,15 @@ def periodic_by_time(
     warnings: list[str] = []
     if not search.steady:
         warnings.append(
-            f"periodic response at {speed * 30 / pi:.1f} rpm: residual {search.residual:.2e} after {done} periods, limit "
-            f"{tolerance:.0e}; allow a longer time or another period (subharmonic motion has none of this length)"
+            f"periodic response at {speed * 30 / pi:.1f} rpm: residual {search.residual:.2e} after {done} "
+            f"periods, limit {tolerance:.0e}; allow a longer time or another period (subharmonic motion has none of this length)"
         )
     if march.unsettled:
         warnings.append(f"{march.unsettled} contact iterations ended early, limit 0; use more internal steps")
     return PeriodicResponse(
         speed=speed,
         period=length,
-        time=march.step * np.arange(1, steps + 1),
+        time=np.asarray(march.step * np.arange(1, steps + 1), float),
         torque=dynamic,
         force=force,
         approach=block.approach[:, last],

@@ -1,10 +1,10 @@
 """Exact propagator of the linear drivetrain between its gear meshes.
 
-The torsional system is brought to a real-mode basis, one exact rigid mode per shaft line and the elastic modes
-of each line, in scaled coordinates ``s = (v, Omega eta)`` with modal velocities ``v``: half its square is the
-energy. The rigid angles stand outside (no double zero is left), the complex eigenproblem of ``s' = A s + B u``
-is solved once, and only then are fast modes dropped; what they do statically stays as feedthrough. A step with
-inputs that vary linearly (first-order hold) is exact for any step length,
+The torsional system is brought to a real-mode basis, one exact rigid mode per shaft line and the elastic
+modes of each line, in scaled coordinates ``s = (v, Omega eta)`` with modal velocities ``v``: half its
+square is the energy. The rigid angles stand outside (no double zero is left), the complex eigenproblem of
+``s' = A s + B u`` is solved once, and only then are fast modes dropped; what they do statically stays as
+feedthrough. A step with inputs that vary linearly (first-order hold) is exact for any step length,
 
     z' = E z + h (phi_1 - phi_2) b u + h phi_2 b u',     phi_k(lambda h)
 
@@ -191,8 +191,8 @@ def discretise(model: ModalModel, step: float, *, with_losses: bool = True) -> P
         decay=np.ascontiguousarray(np.stack((decay.real, decay.imag))),
         inputs=_real_columns(driven[:, :fast]),
         rows=np.vstack((np.hstack((rows.real, -rows.imag)), np.zeros((-n_rows % 4, 2 * rows.shape[1])))),
-        through_old=np.ascontiguousarray(through_old[:, :fast]),
-        through_new=np.ascontiguousarray(through_new[:, :fast]),
+        through_old=_padded(through_old[:, :fast].T),
+        through_new=_padded(through_new[:, :fast].T),
         slow_inputs=_real_columns(driven[:, fast:]),
         slow_old=np.ascontiguousarray(through_old[:, fast:]),
         slow_new=np.ascontiguousarray(through_new[:, fast:]),
@@ -321,3 +321,8 @@ def _phi(k: int, x: ComplexArray) -> ComplexArray:
 def _real_columns(columns: ComplexArray) -> Array:
     """Return (n_columns, 2 n_modes): real parts, then imaginary parts, of each column."""
     return np.ascontiguousarray(np.hstack((columns.real.T, columns.imag.T)))
+
+
+def _padded(table: Array) -> Array:
+    """Return the table with columns of zeros up to a multiple of 4."""
+    return np.hstack((table, np.zeros((table.shape[0], -table.shape[1] % 4))))

@@ -1,8 +1,9 @@
 """Time response of the drivetrain over a schedule of speed and bracing torque.
 
-The run is marched at the internal rate (eight or more steps per sample). Torques pass a linear-phase low-pass before
-they are kept at the sample rate; envelopes, lift-off and peaks come from the internal steps. The motor follows the
-speed command through a controller with a torque limit, the bracing follows a twist or a torque.
+The run is marched at the internal rate (eight or more steps per sample). Torques pass a linear-phase
+low-pass before they are kept at the sample rate; envelopes, lift-off and peaks come from the internal
+steps. The motor follows the speed command through a controller with a torque limit, the bracing follows a
+twist or a torque.
 """
 
 from collections.abc import Mapping, Sequence
@@ -95,8 +96,8 @@ class TimeResponse:
     time : (n,) [s]; speed : (n,) of the drive freedom, as speed of the first pinion [rad/s]
     speed_command : (n,) [rad/s]; drive_torque : (n,) [N m]; twist : (n,) [rad]
     drag_torque : name -> (n,) [N m]
-    torque : (n_meshes, n) dynamic torque r_b1 (front - back force) after the low-pass [N m]; no columns if the
-        channels were not kept
+    torque : (n_meshes, n) dynamic torque r_b1 (front - back force) after the low-pass [N m]; no columns if
+        the channels were not kept
     slots : least, mean and greatest dynamic torque of each mesh and time without contact, per slot
     lift_off : intervals in which a mesh lost contact for longer than the asked share of a mesh period
     energy : the balance of the run
@@ -277,7 +278,8 @@ def run_schedule(
 
 
 class LowPass:
-    """Linear-phase low-pass before decimation by ``factor``: flat to 0.4, below -60 dB from 0.6 of the new rate on.
+    """Linear-phase low-pass before decimation by ``factor``: flat to 0.4, below -60 dB from 0.6 of the new
+    rate on.
 
     Source: Kaiser window design, Oppenheim and Schafer, Discrete-Time Signal Processing, section 7.5.
     """

@@ -16,7 +16,8 @@ Array = NDArray[np.float64]
 class Slots:
     """Envelope of the dynamic torque: arrays (n_meshes, n_slots) [N m], time (n_slots,) at slot ends [s].
 
-    out_of_contact : share of each slot without any contact [-]; longest_gap : longest time without contact [s]
+    out_of_contact : share of each slot without any contact [-]; longest_gap : longest time without contact
+        [s]
     speed : (n_slots,) of the first pinion at the slot end [rad/s]
     """
 

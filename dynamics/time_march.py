@@ -98,8 +98,8 @@ class Accounts(NamedTuple):
 class TimeMarch:
     """A drivetrain that is advanced in time; the only object of the dynamics that changes.
 
-    Slow inputs are the motor torque (on ``system.drive_dof``), the bracing twist (on ``system.twist_load``) and
-    one torque for each name in ``drags``, acting through ``system.drag_loads``.
+    Slow inputs are the motor torque (on ``system.drive_dof``), the bracing twist (on ``system.twist_load``)
+    and one torque for each name in ``drags``, acting through ``system.drag_loads``.
     """
 
     def __init__(
@@ -299,7 +299,7 @@ class TimeMarch:
     def kick(self, speeds: Array) -> None:
         """Add ``speeds`` (n,) [rad/s] to the motion at once."""
         nothing = np.zeros(self.model.inputs.shape[1])
-        self._carried.state += modal_state(
+        self._carried.state[:] += modal_state(
             self.model, self.propagator, np.zeros_like(speeds), speeds, nothing
         )
 
@@ -308,7 +308,7 @@ class TimeMarch:
         before = self._inputs()
         self._carried.slow[:2] = drive_torque, twist
         shift = self.propagator.hold @ (before - self._inputs())
-        self._carried.state += np.concatenate((shift.real, shift.imag))
+        self._carried.state[:] += np.concatenate((shift.real, shift.imag))
 
     def _inputs(self) -> Array:
         return np.concatenate((self._carried.ports[:, :2].ravel(), self._carried.slow))

@@ -1,6 +1,7 @@
 """Compiled loops of the dynamics, the only numba in this package: plain numbers and arrays in and out.
 
-The disk cache of a compiled function is keyed by its own file: after an edit of ``contact`` touch ``march`` too.
+The disk cache of a compiled function is keyed by its own file: after an edit of ``contact`` touch ``march``
+too.
 """
 
 from dynamics.kernels.contact import (
@@ -8,7 +9,6 @@ from dynamics.kernels.contact import (
     N_COUNTS,
     N_PHASE,
     N_VALUES,
-    NEVER,
     PackedMeshes,
     mesh_reactions,
     tooth_pair_forces,
@@ -17,7 +17,6 @@ from dynamics.kernels.march import Carried, DiscreteModes, Orders, march
 
 __all__ = [
     "LANES",
-    "NEVER",
     "N_COUNTS",
     "N_PHASE",
     "N_VALUES",

@@ -1,18 +1,18 @@
 """Contact of one gear mesh, flank by flank, on the packed tables ``PackedMeshes``.
 
 With ``sign`` +1 in front and -1 on the back, ``play`` 0 in front and the backlash behind, the penetration is
-``d = sign x - play - e(s)`` and the path position moves with ``ds/dt = sign r_b1 omega_1``. From the potential
-``k(s) d^2 / 2``
+``d = sign x - play - e(s)`` and the path position moves with ``ds/dt = sign r_b1 omega_1``. From the
+potential ``k(s) d^2 / 2``
 
-    tau_1 = -sign r_b1 [ F (1 - e') + k' d^2 / 2 ],   tau_2 = sign r_b2 F,   F = max(0, k d + c (d/dt) d)
+    tau_1 = -sign r_b1 [ F (1 - e') + k' d^2 / 2 ],   tau_2 = sign r_b2 F,   F = max(0, k d + c g (d/dt) d)
 
-and friction adds ``-mu F g rho_1`` and ``+mu F g rho_2`` with the direction ``g`` of the sliding speed
-``v_g = omega_1 rho_1 - omega_2 rho_2``, ``rho_1 = T1C + s``, ``rho_2 = T2C - s``.
+where the damping grows with ``g = min(1, d / damping depth)``, and friction adds ``-mu F sgn(v_g) rho_1``
+and ``+mu F sgn(v_g) rho_2`` with the sliding speed ``v_g = omega_1 rho_1 - omega_2 rho_2``, ``rho_1 = T1C +
+s``, ``rho_2 = T2C - s``.
 
-A mesh whose teeth are all alike is tabulated over its phase within one base pitch, all contacts of a phase beside
-each other; a mesh with individual teeth looks every contact up on the path. Either way the contacts of a flank are
-listed in groups of LANES, row after row, which the compiler turns into vector instructions; a last group is filled
-up with contacts that never touch.
+A mesh whose teeth are all alike is tabulated over its phase within one base pitch, all contacts of a phase
+beside each other; a mesh with individual teeth looks every contact up on the path. Either way the contacts
+of a flank are listed in groups of LANES, row after row, which the compiler turns into vector instructions.
 """
 
 import math
@@ -42,7 +42,9 @@ class PackedMeshes(NamedTuple):
     scales: Array
     """Stiffness scales of single teeth [-]."""
     phase_starts: Integers
-    """First group of every phase cell, front and back of each mesh, and one past the last."""
+    """First group of every phase cell, front and back of each mesh."""
+    phase_counts: Integers
+    """Contacts in every phase cell."""
     phase_data: Array
     """Groups (N_PHASE, LANES), flat: cubic of stiffness, cubic of gap, path position at the start of the cell."""
     offsets: Array
@@ -52,7 +54,8 @@ class PackedMeshes(NamedTuple):
 # columns of PackedMeshes.values
 R1, R2, PITCH, PHASE, BACK_PHASE, BACKLASH, START, PER_STEP = 0, 1, 2, 3, 4, 5, 6, 7
 DAMP_TIME, FRICTION, ROLL_1, ROLL_2, PER_REVERSAL, LEAST_GAP, DERIVATIVE, FLOOR = 8, 9, 10, 11, 12, 13, 14, 15
-N_VALUES = 16
+PER_PITCH, PER_R1, PER_R2, PHASE_STEP, PER_DEPTH = 16, 17, 18, 19, 20
+N_VALUES = 21
 # columns of PackedMeshes.counts
 N_SLICES, N_CELLS, CELLS_AT, SHIFTS_AT, INDIVIDUAL, TEETH_1, TEETH_2, OFFSET_2 = 0, 1, 2, 3, 4, 5, 6, 7
 ROWS_1, DEVIATION_1_AT, ROWS_2, DEVIATION_2_AT = 8, 9, 10, 11
@@ -61,8 +64,11 @@ N_PHASES, FRONT_AT, BACK_AT = 17, 18, 19
 N_COUNTS = 20
 N_PHASE = 9
 LANES = 16
-NEVER = 1e30  # gap of a lane that holds no contact
-# rows of a group of listed contacts: stiffness, gap, gap slope, lever factors, half stiffness slope, friction power per force
+POSITIVE = (
+    1 << 40
+) - 1  # masks a first index, so that the compiler knows it and what is added to be positive
+# rows of a group of listed contacts: stiffness, gap and its slope, lever factors, half the stiffness slope,
+# friction power per force
 LIST_K, LIST_E, LIST_DE, LIST_M1, LIST_M2, LIST_HK, LIST_POWER = 0, 1, 2, 3, 4, 5, 6
 N_LIST = 7
 
@@ -78,67 +84,63 @@ def sliding_direction(ratio: float) -> float:
     return ratio * (1.5 - 0.5 * ratio * ratio)
 
 
-@njit(cache=True, fastmath=LOOSE)
+@njit(cache=True, fastmath=LOOSE, inline="always")
 def list_by_phase(
-    values: Array, counts: Integers, starts: Integers, data: Array, m: int, sign: float, theta_1: float,
-    omega_1: float, omega_2: float, out: Array,
+    values: Array, counts: Integers, starts: Integers, contacts_in: Integers, data: Array, m: int, sign: float,
+    theta_1: float, omega_1: float, omega_2: float, out: Array, at: int,
 ) -> int:  # fmt: skip
     """List the contacts of one flank of mesh ``m``, all teeth alike, at the angle ``theta_1``.
 
-    ``out`` receives groups of (N_LIST, LANES), flat; returns their number.
+    ``out`` receives groups of (N_LIST, LANES), flat, from ``at`` on; returns the number of contacts.
     """
     n_phases = counts[m, N_PHASES]
-    pitch = values[m, PITCH]
     origin = values[m, PHASE] if sign > 0.0 else values[m, BACK_PHASE]
-    turned = (origin + sign * values[m, R1] * theta_1) / pitch
+    turned = (origin + sign * values[m, R1] * theta_1) * values[m, PER_PITCH]
     place = (turned - math.floor(turned)) * n_phases
     j = min(int(place), n_phases - 1)
     f = place - j
     row = (counts[m, FRONT_AT] if sign > 0.0 else counts[m, BACK_AT]) + j
-    n_groups = starts[row + 1] - starts[row]
-    # a view, so that the compiler knows the indices below to be positive
-    block = data[N_PHASE * LANES * starts[row] : N_PHASE * LANES * starts[row + 1]]
-    per_step = n_phases / pitch
+    n = int(contacts_in[row])
+    first = (N_PHASE * LANES * starts[row]) & POSITIVE
+    first_out = at & POSITIVE
+    per_step = n_phases * values[m, PER_PITCH]
     derivative = values[m, DERIVATIVE]
     half = 0.5 * per_step * derivative
-    ahead = f * pitch / n_phases
     friction = values[m, FRICTION]
-    mu_1 = sign * friction / values[m, R1]
-    mu_2 = sign * friction / values[m, R2]
-    roll_1, roll_2, per_reversal = (
-        values[m, ROLL_1] + ahead,
-        values[m, ROLL_2] - ahead,
-        values[m, PER_REVERSAL],
-    )
-    for group in range(n_groups):
-        a = N_PHASE * LANES * group
-        b = N_LIST * LANES * group
-        for i in range(LANES):
-            k_1, k_2, k_3 = block[a + LANES + i], block[a + 2 * LANES + i], block[a + 3 * LANES + i]
-            e_1, e_2, e_3 = block[a + 5 * LANES + i], block[a + 6 * LANES + i], block[a + 7 * LANES + i]
+    mu_1 = sign * friction * values[m, PER_R1]
+    mu_2 = sign * friction * values[m, PER_R2]
+    roll_1 = values[m, ROLL_1] + f * values[m, PHASE_STEP]
+    roll_2 = values[m, ROLL_2] - f * values[m, PHASE_STEP]
+    per_reversal = values[m, PER_REVERSAL]
+    for group in range((n + LANES - 1) // LANES):
+        a = first + N_PHASE * LANES * group
+        b = first_out + N_LIST * LANES * group
+        for i in range(min(n - LANES * group, LANES)):
+            k_1, k_2, k_3 = data[a + LANES + i], data[a + 2 * LANES + i], data[a + 3 * LANES + i]
+            e_1, e_2, e_3 = data[a + 5 * LANES + i], data[a + 6 * LANES + i], data[a + 7 * LANES + i]
             slope = (e_1 + f * (2.0 * e_2 + 3.0 * f * e_3)) * per_step
-            rho_1 = roll_1 + block[a + 8 * LANES + i]
-            rho_2 = roll_2 - block[a + 8 * LANES + i]
+            rho_1 = roll_1 + data[a + 8 * LANES + i]
+            rho_2 = roll_2 - data[a + 8 * LANES + i]
             sliding = omega_1 * rho_1 - omega_2 * rho_2
             direction = sliding_direction(sliding * per_reversal)
-            out[b + LIST_K * LANES + i] = block[a + i] + f * (k_1 + f * (k_2 + f * k_3))
-            out[b + LIST_E * LANES + i] = block[a + 4 * LANES + i] + f * (e_1 + f * (e_2 + f * e_3))
+            out[b + LIST_K * LANES + i] = data[a + i] + f * (k_1 + f * (k_2 + f * k_3))
+            out[b + LIST_E * LANES + i] = data[a + 4 * LANES + i] + f * (e_1 + f * (e_2 + f * e_3))
             out[b + LIST_DE * LANES + i] = slope
             out[b + LIST_M1 * LANES + i] = 1.0 - slope * derivative + mu_1 * direction * rho_1
             out[b + LIST_M2 * LANES + i] = 1.0 + mu_2 * direction * rho_2
             out[b + LIST_HK * LANES + i] = half * (k_1 + f * (2.0 * k_2 + 3.0 * f * k_3))
             out[b + LIST_POWER * LANES + i] = friction * direction * sliding
-    return n_groups
+    return n
 
 
 @njit(cache=True, fastmath=LOOSE)
 def list_on_path(
     values: Array, counts: Integers, cells: Array, shifts: Array, deviations: Array, scales: Array, m: int,
-    sign: float, theta_1: float, omega_1: float, omega_2: float, out: Array, pairs: Integers,
+    sign: float, theta_1: float, omega_1: float, omega_2: float, out: Array, at: int, pairs: Integers,
 ) -> int:  # fmt: skip
     """List the contacts of a flank with individual teeth like ``list_by_phase``.
 
-    ``pairs`` (2, LANES * groups, or 0) receives tooth pair and slice of each; lanes without contact get slice -1.
+    ``pairs`` (2, capacity, or 0) receives tooth pair and slice of each.
     """
     n_cells = counts[m, N_CELLS]
     per_step = values[m, PER_STEP]
@@ -177,63 +179,70 @@ def list_on_path(
             rho_2 = values[m, ROLL_2] - s
             sliding = omega_1 * rho_1 - omega_2 * rho_2
             direction = sliding_direction(sliding * values[m, PER_REVERSAL])
-            at = (column // LANES) * N_LIST * LANES + column % LANES
-            out[at + LIST_K * LANES] = k * scale
-            out[at + LIST_E * LANES] = e
-            out[at + LIST_DE * LANES] = de
-            out[at + LIST_M1 * LANES] = (
-                1.0 - de * derivative + sign * friction / values[m, R1] * direction * rho_1
+            lane = at + (column // LANES) * N_LIST * LANES + column % LANES
+            out[lane + LIST_K * LANES] = k * scale
+            out[lane + LIST_E * LANES] = e
+            out[lane + LIST_DE * LANES] = de
+            out[lane + LIST_M1 * LANES] = (
+                1.0 - de * derivative + sign * friction * values[m, PER_R1] * direction * rho_1
             )
-            out[at + LIST_M2 * LANES] = 1.0 + sign * friction / values[m, R2] * direction * rho_2
-            out[at + LIST_HK * LANES] = 0.5 * dk * scale * per_step * derivative
-            out[at + LIST_POWER * LANES] = friction * direction * sliding
+            out[lane + LIST_M2 * LANES] = 1.0 + sign * friction * values[m, PER_R2] * direction * rho_2
+            out[lane + LIST_HK * LANES] = 0.5 * dk * scale * per_step * derivative
+            out[lane + LIST_POWER * LANES] = friction * direction * sliding
             if pairs.shape[1] > 0:
                 pairs[0, column] = pair
                 pairs[1, column] = i
             column += 1
             turn -= 1.0
             place += pitch
-    n_groups = (column + LANES - 1) // LANES
-    for empty in range(column, n_groups * LANES):
-        at = (empty // LANES) * N_LIST * LANES + empty % LANES
-        for row in range(N_LIST):
-            out[at + row * LANES] = 0.0
-        out[at + LIST_E * LANES] = NEVER
-        if pairs.shape[1] > 0:
-            pairs[1, empty] = -1
-    return n_groups
+    return column
 
 
-@njit(cache=True, fastmath=LOOSE)
+@njit(cache=True, fastmath=LOOSE, inline="always")
 def sum_flank(
-    contacts: Array, n_groups: int, reach: float, rate: float, path_speed: float, damp_time: float
-) -> tuple[float, float, float, float, float, float, float, float, float]:
-    """Sum the listed contacts of one flank pressed by ``reach`` and closing with ``rate``.
+    contacts: Array,
+    start: int,
+    n: int,
+    reach: float,
+    rate: float,
+    path_speed: float,
+    damp_time: float,
+    per_depth: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:
+    """Sum the contacts of one flank listed from ``start`` on, pressed by ``reach`` and closing with ``rate``.
 
-    ``damp_time`` = damping / mean stiffness [s]. Returns (force, a_1, a_2, k_1, k_2, k_d, friction power, damping
-    power, damping force): ``a_1 = sum F m_1 + k' d^2 / 2``, ``a_2 = sum F m_2`` are the torques per base radius,
-    ``k_1 = sum k m_1``, ``k_2 = sum k m_2`` their slopes over ``reach``; ``a_1`` has ``k_d = sum k' d`` more.
+    ``damp_time`` = damping / mean stiffness [s], ``per_depth`` = 1 / damping depth. Returns (force, a_1,
+    a_2, k_1, k_2, c_1, c_2, friction power, damping power, damping force): ``a_1 = sum F m_1 + k' d^2 /
+    2``, ``a_2 = sum F m_2`` are the torques per base radius, ``k_1, k_2`` their slopes over ``reach``,
+    ``c_1, c_2`` over ``rate``.
     """
     force = 0.0
     a_1 = 0.0
     a_2 = 0.0
     k_1 = 0.0
     k_2 = 0.0
-    k_d = 0.0
+    c_1 = 0.0
+    c_2 = 0.0
     friction_power = 0.0
     damping_power = 0.0
     damping_force = 0.0
-    for group in range(n_groups):
-        at = N_LIST * LANES * group
-        for i in range(LANES):
+    first = start & POSITIVE
+    for group in range((n + LANES - 1) // LANES):
+        at = first + N_LIST * LANES * group
+        for i in range(min(n - LANES * group, LANES)):
             closing = rate - contacts[at + LIST_DE * LANES + i] * path_speed
             depth = reach - contacts[at + LIST_E * LANES + i]
             depth = depth if depth > 0.0 else 0.0
             k = contacts[at + LIST_K * LANES + i]
             k = k if depth > 0.0 else 0.0
-            f = k * (depth + damp_time * closing)
-            f = f if f > 0.0 else 0.0
+            grown = depth * per_depth
+            grown_slope = per_depth if grown < 1.0 else 0.0
+            grown = grown if grown < 1.0 else 1.0
+            f = k * (depth + damp_time * grown * closing)
             k_p = k if f > 0.0 else 0.0
+            f = f if f > 0.0 else 0.0
+            k_x = k_p * (1.0 + damp_time * grown_slope * closing)
+            k_v = k_p * grown
             m_1 = contacts[at + LIST_M1 * LANES + i]
             m_2 = contacts[at + LIST_M2 * LANES + i]
             slope = contacts[at + LIST_HK * LANES + i] * depth
@@ -241,34 +250,47 @@ def sum_flank(
             force += f
             a_1 += f * m_1 + slope * depth
             a_2 += f * m_2
-            k_1 += k_p * m_1
-            k_2 += k_p * m_2
-            k_d += 2.0 * slope
+            k_1 += k_x * m_1 + 2.0 * slope
+            k_2 += k_x * m_2
+            c_1 += k_v * m_1
+            c_2 += k_v * m_2
             friction_power += f * contacts[at + LIST_POWER * LANES + i]
             damping_power += damped * closing
             damping_force += damped
-    return (force, a_1, a_2, k_1, k_2, k_d, friction_power, damping_power, damping_force)
+    return (
+        force, a_1, a_2, k_1, k_2, c_1 * damp_time, c_2 * damp_time, friction_power, damping_power, damping_force
+    )  # fmt: skip
 
 
 @njit(cache=True, fastmath=LOOSE)
 def path_slopes(
-    contacts: Array, n_groups: int, reach: float, rate: float, path_speed: float, damp_time: float
+    contacts: Array,
+    n: int,
+    reach: float,
+    rate: float,
+    path_speed: float,
+    damp_time: float,
+    per_depth: float,
 ) -> tuple[float, float, float]:
     """Return (da_1/ds, da_2/ds, elastic energy) of one flank at fixed reach, rate and friction levers."""
     slope_1 = 0.0
     slope_2 = 0.0
     energy = 0.0
-    for group in range(n_groups):
+    for group in range((n + LANES - 1) // LANES):
         at = N_LIST * LANES * group
-        for i in range(LANES):
+        for i in range(min(n - LANES * group, LANES)):
             depth = reach - contacts[at + LIST_E * LANES + i]
             depth = depth if depth > 0.0 else 0.0
             k = contacts[at + LIST_K * LANES + i]
             k = k if depth > 0.0 else 0.0
             gap_slope = contacts[at + LIST_DE * LANES + i]
             stiffness_slope = 2.0 * contacts[at + LIST_HK * LANES + i]
-            pressed = depth + damp_time * (rate - gap_slope * path_speed)
-            df = stiffness_slope * pressed - k * gap_slope
+            closing = damp_time * (rate - gap_slope * path_speed)
+            grown = depth * per_depth
+            grown_slope = per_depth if grown < 1.0 else 0.0
+            grown = grown if grown < 1.0 else 1.0
+            pressed = depth + grown * closing
+            df = stiffness_slope * pressed - k * gap_slope * (1.0 + grown_slope * closing)
             df = df if (depth > 0.0 and pressed > 0.0) else 0.0
             energy += 0.5 * k * depth * depth
             slope_1 += df * contacts[at + LIST_M1 * LANES + i] - stiffness_slope * depth * gap_slope
@@ -286,12 +308,12 @@ def mesh_reactions(
     """
     values, counts = meshes.values, meshes.counts
     cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
-    starts, data = meshes.phase_starts, meshes.phase_data
+    starts, contacts_in, data = meshes.phase_starts, meshes.phase_counts, meshes.phase_data
     contacts = np.empty(counts[0, GROUPS] * N_LIST * LANES)
     no_pairs = np.empty((2, 0), np.int64)
     r_1 = values[0, R1]
     r_2 = values[0, R2]
-    damp_time = values[0, DAMP_TIME]
+    damp_time, per_depth = values[0, DAMP_TIME], values[0, PER_DEPTH]
     for n in range(theta_1.shape[0]):
         w_1 = omega_1[n]
         w_2 = omega_2[n]
@@ -303,24 +325,29 @@ def mesh_reactions(
             if pressed <= values[0, LEAST_GAP]:
                 continue
             if counts[0, INDIVIDUAL] != 0:
-                groups = list_on_path(
-                    values, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], w_1, w_2, contacts, no_pairs
+                found = list_on_path(
+                    values, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], w_1, w_2, contacts, 0,
+                    no_pairs,
                 )  # fmt: skip
             else:
-                groups = list_by_phase(values, counts, starts, data, 0, sign, theta_1[n], w_1, w_2, contacts)
+                found = list_by_phase(
+                    values, counts, starts, contacts_in, data, 0, sign, theta_1[n], w_1, w_2, contacts, 0
+                )
             rate = sign * (r_1 * w_1 - r_2 * w_2)
             path_speed = sign * r_1 * w_1
-            force, a_1, a_2, k_1, k_2, k_d, friction_power, damping_power, _ = sum_flank(
-                contacts, groups, pressed, rate, path_speed, damp_time
+            force, a_1, a_2, k_1, k_2, c_1, c_2, friction_power, damping_power, _ = sum_flank(
+                contacts, 0, found, pressed, rate, path_speed, damp_time, per_depth
             )
-            slope_1, slope_2, energy = path_slopes(contacts, groups, pressed, rate, path_speed, damp_time)
+            slope_1, slope_2, energy = path_slopes(
+                contacts, found, pressed, rate, path_speed, damp_time, per_depth
+            )
             out[n, 0] -= sign * r_1 * a_1
             out[n, 1] += sign * r_2 * a_2
             out[n, 2 + side] += force
-            out[n, 4] -= r_1 * (k_1 + k_d)
+            out[n, 4] -= r_1 * k_1
             out[n, 5] += r_2 * k_2
-            out[n, 6] -= r_1 * k_1 * damp_time
-            out[n, 7] += r_2 * k_2 * damp_time
+            out[n, 6] -= r_1 * c_1
+            out[n, 7] += r_2 * c_2
             out[n, 8] -= r_1 * r_1 * slope_1
             out[n, 9] += r_1 * r_2 * slope_2
             out[n, 10] += friction_power
@@ -349,17 +376,18 @@ def tooth_pair_forces(
             pressed = sign * reach[n] - side * values[0, BACKLASH]
             if pressed <= values[0, LEAST_GAP]:
                 continue
-            groups = list_on_path(
+            found = list_on_path(
                 values, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], omega_1[n], omega_2[n],
-                contacts, pairs,
+                contacts, 0, pairs,
             )  # fmt: skip
             path_speed = sign * values[0, R1] * omega_1[n]
             rate = sign * (values[0, R1] * omega_1[n] - values[0, R2] * omega_2[n])
-            for i in range(groups * LANES):
+            for i in range(found):
                 at = (i // LANES) * N_LIST * LANES + i % LANES
                 depth = pressed - contacts[at + LIST_E * LANES]
                 closing = rate - contacts[at + LIST_DE * LANES] * path_speed
-                f = contacts[at + LIST_K * LANES] * (depth + values[0, DAMP_TIME] * closing)
+                grown = min(max(depth, 0.0) * values[0, PER_DEPTH], 1.0)
+                f = contacts[at + LIST_K * LANES] * (depth + values[0, DAMP_TIME] * grown * closing)
                 column = pairs[0, i] - lowest[n]
-                if pairs[1, i] >= 0 and depth > 0.0 and f > 0.0 and 0 <= column < force.shape[1]:
+                if depth > 0.0 and f > 0.0 and 0 <= column < force.shape[1]:
                     force[n, column, pairs[1, i], side] = f

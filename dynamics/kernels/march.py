@@ -1,11 +1,12 @@
 """March of the modal propagator with the gear meshes as implicit nonlinear torques.
 
-Arrays come from ``dynamics.propagator`` (discretised modes) and ``dynamics.mesh_force`` (packed mesh laws); names,
-units and validation live above.
+Arrays come from ``dynamics.propagator`` (discretised modes) and ``dynamics.mesh_force`` (packed mesh laws);
+names, units and validation live above.
 
-The modal state ``w`` (real parts, then imaginary parts) obeys ``w' = decay w + inputs tau + slow``. Outputs at the
-end of a step are ``rows w + through_old tau + through_new tau_new``: of each mesh approach rate, pinion speed and the
-steps of approach and pinion angle, then the speed of every slow input, then joint rates whose squares are losses.
+The modal state ``w`` (real parts, then imaginary parts) obeys ``w' = decay w + inputs tau + slow``. Outputs
+at the end of a step are ``rows w + through_old tau + through_new tau_new``: of each mesh approach rate,
+pinion speed and the steps of approach and pinion angle, then the speed of every slow input, then joint
+rates whose squares are losses.
 """
 
 from typing import NamedTuple
@@ -24,6 +25,8 @@ from dynamics.kernels.contact import (
     LEAST_GAP,
     LOOSE,
     N_LIST,
+    PER_DEPTH,
+    PER_R2,
     R1,
     R2,
     PackedMeshes,
@@ -37,7 +40,8 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 MOST_ITERATIONS = 12
-TOLERANCE = 1e-8
+TOLERANCE = 1e-6
+"""Share of a mesh torque that the iteration may leave open."""
 
 
 class DiscreteModes(NamedTuple):
@@ -50,8 +54,9 @@ class DiscreteModes(NamedTuple):
     rows: Array
     """(n_rows filled up with zeros to a multiple of 4, 2 n_modes)"""
     through_old: Array
-    """(n_rows, 2 n_meshes)"""
+    """(2 n_meshes, n_rows) outputs per mesh torque at the start of the step"""
     through_new: Array
+    """the same at its end"""
     slow_inputs: Array
     """(n_slow, 2 n_modes)"""
     slow_old: Array
@@ -139,24 +144,34 @@ def _hold_slow(
         for i in range(pull.shape[0]):
             pull[i] += slow_inputs[k, i] * slow[k]
             pull_step[i] += slow_inputs[k, i] * change
-        for r in range(base.shape[0]):
+        for r in range(slow_old.shape[0]):
             base[r] += slow_old[r, k] * slow[k] + slow_new[r, k] * (slow[k] + change)
             slope[r] += (slow_old[r, k] + slow_new[r, k]) * change
 
 
-@njit(cache=True, fastmath=LOOSE)
-def _free_outputs(
-    rows: Array, through: Array, state: Array, ports: Array, base: Array, slope: Array, sub: int, wanted: int,
-    outputs: Array,
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def _predict(
+    rows: Array, old: Array, new: Array, state: Array, ports: Array, base: Array, slope: Array, sub: int,
+    wanted: int, tau: Array, outputs: Array,
 ) -> None:  # fmt: skip
-    """Fill the first ``wanted`` outputs at the end of the step as if the new mesh torques were zero."""
+    """Extrapolate the mesh torques ``tau`` and fill the first ``wanted`` outputs at the end of the step with them."""
+    for m in range(ports.shape[0]):
+        tau[2 * m] = 2.0 * ports[m, 0] - ports[m, 2]
+        tau[2 * m + 1] = 2.0 * ports[m, 1] - ports[m, 3]
     n = state.shape[0]
     for quad in range((wanted + 3) // 4):
         r = 4 * quad
-        s_0 = 0.0
-        s_1 = 0.0
-        s_2 = 0.0
-        s_3 = 0.0
+        s_0 = base[r] + sub * slope[r]
+        s_1 = base[r + 1] + sub * slope[r + 1]
+        s_2 = base[r + 2] + sub * slope[r + 2]
+        s_3 = base[r + 3] + sub * slope[r + 3]
+        for m in range(ports.shape[0]):
+            for k in range(2):
+                q = 2 * m + k
+                s_0 += old[q, r] * ports[m, k] + new[q, r] * tau[q]
+                s_1 += old[q, r + 1] * ports[m, k] + new[q, r + 1] * tau[q]
+                s_2 += old[q, r + 2] * ports[m, k] + new[q, r + 2] * tau[q]
+                s_3 += old[q, r + 3] * ports[m, k] + new[q, r + 3] * tau[q]
         for i in range(n):
             s_0 += rows[r, i] * state[i]
             s_1 += rows[r + 1, i] * state[i]
@@ -166,14 +181,9 @@ def _free_outputs(
         outputs[r + 1] = s_1
         outputs[r + 2] = s_2
         outputs[r + 3] = s_3
-    for r in range(wanted):
-        total = base[r] + sub * slope[r]
-        for m in range(ports.shape[0]):
-            total += through[r, 2 * m] * ports[m, 0] + through[r, 2 * m + 1] * ports[m, 1]
-        outputs[r] += total
 
 
-@njit(cache=True, fastmath=LOOSE)
+@njit(cache=True, fastmath=LOOSE, inline="always")
 def _advance(decay: Array, inputs: Array, state: Array, ports: Array, pull: Array, pull_step: Array) -> None:
     """Take the modal state over one step."""
     n = decay.shape[1]
@@ -191,67 +201,83 @@ def _advance(decay: Array, inputs: Array, state: Array, ports: Array, pull: Arra
         pull[i] += pull_step[i]
 
 
-@njit(cache=True, fastmath=LOOSE)
-def _torques_of_mesh(
-    values: Array, m: int, contacts: Array, groups: Integers, reach: float, rate: float, omega_1: float,
-    reaction: Array,
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def _react(
+    values: Array, m: int, contacts: Array, size: int, found: Integers, reach: float, rate: float, omega_1: float,
+    reactions: Array,
 ) -> None:  # fmt: skip
-    """Fill ``reaction``: tau_1, tau_2, their slopes over approach (2) and rate (2), net force, friction power,
-    damping power, damping force of both flanks, the contacts listed in rows ``2 m`` and ``2 m + 1``."""
+    """Fill row ``m`` of ``reactions``: tau_1, tau_2, their slopes over approach (2) and rate (2), net force,
+    friction power, damping power, damping force of both flanks, listed in parts ``2 m`` and ``2 m + 1``."""
     r_1, r_2, damp_time = values[m, R1], values[m, R2], values[m, DAMP_TIME]
-    for i in range(10):
-        reaction[i] = 0.0
+    t_1, t_2, x_1, x_2, v_1, v_2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    net, lost, damped, pull = 0.0, 0.0, 0.0, 0.0
     for side in range(2):
-        if groups[m, side] == 0:
+        if found[m, side] == 0:
             continue
         sign = 1.0 - 2.0 * side
-        force, a_1, a_2, k_1, k_2, k_d, friction_power, damping_power, damping = sum_flank(
-            contacts[2 * m + side], groups[m, side], sign * reach - side * values[m, BACKLASH], sign * rate,
-            sign * r_1 * omega_1, damp_time,
+        force, a_1, a_2, k_1, k_2, c_1, c_2, friction_power, damping_power, damping = sum_flank(
+            contacts, (2 * m + side) * size, found[m, side], sign * reach - side * values[m, BACKLASH], sign * rate,
+            sign * r_1 * omega_1, damp_time, values[m, PER_DEPTH],
         )  # fmt: skip
-        reaction[0] -= sign * r_1 * a_1
-        reaction[1] += sign * r_2 * a_2
-        reaction[2] -= r_1 * (k_1 + k_d)
-        reaction[3] += r_2 * k_2
-        reaction[4] -= r_1 * k_1 * damp_time
-        reaction[5] += r_2 * k_2 * damp_time
-        reaction[6] += sign * force
-        reaction[7] += friction_power
-        reaction[8] += damping_power
-        reaction[9] += sign * damping
+        t_1 -= sign * a_1
+        t_2 += sign * a_2
+        x_1 -= k_1
+        x_2 += k_2
+        v_1 -= c_1
+        v_2 += c_2
+        net += sign * force
+        lost += friction_power
+        damped += damping_power
+        pull += sign * damping
+    reactions[m, 0] = r_1 * t_1
+    reactions[m, 1] = r_2 * t_2
+    reactions[m, 2] = r_1 * x_1
+    reactions[m, 3] = r_2 * x_2
+    reactions[m, 4] = r_1 * v_1
+    reactions[m, 5] = r_2 * v_2
+    reactions[m, 6] = net
+    reactions[m, 7] = lost
+    reactions[m, 8] = damped
+    reactions[m, 9] = pull
 
 
-@njit(cache=True, fastmath=LOOSE)
-def _newton_step(reaction: Array, through: Array, m: int, tau: Array) -> float:
-    """Correct the two torques of mesh ``m``; return by how much the contact may still move them [N m].
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def _correct(reactions: Array, through: Array, m: int, tau: Array, outputs: Array) -> float:
+    """Newton step on the two torques of mesh ``m``; return by how much the contact may still move them [N m].
 
-    The correction moves the approach by the compliance of one step, a share ``gain`` of what it would need; what
-    can be wrong after it (another set of contacts, another mesh) is that share of the correction.
+    The correction moves the approach by the compliance of one step, a share ``gain`` of what it would need;
+    what can be wrong after it (another set of contacts, another mesh) is that share of the correction.
     """
     row = 4 * m
     q = 2 * m
-    g_11 = reaction[2] * through[row + 2, q] + reaction[4] * through[row, q]
-    g_12 = reaction[2] * through[row + 2, q + 1] + reaction[4] * through[row, q + 1]
-    g_21 = reaction[3] * through[row + 2, q] + reaction[5] * through[row, q]
-    g_22 = reaction[3] * through[row + 2, q + 1] + reaction[5] * through[row, q + 1]
-    e_1 = reaction[0] - tau[q]
-    e_2 = reaction[1] - tau[q + 1]
+    x_1, x_2, v_1, v_2 = reactions[m, 2], reactions[m, 3], reactions[m, 4], reactions[m, 5]
+    g_11 = x_1 * through[q, row + 2] + v_1 * through[q, row]
+    g_12 = x_1 * through[q + 1, row + 2] + v_1 * through[q + 1, row]
+    g_21 = x_2 * through[q, row + 2] + v_2 * through[q, row]
+    g_22 = x_2 * through[q + 1, row + 2] + v_2 * through[q + 1, row]
+    e_1 = reactions[m, 0] - tau[q]
+    e_2 = reactions[m, 1] - tau[q + 1]
     scale = 1.0 / ((1.0 - g_11) * (1.0 - g_22) - g_12 * g_21)
-    tau[q] += ((1.0 - g_22) * e_1 + g_12 * e_2) * scale
-    tau[q + 1] += ((1.0 - g_11) * e_2 + g_21 * e_1) * scale
-    gain = abs(g_11) + abs(g_12) + abs(g_21) + abs(g_22)
-    return gain * (abs(e_1) + abs(e_2))
+    d_1 = ((1.0 - g_22) * e_1 + g_12 * e_2) * scale
+    d_2 = ((1.0 - g_11) * e_2 + g_21 * e_1) * scale
+    tau[q] += d_1
+    tau[q + 1] += d_2
+    for mesh in range(reactions.shape[0]):
+        for r in range(4):
+            outputs[4 * mesh + r] += through[q, 4 * mesh + r] * d_1 + through[q + 1, 4 * mesh + r] * d_2
+    return float((abs(g_11) + abs(g_12) + abs(g_21) + abs(g_22)) * (abs(e_1) + abs(e_2)))
 
 
 @njit(cache=True, fastmath=LOOSE)
 def _account(
     work: Array, powers: Array, fresh: Array, damping: Array, slow: Array, target: Array, share: float, step: float,
-    outputs: Array, reactions: Array, rates: Array,
+    n_rows: int, outputs: Array, reactions: Array, rates: Array,
 ) -> None:  # fmt: skip
     """Add the work of one step to the accounts.
 
-    Powers are integrated by trapezoids. The march lets a mesh torque vary linearly over the step, so the work of the
-    damping force is its trapezoid less ``step dF dv / 12`` (the mean of a straight line times a smooth curve).
+    Powers are integrated by trapezoids. The march lets a mesh torque vary linearly over the step, so the
+    work of the damping force is its trapezoid less ``step dF dv / 12`` (the mean of a straight line times a
+    smooth curve).
     """
     n_meshes, n_slow = damping.shape[0], slow.shape[0]
     first = 4 * n_meshes
@@ -261,7 +287,7 @@ def _account(
     for k in range(n_slow):
         fresh[2 * n_meshes + k] = (slow[k] + share * (target[k] - slow[k])) * outputs[first + k]
     joints = 0.0
-    for r in range(first + n_slow, outputs.shape[0]):
+    for r in range(first + n_slow, n_rows):
         joints += outputs[r] * outputs[r]
     fresh[2 * n_meshes + n_slow] = joints
     for k in range(fresh.shape[0]):
@@ -281,13 +307,14 @@ def march(
 ) -> int:  # fmt: skip
     """March over ``len(orders.given)`` samples of ``substeps`` steps; return the number of unsettled steps.
 
-    Each step: outputs and modal state for the old mesh torques; contacts listed at the predicted angles; Newton on
-    the new torques with these contacts held; accounts. ``history`` (n_meshes, 1 or 6, steps): front - back force
-    [, approach, pinion angle, approach rate, pinion speed, tau_1]; ``samples`` (n_samples, 2 n_slow): slow inputs,
-    then their speeds.
+    Each step: outputs and modal state for the old mesh torques; contacts listed at the predicted angles;
+    Newton on the new torques with these contacts held; accounts. ``history`` (n_meshes, 1 or 6, steps):
+    front - back force [, approach, pinion angle, approach rate, pinion speed, tau_1]; ``samples``
+    (n_samples, 2 n_slow): slow inputs, then their speeds.
     """
     # fields once into plain names: reading them in the loop would count references
     values, counts, starts, data = meshes.values, meshes.counts, meshes.phase_starts, meshes.phase_data
+    contacts_in = meshes.phase_counts
     cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
     decay, inputs, rows, through_old = modes.decay, modes.inputs, modes.rows, modes.through_old
     through = modes.through_new
@@ -301,20 +328,22 @@ def march(
     account = carried.work
     given, imposed = orders.given, orders.offsets
 
-    n_meshes, n_slow, n_rows = values.shape[0], slow.shape[0], through.shape[0]
-    n_inputs = 2 * n_meshes
+    n_meshes, n_slow, n_rows = values.shape[0], slow.shape[0], modes.slow_new.shape[0]
     first_slow = 4 * n_meshes
     most = 1
     for m in range(n_meshes):
         most = max(most, counts[m, GROUPS])
-    contacts = np.zeros((2 * n_meshes, most * N_LIST * LANES))
-    groups = np.zeros((n_meshes, 2), np.int64)
+    size = most * N_LIST * LANES
+    contacts = np.zeros(2 * n_meshes * size)
+    found = np.zeros((n_meshes, 2), np.int64)
     no_pairs = np.empty((2, 0), np.int64)
     pull, pull_step = np.zeros(state.shape[0]), np.zeros(state.shape[0])
-    base, slope = np.zeros(n_rows), np.zeros(n_rows)
+    base, slope = np.zeros(rows.shape[0]), np.zeros(rows.shape[0])
     outputs = np.zeros(rows.shape[0])
-    tau, target, fresh = np.zeros(n_inputs), np.zeros(n_slow), np.zeros(account.shape[0])
+    tau, target, fresh = np.zeros(2 * n_meshes), np.zeros(n_slow), np.zeros(account.shape[0])
     reactions, rates, reaches = np.zeros((n_meshes, 10)), np.zeros(n_meshes), np.zeros(n_meshes)
+    earlier = np.zeros((n_meshes, 2))
+    offset, offset_rate = np.zeros(n_meshes), np.zeros(n_meshes)
     mean_torque = carried.memory[2]
     unsettled = 0
     at = 0
@@ -326,85 +355,77 @@ def march(
         _hold_slow(
             modes.slow_inputs, modes.slow_old, modes.slow_new, slow, target, substeps, pull, pull_step, base, slope
         )  # fmt: skip
+        for m in range(n_meshes):
+            offset[m] = carried.offset[m]
+            offset_rate[m] = (imposed[sample, m] - carried.offset[m]) / (substeps * step)
         mean_torque = 0.0
         for sub in range(substeps):
             share = (sub + 1.0) / substeps
             wanted = n_rows if account.shape[0] > 0 or sub == substeps - 1 else first_slow
-            _free_outputs(rows, through_old, state, ports, base, slope, sub, wanted, outputs)
+            _predict(rows, through_old, through, state, ports, base, slope, sub, wanted, tau, outputs)
             _advance(decay, inputs, state, ports, pull, pull_step)
-            for m in range(n_meshes):
-                tau[2 * m] = 2.0 * ports[m, 0] - ports[m, 2]
-                tau[2 * m + 1] = 2.0 * ports[m, 1] - ports[m, 3]
             settled = False
             attempt = 0
             while attempt < MOST_ITERATIONS and not settled:
                 settled = True
                 for m in range(n_meshes):
-                    row = 4 * m
-                    moved = imposed[sample, m] - carried.offset[m]
-                    rate = outputs[row] + moved / (substeps * step)
-                    omega_1 = outputs[row + 1]
-                    reach = ports[m, 4] + outputs[row + 2] + carried.offset[m] + share * moved
-                    for k in range(n_inputs):
-                        rate += through[row, k] * tau[k]
-                        omega_1 += through[row + 1, k] * tau[k]
-                        reach += through[row + 2, k] * tau[k]
+                    rate = outputs[4 * m] + offset_rate[m]
+                    omega_1 = outputs[4 * m + 1]
+                    reach = ports[m, 4] + outputs[4 * m + 2] + offset[m] + step * offset_rate[m]
+                    rates[m] = rate
+                    reaches[m] = reach
                     if attempt == 0:
-                        theta = ports[m, 5] + outputs[row + 3]
-                        for k in range(n_inputs):
-                            theta += through[row + 3, k] * tau[k]
-                        omega_2 = (values[m, R1] * omega_1 - rate) / values[m, R2]
+                        theta = ports[m, 5] + outputs[4 * m + 3]
+                        omega_2 = (values[m, R1] * omega_1 - rate) * values[m, PER_R2]
                         margin = values[m, LEAST_GAP] - 2.0 * step * abs(rate)
                         for side in range(2):
                             sign = 1.0 - 2.0 * side
-                            groups[m, side] = 0
+                            part = (2 * m + side) * size
+                            found[m, side] = 0
                             if sign * reach - side * values[m, BACKLASH] <= margin:
                                 continue
                             if counts[m, INDIVIDUAL] != 0:
-                                groups[m, side] = list_on_path(
+                                found[m, side] = list_on_path(
                                     values, counts, cells, shifts, deviations, scales, m, sign, theta, omega_1,
-                                    omega_2, contacts[2 * m + side], no_pairs,
+                                    omega_2, contacts, part, no_pairs,
                                 )  # fmt: skip
                             else:
-                                groups[m, side] = list_by_phase(
-                                    values, counts, starts, data, m, sign, theta, omega_1, omega_2,
-                                    contacts[2 * m + side],
+                                found[m, side] = list_by_phase(
+                                    values, counts, starts, contacts_in, data, m, sign, theta, omega_1, omega_2,
+                                    contacts, part,
                                 )  # fmt: skip
-                    _torques_of_mesh(values, m, contacts, groups, reach, rate, omega_1, reactions[m])
-                    open_error = _newton_step(reactions[m], through, m, tau)
+                    _react(values, m, contacts, size, found, reach, rate, omega_1, reactions)
+                    open_error = _correct(reactions, through, m, tau, outputs)
                     if open_error > TOLERANCE * abs(reactions[m, 0]) + values[m, FLOOR]:
                         settled = False
-                    rates[m] = rate
-                    reaches[m] = reach
                 attempt += 1
             if not settled:
                 unsettled += 1
             for m in range(n_meshes):
-                row = 4 * m
-                x_step, theta_step, omega_1 = outputs[row + 2], outputs[row + 3], outputs[row + 1]
-                for k in range(n_inputs):
-                    x_step += through[row + 2, k] * tau[k]
-                    theta_step += through[row + 3, k] * tau[k]
-                    omega_1 += through[row + 1, k] * tau[k]
+                earlier[m, 0] = ports[m, 2]
+                earlier[m, 1] = ports[m, 3]
                 ports[m, 2] = ports[m, 0]
                 ports[m, 3] = ports[m, 1]
                 ports[m, 0] = tau[2 * m]
                 ports[m, 1] = tau[2 * m + 1]
-                ports[m, 4] += x_step
-                ports[m, 5] += theta_step
+                ports[m, 4] += outputs[4 * m + 2]
+                ports[m, 5] += outputs[4 * m + 3]
+                offset[m] += step * offset_rate[m]
                 history[m, 0, at] = reactions[m, 6]
                 if history.shape[1] > 1:
                     history[m, 1, at] = reaches[m]
                     history[m, 2, at] = ports[m, 5]
                     history[m, 3, at] = rates[m]
-                    history[m, 4, at] = omega_1
+                    history[m, 4, at] = outputs[4 * m + 1]
                     history[m, 5, at] = reactions[m, 0]
             for r in range(first_slow, wanted):
-                for k in range(n_inputs):
-                    outputs[r] += through[r, k] * tau[k]
+                for m in range(n_meshes):
+                    for k in range(2):
+                        guess = 2.0 * ports[m, 2 + k] - earlier[m, k]
+                        outputs[r] += through[2 * m + k, r] * (ports[m, k] - guess)
             if account.shape[0] > 0:
                 _account(
-                    account, powers, fresh, damping, slow, target, share, step, outputs[:n_rows], reactions, rates
+                    account, powers, fresh, damping, slow, target, share, step, n_rows, outputs, reactions, rates
                 )  # fmt: skip
             mean_torque += reactions[0, 6] * values[0, R1] / substeps
             at += 1

@@ -1,0 +1,174 @@
+"""Dynamic factor, loss of contact and resonances from the response of a gearbox over speed.
+
+The dynamic torque of a gearbox is what its mesh transmits at the pinion: ``r_b1`` times the front less the
+back normal force in the transverse line of action, without friction and derivative torques. That is the
+load of the teeth, which ISO 6336 multiplies by K_V; the torque in a shaft beside it differs by the inertia
+between.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.signal import find_peaks
+
+from dynamics.periodic_response import PeriodicResponse
+
+Array = NDArray[np.float64]
+
+
+def dynamic_factor(torque: ArrayLike) -> Array:
+    """Return the greatest over the mean torque along the last axis (P2, Formula 1) [-].
+
+    Torques on the back flank are negative throughout; the factor compares in the direction of the mean.
+
+    Raises ValueError if a mean torque is zero.
+    """
+    values = np.asarray(torque, float)
+    mean = _mean(values)
+    factor: Array = np.max(values * np.sign(mean)[..., None], axis=-1) / np.abs(mean)
+    return factor
+
+
+def half_peak_to_peak_factor(torque: ArrayLike) -> Array:
+    """Return 1 + half the peak-to-peak value over the mean torque along the last axis [-].
+
+    Raises ValueError if a mean torque is zero.
+    """
+    values = np.asarray(torque, float)
+    factor: Array = 1.0 + 0.5 * np.ptp(values, axis=-1) / np.abs(_mean(values))
+    return factor
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicFactorCurve:
+    """Response of all meshes over speed; arrays (n_meshes, n_speeds) unless said otherwise.
+
+    speed : (n_speeds,) of the first pinion [rad/s], increasing
+    factor : greatest over mean torque (P2, Formula 1) [-]
+    half_peak_to_peak : 1 + half peak-to-peak over mean torque [-]
+    mean_torque, amplitude : mean and half peak-to-peak of the dynamic torque [N m]
+    lift_off_share : share of time without contact [-]
+    amplification : amplitude over the quasi-static amplitude [-]
+    """
+
+    speed: Array
+    factor: Array
+    half_peak_to_peak: Array
+    mean_torque: Array
+    amplitude: Array
+    lift_off_share: Array
+    amplification: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Resonance:
+    """Peak of the dynamic torque of one mesh over speed.
+
+    mesh : index; speed : of the first pinion, by a parabola through the peak [rad/s]
+    factor : greatest over mean torque there [-]; amplitude : half peak-to-peak torque [N m]
+    amplification : over the quasi-static amplitude [-]; prominence : rise of ``factor`` above its
+        surroundings [-]
+    lift_off_share : share of time without contact [-]
+    """
+
+    mesh: int
+    speed: float
+    factor: float
+    amplitude: float
+    amplification: float
+    prominence: float
+    lift_off_share: float
+
+
+def factor_curve(
+    speed: ArrayLike,
+    torques: Sequence[ArrayLike],
+    lift_off_share: ArrayLike,
+    *,
+    quasi_static_amplitude: ArrayLike,
+) -> DynamicFactorCurve:
+    """Collect the curve from dynamic torques (n_meshes, n_steps) at each speed.
+
+    Parameters
+    ----------
+    lift_off_share : (n_speeds, n_meshes)
+    quasi_static_amplitude : (n_meshes,) half peak-to-peak torque at a speed far below all resonances [N m]
+
+    Raises
+    ------
+    ValueError
+        If speeds do not increase, sizes disagree or a mean torque is zero.
+    """
+    speeds = np.asarray(speed, float)
+    shares = np.asarray(lift_off_share, float)
+    if speeds.ndim != 1 or len(speeds) != len(torques) or len(speeds) != len(shares):
+        raise ValueError(
+            f"{speeds.size} speeds, {len(torques)} torques, {len(shares)} lift-off shares: must agree"
+        )
+    if np.any(np.diff(speeds) <= 0.0):
+        raise ValueError("speeds must increase; sort the responses, one branch of a jump at a time")
+    waves = [np.atleast_2d(np.asarray(torque, float)) for torque in torques]
+    amplitude = np.array([0.5 * np.ptp(wave, axis=1) for wave in waves]).T
+    floor = np.maximum(np.asarray(quasi_static_amplitude, float), 1e-300)
+    return DynamicFactorCurve(
+        speed=speeds,
+        factor=np.array([dynamic_factor(wave) for wave in waves]).T,
+        half_peak_to_peak=np.array([half_peak_to_peak_factor(wave) for wave in waves]).T,
+        mean_torque=np.array([wave.mean(axis=1) for wave in waves]).T,
+        amplitude=amplitude,
+        lift_off_share=shares.T.copy(),
+        amplification=amplitude / floor[:, None],
+    )
+
+
+def curve_of_responses(
+    responses: Sequence[PeriodicResponse], *, quasi_static_amplitude: ArrayLike
+) -> DynamicFactorCurve:
+    """Return ``factor_curve`` of periodic responses at increasing speeds."""
+    return factor_curve(
+        [response.speed for response in responses],
+        [response.torque for response in responses],
+        [response.lift_off_share for response in responses],
+        quasi_static_amplitude=quasi_static_amplitude,
+    )
+
+
+def resonances(curve: DynamicFactorCurve, *, least_prominence: float = 0.02) -> tuple[Resonance, ...]:
+    """Return the peaks of every mesh that stand out by ``least_prominence`` of the factor, by mesh and speed."""
+    found: list[Resonance] = []
+    for mesh, factor in enumerate(curve.factor):
+        peaks, properties = find_peaks(factor, prominence=least_prominence)
+        for peak, prominence in zip(peaks, properties["prominences"]):
+            found.append(
+                Resonance(
+                    mesh=mesh,
+                    speed=_peak_speed(curve.speed[peak - 1 : peak + 2], factor[peak - 1 : peak + 2]),
+                    factor=float(factor[peak]),
+                    amplitude=float(curve.amplitude[mesh, peak]),
+                    amplification=float(curve.amplification[mesh, peak]),
+                    prominence=float(prominence),
+                    lift_off_share=float(curve.lift_off_share[mesh, peak]),
+                )
+            )
+    return tuple(found)
+
+
+def _mean(values: Array) -> Array:
+    mean: Array = np.asarray(values.mean(axis=-1))
+    if np.any(mean == 0.0):
+        raise ValueError(
+            "dynamic factor: mean torque is 0 N m, the mesh carries no load; leave this speed out"
+        )
+    return mean
+
+
+def _peak_speed(speed: Array, factor: Array) -> float:
+    """Return the apex of the parabola through three points; the middle one if it lies flat."""
+    slope_1, slope_2 = np.diff(factor) / np.diff(speed)
+    if slope_1 == slope_2:
+        return float(speed[1])
+    middle_1, middle_2 = 0.5 * (speed[1:] + speed[:-1])
+    apex = middle_1 + (middle_2 - middle_1) * slope_1 / (slope_1 - slope_2)
+    return float(np.clip(apex, speed[0], speed[2]))
