@@ -1,7 +1,7 @@
 """Coupled thermal-dynamic design checker for back-to-back gear test rigs.
 
-    from rigdesign import load_case, run_case
-    result = run_case(load_case("cases/uhcf_prototype"))
+from rigdesign import load_case, run_case
+result = run_case(load_case("cases/uhcf_prototype"))
 """
 
 from importlib import import_module

@@ -58,7 +58,9 @@ def axes_of(rig: Rig, name: str, shape: Expansion, shafts: tuple[str, str]) -> C
     """Axes of the two shafts of a mesh."""
     shaft_of = {gear.name: gear.shaft for gear in rig.models[name].gears}
     return next(
-        axes for axes in shape.centre_distances if {shaft_of[axes.gear_a], shaft_of[axes.gear_b]} == set(shafts)
+        axes
+        for axes in shape.centre_distances
+        if {shaft_of[axes.gear_a], shaft_of[axes.gear_b]} == set(shafts)
     )
 
 
@@ -90,7 +92,9 @@ def spin_growth(rig: Rig, entry: JournalBearing, speed: float) -> float:
     Source: Timoshenko and Goodier, Theory of Elasticity, section 32.
     """
     power = rig.case.drivetrain
-    name = power.shafts[entry.shaft].material if power and entry.shaft in power.shafts else "case_hardened_steel"
+    name = (
+        power.shafts[entry.shaft].material if power and entry.shaft in power.shafts else "case_hardened_steel"
+    )
     steel = rig.materials[name]
     radius = 0.5 * entry.diameter
     omega = rig.shaft_speed(entry.shaft, speed)

@@ -70,9 +70,7 @@ def warm_pair(rig: Rig, name: str, speed: float, feedback: Feedback) -> GearPair
     )
 
 
-def _mesh_model(
-    rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, kind: str
-) -> MeshModel:
+def _mesh_model(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, kind: str) -> MeshModel:
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
@@ -206,7 +204,9 @@ def shifted_gear(rig: Rig) -> ShiftedGear | None:
                 spline_friction=power.bracing.spline_friction_coefficient,
                 spline_radius=power.bracing.spline_pitch_radius or 0.0,
             )
-    raise ValueError(f"drivetrain.bracing.shifted_gear = {power.bracing.shifted_gear}: this gear is in no mesh")
+    raise ValueError(
+        f"drivetrain.bracing.shifted_gear = {power.bracing.shifted_gear}: this gear is in no mesh"
+    )
 
 
 def brace_cold(rig: Rig, point: OperatingPoint, cold: Feedback) -> Setting:

@@ -1,7 +1,7 @@
 """One pass round the loop at an operating point: warm gears, loads, losses, oil, temperatures, growth."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from dynamics.journal_bearing import BearingState
 from dynamics.response_curve import CurvePoint
@@ -62,7 +62,7 @@ def one_pass(
         )
         for name in rig.models
     }
-    bearing_heat = {name: 0.0 for name in bearings}
+    bearing_heat = dict.fromkeys(bearings, 0.0)
     wall_heat = dict.fromkeys(feedback.wall_heat, 0.0)
     for field in fields.values():
         bearing_heat |= heat_into_films(field)
@@ -94,7 +94,8 @@ def feedback_of(rig: Rig, done: PassResult) -> Feedback:
         if name in done.fields:
             field, growth = done.fields[name], done.growth[name]
             gear_temperature |= {
-                f"{name}.{gear}": body_mean(rig, field, f"gear_{entry.shaft}") for gear, entry in box.gears.items()
+                f"{name}.{gear}": body_mean(rig, field, f"gear_{entry.shaft}")
+                for gear, entry in box.gears.items()
             }
             centre_distance |= growth.centre_distance
             tooth_growth |= growth.tooth_growth
@@ -147,11 +148,6 @@ def heat_residual(rig: Rig, done: PassResult) -> float:
     return max((*films, *walls), default=0.0)
 
 
-def with_outlets(feedback: Feedback, done: PassResult) -> Feedback:
-    """The feedback with the oil outlets of a finished pass."""
-    return replace(feedback, oil_outlet={stream.name: stream.outlet for stream in done.streams})
-
-
 def _bearing_capacity(rig: Rig, name: str) -> float:
     """Heat capacity flow rho c Q of the oil of one bearing [W/K]."""
     box = rig.case.gearboxes[name.split(".")[0]]
@@ -166,7 +162,9 @@ def _stream_capacity(rig: Rig, name: str) -> float:
     box = rig.case.gearboxes[box_name]
     entry, count = (box.oil, len(box.meshes)) if kind == "gear_oil" else (box.bearing_oil, len(box.bearings))
     oil = rig.oils[entry.oil]
-    return oil.density(entry.inlet_temperature) * oil.heat_capacity(entry.inlet_temperature) * entry.flow * count
+    return (
+        oil.density(entry.inlet_temperature) * oil.heat_capacity(entry.inlet_temperature) * entry.flow * count
+    )
 
 
 def _film_slope(rig: Rig, done: PassResult, name: str) -> float:

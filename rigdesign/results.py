@@ -10,6 +10,7 @@ from thermal.fe.mesh import NamedMesh
 
 Verdict = Literal["pass", "warn", "fail", "not applicable"]
 Role = Literal["specimen", "rig"]
+Fidelity = Literal["quick", "standard", "reference"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -217,7 +218,7 @@ class AssumptionRecord:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Warning:  # noqa: A001
+class Finding:
     """A warning of the tool's own: a result, never a Python warning."""
 
     id: str
@@ -258,6 +259,6 @@ class RunResult:
     assumptions: list[AssumptionRecord]
     overrides: list[dict[str, str]]
     not_modelled: list[str]
-    warnings: list[Warning]
+    warnings: list[Finding]
     timings_s: dict[str, float]
     fields: list[TemperatureField] = field(repr=False)

@@ -24,8 +24,8 @@ from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, 
 from rigdesign.loads import mesh_models
 from rigdesign.lubrication import mesh_losses, rotating_losses, solve_bearings
 from rigdesign.ramp_run import held_points, run_ramp, schedule_of
-from rigdesign.results import AssumptionRecord, Check, LossRow, RunResult
-from rigdesign.rig.model import Fidelity, Rig, build_rig
+from rigdesign.results import AssumptionRecord, Check, Fidelity, LossRow, RunResult
+from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rules import overall
 from rigdesign.state import OperatingPoint
 from rigdesign.system import gmsh_remedy, missing_gmsh_libraries
@@ -63,7 +63,7 @@ def _run(case: Case, fidelity: Fidelity, say: Progress, clock: "_Clock") -> RunR
     for name in rig.models:
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
     clock.lap("rig_and_mesh")
-    points = []
+    points: list[PointResult] = []
     for point in held_points(rig):
         say(f"coupling loads, losses, temperatures and growth at stage {point.stage}")
         start = points[-1].last.feedback if points else None
@@ -180,5 +180,3 @@ def _solver_errors(case: Case) -> Iterator[None]:
         raise CaseError(str(error), str(case.path)) from error
     except RuntimeError as error:
         raise NotConvergedError(str(error)) from error
-
-

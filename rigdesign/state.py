@@ -49,7 +49,10 @@ class Feedback:
         if unknown:
             raise KeyError(f"no such arrow: {', '.join(sorted(unknown))}")
         return Feedback(
-            **{entry.name: getattr(cold if entry.name in arrows else self, entry.name) for entry in fields(self)}
+            **{
+                entry.name: getattr(cold if entry.name in arrows else self, entry.name)
+                for entry in fields(self)
+            }
         )
 
 

@@ -12,7 +12,7 @@ from rigdesign.errors import CaseError, RigdesignError, UsageError
 from rigdesign.report.output import prepare_output
 from rigdesign.report.results_json import to_plain
 from rigdesign.report.study_page import write_study
-from rigdesign.results import RunResult
+from rigdesign.results import Fidelity, RunResult
 from rigdesign.study_grid import Variation, grid, parse_variation
 from rigdesign.study_ledger import Ledger, Record, point_key
 from rigdesign.study_pool import compute_all
@@ -29,7 +29,7 @@ CHECK_KEYS = ("id", "title", "value", "limit", "upper_limit", "unit", "margin", 
 class Run(Protocol):
     """What computes one point; `rigdesign.run_case` or a stand-in."""
 
-    def __call__(self, case: "Case", *, fidelity: str) -> RunResult:
+    def __call__(self, case: "Case", *, fidelity: Fidelity) -> RunResult:
         """Compute one case."""
 
 
@@ -77,7 +77,7 @@ def run_study(
     variations: Sequence[Variation],
     out: Path,
     *,
-    fidelity: str = "standard",
+    fidelity: Fidelity = "standard",
     workers: int | None = None,
     retry: bool = False,
     progress: Callable[[str], None] | None = None,
@@ -150,7 +150,7 @@ def _worker_count(workers: int | None) -> int:
 
 
 def _tasks(
-    case: "Case", points: Sequence[dict[str, str]], fidelity: str
+    case: "Case", points: Sequence[dict[str, str]], fidelity: Fidelity
 ) -> tuple[list[_Task | None], list[str]]:
     """The points that are valid cases, None and a message for the others; raises if none is valid."""
     tasks: list[_Task | None] = []
@@ -174,7 +174,7 @@ def _tasks(
 
 
 def _compute(
-    tasks: Sequence[_Task], fidelity: str, workers: int, run: Run | None
+    tasks: Sequence[_Task], fidelity: Fidelity, workers: int, run: Run | None
 ) -> Iterator[tuple[_Task, bool, Record]]:
     work = partial(_solve, fidelity=fidelity, run=run)
     for index, outcome in compute_all(work, [task.case for task in tasks], workers):
@@ -182,7 +182,7 @@ def _compute(
         yield tasks[index], failed, record
 
 
-def _solve(case: "Case", *, fidelity: str, run: Run | None) -> tuple[bool, Record]:
+def _solve(case: "Case", *, fidelity: Fidelity, run: Run | None) -> tuple[bool, Record]:
     """Compute one point in a worker; an error is a result that says what happened."""
     try:
         if run is None:

@@ -51,8 +51,7 @@ def gmsh_remedy(missing: list[str]) -> str:
 
 def diagnose() -> list[Finding]:
     """Look at the interpreter, the Python libraries, gmsh's system libraries and the kernel cache."""
-    findings = [_python(), *(_library(name) for name in PYTHON_LIBRARIES), _gmsh(), _kernels()]
-    return findings
+    return [_python(), *(_library(name) for name in PYTHON_LIBRARIES), _gmsh(), _kernels()]
 
 
 def _python() -> Finding:

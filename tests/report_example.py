@@ -488,7 +488,7 @@ def make_result(**changes):
         ],
         "overrides": [],
         "not_modelled": ["shaft bending and tooth flank wear"],
-        "warnings": [r.Warning(id="iso_6336_range", text="stiffness regression outside its range")],
+        "warnings": [r.Finding(id="iso_6336_range", text="stiffness regression outside its range")],
         "timings_s": {"total": 21.4, "dynamics": 9.1},
         "fields": [gearbox_field()],
     }

@@ -64,13 +64,17 @@ def dynamics_result(rig: Rig, run: DynamicRun) -> DynamicsResult:
     modes = loop_modes(drivetrain, laws, HIGHEST_MODE)
     frequencies = shaft_frequencies(drivetrain)
     top = max(run.curves.speeds)
-    sampling = sampling_audit(drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate)[0]
+    sampling = sampling_audit(
+        drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
+    )[0]
     return DynamicsResult(
         gearboxes={
-            box: gearbox_dynamics(rig, run, box, modes) for box in dict.fromkeys(n.split(".")[0] for n in rig.mesh_names)
+            box: gearbox_dynamics(rig, run, box, modes)
+            for box in dict.fromkeys(n.split(".")[0] for n in rig.mesh_names)
         },
         natural_frequencies=[
-            {"frequency_Hz": mode.frequency, "damping_ratio": mode.damping_ratio, "shape": mode.name} for mode in modes
+            {"frequency_Hz": mode.frequency, "damping_ratio": mode.damping_ratio, "shape": mode.name}
+            for mode in modes
         ],
         shaft_frequencies={name: [float(f) for f in values] for name, values in frequencies.items()},
         crossings=[
@@ -89,7 +93,9 @@ def dynamics_result(rig: Rig, run: DynamicRun) -> DynamicsResult:
                 "joint": record.name,
                 "kind": record.kind,
                 "damping_ratio": record.damping_ratio,
-                "corner_frequency_Hz": record.corner_frequency if math.isfinite(record.corner_frequency) else None,
+                "corner_frequency_Hz": record.corner_frequency
+                if math.isfinite(record.corner_frequency)
+                else None,
                 "own_frequency_Hz": record.own_frequency,
                 "warning": record.warning,
             }
@@ -122,7 +128,9 @@ def gearbox_dynamics(rig: Rig, run: DynamicRun, box: str, modes: Sequence[LoopMo
         dynamic_factor_variants={
             kind: factor_points(rig, mesh, curve) for kind, curve in run.curves.variants.items()
         },
-        dynamic_torque_peak_Nm=float(max(response.maximum[mesh], np.abs(run.ramp.slots.greatest[mesh]).max())),
+        dynamic_torque_peak_Nm=float(
+            max(response.maximum[mesh], np.abs(run.ramp.slots.greatest[mesh]).max())
+        ),
         iso_factors=_flat(asdict(iso)),
         lift_off=lift_off(rig, run, mesh),
         resonances=resonances(rig, run, mesh, modes),
@@ -148,7 +156,9 @@ def _flat(record: Mapping[str, Any]) -> dict[str, float | str]:
     return flat
 
 
-def root_stresses(rig: Rig, run: DynamicRun, mesh: int) -> tuple[list[RootStressHistory], list[dict[str, float]]]:
+def root_stresses(
+    rig: Rig, run: DynamicRun, mesh: int
+) -> tuple[list[RootStressHistory], list[dict[str, float]]]:
     """Histories of pinion and wheel at the test point, and dynamic over quasi-static peaks over speed."""
     system = rig.system
     assert system is not None
@@ -216,19 +226,17 @@ def _nearest_mode(modes: Sequence[LoopMode], mesh_frequency: float) -> tuple[Loo
 def lift_off(rig: Rig, run: DynamicRun, mesh: int) -> list[dict[str, Any]]:
     """Intervals of the run without tooth contact, by stage."""
     schedule = schedule_of(rig)
-    rows = []
-    for interval in run.ramp.lift_off:
-        if interval.mesh == mesh:
-            rows.append(
-                {
-                    "stage": stage_names(schedule, np.array([interval.start]))[0],
-                    "start_s": interval.start,
-                    "end_s": interval.end,
-                    "share": interval.out_of_contact,
-                    "longest_gap_ms": 1e3 * interval.longest_gap,
-                }
-            )
-    return rows
+    return [
+        {
+            "stage": stage_names(schedule, np.array([interval.start]))[0],
+            "start_s": interval.start,
+            "end_s": interval.end,
+            "share": interval.out_of_contact,
+            "longest_gap_ms": 1e3 * interval.longest_gap,
+        }
+        for interval in run.ramp.lift_off
+        if interval.mesh == mesh
+    ]
 
 
 def geometry(rig: Rig, test: PointResult, mesh: int) -> dict[str, float | str]:
@@ -294,8 +302,9 @@ def ramp_history(rig: Rig, ramp: TimeResponse) -> RampHistory:
     command = schedule.at(middle)
     drive = np.interp(slots.time, ramp.time, ramp.drive_torque)
     signs = np.sign(slots.mean.sum(axis=1, keepdims=True))
-    low, high = np.minimum(signs * slots.least, signs * slots.greatest), np.maximum(
-        signs * slots.least, signs * slots.greatest
+    low, high = (
+        np.minimum(signs * slots.least, signs * slots.greatest),
+        np.maximum(signs * slots.least, signs * slots.greatest),
     )
     return RampHistory(
         time_s=[float(t) for t in slots.time],

@@ -1,30 +1,29 @@
 """Warnings of the run: what left its range, what an audit says, each once."""
 
-import math
 from collections.abc import Iterable, Iterator
 
 from dynamics.modes import sampling_audit
 from rigdesign.assemble.curves import iso_factor
 from rigdesign.checks.subject import Subject
-from rigdesign.results import Warning
+from rigdesign.results import Finding
 from rigdesign.temperatures import HousingField
 from thermal.audit import audit_conditions, radiation_too_small
 from thermal.boundary import Film, Radiation
 
 
-def warnings_of(subject: Subject) -> list[Warning]:
+def warnings_of(subject: Subject) -> list[Finding]:
     """All warnings of the run in a fixed order."""
     found = [
-        *(Warning(id="gear", text=text) for text in _gears(subject)),
-        *(Warning(id="iso_6336_1", text=text) for text in _iso(subject)),
-        *(Warning(id="loss", text=text) for text in _losses(subject)),
-        *(Warning(id="oil", text=text) for text in _oils(subject)),
-        *(Warning(id="damping", text=text) for text in _damping(subject)),
-        *(Warning(id="sampling", text=text) for text in _sampling(subject)),
-        *(Warning(id="film", text=text) for text in _films(subject)),
-        *(Warning(id="heat_audit", text=text) for text in _audits(subject)),
+        *(Finding(id="gear", text=text) for text in _gears(subject)),
+        *(Finding(id="iso_6336_1", text=text) for text in _iso(subject)),
+        *(Finding(id="loss", text=text) for text in _losses(subject)),
+        *(Finding(id="oil", text=text) for text in _oils(subject)),
+        *(Finding(id="damping", text=text) for text in _damping(subject)),
+        *(Finding(id="sampling", text=text) for text in _sampling(subject)),
+        *(Finding(id="film", text=text) for text in _films(subject)),
+        *(Finding(id="heat_audit", text=text) for text in _audits(subject)),
     ]
-    return list({(warning.id, warning.text): warning for warning in found}.values())
+    return list(dict.fromkeys(found))
 
 
 def _gears(subject: Subject) -> Iterator[str]:
@@ -130,7 +129,7 @@ def not_modelled(subject: Subject) -> list[str]:
         items.append("dynamic loads: the losses are given")
     for name, box in subject.case.gearboxes.items():
         if any(mesh.double_helical for mesh in box.meshes.values()):
-            items.append(f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2")
+            items.append(
+                f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2"
+            )
     return items
-
-

@@ -51,7 +51,8 @@ def _losses(subject: Subject) -> list[dict[str, Any]]:
         details = placed.loss.details
         if placed.loss.kind == "mesh" and not placed.given:
             by_hand = math.prod(
-                float(details[key]) for key in ("transmitted_power", "friction_coefficient", "tooth_loss_factor")
+                float(details[key])
+                for key in ("transmitted_power", "friction_coefficient", "tooth_loss_factor")
             )
             rows.append(_row(f"sliding loss, {placed.name}", placed.loss.power, by_hand, "W", "P mu H_V"))
     lost, out = subject.cooler["losses_W"], subject.cooler["cooler_W"] + subject.cooler["room_W"]
@@ -62,18 +63,18 @@ def _losses(subject: Subject) -> list[dict[str, Any]]:
 def _growth(subject: Subject) -> list[dict[str, Any]]:
     rows = []
     for result in subject.growth:
-        for shaft in result.shafts:
-            rows.append(
-                _row(
-                    f"growth of {shaft['shaft']}", shaft["growth_mm"], shaft["free_expansion_mm"], "mm",
-                    "alpha L (T_m - T_0)",
-                )
-            )  # fmt: skip
-        for seal in result.seal_gaps:
-            rows.append(
-                _row(
-                    f"mean gap of seal {seal['seal']}", seal["hot_mean_mm"], seal["by_hand_mm"], "mm",
-                    "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)]",
-                )
-            )  # fmt: skip
+        rows += [
+            _row(
+                f"growth of {shaft['shaft']}", shaft["growth_mm"], shaft["free_expansion_mm"], "mm",
+                "alpha L (T_m - T_0)",
+            )
+            for shaft in result.shafts
+        ]  # fmt: skip
+        rows += [
+            _row(
+                f"mean gap of seal {seal['seal']}", seal["hot_mean_mm"], seal["by_hand_mm"], "mm",
+                "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)]",
+            )
+            for seal in result.seal_gaps
+        ]  # fmt: skip
     return rows

@@ -11,7 +11,15 @@ from rigdesign.coupling import PointResult
 from rigdesign.growth import axes_of, bearing_growth
 from rigdesign.lubrication import OilStream, PlacedLoss
 from rigdesign.passes import PassResult
-from rigdesign.results import CouplingHistory, GrowthResult, HeatRow, LossRow, OilRow, TemperatureField, ThermalResult
+from rigdesign.results import (
+    CouplingHistory,
+    GrowthResult,
+    HeatRow,
+    LossRow,
+    OilRow,
+    TemperatureField,
+    ThermalResult,
+)
 from rigdesign.rig.model import Rig
 from rigdesign.temperatures import HousingField, heat_to_room, solve_housing
 from thermal.balance import HeatRow as SolvedRow

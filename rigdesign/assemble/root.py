@@ -26,13 +26,13 @@ def dynamic_stress(model: MeshModel, point: CurvePoint, mesh: int) -> tuple[Stre
     One mesh period holds every tooth at another place: put together by path they are one tooth's whole contact.
     """
     wave = point.wave
-    forces = tooth_forces(model.law, wave.angle[mesh], wave.approach[mesh], wave.omega_1[mesh], wave.omega_2[mesh])
+    forces = tooth_forces(
+        model.law, wave.angle[mesh], wave.approach[mesh], wave.omega_1[mesh], wave.omega_2[mesh]
+    )
     return _stress(model, forces, bool(point.flank[mesh] > 0))
 
 
-def static_stress(
-    model: MeshModel, state: StaticState, ports: PortModel, mesh: int
-) -> tuple[Stress, Stress]:
+def static_stress(model: MeshModel, state: StaticState, ports: PortModel, mesh: int) -> tuple[Stress, Stress]:
     """The same for the quasi-static state of the loop."""
     angle = ports.ratios[2 * mesh] * state.angles + state.ports[:, 2 * mesh]
     forces = tooth_forces(model.law, angle, state.approach[:, mesh])

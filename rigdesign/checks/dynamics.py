@@ -69,7 +69,10 @@ def _resonance(subject: Subject, name: str) -> Check:
         return hold(rule, 1.0, "no resonance of the calculated speed range is dangerous")
     value, where = worst(
         (
-            (abs(row["speed_rpm"] - speed) / speed, f"{row['speed_rpm']:.0f} rpm ({row['mode']}), held {speed:.0f} rpm")
+            (
+                abs(row["speed_rpm"] - speed) / speed,
+                f"{row['speed_rpm']:.0f} rpm ({row['mode']}), held {speed:.0f} rpm",
+            )
             for row in dangerous
             for speed in held
             if speed > 0.0
@@ -91,7 +94,9 @@ def _lift_off(subject: Subject, name: str) -> Check:
         return not_applicable(rule, NO_LOADS if subject.run is None else NO_LIMIT)
     rows = _box(subject, name).lift_off
     loaded = _loaded_stages(subject)
-    value, stage = worst([(float(row["share"]), row["stage"]) for row in rows if row["stage"] in loaded] or [(0.0, "")])
+    value, stage = worst(
+        [(float(row["share"]), row["stage"]) for row in rows if row["stage"] in loaded] or [(0.0, "")]
+    )
     reason = f"stage {stage}" if stage else "the flanks never part in a loaded stage"
     return hold(rule, value, reason, subject.assumed("drivetrain", f"gearboxes.{name}.meshes"))
 
@@ -131,7 +136,10 @@ def _stress(subject: Subject, name: str, index: int, kind: str) -> tuple[float, 
     if kind == "path":
         history = _box(subject, name).root_stress[index]
         dynamic, static = max(history.dynamic_MPa), max(history.quasi_static_MPa)
-        return 1e6 * dynamic, f"peak of sigma_F over the path, {dynamic / static:.3f} times the quasi-static one"
+        return (
+            1e6 * dynamic,
+            f"peak of sigma_F over the path, {dynamic / static:.3f} times the quasi-static one",
+        )
     factor = float(response.dynamic_factor[mesh])
     gear = box.gears[(entry.pinion, entry.wheel)[index]]
     stress = root_stress(

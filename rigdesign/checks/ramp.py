@@ -8,10 +8,10 @@ from rigdesign.assemble.dynamics import actuator_force, bracing_drift
 from rigdesign.case.limits import BoughtPart
 from rigdesign.checks.subject import NO_HOUSING, NO_LIMIT, NO_LOADS, Subject, worst
 from rigdesign.checks.thermal import transition_speed_rpm
+from rigdesign.kinds import KINDS
 from rigdesign.ramp_run import schedule_of
 from rigdesign.results import Check
 from rigdesign.rules import Rule, hold, not_applicable
-from rigdesign.kinds import KINDS
 from rigdesign.units import display
 
 RPM = 30.0 / math.pi
@@ -122,7 +122,10 @@ def _result(subject: Subject, quantity: str) -> tuple[float | None, str]:
         return worst((r.max_temperature_degC + 273.15, r.max_temperature_body) for r in subject.thermal)
     if quantity == "seal_surface_velocity":
         return worst(
-            (0.5 * shaft.seal_diameter * subject.rig.shaft_speed(shaft.name, case.schedule.test_speed), shaft.name)
+            (
+                0.5 * shaft.seal_diameter * subject.rig.shaft_speed(shaft.name, case.schedule.test_speed),
+                shaft.name,
+            )
             for geometry in subject.rig.geometries.values()
             for shaft in geometry.shafts
         )
@@ -135,5 +138,7 @@ def _result(subject: Subject, quantity: str) -> tuple[float | None, str]:
         return float(abs(ramp.drive_torque).max()), "time run over the schedule"
     if quantity == "drive_power":
         return float(abs(ramp.drive_torque * ramp.speed).max()), "time run over the schedule"
-    forces = ((actuator_force(bracing_drift(subject.rig, p).hot), f"stage {p.point.stage}") for p in subject.points)
+    forces = (
+        (actuator_force(bracing_drift(subject.rig, p).hot), f"stage {p.point.stage}") for p in subject.points
+    )
     return worst(forces)

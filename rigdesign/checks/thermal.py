@@ -46,7 +46,8 @@ def _temperatures(subject: Subject) -> Iterator[Check]:
     limits = subject.case.limits.temperatures
     housed = [row.gearbox for row in subject.thermal]
     resting = subject.assumed(
-        *(f"gearboxes.{name}.{part}" for name in housed for part in ("housing", "heat_split", "oil")), "losses"
+        *(f"gearboxes.{name}.{part}" for name in housed for part in ("housing", "heat_split", "oil")),
+        "losses",
     )
     yield _held(
         subject,
@@ -103,7 +104,9 @@ def _tempering(subject: Subject, resting: tuple[str, ...]) -> Check:
             material = subject.rig.materials[subject.case.gearboxes[box].gears[gear].material]
             if material.tempering_temperature is not None:
                 distance = material.tempering_temperature - temperature
-                values.append((distance, f"{name} at {temperature - ZERO:.1f} degC, stage {point.point.stage}"))
+                values.append(
+                    (distance, f"{name} at {temperature - ZERO:.1f} degC, stage {point.point.stage}")
+                )
     return _held(subject, rule, values, resting)
 
 
@@ -113,7 +116,11 @@ def _clearances(subject: Subject) -> Iterator[Check]:
     lists: tuple[tuple[str, str, float | None, float, str, list[tuple[float, str]]], ...] = (
         (
             "seal_gap", "smallest hot radial gap of a seal", limits.seal_gap_minimum, MM, "mm",
-            [(s["hot_min_mm"], f"{s['seal']} at {s['angle_of_min_deg']:.0f} deg") for r in subject.growth for s in r.seal_gaps],
+            [
+                (s["hot_min_mm"], f"{s['seal']} at {s['angle_of_min_deg']:.0f} deg")
+                for r in subject.growth
+                for s in r.seal_gaps
+            ],
         ),
         (
             "axial_play", "smallest hot axial play of a shaft", limits.axial_play_minimum, MM, "mm",
@@ -165,7 +172,9 @@ def _seal_travel(subject: Subject, resting: tuple[str, ...]) -> Iterator[Check]:
 
 def _bearings(subject: Subject) -> Iterator[Check]:
     limits = subject.case.limits.bearing
-    resting = subject.assumed(*(f"gearboxes.{name}.bearings" for name in subject.case.gearboxes), "limits.bearing")
+    resting = subject.assumed(
+        *(f"gearboxes.{name}.bearings" for name in subject.case.gearboxes), "limits.bearing"
+    )
     states = [
         (f"{name}, stage {point.point.stage}", state)
         for point in subject.points
@@ -195,17 +204,25 @@ def _bearings(subject: Subject) -> Iterator[Check]:
 
 def _oil(subject: Subject) -> Iterator[Check]:
     limits = subject.case.limits.oil
-    resting = subject.assumed("losses", *(f"gearboxes.{name}.{part}" for name in subject.case.gearboxes for part in ("oil", "bearing_oil")))  # fmt: skip
+    streams = [
+        f"gearboxes.{name}.{part}" for name in subject.case.gearboxes for part in ("oil", "bearing_oil")
+    ]
+    resting = subject.assumed("losses", *streams)
     rows = (
-        ("oil.flow", "oil flow of the rig", "l/min", "flow_maximum", _scaled(limits.flow_maximum, 6e4), "flow_l_min", 1.0),
-        ("oil.cooler", "power the cooler carries", "kW", "cooler_power_maximum", _scaled(limits.cooler_power_maximum, 1e-3), "cooler_W", 1e-3),
-        ("oil.room", "heat to the room", "kW", "room_heat_maximum", _scaled(limits.room_heat_maximum, 1e-3), "room_W", 1e-3),
-    )  # fmt: skip
-    for key, title, unit, name, limit, entry, scale in rows:
-        rule = Rule(id=key, title=title, unit=unit, source=f"limits.oil.{name}", group="oil", limit=limit)
+        ("flow", "oil flow of the rig", "l/min", "flow_maximum", 6e4, 1.0, "flow_l_min"),
+        ("cooler", "power the cooler carries", "kW", "cooler_power_maximum", 1e-3, 1e-3, "cooler_W"),
+        ("room", "heat to the room", "kW", "room_heat_maximum", 1e-3, 1e-3, "room_W"),
+    )
+    for key, title, unit, name, limit_scale, scale, entry in rows:
+        limit = _scaled(getattr(limits, name), limit_scale)
+        rule = Rule(
+            id=f"oil.{key}", title=title, unit=unit, source=f"limits.oil.{name}", group="oil", limit=limit
+        )  # fmt: skip
         value = scale * subject.cooler[entry]
-        yield hold(rule, value, f"stage {subject.test.point.stage}", resting) if limit is not None else not_applicable(
-            rule, NO_LIMIT
+        yield (
+            hold(rule, value, f"stage {subject.test.point.stage}", resting)
+            if limit is not None
+            else not_applicable(rule, NO_LIMIT)
         )
 
 

@@ -98,7 +98,9 @@ def boundary_conditions(
     assert housing is not None
     rows = conditions_of(housing, surface_names(context.geometry))
     covered = {
-        surface for entry, surface, _ in rows if isinstance(housing.boundary[entry], laws.NiemannWinter | laws.IsoTr14179)
+        surface
+        for entry, surface, _ in rows
+        if isinstance(housing.boundary[entry], laws.NiemannWinter | laws.IsoTr14179)
     }
     conditions: list[BoundaryCondition] = []
     for entry, surface, stood_for in rows:
@@ -130,7 +132,9 @@ def _condition(
     if isinstance(condition, laws.BearingFilm):
         return _bearing_film(context, surface)
     kind, temperature = _fluid_of(context, condition)
-    return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=_film_law(context, condition, surface))
+    return Film(
+        surface=surface, kind=kind, fluid_temperature=temperature, law=_film_law(context, condition, surface)
+    )
 
 
 def _fluid_of(context: _Context, condition: laws.Condition) -> tuple[str, float]:
@@ -147,8 +151,8 @@ def _film_law(context: _Context, condition: laws.Condition, surface: str) -> Fil
         case laws.NiemannWinter():
             return convection.niemann_winter(condition.height, condition.draught_factor)
         case laws.RecknagelPlate():
-            variant = "turbulent" if condition.correlation == "turbulent" else "dimensional"
-            return convection.recknagel_plate(variant)
+            turbulent = condition.correlation == "turbulent"
+            return convection.recknagel_plate("turbulent" if turbulent else "dimensional")
         case laws.IsoTr14179():
             return convection.iso_tr_14179_2_free(condition.height)
         case laws.ConstantFilm():
@@ -164,7 +168,9 @@ def _film_law(context: _Context, condition: laws.Condition, surface: str) -> Fil
             )
             return build(context.speed(surface), context.diameter(surface))
         case laws.RotatingDisc():
-            return convection.rotating_disc_jungnickel(context.speed(surface), 0.5 * context.diameter(surface))
+            return convection.rotating_disc_jungnickel(
+                context.speed(surface), 0.5 * context.diameter(surface)
+            )
     raise TypeError(f"no film law for {type(condition).__name__}")
 
 
@@ -217,7 +223,9 @@ def _mesh_sources(context: _Context, placed: PlacedLoss) -> list[BoundaryConditi
     pinion_share = context.box.heat_split.mesh_pinion_share
     return [
         SurfaceSource(
-            surface=f"gear_{context.box.gears[gear].shaft}_rim", power=share * placed.into_body, kind="mesh_loss"
+            surface=f"gear_{context.box.gears[gear].shaft}_rim",
+            power=share * placed.into_body,
+            kind="mesh_loss",
         )
         for gear, share in ((mesh.pinion, pinion_share), (mesh.wheel, 1.0 - pinion_share))
     ]

@@ -62,6 +62,10 @@ def _pinion_shift(box: Gearbox, mesh: GearMesh) -> float | None:
     from dynamics.line_of_action import shift_sum
 
     total = shift_sum(
-        mesh.normal_module, mesh.pressure_angle, mesh.helix_angle, (pinion.teeth, wheel.teeth), mesh.centre_distance
+        mesh.normal_module,
+        mesh.pressure_angle,
+        mesh.helix_angle,
+        (pinion.teeth, wheel.teeth),
+        mesh.centre_distance,
     )
     return total - wheel.profile_shift

@@ -4,7 +4,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
 
 from dynamics.drivetrain import Drivetrain, assemble
 from dynamics.gear import GearPair
@@ -14,6 +13,7 @@ from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.model import Case
 from rigdesign.materials import MATERIALS, Material
 from rigdesign.oil import OILS, Oil
+from rigdesign.results import Fidelity
 from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.speeds import speed_ratios
@@ -22,8 +22,6 @@ from thermal.expansion import ExpansionSetup
 from thermal.housing import build_gearbox
 from thermal.housing_geometry import HousingGeometry
 from thermal.stations import GearboxModel
-
-Fidelity = Literal["quick", "standard", "reference"]
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,9 @@ class Rig:
     @cached_property
     def drivetrain(self) -> Drivetrain | None:
         """The power circuit; None when the losses are given."""
-        return None if self.case.drivetrain is None else build_drivetrain(self.case, self.pairs, self.materials)
+        return (
+            None if self.case.drivetrain is None else build_drivetrain(self.case, self.pairs, self.materials)
+        )
 
     @cached_property
     def system(self) -> LinearSystem | None:
@@ -69,7 +69,9 @@ class Rig:
     def conduction(self) -> Mapping[str, ConductionSetup]:
         """Conduction matrices of every housing, assembled once."""
         return {
-            name: ConductionSetup(model.mesh, {b: m.conductivity for b, m in self.body_materials(name).items()})
+            name: ConductionSetup(
+                model.mesh, {b: m.conductivity for b, m in self.body_materials(name).items()}
+            )
             for name, model in self.models.items()
         }
 

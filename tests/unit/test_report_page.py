@@ -160,7 +160,7 @@ def test_everything_from_the_case_is_escaped():
         fields=[replace(item, gearbox=nasty, stage=nasty) for item in base.fields],
         coupling=[replace(item, stage=nasty) for item in base.coupling],
         not_modelled=[nasty],
-        warnings=[r.Warning(id=nasty, text=nasty)],
+        warnings=[r.Finding(id=nasty, text=nasty)],
         dynamics=dynamics,
     )
     page = report_html(result)
