@@ -117,7 +117,7 @@ def test_one_pitch_error_makes_sidebands_of_first_order() -> None:
     clean = by_harmonics(laws, [3300.0], cutoff=1.0, period="revolution").points[0]
     with_error, without = (np.abs(np.fft.rfft(p.wave.torque[0])) / p.wave.time.size for p in (turn, clean))
     orders = np.array([1, 50, 98, 100, 197, 199])
-    assert np.all(with_error[orders] > 1e-3)
+    assert np.all(with_error[[1, 50]] > 0.01)
     assert np.all(with_error[orders] > 100.0 * without[orders])
 
 
