@@ -21,6 +21,9 @@ from thermal.fe.solver import LowRank, NotConverged, Operator, TwoLevelMultigrid
 CLOSURE = 1e-8
 """Greatest allowed gap of the heat balance relative to the heat turned over."""
 
+SMALLEST_STEP = 1e-2
+"""Share of a Newton step that is taken even if the residual rises."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class TemperatureSolution:
@@ -164,17 +167,23 @@ def _forcing(history: list[float], enough: float) -> float:
 def _line_search(
     problem: ConductionProblem, temperature: FloatArray, step: FloatArray, residual: FloatArray
 ) -> tuple[FloatArray, FloatArray, float]:
-    """Halve the step until all temperatures are positive and the residual falls.
+    """Halve the step until temperatures are positive, every film law can be evaluated and the residual falls.
 
-    Return field, residual and heat turned over.
+    Return field, residual and heat turned over. What a law raises is passed on if no part of the step helps.
     """
     before = float(np.linalg.norm(residual))
     share = 1.0
     while True:
         trial = temperature + share * step
+        last = share < SMALLEST_STEP
         if trial.min() > 0.0:
-            out, turned = problem.heat_out(trial)
-            after = np.where(problem.fixed, 0.0, out)
-            if float(np.linalg.norm(after)) <= (1.0 - 1e-4 * share) * before or share < 1e-2:
-                return trial, after, turned
+            try:
+                out, turned = problem.heat_out(trial)
+            except ValueError:
+                if last:
+                    raise
+            else:
+                after = np.where(problem.fixed, 0.0, out)
+                if last or float(np.linalg.norm(after)) <= (1.0 - 1e-4 * share) * before:
+                    return trial, after, turned
         share *= 0.5

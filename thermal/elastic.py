@@ -87,7 +87,7 @@ class ElasticSetup:
         """(n_nodes,) alpha (T - T0); a node between bodies takes one of their alphas."""
         return self._alpha * (temperature - reference)
 
-    def solve(self, temperature: FloatArray, reference: float, tolerance: float = 1e-9) -> Displacement:
+    def solve(self, temperature: FloatArray, reference: float, tolerance: float = 1e-8) -> Displacement:
         """Displacement under a nodal temperature (n_nodes,) [K]; raises NotConverged with its residuals."""
         load = self.load(temperature, reference)
         right = np.where(self.fixed, 0.0, load).ravel()

@@ -46,7 +46,7 @@ def expand(
     elastic: Mapping[str, tuple[float, float, float]],
     *,
     reuse: ExpansionSetup | None = None,
-    tolerance: float = 1e-9,
+    tolerance: float = 1e-8,
 ) -> Expansion:
     """Expand a gearbox from ``reference_temperature`` [K], at which the model's dimensions hold.
 

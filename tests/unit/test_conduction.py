@@ -133,6 +133,24 @@ def test_warnings_of_film_laws_are_kept_once(mesh: NamedMesh) -> None:
     assert solve_steady(mesh, CONDUCTIVITY, said).warnings == ("Re = 12 is below 800",)
 
 
+@pytest.mark.parametrize("limit", [400.0, 320.0])
+def test_a_law_with_a_limit_shortens_the_step_or_speaks(mesh: NamedMesh, limit: float) -> None:
+    def limited(wall: float, fluid: float) -> FilmCoefficient:
+        if wall > limit:
+            raise ValueError(f"wall = {wall:g} K is above {limit:g} K")
+        return law(4.0, 0.5)(wall, fluid)
+
+    names = list(mesh.surfaces)
+    heated = [Film(surface=n, kind="air", fluid_temperature=300.0, law=limited) for n in names]
+    heated += [BodySource(body=b, power=p, kind="loss") for b, p in (("hot", 75.0), ("cold", 45.0))]
+    if limit == 400.0:
+        solution = solve_steady(mesh, CONDUCTIVITY, heated, 300.1)
+        assert solution.temperature.mean() == pytest.approx(300.0 + 187.5 ** (2.0 / 3.0), abs=1.0)
+    else:
+        with pytest.raises(ValueError, match="is above 320 K"):
+            solve_steady(mesh, CONDUCTIVITY, heated, 300.1)
+
+
 def without(surface: str) -> list[BoundaryCondition]:
     return [c for c in conditions() if getattr(c, "surface", "") != surface]
 
