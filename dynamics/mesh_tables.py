@@ -142,25 +142,35 @@ def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[tuple[Array,
     place = (begin - lag[:, None] - turns * law.base_pitch - law.path_start) / law.path_step
     middle = place + 0.5 * width / law.path_step
     on_path = (middle >= 0.0) & (middle <= n_path - 1)
+    cells, slices, pairs = np.nonzero(on_path)
+    at, steps = place[cells, slices, pairs], width / law.path_step
+    lanes = np.vstack(
+        (
+            *_hermite(stiffness, at, slices, steps),
+            *_hermite(gap, at, slices, steps),
+            law.path_start + at * law.path_step,
+        )
+    )
     blocks = []
-    for cell in range(n_phases):
-        slices, pairs = np.nonzero(on_path[cell])
-        at = place[cell, slices, pairs]
-        steps = width / law.path_step
-        groups = -(-len(at) // kernels.LANES)
-        lanes = np.zeros((kernels.N_PHASE, groups * kernels.LANES))
-        lanes[0:4, : len(at)] = _hermite(stiffness, at, slices, steps)
-        lanes[4:8, : len(at)] = _hermite(gap, at, slices, steps)
-        lanes[8, : len(at)] = law.path_start + at * law.path_step
-        blocks.append((lanes.reshape(kernels.N_PHASE, groups, kernels.LANES).swapaxes(0, 1), len(at)))
+    for own in np.split(lanes, np.searchsorted(cells, np.arange(1, n_phases)), axis=1):
+        groups = -(-own.shape[1] // kernels.LANES)
+        padded = np.zeros((kernels.N_PHASE, groups * kernels.LANES))
+        padded[:9, : own.shape[1]] = own
+        blocks.append((padded.reshape(kernels.N_PHASE, groups, kernels.LANES).swapaxes(0, 1), own.shape[1]))
     return blocks
 
 
 def _hermite(cubic: PchipInterpolator, at: Array, rows: Integers, width: float) -> tuple[Array, ...]:
     """Return cubic coefficients over the fraction of [at, at + width] from values and slopes at both ends."""
-    last = cubic.x[-1]
-    ends = [np.clip(at + shift, 0.0, last) for shift in (0.0, width)]
-    own = np.arange(len(at))
-    v_0, v_1 = (cubic(end)[rows, own] for end in ends)
-    d_0, d_1 = (cubic.derivative()(end)[rows, own] * width for end in ends)
+    (v_0, s_0), (v_1, s_1) = (_value_and_slope(cubic, at + shift, rows) for shift in (0.0, width))
+    d_0, d_1 = s_0 * width, s_1 * width
     return v_0, d_0, 3.0 * (v_1 - v_0) - 2.0 * d_0 - d_1, 2.0 * (v_0 - v_1) + d_0 + d_1
+
+
+def _value_and_slope(cubic: PchipInterpolator, at: Array, rows: Integers) -> tuple[Array, Array]:
+    """Return value and slope of row ``rows[i]`` at ``at[i]``, held within the table."""
+    inside = np.clip(at, 0.0, cubic.x[-1])
+    index = np.minimum(inside.astype(np.int64), len(cubic.x) - 2)
+    f = inside - index
+    c_3, c_2, c_1, c_0 = cubic.c[:, index, rows]
+    return ((c_3 * f + c_2) * f + c_1) * f + c_0, (3.0 * c_3 * f + 2.0 * c_2) * f + c_1
