@@ -136,11 +136,8 @@ def print_validation(rows: Sequence["ValidationRow"]) -> None:
         style = VALIDATION_STYLES.get(row.verdict, "")
         table.add_row(*map(Text, cells), Text(row.verdict, style), Text(row.basis))
     console.print(table)
-    for row in rows:
-        if row.assumptions and row.verdict != "not modelled":
-            console.print(Text(f"{row.id}: ", "bold") + Text(row.assumptions))
-    for reason, names in _reasons(rows).items():
-        console.print(Text(f"not modelled ({', '.join(names)}): ", "dim") + Text(reason))
+    for assumptions, names in _by_assumptions(rows).items():
+        console.print(Text(f"{', '.join(names)}: ", "bold") + Text(assumptions))
     count = headline(rows)
     console.print(f"gates: {count['gates_held']} held, {count['gates_missed']} missed")
     for row in rows:
@@ -152,10 +149,10 @@ def print_validation(rows: Sequence["ValidationRow"]) -> None:
     )
 
 
-def _reasons(rows: Sequence["ValidationRow"]) -> dict[str, list[str]]:
-    """Ids of the rows without a model by the reason."""
-    reasons: dict[str, list[str]] = {}
+def _by_assumptions(rows: Sequence["ValidationRow"]) -> dict[str, list[str]]:
+    """Ids of the rows that rest on the same words."""
+    found: dict[str, list[str]] = {}
     for row in rows:
-        if row.verdict == "not modelled":
-            reasons.setdefault(row.assumptions, []).append(row.id)
-    return reasons
+        if row.assumptions:
+            found.setdefault(row.assumptions, []).append(row.id)
+    return found

@@ -54,8 +54,7 @@ def _housing_films() -> Iterator[ValidationRow]:
         id="P2-alpha-cold-40K", quantity="film of the cold housing at P2's about 40 K", source=FIGURE_11,
         published=15.09, computed=housing(AMBIENT + 40.0, AMBIENT).value, unit="W/(m2 K)", basis="arithmetic",
         assumptions="one f_k and h cannot give both printed values at 100 and 40 K: their ratio is 1.292, "
-        "the "
-        "formula's 1.328",
+        "the formula's 1.328",
     )  # fmt: skip
     plates = {
         kind: [convection.recknagel_plate(kind)(AMBIENT + rise, AMBIENT).value for rise in (100.0, 25.0)]
@@ -66,8 +65,8 @@ def _housing_films() -> Iterator[ValidationRow]:
             id=f"P2-alpha-field-{kind}", quantity=f"film of the clamping field, {kind} plate law",
             source=FIGURE_11,
             published=6.3, computed=hot, unit="W/(m2 K)", basis="fitted", free_parameters=1,
-            assumptions="Recknagel's formula is not printed; "
-            f"at the 25 K a solved field has it gives {mild:.2f}",
+            assumptions="Recknagel's formula is not printed; at the 25 K a solved field has it gives "
+            f"{mild:.2f}",
         )  # fmt: skip
 
 
@@ -103,8 +102,7 @@ def _oil() -> Iterator[ValidationRow]:
             source="P2, lubrication and cooling", published=20.0, computed=rise, unit="K", basis="arithmetic",
             window=(15.5, 19.0), free_parameters=1,
             assumptions=f"density and heat capacity of {name} at 90 degC, between the circuits of 40 and 140 "
-            f"degC; "
-            "P2 does not name the oil",
+            "degC; P2 does not name the oil",
         )  # fmt: skip
     yield compare(
         id="P2-oil-flow", quantity="total oil flow, sum of the circuits against the rig data",
@@ -128,8 +126,7 @@ def _heat_arithmetic() -> Iterator[ValidationRow]:
         source=FIGURE_12, published=HEAT_FLOWS["field radiation"], computed=least, unit="W",
         basis="arithmetic",
         assumptions="4 eps sigma T0^3 / alpha of the convection, a lower bound for every temperature field: "
-        "the "
-        "printed pair is impossible on one surface in one ambient",
+        "the printed pair is impossible on one surface in one ambient",
     )  # fmt: skip
     least = least_radiation(0.6, AMBIENT, 19.5, HEAT_FLOWS["housing warm"])
     least += least_radiation(0.6, AMBIENT, 15.09, HEAT_FLOWS["housing cold"])
@@ -138,14 +135,12 @@ def _heat_arithmetic() -> Iterator[ValidationRow]:
         source=FIGURE_12, published=HEAT_FLOWS["housing radiation"], computed=least, unit="W",
         basis="arithmetic",
         assumptions="a lower bound that the printed value keeps; Formula 2 most likely contains radiation "
-        "already, so "
-        "that the printed 617 W are counted twice",
+        "already, so that the printed 617 W are counted twice",
     )  # fmt: skip
     yield stated(
         id="P2-heat-wall-oil", quantity="heat the oil must give to the walls in Figure 12", source=FIGURE_12,
         published="oil defined as input", unit="W", basis="arithmetic",
         computed=sum(HEAT_FLOWS.values()) + 345.23 - 1000.0,
         assumptions="to room and bearings 4609 W, sources 500 + 2 x 250 W: the rest comes from 160 degC oil "
-        "on the "
-        "walls, not from the 80 kW of the meshes",
+        "on the walls, not from the 80 kW of the meshes",
     )  # fmt: skip

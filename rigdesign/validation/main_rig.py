@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from rigdesign.validation.rows import ValidationRow, not_modelled
 
 REASON = (
-    "no case of the main rig's gearbox: its housing, areas and materials are not printed; a fit would choose "
-    "12 parameters for 9 numbers"
+    "no case of the main rig's gearbox: its housing, areas and materials are not printed; a fit would "
+    "choose 12 parameters for 9 numbers"
 )
 NUMBERS = (
     ("P2-heat-field-convection", "convection of the clamping field", "1179", "W", "P2, Figure 12"),

@@ -135,14 +135,13 @@ def _energy_rows(prototype: Prototype) -> Iterator[ValidationRow]:
             window=(0.0, limit), assumptions=free,
         )  # fmt: skip
     yield stated(
-        id="V11-energy-control", quantity="the same with force times base radius only, k(angle) waving by 30 "
-        "%",
+        id="V11-energy-control", quantity="the same with force times base radius only, k(angle) waving by "
+        "30 %",
         source=ENERGY, published="above 0.3", computed=_drift(rig, wave, _bare_torques, 12000.0, 100),
         unit="1",
         basis="verification", window=(0.3, np.inf),
-        assumptions="negative control: without the torque from the change of stiffness over the angle energy "
-        "is made "
-        "and lost; the shipped law shows "
+        assumptions="negative control: without the torque from the change of stiffness over the angle "
+        "energy is made and lost; the shipped law shows "
         f"{_drift(rig, shipped, _bare_torques, 12000.0, 100):.2g}",
     )  # fmt: skip
 
@@ -233,8 +232,7 @@ def _closure_row(prototype: Prototype) -> ValidationRow:
         published=_series_stiffness(rig, laws),
         computed=TEST_TORQUE / state.twist, unit="N m/rad", basis="verification", gate=1e-6,
         assumptions="meshes as constant springs of their mean stiffness, no play; the sum is taken by hand, "
-        "section "
-        "by section from gear to coupling",
+        "section by section from gear to coupling",
     )  # fmt: skip
 
 

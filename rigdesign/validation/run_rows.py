@@ -14,6 +14,9 @@ CLOSURE = 1e-8
 """Greatest gap of a heat balance relative to the heat turned over."""
 BEARING_LOSS = 0.0007 * (12000.0 * pi / 30.0) ** 2
 """Loss of one journal bearing at 12,000 rpm by the torsional damping of P2's Table 1 [W]."""
+POWER_BALANCE = 1e-3
+"""Share of the losses by which the drive power may differ."""
+BEARING_KINDS = ("bearing", "journal_bearing")
 
 
 def run_rows(result: RunResult) -> Iterator[ValidationRow]:
@@ -33,16 +36,14 @@ def _heat(result: RunResult) -> Iterator[ValidationRow]:
             unit="1",
             basis="verification", window=(0.0, CLOSURE),
             assumptions=f"{thermal.nodes} nodes, fidelity {result.fidelity}; every surface by its own law, "
-            f"prescribed "
-            "temperatures by their reactions",
+            "prescribed temperatures by their reactions",
         )  # fmt: skip
         yield stated(
             id=f"run-Tmax-{thermal.gearbox}-{thermal.stage}", quantity=f"highest temperature, {place}",
             source="P2, Figure 12 (main rig)", published="178.59 for the main rig",
             computed=thermal.max_temperature_degC, unit="degC", basis="predicted",
             assumptions=f"prototype at {thermal.max_temperature_body}; housing assumed, sinks of the "
-            f"bearings at film "
-            "temperature instead of 40 degC",
+            "bearings at film temperature instead of 40 degC",
         )  # fmt: skip
         yield stated(
             id=f"run-room-{thermal.gearbox}-{thermal.stage}", quantity=f"heat to the room, {place}",
@@ -55,24 +56,23 @@ def _heat(result: RunResult) -> Iterator[ValidationRow]:
 def _losses(result: RunResult) -> Iterator[ValidationRow]:
     stage = result.losses[-1].stage if not result.thermal else result.thermal[-1].stage
     for row in result.losses:
-        if row.stage == stage and row.kind == "mesh":
+        if row.stage == stage and row.kind == "mesh" and row.place.startswith("test"):
             yield compare(
                 id=f"run-loss-{row.place}", quantity=f"loss of mesh {row.place}, {stage}",
                 source="P2, structure of the thermal model (main rig)", published=500.0, computed=row.power_W,
                 unit="W", basis="predicted", free_parameters=2,
                 assumptions="500 W is what P2 puts into the FE model of the main rig, beside 80 kW "
-                "dissipated by the "
-                "meshes; hangs on the split of the profile shifts and on the friction coefficient",
+                "dissipated by the meshes; hangs on the split of the profile shifts and on the friction "
+                "coefficient",
             )  # fmt: skip
-    bearings = [row.power_W for row in result.losses if row.stage == stage and row.kind == "journal_bearing"]
+    bearings = [row.power_W for row in result.losses if row.stage == stage and row.kind in BEARING_KINDS]
     if bearings:
         yield compare(
             id="run-loss-bearing", quantity=f"mean loss of a journal bearing, {stage}", source="P2, Table 1",
             published=BEARING_LOSS, published_text=f"{BEARING_LOSS:.0f}, from 0.0007 N m s/rad",
             computed=sum(bearings) / len(bearings), unit="W", basis="predicted", free_parameters=4,
             assumptions=f"{len(bearings)} bearings of assumed size, clearance and oil, film by ISO 7902; P2 "
-            f"took its "
-            "damping from the loss at the operating point",
+            "took its damping from the loss at the operating point",
         )  # fmt: skip
 
 
@@ -92,9 +92,10 @@ def _drive(result: RunResult) -> Iterator[ValidationRow]:
             id="V12-power", quantity=f"drive power against the sum of all losses, {balance['stage']}",
             source="energy balance", published=float(balance["losses_W"]),
             computed=float(balance["drive_power_W"]),
-            unit="W", basis="verification",
-            assumptions="the rest is lost in the dampers of splines and couplings, which are no place of the "
-            "heat model",
+            unit="W", basis="verification", gate=POWER_BALANCE,
+            assumptions="motor torque of the periodic response times speed against meshes, mesh damping, "
+            "bearings, seals, windage and jets, each by its own law; what splines and couplings lose is the "
+            "difference",
         )  # fmt: skip
 
 

@@ -73,8 +73,7 @@ def shaft_rows(prototype: Prototype) -> Iterator[ValidationRow]:
         published="no resonances above 4000 rpm", computed=highest.speed / RPM, unit="rpm",
         basis="arithmetic",
         assumptions=f"mode {highest.mode} of shaft {highest.shaft}; a crossing is no resonance yet, the "
-        f"response "
-        "rows P2-free say what it does",
+        "response rows P2-free say what it does",
     )  # fmt: skip
     yield from _damping(prototype)
     audit = sampling_audit(drivetrain, _drive_speed(prototype), 40e3)[0]
@@ -85,8 +84,7 @@ def shaft_rows(prototype: Prototype) -> Iterator[ValidationRow]:
         unit="1",
         basis="arithmetic", window=(2.015, 2.025),
         assumptions=f"f_z = {audit.mesh_frequency:.0f} Hz; enough for one harmonic and no waveform; as an "
-        f"integration "
-        "step it makes 68 % error, so the tool steps at least 8 times finer",
+        "integration step it makes 68 % error, so the tool steps at least 8 times finer",
     )  # fmt: skip
 
 

@@ -1,0 +1,314 @@
+import csv
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rigdesign import cli, validation
+from rigdesign.errors import OutputError, UsageError
+from rigdesign.terminal import print_validation
+from rigdesign.validation import (
+    benchmarks,
+    gears,
+    headline,
+    main_rig,
+    mechanics,
+    p1,
+    prototype,
+    validation_document,
+    validation_rows,
+    write_validation,
+)
+from rigdesign.validation.courses import Course, course, simulation_laws, smooth
+from rigdesign.validation.prototype import Prototype, case_folder
+from rigdesign.validation.rows import compare, compare_printed, not_modelled, stated
+from rigdesign.validation.run_rows import run_rows
+from tests.report_example import make_result
+
+KEYS = {
+    "id", "quantity", "source", "published", "computed", "unit", "deviation", "tolerance", "verdict", "basis",
+    "free_parameters", "assumptions",
+}  # fmt: skip
+
+
+def row(**changes):
+    given = {
+        "id": "x", "quantity": "q", "source": "s", "published": 2.0, "computed": 2.1, "unit": "1",
+        "basis": "predicted",
+    }  # fmt: skip
+    return compare(**{**given, **changes})
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return validation_rows(with_run=False)
+
+
+@pytest.fixture(scope="module")
+def shipped():
+    return Prototype(case_folder())
+
+
+# ---- what a row is
+
+
+@pytest.mark.parametrize(
+    ("limits", "verdict"),
+    [
+        ({}, "shown"),
+        ({"gate": 0.051}, "gate held"),
+        ({"gate": 0.049}, "gate missed"),
+        ({"goal": 0.051}, "goal met"),
+        ({"goal": 0.049}, "goal missed"),
+        ({"window": (2.05, 2.15)}, "gate held"),
+        ({"window": (2.11, 2.15)}, "gate missed"),
+    ],
+)
+def test_verdict_of_a_comparison(limits, verdict):
+    assert row(**limits).verdict == verdict
+    assert row(**limits).deviation == pytest.approx(0.05)
+
+
+def test_two_kinds_of_limit_at_once_are_refused():
+    with pytest.raises(ValueError, match="give one of gate, goal and window"):
+        row(gate=0.1, window=(1.0, 3.0))
+
+
+@pytest.mark.parametrize(
+    ("published", "computed", "bound", "deviation"),
+    [
+        ((1.8, 1.9), 1.85, None, 0.0),
+        ((1.8, 1.9), 1.71, None, -0.05),
+        ((1.8, 1.9), 1.995, None, 0.05),
+        (1.5, 1.8, "at least", 0.0),
+        (1.5, 1.35, "at least", -0.1),
+        (50.0, 20.0, "at most", 0.0),
+        (50.0, 60.0, "at most", 0.2),
+        (-105.0, -106.05, None, -0.01),
+    ],
+)
+def test_deviation_counts_from_the_nearer_end_and_on_the_wrong_side_only(
+    published, computed, bound, deviation
+):
+    assert row(published=published, computed=computed, bound=bound).deviation == pytest.approx(deviation)
+
+
+@pytest.mark.parametrize(("computed", "verdict"), [(1.00349, "gate held"), (1.00351, "gate missed")])
+def test_printed_digits_are_half_a_unit_of_the_last(computed, verdict):
+    found = compare_printed(id="x", quantity="q", source="s", printed="1.003", computed=computed, unit="1")
+    assert found.verdict == verdict
+    assert found.published_text == "1.003"
+
+
+def test_words_have_no_deviation_and_a_missing_model_no_number():
+    words = stated(
+        id="x", quantity="q", source="s", published="low", computed=2.0, unit="1", basis="predicted",
+        window=(2.5, math.inf),
+    )  # fmt: skip
+    assert (words.deviation, words.verdict) == (None, "gate missed")
+    missing = not_modelled(
+        id="x", quantity="q", source="s", published="1.03", unit="1", basis="fitted", reason="no model"
+    )
+    assert (missing.computed, missing.verdict, missing.published_text) == (None, "not modelled", "1.03")
+
+
+# ---- the table
+
+
+def test_every_gate_holds(rows):
+    assert [r.id for r in rows if r.verdict == "gate missed"] == []
+    assert sum(r.verdict == "gate held" for r in rows) > 50
+
+
+def test_every_number_of_the_brief_has_its_row(rows):
+    ids = [r.id for r in rows]
+    assert len(ids) == len(set(ids))
+    wanted = (
+        "P2-nE-TG", "P2-nE-RG", "P2-nE-RG-low-load", "P2-KV-TG-2500", "P2-KV-TG-main", "P2-KV-TG-super",
+        "P2-KV-RG-super", "P2-eps-TG", "P2-eps-RG-full", "P2-cross-RG-4", "P2-KVsim-TG-sub", "P2-KVsim-RG-super",
+        "P2-KVsim-TG-sub-unscaled", "P2-dM-TG-max-mean", "P2-dM-TG-3000-max-min", "P2-free-reference",
+        "P2-free-influence-reference", "P2-ramp-half-torque", "P2-alpha-warm", "P2-alpha-cold", "P2-alpha-nut",
+        "P2-alpha-bearing", "P2-heat-sum", "P2-heat-field-radiation", "P2-heat-bearings", "P2-Tmax",
+        "P2-growth-pinion", "P2-oil-FVA 3A", "P2-oil-flow", "P2-sampling", "P1-eps-free", "P1-sigma",
+        "P1-static-MBS", "P1-coupling", "P1-speed-measured", "P1-pattern", "TR6336-30-1-c_gamma_alpha",
+        "TR6336-30-1-sigma_H0", "NAFEMS-T2", "NAFEMS-T4", "NAFEMS-LE11", "V4-up-0.85", "V4-down-0.75", "V5-rotor",
+        "V11-energy-control", "V12-closure", "FZG-C-HV",
+    )  # fmt: skip
+    assert [name for name in wanted if name not in ids] == []
+    assert sum(name.startswith("P2-T2-") for name in ids) == 12
+
+
+def test_rows_say_what_they_rest_on(rows):
+    for r in rows:
+        assert r.quantity
+        assert r.source
+        assert r.assumptions or r.basis == "verification"
+        assert (r.computed is None) == (r.verdict == "not modelled")
+        assert r.computed is None or math.isfinite(r.computed)
+        if r.basis == "fitted" and r.id.startswith("P2"):
+            assert r.free_parameters > 0
+
+
+def test_simulated_dynamic_factors_name_what_they_hang_on(rows):
+    by_id = {r.id: r for r in rows}
+    for name in ("TG-sub", "TG-main", "TG-super", "RG-super"):
+        found = by_id[f"P2-KVsim-{name}"]
+        assert found.tolerance == 0.15
+        assert "mesh damping 300 N s/m" in found.assumptions
+        assert found.computed > 1.0
+
+
+def test_full_addendum_and_low_load_readings_as_calculated_in_the_sheet(rows):
+    """Sheet d2: 5.96 to 5.98 with full addendum; n_E 3276 to 3394 then; 3027 to 3040 with x1 = 0 and the factor."""
+    by_id = {r.id: r.computed for r in rows}
+    assert 5.96 < by_id["P2-eps-RG-full"] < 5.98
+    assert 3314.0 < by_id["P2-nE-RG-full"] < 3394.5
+    assert 3276.0 < by_id["P2-nE-RG-full-low-load"] < 3354.5
+    assert 3027.0 < by_id["P2-nE-RG-x1-0-low-load"] < 3040.0
+    assert by_id["P2-nE-RG-x1-0"] == pytest.approx(3075.6, abs=0.5)
+
+
+def test_headline_counts_predicted_rows_only(rows):
+    fitted = row(basis="fitted", gate=0.1)
+    met, missed, plain = row(goal=0.1), row(goal=0.01), row()
+    waiting = next(p1.p1_rows())
+    assert headline([fitted, met, missed, plain, waiting]) == {
+        "rows": 5,
+        "predicted_with_goal": 2,
+        "predicted_met": 1,
+        "gates_held": 1,
+        "gates_missed": 0,
+        "not_modelled": 1,
+    }
+
+
+def test_document_keeps_the_contract_and_is_strict_json(rows):
+    document = json.loads(json.dumps(validation_document(rows), allow_nan=False))
+    assert len(document["rows"]) == len(rows)
+    assert all(set(entry) >= KEYS for entry in document["rows"])
+    bases = {entry["basis"] for entry in document["rows"]}
+    assert bases <= {"predicted", "fitted", "arithmetic", "input", "verification"}
+    control = next(entry for entry in document["rows"] if entry["id"] == "V11-energy-control")
+    assert control["window"] == [0.3, None]
+
+
+def test_files_are_written_whole(rows, tmp_path):
+    write_validation(rows, tmp_path / "out")
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["validation.csv", "validation.json"]
+    with (tmp_path / "out" / "validation.csv").open(newline="") as file:
+        table = list(csv.DictReader(file))
+    assert [line["id"] for line in table] == [r.id for r in rows]
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(OutputError):
+        write_validation(rows, tmp_path / "file")
+
+
+def test_table_and_headline_in_the_terminal(rows, capsys):
+    missed = row(id="broken", gate=0.01)
+    print_validation([*rows, missed])
+    printed = capsys.readouterr().out
+    assert "P2-nE-TG" in printed
+    assert "gate missed: broken" in printed
+    assert "P1-eps-free, P1-eps-loaded" in printed
+    assert "predicted rows within their goal:" in printed
+
+
+@pytest.mark.parametrize(("limit", "status"), [(0.1, 0), (0.01, 1)])
+def test_command_fails_when_a_gate_is_missed(limit, status, monkeypatch, capsys):
+    monkeypatch.setattr(validation, "validation_rows", lambda **_: (row(gate=limit),))
+    assert cli.validate(json=True) == status
+    assert json.loads(capsys.readouterr().out)["rows"][0]["id"] == "x"
+
+
+# ---- parts
+
+
+def test_prototype_is_found_or_the_places_are_named(monkeypatch, tmp_path):
+    assert (case_folder() / "case.toml").is_file()
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(UsageError, match="no_such_case"):
+        case_folder("no_such_case")
+
+
+def test_another_split_moves_the_resonance_speed(shipped):
+    """x1 = 0 meets P2's 2953.48 rpm to 0.003 %, x1 = x2 is 0.66 % off: the split is fitted, not free."""
+    first = gears.resonance_speed(shipped.test_pair, prototype.TEST_OPTIONS)
+    assert first == pytest.approx(gears.TEST_RESONANCE, rel=5e-5)
+    equal = gears.resonance_speed(shipped.equal_shifts, prototype.TEST_OPTIONS)
+    assert equal / first - 1.0 == pytest.approx(0.0066, abs=5e-4)
+
+
+def test_benchmark_gates_can_fail(monkeypatch):
+    film = benchmarks.constant
+    monkeypatch.setattr(benchmarks, "constant", lambda value, source: film(0.99 * value, source))
+    verdicts = {r.id: r.verdict for r in benchmarks.benchmark_rows()}
+    assert verdicts["NAFEMS-T2"] == "gate held"
+    assert verdicts["NAFEMS-T4"] == "gate missed"
+
+
+def test_smooth_meshes_excite_nothing(shipped):
+    laws = [smooth(law) for law in simulation_laws(shipped)]
+    found = course(shipped, laws, np.array([900.0, 2400.0, 9000.0]))
+    assert found.factor == pytest.approx(1.0, abs=1e-6)
+
+
+def test_course_reads_peaks_and_amplitudes():
+    speed = np.arange(1000.0, 2000.0, 50.0)
+    factor = 1.0 + 0.3 / (1.0 + ((speed - 1500.0) / 60.0) ** 2)
+    found = Course(
+        speed=speed,
+        factor=np.column_stack([factor, np.ones_like(factor)]),
+        half=np.column_stack([1.0 + 0.8 * (factor - 1.0), np.ones_like(factor)]),
+        mean=np.full((speed.size, 2), 180.0),
+        drive=np.zeros_like(speed),
+    )
+    assert found.peaks(0).tolist() == [1500.0]
+    assert found.peaks(1).size == 0
+    assert found.highest(0, (1000.0, 2000.0)) == pytest.approx((1.3, 1500.0))
+    assert found.highest(0, (1000.0, 1200.0))[1] == 1200.0
+    assert found.amplitude(0, (1000.0, 2000.0)) == pytest.approx((54.0, 86.4))
+
+
+def test_series_stiffness_feels_every_part_of_the_loop(shipped):
+    rig = shipped.simulated
+    laws = [smooth(law) for law in simulation_laws(shipped)]
+    whole = mechanics._series_stiffness(rig, laws)
+    stiffer = mechanics._series_stiffness(
+        rig, [law._replace(mean_stiffness=2.0 * law.mean_stiffness) for law in laws]
+    )
+    radius = laws[0].base_radius_1, laws[1].base_radius_1
+    gained = sum(0.5 / (law.mean_stiffness * r**2) for law, r in zip(laws, radius))
+    assert 1.0 / whole - 1.0 / stiffer == pytest.approx(gained)
+
+
+def test_rows_without_a_model_carry_the_published_text():
+    for r in (*p1.p1_rows(), *main_rig.main_rig_rows()):
+        assert r.verdict == "not modelled"
+        assert r.published_text
+        assert r.assumptions
+
+
+# ---- rows of a run
+
+
+def test_rows_of_a_run():
+    found = {r.id: r for r in run_rows(make_result())}
+    assert found["run-closure-test-dwell"].verdict == "gate held"
+    assert found["run-Tmax-test-dwell"].computed == 178.6
+    assert found["run-loss-test_mesh"].computed == 2900.0
+    assert found["run-loss-bearing"].computed == pytest.approx(690.0)
+    assert found["run-drive"].computed == 9.1
+    assert found["run-seal-gap-test-dwell"].computed == 0.571
+
+
+def test_open_heat_balance_misses_its_gate():
+    result = make_result()
+    leaking = replace(result, thermal=[replace(result.thermal[0], closure_relative=2e-8)])
+    found = {r.id: r for r in run_rows(leaking)}
+    assert found["run-closure-test-dwell"].verdict == "gate missed"
+
+
+def test_run_without_drivetrain_has_no_drive_rows():
+    assert not any(r.id.startswith(("run-drive", "V12")) for r in run_rows(make_result(dynamics=None)))
