@@ -118,7 +118,8 @@ class _Winding:
             force, stiffness = self._contact(reach)
         raise NotConverged(
             "static state: contact forces still change by "
-            f"{np.abs(asked - reach).max() * stiffness.max() / scale:.1e} of the largest, limit 1e-9; the twist leaves the flanks open: raise twist or torque"
+            f"{np.abs(asked - reach).max() * stiffness.max() / scale:.1e} of the largest, limit 1e-9; "
+            "the twist leaves the flanks open: raise twist or torque"
         )
 
     def loop_stiffness(self, unknowns: Array) -> float:

@@ -175,8 +175,11 @@ def periodic_by_time(
         raise ValueError("give either the mean torque of the first mesh or the bracing twist")
     drags = dict(drag_torques or {})
     ratios = pinion_ratios(system, laws)
-    length = 2.0 * pi / speed * period_length(laws, [ratios[p] for p in system.mesh_ports[:, 0]], period)
-    steps = max(least_steps, ceil(length * internal_rate))
+    turns = period_length(laws, [ratios[p] for p in system.mesh_ports[:, 0]], period)
+    length = 2.0 * pi / speed * turns
+    # whole steps per mesh of the first pair: what lies above the step rate then folds back on mesh orders only
+    meshes = round(turns * laws[0].teeth_1)
+    steps = meshes * ceil(max(least_steps, length * internal_rate) / meshes - 1e-9)
     model = model or modal_model(system, laws, slow_loads(system, tuple(drags)), cutoff=cutoff)
     wound, drive, stiffness = wound_state(
         system, laws, speed=speed, torque=torque, twist=twist, drag_torques=drags
@@ -214,7 +217,8 @@ def periodic_by_time(
     if not search.steady:
         warnings.append(
             f"periodic response at {speed * 30 / pi:.1f} rpm: residual {search.residual:.2e} after {done} "
-            f"periods, limit {tolerance:.0e}; allow a longer time or another period (subharmonic motion has none of this length)"
+            f"periods, limit {tolerance:.0e}; allow a longer time or another period "
+            "(subharmonic motion has none of this length)"
         )
     if march.unsettled:
         warnings.append(f"{march.unsettled} contact iterations ended early, limit 0; use more internal steps")

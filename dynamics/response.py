@@ -100,7 +100,7 @@ class TimeResponse:
         the channels were not kept
     slots : least, mean and greatest dynamic torque of each mesh and time without contact, per slot
     lift_off : intervals in which a mesh lost contact for longer than the asked share of a mesh period
-    energy : the balance of the run
+    energy : the balance of the run, None if no accounts were kept
     drive_limited_share : share of samples at the torque limit of the motor
     speed_missed : largest lag behind the speed command at the end of the schedule [rad/s]
     end : state at the end; unsettled_steps : contact iterations that ended early
@@ -115,7 +115,7 @@ class TimeResponse:
     torque: Array
     slots: Slots
     lift_off: tuple[LiftOff, ...]
-    energy: EnergyBook
+    energy: EnergyBook | None
     drive_limited_share: float
     speed_missed: float
     end: DriveState
@@ -154,6 +154,7 @@ def run_schedule(
     slot: float = 0.01,
     lift_off_share: float = 0.05,
     keep_channels: bool = True,
+    keep_accounts: bool = True,
     cutoff: float = DEFAULT_CUTOFF,
     start: DriveState | None = None,
 ) -> TimeResponse:
@@ -166,6 +167,8 @@ def run_schedule(
     speed_control : of the motor; default ``default_speed_control``
     sample_rate : of controller and kept channels [Hz]; substeps : internal steps per sample, 8 or more
     slot : length of the envelope slots [s]
+    keep_accounts : integrate the energy of every joint and contact; without it the run is about twice as fast and
+        ``energy`` is None
     lift_off_share : a gap without contact counts from this share of the mesh period on [-]
     start : state at the first time; default: turning rigidly at the first speed, wound up by the first torque
 
@@ -198,13 +201,16 @@ def run_schedule(
     )
     march = TimeMarch(
         system, laws, start or wound, step=1.0 / sample_rate / substeps, substeps=substeps, drags=names,
-        drive_torque=drive, drag_torques=tuple(drag_now.values()), record_all=False,
+        drive_torque=drive, drag_torques=tuple(drag_now.values()), record_all=False, accounts=keep_accounts,
         model=modal_model(system, laws, slow_loads(system, names), cutoff=cutoff),
     )  # fmt: skip
     control = speed_control or default_speed_control(system, laws, torque_limit)
     control = replace(control, torque_limit=torque_limit)
     march.preset_speed_integral(drive)
     bracing = None if command.torque is None else TorqueControl(stiffness=stiffness)
+    feed_forward = (
+        (np.zeros(1), np.zeros(1)) if command.torque is None else _twists(system, laws, command.torque)
+    )
     tables, ends = _drag_tables(curves)
     inertia = float(system.inertia @ ratios**2) / drive_ratio**2
 
@@ -223,12 +229,13 @@ def run_schedule(
         target = np.interp(at, command.time, command.speed) * drive_ratio
         given = np.zeros((count, 4))
         given[:, 0] = inertia * np.diff(target) * sample_rate
-        given[:, 1] = wound.twist if command.twist is None else np.interp(at[1:], command.time, command.twist)
+        if command.twist is not None:
+            given[:, 1] = np.interp(at[1:], command.time, command.twist)
         given[:, 2] = target[1:]
         if command.torque is not None:
             asked = np.interp(at[1:], command.time, command.torque)
             given[:, 3] = asked
-            given[:, 1] += (asked - command.torque[0]) / stiffness
+            given[:, 1] = np.interp(asked, *feed_forward)
         offsets = None
         if command.offsets is not None:
             offsets = np.column_stack([np.interp(at[1:], command.time, row) for row in command.offsets.T])
@@ -260,7 +267,9 @@ def run_schedule(
         torque=np.hstack(torques) if keep_channels else np.empty((len(laws), 0)),
         slots=statistics.slots(float(command.time[0])),
         lift_off=statistics.lift_off(float(command.time[0])),
-        energy=EnergyBook(
+        energy=None
+        if not keep_accounts
+        else EnergyBook(
             input_work=float(accounts.slow_work[0]),
             bracing_work=float(accounts.slow_work[1]),
             friction=accounts.friction,
@@ -303,6 +312,8 @@ class LowPass:
             self._started = True
         self._held = np.hstack((self._held, values))
         n_taps = len(self._taps)
+        if self._held.shape[1] < n_taps:
+            return np.empty((len(values), 0))
         count = max(0, (self._held.shape[1] - n_taps) // self._factor + 1)
         windows = np.lib.stride_tricks.sliding_window_view(self._held, n_taps, axis=1)[:, :: self._factor]
         result: Array = windows[:, :count] @ self._taps
@@ -332,6 +343,13 @@ def _check(command: Command, n_meshes: int, substeps: int, sample_rate: float) -
         raise ValueError(
             f"substeps = {substeps}, limit 8: the sample rate of {sample_rate:g} Hz is no integration step"
         )
+
+
+def _twists(system: LinearSystem, laws: Sequence[MeshLaw], torque: Array) -> tuple[Array, Array]:
+    """Return torques of the first mesh over the range of a command and the static twists that make them."""
+    least, greatest = float(torque.min()), float(torque.max())
+    levels = np.linspace(least, greatest, 9) if greatest > least else np.array([least])
+    return levels, np.array([wound_state(system, laws, speed=0.0, torque=float(t))[0].twist for t in levels])
 
 
 def _drag_speed(system: LinearSystem, ratios: Array, name: str) -> float:

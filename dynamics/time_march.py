@@ -162,7 +162,7 @@ class TimeMarch:
             ports=ports,
             slow=slow,
             offset=self.packed.offsets.copy(),
-            memory=np.zeros(4),
+            memory=np.zeros(5),
             speeds=speeds,
             powers=powers,
             work=np.zeros(n_power),
@@ -171,7 +171,8 @@ class TimeMarch:
         self._carried.state[:] = modal_state(
             self.model, self.propagator, start.angles, start.speeds, self._inputs()
         )
-        self._carried.memory[2:] = self.mean_torque_of_first_mesh(), speeds[0]
+        torque = self.mean_torque_of_first_mesh()
+        self._carried.memory[2:] = torque, speeds[0], torque
 
     def advance(
         self,

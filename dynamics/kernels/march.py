@@ -91,7 +91,7 @@ class Carried(NamedTuple):
     offset: Array
     """(n_meshes,) imposed approach."""
     memory: Array
-    """Integral of the speed controller, correction of the twist, averaged torque, averaged speed."""
+    """Integral of the speed controller, correction of the twist, then averages: torque, speed, asked torque."""
     speeds: Array
     """(n_slow,) speed of every slow input."""
     powers: Array
@@ -118,7 +118,8 @@ def _slow_targets(
             memory[0] += control[1] * error
     if control[4] > 0.0:
         memory[2] += control[5] * (torque - memory[2])
-        memory[1] += control[4] * (given[3] - memory[2])
+        memory[4] += control[5] * (given[3] - memory[4])
+        memory[1] += control[4] * (memory[4] - memory[2])
     target[1] = given[1] + memory[1]
     last = drags.shape[1] - 1
     for i in range(drags.shape[0]):

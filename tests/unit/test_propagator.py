@@ -1,0 +1,194 @@
+"""The modal propagator against the matrix exponential, its rigid modes, its truncation and its refusals."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.linalg
+
+from dynamics.linear_system import LinearSystem
+from dynamics.propagator import discretise, modal_model, modal_state, scaled_state
+from dynamics.time_march import DriveState, TimeMarch, slow_loads
+from tests.mesh_example import chain, spur_law, two_bodies
+
+OPEN = spur_law(backlash=1.0, offset=-0.5)
+"""A mesh whose flanks never touch: the linear part alone."""
+
+
+def first_order_hold(
+    system: LinearSystem, state: np.ndarray, torque: np.ndarray, step: float, steps: int
+) -> np.ndarray:
+    """(angles, speeds) after ``steps`` with a motor torque that is linear between ``torque[i]``: Van Loan."""
+    n = len(system.inertia)
+    matrix = np.zeros((2 * n + 2, 2 * n + 2))
+    matrix[:n, n : 2 * n] = np.eye(n)
+    matrix[n : 2 * n, :n] = -system.stiffness / system.inertia[:, None]
+    matrix[n : 2 * n, n : 2 * n] = -system.damping / system.inertia[:, None]
+    matrix[n + system.drive_dof, 2 * n] = 1.0 / system.inertia[system.drive_dof]
+    matrix[2 * n, 2 * n + 1] = 1.0
+    propagate = scipy.linalg.expm(matrix * step)
+    for i in range(steps):
+        y = propagate @ np.concatenate((state, [torque[i], (torque[i + 1] - torque[i]) / step]))
+        state = y[: 2 * n]
+    return state
+
+
+@pytest.mark.parametrize("joint", [(1e6, 0.0), (1e6, 1e3), (1e6, 0.3)])
+@pytest.mark.parametrize("bearing", [0.0, 7e-4])
+@pytest.mark.parametrize("step", [3e-6, 2e-4])
+def test_march_is_the_matrix_exponential(joint: tuple[float, float], bearing: float, step: float) -> None:
+    # a spline of 1e3 N m s/rad has a real pole at 2e6 1/s beside its slow one at 1e3 1/s
+    system = chain(joint=joint, bearing=bearing)
+    rng = np.random.default_rng(3)
+    torque = rng.normal(size=41) * 10.0
+    angles, speeds = rng.normal(size=12) * 1e-4, rng.normal(size=12)
+    start = DriveState(angles=angles, speeds=speeds)
+    march = TimeMarch(system, [OPEN], start, step=step, drive_torque=torque[0], cutoff=np.inf)
+    given = np.zeros((40, 4))
+    given[:, 0] = torque[1:]
+    march.advance(given)
+    exact = first_order_hold(system, np.concatenate((angles, speeds)), torque, step, 40)
+    end = march.state()
+    np.testing.assert_allclose(end.speeds, exact[12:], atol=1e-9 * np.abs(exact[12:]).max())
+    np.testing.assert_allclose(end.angles, exact[:12], atol=1e-9 * np.abs(exact[:12]).max())
+
+
+def test_one_long_step_is_many_short_ones() -> None:
+    system = chain(bearing=7e-4)
+    start = DriveState(angles=np.zeros(12), speeds=np.full(12, 50.0))
+    ends = []
+    for steps in (1, 1000):
+        march = TimeMarch(system, [OPEN], start, step=1e-2 / steps, drive_torque=5.0, cutoff=np.inf)
+        given = np.zeros((steps, 4))
+        given[:, 0] = 5.0
+        march.advance(given)
+        ends.append(march.state())
+    np.testing.assert_allclose(ends[0].speeds, ends[1].speeds, rtol=1e-10)
+    np.testing.assert_allclose(ends[0].angles, ends[1].angles, rtol=1e-10)
+
+
+def test_substeps_carry_linear_inputs_exactly() -> None:
+    system = chain(bearing=7e-4)
+    start = DriveState(angles=np.zeros(12), speeds=np.zeros(12))
+    ramp = np.linspace(0.0, 8.0, 11)[1:]
+    ends = []
+    for substeps in (1, 16):
+        march = TimeMarch(system, [OPEN], start, step=1e-4 / substeps, substeps=substeps, cutoff=np.inf)
+        given = np.zeros((10, 4))
+        given[:, 0] = ramp
+        march.advance(given)
+        ends.append(march.state().speeds)
+    np.testing.assert_allclose(ends[0], ends[1], rtol=1e-10)
+
+
+def test_lossless_system_keeps_its_energy() -> None:
+    system = chain(joint=(1e6, 0.0))
+    rng = np.random.default_rng(5)
+    start = DriveState(angles=rng.normal(size=12) * 1e-4, speeds=100.0 + rng.normal(size=12))
+    march = TimeMarch(system, [OPEN], start, step=3.1e-6, cutoff=np.inf)
+    by_hand = 0.5 * system.inertia @ start.speeds**2 + 0.5 * start.angles @ system.stiffness @ start.angles
+    assert march.energy() == pytest.approx(by_hand, rel=1e-12)
+    march.advance(np.zeros((20000, 4)))
+    assert march.energy() == pytest.approx(by_hand, rel=1e-11)
+
+
+def test_undamped_rigid_rotation_does_not_drift() -> None:
+    system = chain(joint=(1e6, 0.0))
+    speeds = np.repeat([1234.5, 1234.5 * 99 / 102], 6)
+    march = TimeMarch(system, [OPEN], DriveState(angles=np.zeros(12), speeds=speeds), step=1e-5)
+    march.advance(np.zeros((50000, 4)))
+    np.testing.assert_allclose(march.state().speeds, speeds, rtol=1e-12)
+    np.testing.assert_allclose(march.state().angles, 0.5 * speeds, rtol=1e-11)
+
+
+def test_truncation_keeps_the_static_effect_of_fast_modes() -> None:
+    # a step of torque at the mesh port: the angle it ends at must hold the flexibility of the dropped modes
+    system = chain(joint=(2e5, 20.0), bearing=0.05)
+    loads = slow_loads(system, ())
+    full = modal_model(system, [OPEN], loads, cutoff=np.inf)
+    short = modal_model(system, [OPEN], loads, cutoff=3e3)
+    assert 0 < short.dropped < len(full.eigenvalues)
+    at_rest = np.zeros(12)
+    unit = np.array([1.0, 0.0, 0.0, 0.0])
+    step, steps = 1e-2, 2000
+    results = []
+    for model in (full, short):
+        propagator = discretise(model, step)
+        state = modal_state(model, propagator, at_rest, at_rest, np.zeros(4))
+        half = len(state) // 2
+        z = state[:half] + 1j * state[half:]
+        decay = propagator.modes.decay[0] + 1j * propagator.modes.decay[1]
+        push = propagator.modes.inputs[0, :half] + 1j * propagator.modes.inputs[0, half:]
+        for _ in range(steps):
+            z = decay * z + push
+        final = np.concatenate((z.real, z.imag))
+        results.append(scaled_state(model, propagator, final, unit)[12:])
+    full_elastic = results[0] / full.frequencies[2:]
+    short_elastic = results[1] / short.frequencies[2:]
+    port = full.shapes[5, 2:]
+    assert port @ short_elastic == pytest.approx(port @ full_elastic, rel=1e-6)
+
+
+def test_state_goes_in_and_out_unchanged() -> None:
+    system = chain(joint=(1e6, 2.0))
+    rng = np.random.default_rng(11)
+    start = DriveState(angles=rng.normal(size=12), speeds=rng.normal(size=12), twist=0.25)
+    end = TimeMarch(system, [OPEN], start, step=1e-6, cutoff=np.inf).state()
+    np.testing.assert_allclose(end.angles, start.angles, atol=1e-12)
+    np.testing.assert_allclose(end.speeds, start.speeds, atol=1e-12)
+    assert end.twist == 0.25
+
+
+def test_two_marches_are_equal_to_the_last_bit() -> None:
+    forces = []
+    for _ in range(2):
+        start = DriveState(angles=np.array([1e-3, 0.0]), speeds=np.array([100.0, 97.0]))
+        march = TimeMarch(two_bodies(), [spur_law(damping=500.0, friction=0.05)], start, step=3e-6)
+        forces.append(march.advance(np.zeros((500, 4))).force)
+    assert np.array_equal(*forces)
+    assert forces[0].max() > 0.0
+
+
+def test_refusals_name_the_fault() -> None:
+    system, loads = chain(), slow_loads(chain(), ())
+    skew = system.damping.copy()
+    skew[0, 1] += 1.0
+    with pytest.raises(ValueError, match="symmetric"):
+        modal_model(replace(system, damping=skew), [OPEN], loads)
+    crossed = system.stiffness.copy()
+    crossed[0, 6] = crossed[6, 0] = 1.0
+    with pytest.raises(ValueError, match="couples line"):
+        modal_model(replace(system, stiffness=crossed), [OPEN], loads)
+    held = system.stiffness.copy()
+    held[0, 0] += 1e5
+    with pytest.raises(ValueError, match="free to rotate"):
+        modal_model(replace(system, stiffness=held), [OPEN], loads)
+    with pytest.raises(ValueError, match="torn"):
+        modal_model(replace(system, stiffness=np.zeros((12, 12))), [OPEN], loads)
+    with pytest.raises(ValueError, match="mesh laws"):
+        modal_model(system, [OPEN, OPEN], loads)
+    with pytest.raises(ValueError, match="inertia of line 0/0"):
+        modal_model(replace(system, inertia=np.where(np.arange(12) == 0, 0.0, 1.0)), [OPEN], loads)
+    with pytest.raises(ValueError, match="step"):
+        discretise(modal_model(system, [OPEN], loads), 0.0)
+    with pytest.raises(ValueError, match="no drag load named windage"):
+        slow_loads(system, ("windage",))
+
+
+def test_critical_damping_is_still_accurate() -> None:
+    # the only elastic mode of a line damped critically: a double real pole whose two vectors nearly coincide
+    k, j = 1e4, 1e-2
+    joint = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    damping = np.kron(np.eye(2), np.sqrt(2.0 * k * j) * joint)
+    system = replace(
+        chain(2), inertia=np.full(4, j), stiffness=np.kron(np.eye(2), k * joint), damping=damping
+    )
+    torque = np.linspace(0.0, 30.0, 21)
+    march = TimeMarch(
+        system, [OPEN], DriveState(angles=np.zeros(4), speeds=np.zeros(4)), step=1e-4, cutoff=np.inf
+    )
+    given = np.zeros((20, 4))
+    given[:, 0] = torque[1:]
+    march.advance(given)
+    exact = first_order_hold(system, np.zeros(8), torque, 1e-4, 20)
+    np.testing.assert_allclose(march.state().speeds, exact[4:], atol=1e-6 * np.abs(exact[4:]).max())
