@@ -64,7 +64,7 @@ def _t2() -> float:
 
 
 def _t4() -> float:
-    """Temperature [degC] at (0.6, 0.2): plate 0.6 x 1 m, k 52, bottom 100 degC, h 750 to 0 degC right and top."""
+    """Temperature [degC] at (0.6, 0.2): plate 0.6 x 1 m, bottom 100 degC, h 750 on right and top."""
     mesh = box_mesh((0.6, 1.0, 0.02), (18, 30, 1))
     film = constant(750.0, SOURCE)
     conditions = [
