@@ -9,6 +9,9 @@ from rigdesign.passes import PassResult, feedback_of, heat_residual, one_pass
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint, growth_change, temperature_change, torque_change
 
+GROWTH_FROM = 1.0
+"""Change of temperature in a pass [K] below which the next one expands the housings afresh."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Residual:
@@ -58,7 +61,8 @@ def solve_point(
     first: PassResult | None = None
     done: PassResult | None = None
     for _ in range(numerics.coupling_passes):
-        done = one_pass(rig, point, feedback, setting, done)
+        fresh = not residuals or residuals[-1].temperature < GROWTH_FROM
+        done = one_pass(rig, point, feedback, setting, done, fresh_growth=fresh)
         first = first or done
         after = feedback_of(rig, done).hold(hold, cold)
         heat = 0.0 if {"bearing_heat", "wall_heat"} & hold else heat_residual(rig, done)
@@ -70,7 +74,7 @@ def solve_point(
             )
         )
         feedback = after
-        if _settled(residuals[-1], rig):
+        if fresh and _settled(residuals[-1], rig):
             return PointResult(
                 point=point, cold=first, last=done, setting=setting, residuals=tuple(residuals)
             )

@@ -133,13 +133,11 @@ def drag_torques(losses: Sequence[PlacedLoss], rig: Rig, speed: float) -> dict[s
     """Torque with which each bearing, gear windage and seal brakes its shaft [N m], by drivetrain name.
 
     Oil acceleration and squeezing brake the pinion of their mesh. Tooth friction is not among ``losses``: the
-    mesh law holds it. Constant bearing drag is in the damping matrix.
+    mesh law holds it. Constant bearing drag is in the damping matrix, and then nothing else brakes, as in P2's
+    own simulation.
     """
     torques: dict[str, float] = {}
-    constant = rig.case.losses.bearing_drag == "constant"
-    for placed in losses:
-        if placed.loss.kind == "bearing" and constant:
-            continue
+    for placed in losses if rig.case.losses.bearing_drag == "film" else ():
         name, shaft = _brake(rig, placed)
         omega = rig.shaft_speed(shaft, speed)
         if omega > 0.0:

@@ -48,8 +48,14 @@ def one_pass(
     feedback: Feedback,
     setting: Setting | None,
     before: PassResult | None = None,
+    *,
+    fresh_growth: bool = True,
 ) -> PassResult:
-    """Compute one pass; ``before`` gives the temperature fields to start from."""
+    """Compute one pass; ``before`` gives the fields to start from.
+
+    fresh_growth : expand the housings; else the growth of ``before`` is carried on, which saves time while the
+        temperatures still move a lot. A pass that ends the loop must be fresh.
+    """
     models = mesh_models(rig, point, feedback)
     bearings = solve_bearings(rig, point, feedback)
     turning = rotating_losses(rig, point, feedback, models, bearings)
@@ -77,10 +83,21 @@ def one_pass(
         losses=losses,
         streams=tuple(oil_streams(rig, losses, feedback.bearing_heat, feedback.wall_heat)),
         fields=fields,
-        growth={name: expand_housing(rig, field) for name, field in fields.items()},
+        growth=_growth(rig, fields, before, fresh_growth),
         bearing_heat=bearing_heat,
         wall_heat=wall_heat,
     )
+
+
+def _growth(
+    rig: Rig, fields: Mapping[str, HousingField], before: PassResult | None, fresh: bool
+) -> dict[str, HousingGrowth]:
+    if before is not None and not fresh:
+        return dict(before.growth)
+    return {
+        name: expand_housing(rig, field, None if before is None else before.growth[name])
+        for name, field in fields.items()
+    }
 
 
 def feedback_of(rig: Rig, done: PassResult) -> Feedback:

@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.ramp import Kind, Schedule, Stage
-from dynamics.response import Command, DragCurve, TimeResponse, run_schedule
+from dynamics.ramp import Command, Kind, Schedule, Stage, s_function
+from dynamics.response import Command as RunCommand
+from dynamics.response import DragCurve, TimeResponse, run_schedule
 from rigdesign.case.schedule import StageValues
 from rigdesign.errors import NotConvergedError
 from rigdesign.loads import Setting, shifted_laws
@@ -27,6 +28,8 @@ SLOT = 0.01
 """Length of the envelope slots [s]."""
 LEAST_TORQUE = 1.0
 """Bracing torque [N m] that is kept at standstill: the flanks just touch."""
+DRIVE_ONSET = 0.1
+"""Time over which a constant drive torque is applied by the S-function [s]."""
 COMMAND_INTERVAL = 1e-3
 """Interval of the command samples [s]."""
 
@@ -72,21 +75,43 @@ def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -
     response = run_schedule(
         rig.system,
         laws,
-        Command(
+        RunCommand(
             time=command.time,
-            speed=command.speed,
+            speed=_speed_command(rig, schedule, command),
             torque=np.maximum(command.torque, LEAST_TORQUE) if controlled else None,
             twist=None if controlled else np.full_like(command.time, setting.twist),
         ),
-        torque_limit=motor.torque_limit,
+        torque_limit=min([motor.torque_limit, *_drive_torques(rig)]),
         drags=drag_curves(rig, warm, feedback),
         sample_rate=numerics.sample_rate,
         substeps=numerics.internal_steps,
         slot=SLOT,
         keep_channels=False,
+        keep_accounts=False,
     )
     _require_speed(rig, schedule, response)
     return response
+
+
+def _drive_torques(rig: Rig) -> list[float]:
+    """Constant drive torques that stages ask for [N m]."""
+    return [stage.drive_torque for stage in rig.case.schedule.resolved() if stage.drive_torque is not None]
+
+
+def _speed_command(rig: Rig, schedule: Schedule, command: Command) -> NDArray[np.float64]:
+    """Speed over time [rad/s]; a stage with a constant drive torque asks for its end speed at once.
+
+    The controller then stands at its torque limit until the speed is there: the stage's duration is the most it
+    may take.
+    """
+    speed = command.speed.copy()
+    for index, stage in enumerate(rig.case.schedule.resolved()):
+        if stage.drive_torque is not None:
+            own = command.stage == index
+            since = command.time[own] - command.time[own][0]
+            start, end = schedule.stages[index].speed
+            speed[own] = start + (end - start) * s_function(since / DRIVE_ONSET)
+    return speed
 
 
 def drag_curves(rig: Rig, warm: PassResult, feedback: Feedback) -> dict[str, DragCurve]:

@@ -102,4 +102,6 @@ class Adiabatic:
     surface: str
 
 
-BoundaryCondition = Film | Radiation | Exchange | PrescribedTemperature | SurfaceSource | BodySource | Adiabatic
+BoundaryCondition = (
+    Film | Radiation | Exchange | PrescribedTemperature | SurfaceSource | BodySource | Adiabatic
+)

@@ -87,11 +87,21 @@ class ElasticSetup:
         """(n_nodes,) alpha (T - T0); a node between bodies takes one of their alphas."""
         return self._alpha * (temperature - reference)
 
-    def solve(self, temperature: FloatArray, reference: float, tolerance: float = 1e-8) -> Displacement:
-        """Displacement under a nodal temperature (n_nodes,) [K]; raises NotConverged with its residuals."""
+    def solve(
+        self,
+        temperature: FloatArray,
+        reference: float,
+        tolerance: float = 1e-8,
+        start: FloatArray | None = None,
+    ) -> Displacement:
+        """Displacement under a nodal temperature (n_nodes,) [K]; raises NotConverged with its residuals.
+
+        start : (n_nodes, 3) displacement of a neighbouring temperature field [m]
+        """
         load = self.load(temperature, reference)
         right = np.where(self.fixed, 0.0, load).ravel()
-        solution = conjugate_gradient(self.matrix, right, self.multigrid, tolerance=tolerance)
+        first = None if start is None else start.ravel()
+        solution = conjugate_gradient(self.matrix, right, self.multigrid, start=first, tolerance=tolerance)
         values = solution.values.reshape(-1, 3)
         rows, columns, blocks = self._held_rows
         forces = np.zeros_like(values)

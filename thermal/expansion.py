@@ -28,6 +28,8 @@ class Expansion:
 
     displacement: FloatArray
     """(n_nodes, 3) [m], relative to the foot, shafts placed in their bearings."""
+    supported: FloatArray
+    """(n_nodes, 3) [m] on the supports of the solve, every piece for itself; a start for the next solve."""
     bearings: dict[str, BearingGrowth]
     seals: dict[str, SealGrowth]
     shafts: dict[str, ShaftGrowth]
@@ -47,12 +49,14 @@ def expand(
     *,
     reuse: ExpansionSetup | None = None,
     tolerance: float = 1e-8,
+    start: Expansion | None = None,
 ) -> Expansion:
     """Expand a gearbox from ``reference_temperature`` [K], at which the model's dimensions hold.
 
     temperature : (n_nodes,) [K]
     elastic : body -> (Young's modulus [Pa], Poisson's ratio, expansion coefficient [1/K])
     reuse : setup of the same model and materials; tolerance : of the linear solve's residual
+    start : hot shape of a neighbouring temperature field, which saves iterations
 
     Raises ElasticError (a ValueError) for input that cannot be computed, NotConverged (a RuntimeError with
     its residuals) if the linear solve stalls.
@@ -65,10 +69,13 @@ def expand(
             f"temperature of shape {temperature.shape}: need one finite value per node, "
             f"({len(model.mesh.points)},)"
         )
-    solution = setup.elastic.solve(temperature, reference_temperature, tolerance)
+    solution = setup.elastic.solve(
+        temperature, reference_temperature, tolerance, None if start is None else start.supported
+    )
     shape = HotShape(setup, temperature, reference_temperature, solution.values)
     return Expansion(
         displacement=shape.displacement,
+        supported=solution.values,
         bearings={b.name: shape.bearing(b) for b in model.bearings},
         seals={s.name: shape.seal(s) for s in model.seals},
         shafts={s.name: shape.shaft(s) for s in model.shafts},

@@ -59,4 +59,5 @@ class Losses(Part):
     squeeze_share: float = Field(default=0.0, ge=0.0, le=0.10)
     """Squeezing of oil out of the mesh, as a share of the mesh loss."""
     bearing_drag: Literal["film", "constant"] = "film"
-    """film: from the bearing solution; constant: ``torsional_damping`` of each bearing."""
+    """film: from the bearing solution; constant: ``torsional_damping`` of each bearing, and
+    nothing else brakes the shafts (P2's simulation)."""
