@@ -32,7 +32,9 @@ def test_one_sided_rules(
     assert check.verdict == verdict
 
 
-@pytest.mark.parametrize(("value", "margin", "verdict"), [(1.0, -1.0, "fail"), (3.0, 1.0, "pass"), (9.0, -4.0, "fail")])
+@pytest.mark.parametrize(
+    ("value", "margin", "verdict"), [(1.0, -1.0, "fail"), (3.0, 1.0, "pass"), (9.0, -4.0, "fail")]
+)
 def test_window(value: float, margin: float, verdict: str) -> None:
     check = hold(rule(comparison="within", upper_limit=5.0), value)
     assert check.margin == pytest.approx(margin)

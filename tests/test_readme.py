@@ -1,0 +1,28 @@
+"""What the README says is true: its script runs, its package line is the one the doctor prints."""
+
+import re
+from pathlib import Path
+
+from rigdesign.system import GMSH_LIBRARIES
+
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_library_script_runs(capsys) -> None:
+    script = re.search(r"```python\n(.*?)```", README, re.DOTALL)
+    assert script is not None
+    exec(compile(script[1], "README.md", "exec"), {})
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] in ("pass", "warn", "fail")
+    assert all(len(line.split()) > 2 for line in lines[1:])
+
+
+def test_the_package_line_holds_every_library_of_gmsh() -> None:
+    line = re.search(r"^apt-get install .*--no-install-recommends (.*)$", README, re.MULTILINE)
+    assert line is not None
+    assert set(GMSH_LIBRARIES.values()) <= set(line[1].split())
+
+
+def test_there_are_exactly_two_commands_for_a_fresh_machine() -> None:
+    commands = re.findall(r"^python3 -m venv .*$", README, re.MULTILINE)
+    assert [("check" in command, "pytest" in command) for command in commands] == [(True, False), (False, True)]
