@@ -93,9 +93,19 @@ def _mesh_model(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, 
         n_slices=numerics.slices_helical if pair.helix_angle else numerics.slices_spur,
         damping=entry.damping,
         friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
-        offset=feedback.tooth_growth[name] * math.tan(pair.base_helix_angle),
+        offset=feedback.tooth_growth[name] * math.tan(pair.base_helix_angle)
+        + flank_growth(rig.pairs[name], pair),
     )
     return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law)
+
+
+def flank_growth(cold: GearPair, warm: GearPair) -> float:
+    """Approach by which the front flanks of a warm pair touch earlier than cold [m].
+
+    Teeth grow on both sides of their middle, so half of the lost backlash comes off each flank; in a held
+    bracing mode it winds up the loop. A pair that jams has lost no more than the backlash it had.
+    """
+    return 0.5 * (max(cold.backlash_along_path, 0.0) - max(warm.backlash_along_path, 0.0))
 
 
 def mesh_friction(
