@@ -25,7 +25,9 @@ if TYPE_CHECKING:
     from rigdesign.study_grid import Variation
 
 NAMED_CURVES = 8
-"""Checks drawn in colour with their name: those that come nearest to their limit or break it."""
+"""Checks drawn in colour with their name: those that move and come nearest to their limit or break it."""
+LEAST_MOVE = 0.05
+"""Change of a margin over the study from which it counts as moved [% of the limit]."""
 FLOOR = -100.0
 """Lowest margin drawn [% of the limit]."""
 
@@ -70,7 +72,9 @@ def _curves_of_checks(axes: "Axes", positions: list[float], points: "Sequence[St
                 curve = curves.setdefault(check["id"], dict.fromkeys(positions, nan))
                 curve[x] = _margin(check["utilisation"])
                 titles[check["id"]] = check["title"]
-    nearest = sorted(curves, key=lambda identity: _lowest(curves[identity].values()))
+    nearest = sorted(
+        curves, key=lambda identity: (not _moves(curves[identity]), _lowest(curves[identity].values()))
+    )
     for identity in nearest[NAMED_CURVES:]:
         axes.plot(*zip(*curves[identity].items(), strict=True), color=GRID, linewidth=1.0, zorder=1.5)
     for colour, identity in zip(SERIES, nearest[:NAMED_CURVES], strict=False):
@@ -82,7 +86,18 @@ def _curves_of_checks(axes: "Axes", positions: list[float], points: "Sequence[St
             label=_label(titles[identity]),
         )
     if len(nearest) > NAMED_CURVES:
-        axes.plot([], [], color=GRID, label=f"{len(nearest) - NAMED_CURVES} checks with more margin")
+        axes.plot(
+            [],
+            [],
+            color=GRID,
+            label=f"{len(nearest) - NAMED_CURVES} checks with more margin or none that moves",
+        )
+
+
+def _moves(curve: dict[float, float]) -> bool:
+    """Whether the margin changes over the study; a rule the input does not touch is no news."""
+    known = [value for value in curve.values() if not isnan(value)]
+    return len(known) > 1 and max(known) - min(known) > LEAST_MOVE
 
 
 def _curves_of_minimum(
