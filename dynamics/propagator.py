@@ -23,7 +23,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from dynamics.kernels import DiscreteModes
+from dynamics.kernels import LANES, N_TABLE, DiscreteModes
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
 
@@ -188,12 +188,11 @@ def discretise(model: ModalModel, step: float, *, with_losses: bool = True) -> P
         through_new[at] = (seen[at] @ (step**2 * phi_3 * model.inputs)).real + dropped + dropped_rate
     fast = 2 * model.n_meshes
     discrete = DiscreteModes(
-        decay=np.ascontiguousarray(np.stack((decay.real, decay.imag))),
-        inputs=_real_columns(driven[:, :fast]),
-        rows=np.vstack((np.hstack((rows.real, -rows.imag)), np.zeros((-n_rows % 4, 2 * rows.shape[1])))),
-        through_old=_padded(through_old[:, :fast].T),
-        through_new=_padded(through_new[:, :fast].T),
-        slow_inputs=_real_columns(driven[:, fast:]),
+        tables=_tables(decay, driven[:, :fast].T),
+        rows=_filled(_lanes(rows.conj()).T).T.copy(),
+        through_old=_filled(through_old[:, :fast].T),
+        through_new=_filled(through_new[:, :fast].T),
+        slow_inputs=_lanes(driven[:, fast:].T),
         slow_old=np.ascontiguousarray(through_old[:, fast:]),
         slow_new=np.ascontiguousarray(through_new[:, fast:]),
     )
@@ -203,7 +202,7 @@ def discretise(model: ModalModel, step: float, *, with_losses: bool = True) -> P
 def modal_state(
     model: ModalModel, propagator: Propagator, angles: Array, speeds: Array, inputs: Array
 ) -> Array:
-    """Return the marched state ``w`` (2 n_modes,) of a drivetrain at ``angles`` and ``speeds``, both (n,).
+    """Return the marched state ``w`` (n_states,) of a drivetrain at ``angles`` and ``speeds``, both (n,).
 
     ``inputs`` (n_inputs,): mesh torques and slow inputs that act at this instant.
     """
@@ -212,13 +211,13 @@ def modal_state(
         (model.shapes.T @ (model.inertia * speeds), (model.frequencies * moved)[model.n_lines :])
     )
     z = model.to_modes @ scaled - propagator.hold @ inputs
-    return np.concatenate((z.real, z.imag))
+    return _lanes(z)
 
 
 def scaled_state(model: ModalModel, propagator: Propagator, state: Array, inputs: Array) -> Array:
     """Return the scaled coordinates (modal velocities, Omega eta); half their square is the energy [J]."""
-    half = len(state) // 2
-    z = state[:half] + 1j * state[half:] + propagator.hold @ inputs
+    parts = state.reshape(-1, 2, LANES)
+    z = (parts[:, 0] + 1j * parts[:, 1]).ravel()[: len(model.eigenvalues)] + propagator.hold @ inputs
     scaled: Array = (model.to_scaled @ z).real + model.scaled_through @ inputs
     return scaled
 
@@ -318,11 +317,31 @@ def _phi(k: int, x: ComplexArray) -> ComplexArray:
     return np.where(small, series, value)
 
 
-def _real_columns(columns: ComplexArray) -> Array:
-    """Return (n_columns, 2 n_modes): real parts, then imaginary parts, of each column."""
-    return np.ascontiguousarray(np.hstack((columns.real.T, columns.imag.T)))
+def _lanes(values: ComplexArray) -> Array:
+    """Return (..., n_modes) as (..., n_states): groups of LANES real and LANES imaginary parts, filled with zeros."""
+    n = values.shape[-1]
+    groups = -(-n // LANES)
+    whole = np.zeros((*values.shape[:-1], groups * LANES), complex)
+    whole[..., :n] = values
+    split = whole.reshape(*values.shape[:-1], groups, LANES)
+    return np.stack((split.real, split.imag), axis=-2).reshape(*values.shape[:-1], groups * 2 * LANES)
 
 
-def _padded(table: Array) -> Array:
+def _tables(decay: ComplexArray, inputs: ComplexArray) -> Array:
+    """Return ``DiscreteModes.tables`` from decay (n_modes,) and inputs (2 n_meshes, n_modes)."""
+    n_inputs = len(inputs)
+    pairs = -(-n_inputs // 4)
+    whole = np.zeros((4 * pairs, len(decay)), complex)
+    whole[:n_inputs] = inputs
+    pushes = _lanes(whole).reshape(pairs, 4, -1, 2, LANES)
+    tables = np.zeros((pairs, pushes.shape[2], N_TABLE, LANES))
+    tables[0, :, 0:2] = _lanes(decay).reshape(-1, 2, LANES)
+    tables[1:, :, 0] = 1.0  # a further pair adds to a state that has decayed already
+    tables[:, :, 2:6] = pushes[:, :, :, 0].swapaxes(1, 2)
+    tables[:, :, 6:10] = pushes[:, :, :, 1].swapaxes(1, 2)
+    return tables.reshape(pairs, -1)
+
+
+def _filled(table: Array) -> Array:
     """Return the table with columns of zeros up to a multiple of 4."""
     return np.hstack((table, np.zeros((table.shape[0], -table.shape[1] % 4))))

@@ -62,6 +62,10 @@ class TorqueControl:
     time_constant: float = 0.02
 
 
+class MarchDiverged(RuntimeError):  # noqa: N818
+    """A march left the finite numbers."""
+
+
 class Block(NamedTuple):
     """One advance: internal steps and sample values."""
 
@@ -158,7 +162,7 @@ class TimeMarch:
             powers[2 * n_meshes : -1] = slow * speeds
             powers[-1] = start.speeds @ system.damping @ start.speeds
         self._carried = kernels.Carried(
-            state=np.zeros(2 * len(self.model.eigenvalues)),
+            state=np.zeros(self.propagator.modes.rows.shape[1]),
             ports=ports,
             slow=slow,
             offset=self.packed.offsets.copy(),
@@ -193,6 +197,8 @@ class TimeMarch:
         offsets : (n_samples, n_meshes) approach imposed on each mesh [m], in place of the offsets of the laws
         drag_tables : (n_drags, n_table) drag torque over speed, from 0 to ``drag_speeds`` [N m]
         drag_speeds : (n_drags,) last speed of each table [rad/s]
+
+        Raises MarchDiverged if the motion leaves the finite numbers.
         """
         n_meshes, n_slow = len(self.laws), 2 + len(self.drags)
         n_samples = len(given)
@@ -233,7 +239,7 @@ class TimeMarch:
             samples,
         )
         if not np.all(np.isfinite(self._carried.ports)):
-            raise FloatingPointError(
+            raise MarchDiverged(
                 "the march left the finite numbers; check inertias, stiffness and mesh tables"
             )
         none = np.empty((n_meshes, 0))
@@ -308,8 +314,10 @@ class TimeMarch:
         """Change motor torque and twist at once, without a ramp over the next sample."""
         before = self._inputs()
         self._carried.slow[:2] = drive_torque, twist
-        shift = self.propagator.hold @ (before - self._inputs())
-        self._carried.state[:] += np.concatenate((shift.real, shift.imag))
+        still = np.zeros(len(self.model.inertia))
+        self._carried.state[:] += modal_state(
+            self.model, self.propagator, still, still, self._inputs() - before
+        )
 
     def _inputs(self) -> Array:
         return np.concatenate((self._carried.ports[:, :2].ravel(), self._carried.slow))

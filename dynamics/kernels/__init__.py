@@ -13,12 +13,13 @@ from dynamics.kernels.contact import (
     mesh_reactions,
     tooth_pair_forces,
 )
-from dynamics.kernels.march import Carried, DiscreteModes, Orders, march
+from dynamics.kernels.march import N_TABLE, Carried, DiscreteModes, Orders, march
 
 __all__ = [
     "LANES",
     "N_COUNTS",
     "N_PHASE",
+    "N_TABLE",
     "N_VALUES",
     "Carried",
     "DiscreteModes",

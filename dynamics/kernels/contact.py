@@ -97,7 +97,7 @@ def list_by_phase(
     origin = values[m, PHASE] if sign > 0.0 else values[m, BACK_PHASE]
     turned = (origin + sign * values[m, R1] * theta_1) * values[m, PER_PITCH]
     place = (turned - math.floor(turned)) * n_phases
-    j = min(int(place), n_phases - 1)
+    j = max(0, min(int(place), n_phases - 1))  # also where a run that left the finite numbers asks
     f = place - j
     row = (counts[m, FRONT_AT] if sign > 0.0 else counts[m, BACK_AT]) + j
     n = int(contacts_in[row])

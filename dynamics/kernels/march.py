@@ -39,28 +39,31 @@ from dynamics.kernels.contact import (
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+N_TABLE = 10
 MOST_ITERATIONS = 12
 TOLERANCE = 1e-6
 """Share of a mesh torque that the iteration may leave open."""
 
 
 class DiscreteModes(NamedTuple):
-    """Modes at one step length; see ``dynamics.propagator.discretise``."""
+    """Modes at one step length; see ``dynamics.propagator.discretise``.
 
-    decay: Array
-    """(2, n_modes) real and imaginary part."""
-    inputs: Array
-    """(2 n_meshes, 2 n_modes)"""
+    A modal vector is laid out in groups of LANES real parts and LANES imaginary parts, filled up with zeros.
+    """
+
+    tables: Array
+    """(n_pairs, n_groups N_TABLE LANES) for every two meshes: decay (2 rows), inputs of their four torques, real
+    parts and imaginary parts."""
     rows: Array
-    """(n_rows filled up with zeros to a multiple of 4, 2 n_modes)"""
+    """(n_rows, n_states) outputs per modal vector; rows filled up with zeros to a multiple of 4."""
     through_old: Array
-    """(2 n_meshes, n_rows) outputs per mesh torque at the start of the step"""
+    """(2 n_meshes, n_rows) outputs per mesh torque at the start of the step."""
     through_new: Array
-    """the same at its end"""
+    """The same at its end."""
     slow_inputs: Array
-    """(n_slow, 2 n_modes)"""
+    """(n_slow, n_states)"""
     slow_old: Array
-    """(n_rows, n_slow)"""
+    """(n_outputs, n_slow), without filling rows."""
     slow_new: Array
 
 
@@ -83,7 +86,7 @@ class Carried(NamedTuple):
     """What a march carries on; every array is written."""
 
     state: Array
-    """(2 n_modes,) modal state."""
+    """(n_states,) modal state."""
     ports: Array
     """(n_meshes, 6) tau_1, tau_2, both one step earlier, approach, pinion angle."""
     slow: Array
@@ -125,7 +128,7 @@ def _slow_targets(
     for i in range(drags.shape[0]):
         speed = -speeds[2 + i]
         place = min(abs(speed) * per_drag_step[i], last - 1e-9)
-        j = int(place)
+        j = max(0, min(int(place), last - 1))
         value = drags[i, j] + (place - j) * (drags[i, j + 1] - drags[i, j])
         target[2 + i] = value * sliding_direction(speed)
 
@@ -151,33 +154,19 @@ def _hold_slow(
 
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
-def _predict(
-    rows: Array, old: Array, new: Array, state: Array, ports: Array, base: Array, slope: Array, sub: int,
-    wanted: int, tau: Array, outputs: Array,
-) -> None:  # fmt: skip
-    """Extrapolate the mesh torques ``tau`` and fill the first ``wanted`` outputs at the end of the step with them."""
-    for m in range(ports.shape[0]):
-        tau[2 * m] = 2.0 * ports[m, 0] - ports[m, 2]
-        tau[2 * m + 1] = 2.0 * ports[m, 1] - ports[m, 3]
-    n = state.shape[0]
+def _predict(rows: Array, x: Array, outputs: Array, wanted: int) -> None:
+    """Fill the first ``wanted`` outputs at the end of the step, ``x`` holding state, torques and slow inputs."""
     for quad in range((wanted + 3) // 4):
         r = 4 * quad
-        s_0 = base[r] + sub * slope[r]
-        s_1 = base[r + 1] + sub * slope[r + 1]
-        s_2 = base[r + 2] + sub * slope[r + 2]
-        s_3 = base[r + 3] + sub * slope[r + 3]
-        for m in range(ports.shape[0]):
-            for k in range(2):
-                q = 2 * m + k
-                s_0 += old[q, r] * ports[m, k] + new[q, r] * tau[q]
-                s_1 += old[q, r + 1] * ports[m, k] + new[q, r + 1] * tau[q]
-                s_2 += old[q, r + 2] * ports[m, k] + new[q, r + 2] * tau[q]
-                s_3 += old[q, r + 3] * ports[m, k] + new[q, r + 3] * tau[q]
-        for i in range(n):
-            s_0 += rows[r, i] * state[i]
-            s_1 += rows[r + 1, i] * state[i]
-            s_2 += rows[r + 2, i] * state[i]
-            s_3 += rows[r + 3, i] * state[i]
+        s_0 = 0.0
+        s_1 = 0.0
+        s_2 = 0.0
+        s_3 = 0.0
+        for i in range(x.shape[0]):
+            s_0 += rows[r, i] * x[i]
+            s_1 += rows[r + 1, i] * x[i]
+            s_2 += rows[r + 2, i] * x[i]
+            s_3 += rows[r + 3, i] * x[i]
         outputs[r] = s_0
         outputs[r + 1] = s_1
         outputs[r + 2] = s_2
@@ -185,20 +174,30 @@ def _predict(
 
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
-def _advance(decay: Array, inputs: Array, state: Array, ports: Array, pull: Array, pull_step: Array) -> None:
-    """Take the modal state over one step."""
-    n = decay.shape[1]
-    for i in range(n):
-        real = decay[0, i] * state[i] - decay[1, i] * state[n + i] + pull[i]
-        imag = decay[1, i] * state[i] + decay[0, i] * state[n + i] + pull[n + i]
-        state[i] = real
-        state[n + i] = imag
-    for m in range(ports.shape[0]):
-        first = ports[m, 0]
-        second = ports[m, 1]
-        for i in range(2 * n):
-            state[i] += inputs[2 * m, i] * first + inputs[2 * m + 1, i] * second
-    for i in range(2 * n):
+def _advance(tables: Array, x: Array, n_groups: int, torques: int, pull: Array, pull_step: Array) -> None:
+    """Take the modal state at the head of ``x`` over one step; old mesh torques stand in ``x`` from ``torques`` on.
+
+    The first pair of meshes lets the state decay and the slow inputs pull, further pairs add their torques.
+    """
+    for pair in range(tables.shape[0]):
+        t_0, t_1 = x[torques + 4 * pair], x[torques + 4 * pair + 1]
+        t_2, t_3 = x[torques + 4 * pair + 2], x[torques + 4 * pair + 3]
+        first = 1.0 if pair == 0 else 0.0
+        for group in range(n_groups):
+            a = N_TABLE * LANES * group
+            b = 2 * LANES * group
+            for i in range(LANES):
+                real, imag = x[b + i], x[b + LANES + i]
+                decay_r, decay_i = tables[pair, a + i], tables[pair, a + LANES + i]
+                push = pull[b + i] * first
+                push += tables[pair, a + 2 * LANES + i] * t_0 + tables[pair, a + 3 * LANES + i] * t_1
+                push += tables[pair, a + 4 * LANES + i] * t_2 + tables[pair, a + 5 * LANES + i] * t_3
+                turn = pull[b + LANES + i] * first
+                turn += tables[pair, a + 6 * LANES + i] * t_0 + tables[pair, a + 7 * LANES + i] * t_1
+                turn += tables[pair, a + 8 * LANES + i] * t_2 + tables[pair, a + 9 * LANES + i] * t_3
+                x[b + i] = decay_r * real - decay_i * imag + push
+                x[b + LANES + i] = decay_i * real + decay_r * imag + turn
+    for i in range(pull.shape[0]):
         pull[i] += pull_step[i]
 
 
@@ -317,8 +316,7 @@ def march(
     values, counts, starts, data = meshes.values, meshes.counts, meshes.phase_starts, meshes.phase_data
     contacts_in = meshes.phase_counts
     cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
-    decay, inputs, rows, through_old = modes.decay, modes.inputs, modes.rows, modes.through_old
-    through = modes.through_new
+    mode_tables, through = modes.tables, modes.through_new
     state, ports, slow, powers, damping = (
         carried.state,
         carried.ports,
@@ -339,11 +337,24 @@ def march(
     found = np.zeros((n_meshes, 2), np.int64)
     no_pairs = np.empty((2, 0), np.int64)
     pull, pull_step = np.zeros(state.shape[0]), np.zeros(state.shape[0])
-    base, slope = np.zeros(rows.shape[0]), np.zeros(rows.shape[0])
-    outputs = np.zeros(rows.shape[0])
+    base, slope = np.zeros(modes.rows.shape[0]), np.zeros(modes.rows.shape[0])
+    outputs = np.zeros(modes.rows.shape[0])
+    # state, old torques (of an even number of meshes), predicted torques, slow inputs: one row per output
+    n_states = state.shape[0]
+    n_groups = n_states // (2 * LANES)
+    old_at = n_states
+    new_at = old_at + 4 * mode_tables.shape[0]
+    slow_at = new_at + 2 * n_meshes
+    x = np.zeros(slow_at + 2)
+    rows = np.zeros((modes.rows.shape[0], slow_at + 2))
+    rows[:, :n_states] = modes.rows
+    for q in range(2 * n_meshes):
+        rows[:, old_at + q] = modes.through_old[q]
+        rows[:, new_at + q] = through[q]
+    x[:n_states] = state
+    x[slow_at] = 1.0
     tau, target, fresh = np.zeros(2 * n_meshes), np.zeros(n_slow), np.zeros(account.shape[0])
     reactions, rates, reaches = np.zeros((n_meshes, 10)), np.zeros(n_meshes), np.zeros(n_meshes)
-    earlier = np.zeros((n_meshes, 2))
     offset, offset_rate = np.zeros(n_meshes), np.zeros(n_meshes)
     mean_torque = carried.memory[2]
     unsettled = 0
@@ -356,6 +367,8 @@ def march(
         _hold_slow(
             modes.slow_inputs, modes.slow_old, modes.slow_new, slow, target, substeps, pull, pull_step, base, slope
         )  # fmt: skip
+        rows[:, slow_at] = base
+        rows[:, slow_at + 1] = slope
         for m in range(n_meshes):
             offset[m] = carried.offset[m]
             offset_rate[m] = (imposed[sample, m] - carried.offset[m]) / (substeps * step)
@@ -363,8 +376,14 @@ def march(
         for sub in range(substeps):
             share = (sub + 1.0) / substeps
             wanted = n_rows if account.shape[0] > 0 or sub == substeps - 1 else first_slow
-            _predict(rows, through_old, through, state, ports, base, slope, sub, wanted, tau, outputs)
-            _advance(decay, inputs, state, ports, pull, pull_step)
+            for m in range(n_meshes):
+                for k in range(2):
+                    x[old_at + 2 * m + k] = ports[m, k]
+                    tau[2 * m + k] = 2.0 * ports[m, k] - ports[m, 2 + k]
+                    x[new_at + 2 * m + k] = tau[2 * m + k]
+            x[slow_at + 1] = sub
+            _predict(rows, x, outputs, wanted)
+            _advance(mode_tables, x, n_groups, old_at, pull, pull_step)
             settled = False
             attempt = 0
             while attempt < MOST_ITERATIONS and not settled:
@@ -403,8 +422,6 @@ def march(
             if not settled:
                 unsettled += 1
             for m in range(n_meshes):
-                earlier[m, 0] = ports[m, 2]
-                earlier[m, 1] = ports[m, 3]
                 ports[m, 2] = ports[m, 0]
                 ports[m, 3] = ports[m, 1]
                 ports[m, 0] = tau[2 * m]
@@ -420,10 +437,8 @@ def march(
                     history[m, 4, at] = outputs[4 * m + 1]
                     history[m, 5, at] = reactions[m, 0]
             for r in range(first_slow, wanted):
-                for m in range(n_meshes):
-                    for k in range(2):
-                        guess = 2.0 * ports[m, 2 + k] - earlier[m, k]
-                        outputs[r] += through[2 * m + k, r] * (ports[m, k] - guess)
+                for q in range(2 * n_meshes):
+                    outputs[r] += through[q, r] * (tau[q] - x[new_at + q])
             if account.shape[0] > 0:
                 _account(
                     account, powers, fresh, damping, slow, target, share, step, n_rows, outputs, reactions, rates
@@ -437,4 +452,5 @@ def march(
             samples[sample, n_slow + k] = outputs[first_slow + k]
         for m in range(n_meshes):
             carried.offset[m] = imposed[sample, m]
+    state[:] = x[:n_states]
     return unsettled
