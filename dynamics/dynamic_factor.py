@@ -13,8 +13,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.signal import find_peaks
 
-from dynamics.periodic_response import PeriodicResponse
-
 Array = NDArray[np.float64]
 
 
@@ -50,7 +48,6 @@ class DynamicFactorCurve:
     half_peak_to_peak : 1 + half peak-to-peak over mean torque [-]
     mean_torque, amplitude : mean and half peak-to-peak of the dynamic torque [N m]
     lift_off_share : share of time without contact [-]
-    amplification : amplitude over the quasi-static amplitude [-]
     """
 
     speed: Array
@@ -59,7 +56,6 @@ class DynamicFactorCurve:
     mean_torque: Array
     amplitude: Array
     lift_off_share: Array
-    amplification: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,8 +64,8 @@ class Resonance:
 
     mesh : index; speed : of the first pinion, by a parabola through the peak [rad/s]
     factor : greatest over mean torque there [-]; amplitude : half peak-to-peak torque [N m]
-    amplification : over the quasi-static amplitude [-]; prominence : rise of ``factor`` above its
-        surroundings [-]
+    force_share : amplitude over mean torque [-]
+    amplification : amplitude over the level it rises from [-]
     lift_off_share : share of time without contact [-]
     """
 
@@ -77,8 +73,8 @@ class Resonance:
     speed: float
     factor: float
     amplitude: float
+    force_share: float
     amplification: float
-    prominence: float
     lift_off_share: float
 
 
@@ -86,15 +82,12 @@ def factor_curve(
     speed: ArrayLike,
     torques: Sequence[ArrayLike],
     lift_off_share: ArrayLike,
-    *,
-    quasi_static_amplitude: ArrayLike,
 ) -> DynamicFactorCurve:
     """Collect the curve from dynamic torques (n_meshes, n_steps) at each speed.
 
     Parameters
     ----------
     lift_off_share : (n_speeds, n_meshes)
-    quasi_static_amplitude : (n_meshes,) half peak-to-peak torque at a speed far below all resonances [N m]
 
     Raises
     ------
@@ -111,7 +104,6 @@ def factor_curve(
         raise ValueError("speeds must increase; sort the responses, one branch of a jump at a time")
     waves = [np.atleast_2d(np.asarray(torque, float)) for torque in torques]
     amplitude = np.array([0.5 * np.ptp(wave, axis=1) for wave in waves]).T
-    floor = np.maximum(np.asarray(quasi_static_amplitude, float), 1e-300)
     return DynamicFactorCurve(
         speed=speeds,
         factor=np.array([dynamic_factor(wave) for wave in waves]).T,
@@ -119,36 +111,24 @@ def factor_curve(
         mean_torque=np.array([wave.mean(axis=1) for wave in waves]).T,
         amplitude=amplitude,
         lift_off_share=shares.T.copy(),
-        amplification=amplitude / floor[:, None],
-    )
-
-
-def curve_of_responses(
-    responses: Sequence[PeriodicResponse], *, quasi_static_amplitude: ArrayLike
-) -> DynamicFactorCurve:
-    """Return ``factor_curve`` of periodic responses at increasing speeds."""
-    return factor_curve(
-        [response.speed for response in responses],
-        [response.torque for response in responses],
-        [response.lift_off_share for response in responses],
-        quasi_static_amplitude=quasi_static_amplitude,
     )
 
 
 def resonances(curve: DynamicFactorCurve, *, least_prominence: float = 0.02) -> tuple[Resonance, ...]:
-    """Return the peaks of every mesh that stand out by ``least_prominence`` of the factor, by mesh and speed."""
+    """Return the peaks of every mesh that stand out by ``least_prominence`` of the mean torque, by mesh and speed."""
     found: list[Resonance] = []
-    for mesh, factor in enumerate(curve.factor):
-        peaks, properties = find_peaks(factor, prominence=least_prominence)
+    for mesh, amplitude in enumerate(curve.amplitude):
+        share = amplitude / np.abs(curve.mean_torque[mesh])
+        peaks, properties = find_peaks(share, prominence=least_prominence)
         for peak, prominence in zip(peaks, properties["prominences"]):
             found.append(
                 Resonance(
                     mesh=mesh,
-                    speed=_peak_speed(curve.speed[peak - 1 : peak + 2], factor[peak - 1 : peak + 2]),
-                    factor=float(factor[peak]),
-                    amplitude=float(curve.amplitude[mesh, peak]),
-                    amplification=float(curve.amplification[mesh, peak]),
-                    prominence=float(prominence),
+                    speed=_peak_speed(curve.speed[peak - 1 : peak + 2], share[peak - 1 : peak + 2]),
+                    factor=float(curve.factor[mesh, peak]),
+                    amplitude=float(amplitude[peak]),
+                    force_share=float(share[peak]),
+                    amplification=float(share[peak] / max(share[peak] - prominence, 1e-9)),
                     lift_off_share=float(curve.lift_off_share[mesh, peak]),
                 )
             )

@@ -6,9 +6,10 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
-from scipy.signal import find_peaks
 
 from dynamics.bracing import BracingDrift, BracingState, drift
+from dynamics.dynamic_factor import DynamicFactorCurve
+from dynamics.dynamic_factor import resonances as find_resonances
 from dynamics.modes import (
     LoopMode,
     damping_audit,
@@ -192,25 +193,28 @@ def resonances(rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopMode]) 
     if len(points) < 3:
         return []
     limits = rig.case.limits.dynamics
-    share = np.array([0.5 * (p.maximum[mesh] - p.minimum[mesh]) / p.mean[mesh] for p in points])
-    where, found = find_peaks(share, prominence=LEAST_PROMINENCE)
+    curve = DynamicFactorCurve(
+        speed=run.curves.response.speeds,
+        factor=np.array([[p.dynamic_factor[mesh] for p in points]]),
+        half_peak_to_peak=np.array([[p.dynamic_factor_half_peak_to_peak[mesh] for p in points]]),
+        mean_torque=np.array([[p.mean[mesh] for p in points]]),
+        amplitude=np.array([[0.5 * (p.maximum[mesh] - p.minimum[mesh]) for p in points]]),
+        lift_off_share=np.array([[p.lift_off_share[mesh] for p in points]]),
+    )
     teeth = rig.pairs[rig.mesh_names[mesh]].teeth[0]
     rows = []
-    for index, prominence in zip(where, found["prominences"]):
-        level = float(share[index] - prominence)
-        amplification = float(share[index]) / max(level, 1e-9)
-        frequency = points[index].speed * teeth / (2.0 * math.pi)
-        mode, harmonic = _nearest_mode(modes, frequency)
+    for peak in find_resonances(curve, least_prominence=LEAST_PROMINENCE):
+        mode, harmonic = _nearest_mode(modes, peak.speed * teeth / (2.0 * math.pi))
         rows.append(
             {
                 "mode": mode.name,
                 "frequency_Hz": mode.frequency,
                 "harmonic": harmonic,
-                "speed_rpm": points[index].speed * RPM,
-                "force_share": float(share[index]),
-                "amplification": amplification,
-                "dangerous": amplification > limits.dangerous_amplification
-                or float(share[index]) > limits.dangerous_force_share,
+                "speed_rpm": peak.speed * RPM,
+                "force_share": peak.force_share,
+                "amplification": peak.amplification,
+                "dangerous": peak.amplification > limits.dangerous_amplification
+                or peak.force_share > limits.dangerous_force_share,
             }
         )
     return rows

@@ -224,7 +224,7 @@ def _closure_row(prototype: Prototype) -> ValidationRow:
     """Torque per twist of the loop with constant mesh springs, against the series sum by hand."""
     rig = prototype.simulated
     assert rig.system is not None
-    laws = [smooth(law)._replace(backlash=0.0, damping=0.0) for law in simulation_laws(prototype)]
+    laws = [smooth(law)._replace(backlash=0.0, damping=0.0, offset=0.0) for law in simulation_laws(prototype)]
     state = solve_static(port_model(rig.system, laws), torque=TEST_TORQUE)
     return compare(
         id="V12-closure", quantity="stiffness of the closed loop, torque per bracing twist",
