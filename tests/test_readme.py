@@ -25,4 +25,7 @@ def test_the_package_line_holds_every_library_of_gmsh() -> None:
 
 def test_there_are_exactly_two_commands_for_a_fresh_machine() -> None:
     commands = re.findall(r"^python3 -m venv .*$", README, re.MULTILINE)
-    assert [("check" in command, "pytest" in command) for command in commands] == [(True, False), (False, True)]
+    assert [("check" in command, "pytest" in command) for command in commands] == [
+        (True, False),
+        (False, True),
+    ]
