@@ -42,13 +42,25 @@ def rig() -> LinearSystem:
 def shipped_laws() -> list[MeshLaw]:
     """Test gear in 5 slices and reference gear in 12, with the modifications of P2, Figure 7."""
     test = GearPair.from_centre_distance(
-        normal_module=1e-3, teeth=(99, 102), centre_distance=99.5e-3, face_widths=(7e-3, 15e-3),
-        profile_shift_1=0.0, contact_ratio=1.26, tip_cut="wheel", thickness_allowances=(40e-6, 60e-6),
-    )  # fmt: skip
+        normal_module=1e-3,
+        teeth=(99, 102),
+        centre_distance=99.5e-3,
+        face_widths=(7e-3, 15e-3),
+        profile_shift_1=0.0,
+        contact_ratio=1.26,
+        tip_cut="wheel",
+        thickness_allowances=(40e-6, 60e-6),
+    )
     reference = GearPair.from_centre_distance(
-        normal_module=0.95e-3, teeth=(99, 102), centre_distance=99.5e-3, helix_angle=radians(18.0),
-        face_widths=(40e-3, 40e-3), profile_shift_1=0.0, contact_ratio=1.448, thickness_allowances=(40e-6, 60e-6),
-    )  # fmt: skip
+        normal_module=0.95e-3,
+        teeth=(99, 102),
+        centre_distance=99.5e-3,
+        helix_angle=radians(18.0),
+        face_widths=(40e-3, 40e-3),
+        profile_shift_1=0.0,
+        contact_ratio=1.448,
+        thickness_allowances=(40e-6, 60e-6),
+    )
     micro = (
         Microgeometry(profile_crowning=7e-6, lead_crowning=5e-6),
         Microgeometry(profile_crowning=5e-6, lead_crowning=3e-6),
@@ -81,7 +93,7 @@ def phase_laws() -> list[MeshLaw]:
                 mean_stiffness=stiffness,
                 damping_depth=1e-9,
                 back_phase=0.0,
-            )  # fmt: skip
+            )
         )
     return laws
 
@@ -124,9 +136,14 @@ def test_shipped_law_on_the_prototype() -> None:
 
 def forces_of_march(system: LinearSystem, start: DriveState, substeps: int, samples: int) -> np.ndarray:
     march = TimeMarch(
-        system, phase_laws(), start, step=1.0 / SAMPLE_RATE / substeps, substeps=substeps, accounts=False,
+        system,
+        phase_laws(),
+        start,
+        step=1.0 / SAMPLE_RATE / substeps,
+        substeps=substeps,
+        accounts=False,
         record_all=False,
-    )  # fmt: skip
+    )
     force = march.advance(np.tile([0.0, start.twist, 0.0, 0.0], (samples, 1))).force
     return force[:, substeps - 1 :: substeps]
 
@@ -148,7 +165,7 @@ def forces_of_exudyn(
             referenceCoordinates=[0.0] * n,
             initialCoordinates=list(start.angles),
             initialCoordinates_t=list(start.speeds),
-        )  # fmt: skip
+        )
     )
     body.AddObject(
         items.ObjectGenericODE2(
@@ -157,7 +174,7 @@ def forces_of_exudyn(
             stiffnessMatrix=system.stiffness,
             dampingMatrix=system.damping,
             forceVector=list(system.twist_load * start.twist),
-        )  # fmt: skip
+        )
     )
     sensors = []
     for (pinion, wheel), law, depth in zip(system.mesh_ports, phase_laws(), DEPTHS):
@@ -172,17 +189,32 @@ def forces_of_exudyn(
                 damping=DAMPING,
                 factor0=law.base_radius_2,
                 factor1=law.base_radius_1,
-            )  # fmt: skip
+            )
         )
         k, frequency = law.mean_stiffness, 99.0 * float(start.speeds[pinion])
         first = 99.0 * float(start.angles[pinion])
 
         # the signature is Exudyn's
-        def force(  # noqa: PLR0913
-            mbs, t, itemNumber, displacement, velocity, stiffness, damping, offset, velocityOffset,
-            dynamicFrictionForce, staticFrictionOffsetForce, exponentialDecayStatic, viscousFrictionFactor,
-            frictionProportionalZone, k=k, frequency=frequency, depth=depth, first=first,
-        ):  # fmt: skip
+        def force(
+            mbs,
+            t,
+            itemNumber,
+            displacement,
+            velocity,
+            stiffness,
+            damping,
+            offset,
+            velocityOffset,
+            dynamicFrictionForce,
+            staticFrictionOffsetForce,
+            exponentialDecayStatic,
+            viscousFrictionFactor,
+            frictionProportionalZone,
+            k=k,
+            frequency=frequency,
+            depth=depth,
+            first=first,
+        ):
             shape = 1.0 + depth * symbols.cos(frequency * t + first)
             play = displacement + BACKLASH
             none = 0.0 * displacement
@@ -221,10 +253,10 @@ def forces_of_exudyn(
     return np.array([body.GetSensorStoredData(s)[1:, 1] for s in sensors]), spent / samples / substeps
 
 
-def _fixed(force):  # noqa: ANN001, ANN202
+def _fixed(force):
     """Hide the bound values from Exudyn, which counts the arguments."""
 
-    def bound(a, b, c, d, e, f, g, h, i, j, k, l, m, n):  # noqa: ANN001, ANN202, E741, PLR0913
+    def bound(a, b, c, d, e, f, g, h, i, j, k, l, m, n):  # noqa: E741
         return force(a, b, c, d, e, f, g, h, i, j, k, l, m, n)
 
     return bound
