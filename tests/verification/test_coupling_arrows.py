@@ -1,40 +1,470 @@
 """Every arrow of the coupling loop: cut it, and a named result moves as a hand calculation says.
 
-Each arrow is held at its cold value by `solve_point(..., hold={...})`; the test derives sign and amount from the
-two solved points by hand and asks for at least twenty times the tolerance of the loop.
+An arrow is a field of `Feedback`; `solve_point(..., hold={arrow})` keeps it at its cold value while the rest of the
+loop settles. Each test derives sign and amount by hand from what the arrow carries, and asks for at least twenty
+times the tolerance of the loop: 1 K, 10 um, 2 % of the torque.
+
+Backlash acts on torques only where the bracing is held (torque control hides it), so these tests hold the twist
+of the shipped rig. Its test bearings get half of their oil and the reference mesh a tenth, so that film and
+mesh viscosity feel the heat clearly; nothing in the hand values depends on that choice.
 """
 
 import math
+from dataclasses import fields
 from functools import cache
+from pathlib import Path
 
 import pytest
 
-from rigdesign.case import load_case
+from rigdesign.assemble.dynamics import bracing_drift
+from rigdesign.assemble.heat import cooler
+from rigdesign.case import Case, load_case
+from rigdesign.cold import cold_feedback
 from rigdesign.coupling import PointResult, solve_point
+from rigdesign.errors import NotConvergedError
+from rigdesign.loads import ToothPath
 from rigdesign.ramp_run import held_points
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.state import Feedback
 
 CASE = "cases/uhcf_prototype"
 TEMPERATURE, LENGTH, TORQUE = 0.05, 0.5e-6, 1e-3
 """Tolerances of the loop: K, m, relative."""
+CLEAR = 20.0
+"""A cut arrow must move its result by this many tolerances."""
+ARROWS = frozenset(field.name for field in fields(Feedback))
+
+
+def shipped() -> Case:
+    return load_case(CASE)
 
 
 @cache
-def rig() -> Rig:
-    return build_rig(load_case(CASE), "quick")
+def held_rig() -> Rig:
+    case = (
+        shipped()
+        .with_value("drivetrain.bracing.mode", "twist_held")
+        .with_value("gearboxes.test.bearing_oil.flow", "1 l/min")
+        .with_value("gearboxes.reference.oil.flow", "0.5 l/min")
+    )
+    return build_rig(case, "quick")
 
 
 @cache
-def solved(*hold: str) -> PointResult:
-    return solve_point(rig(), held_points(rig())[-1], hold=frozenset(hold))
+def warm() -> PointResult:
+    """The whole loop."""
+    return solve_point(held_rig(), held_points(held_rig())[-1])
 
 
-def test_growth_to_centre_distance_opens_the_backlash() -> None:
-    """The hot housing moves the axes apart: backlash grows by 2 tan(alpha_wt) times the change."""
-    warm, cut = solved().last.models[0].pair, solved("centre_distance").last.models[0].pair
-    change = warm.centre_distance - cut.centre_distance
-    by_hand = 2.0 * math.tan(cut.working_pressure_angle) * change
-    moved = warm.transverse_backlash - cut.transverse_backlash
+@cache
+def cut(arrow: str) -> PointResult:
+    """The loop without one arrow, started where the whole loop settled."""
+    point = held_points(held_rig())[-1]
+    return solve_point(held_rig(), point, hold=frozenset({arrow}), start=warm().last.feedback)
+
+
+@cache
+def controlled() -> tuple[Rig, PointResult]:
+    """The shipped rig with its torque control."""
+    rig = build_rig(shipped(), "quick")
+    return rig, solve_point(rig, held_points(rig)[-1])
+
+
+def moved_torque(arrow: str) -> float:
+    """Mean torque of the test mesh with the arrow less the one without [N m]."""
+    return float(warm().last.response.mean[0] - cut(arrow).last.response.mean[0])  # type: ignore[union-attr]
+
+
+def drift_by_backlash(arrow: str) -> float:
+    """Torque change of the held loop by the backlash that the arrow takes from both meshes [N m].
+
+    Teeth grow on both flanks, so half of the lost backlash j along the line of action winds up the loop:
+    with base radius r_b it turns by j / (2 r_b), and the loop answers with its stiffness k,
+    dT = k (j_test / r_b,test + j_reference / r_b,reference) / 2.
+    """
+    stiffness = bracing_drift(held_rig(), warm()).cold.loop_stiffness
+    turn = sum(
+        0.5 * (without.pair.backlash_along_path - whole.pair.backlash_along_path) / whole.pair.base_radii[0]
+        for whole, without in zip(warm().last.models, cut(arrow).last.models)
+    )
+    return stiffness * turn
+
+
+def test_every_arrow_of_the_loop_has_its_test() -> None:
+    tested = {name for name in ARROWS if any(f"test_{name}" in test for test in globals())}
+    assert tested == ARROWS
+
+
+def test_gear_temperature_takes_up_backlash() -> None:
+    """A gear that grows by e = alpha dT shows at the fixed radius r_w what was at r_w (1 - e) before.
+
+    The tooth there, s(r) = r (s_0 / r_0 + 2 inv alpha_0 - 2 inv alpha(r)) with r d(inv alpha)/dr = tan alpha, is
+    thicker by 2 r_w tan(alpha_wt) e. Both gears together: dj_t = -2 tan(alpha_wt) sum(r_w alpha dT).
+    """
+    feedback, room = warm().last.feedback, held_rig().case.ambient.temperature
+    whole, without = warm().last.models[0].pair, cut("gear_temperature").last.models[0].pair
+    grown = sum(
+        radius * 11.5e-6 * (feedback.gear_temperature[name] - room)
+        for radius, name in zip(without.working_radii, ("test.pinion", "test.wheel"))
+    )
+    apart = warm().last.feedback.centre_distance["test.main"] - without.centre_distance
+    by_hand = 2.0 * math.tan(without.working_pressure_angle) * (apart - grown)
+    moved = whole.transverse_backlash - without.transverse_backlash
+    assert moved == pytest.approx(by_hand, rel=0.02)
+    assert moved < -CLEAR * LENGTH
+
+
+def test_gear_temperature_winds_up_a_held_loop() -> None:
+    moved = moved_torque("gear_temperature")
+    assert moved == pytest.approx(drift_by_backlash("gear_temperature"), rel=0.05)
+    assert moved > CLEAR * TORQUE * 180.0
+
+
+def test_centre_distance_opens_the_backlash() -> None:
+    """Axes that move apart by da open 2 tan(alpha_wt) da: each flank leaves the line of centres by da tan."""
+    whole, without = warm().last.models[0].pair, cut("centre_distance").last.models[0].pair
+    steel = held_rig().materials["case_hardened_steel"].expansion_coefficient
+    after, before = warm().last.feedback, cut("centre_distance").last.feedback
+    grown = sum(
+        radius * steel * (after.gear_temperature[name] - before.gear_temperature[name])
+        for radius, name in zip(without.working_radii, ("test.pinion", "test.wheel"))
+    )
+    change = whole.centre_distance - without.centre_distance
+    by_hand = 2.0 * math.tan(without.working_pressure_angle) * (change - grown)
+    moved = whole.transverse_backlash - without.transverse_backlash
+    assert change > CLEAR * LENGTH
+    assert moved == pytest.approx(by_hand, rel=0.02)
+    assert moved > CLEAR * LENGTH
+
+
+def test_centre_distance_slackens_a_held_loop() -> None:
+    moved = moved_torque("centre_distance")
+    assert moved == pytest.approx(drift_by_backlash("centre_distance"), rel=0.05)
+    assert moved < -CLEAR * TORQUE * 180.0
+
+
+def heat_capacity_flow(stream: str, flow: float) -> float:
+    """rho c Q [W/K] of a flow [m3/s] at the inlet temperature."""
+    box = held_rig().case.gearboxes["test"]
+    inlet = (box.oil if stream == "gear_oil" else box.bearing_oil).inlet_temperature
+    oil = held_rig().oils["MIL-PRF-23699"]
+    return oil.density(inlet) * oil.heat_capacity(inlet) * flow
+
+
+BEARINGS = ("test.pinion_front", "test.pinion_rear", "test.wheel_front", "test.wheel_rear")
+
+
+def petroff_with_heat_balance(
+    name: str, clearance: float, eccentricity: float, heat: float
+) -> tuple[float, float]:
+    """Drag [N m] and film temperature [K] of a journal by hand.
+
+    M = 2 pi eta omega B R^3 / (c sqrt(1 - eps^2)) with the radial clearance c and the viscosity at
+    T = T_in + (M omega + H) / (2 rho c_p Q), repeated until it stands (Petroff 1883; ISO 7902-1, 5.6).
+    """
+    rig, state = held_rig(), warm().last.bearings[name]
+    oil, box = rig.oils["MIL-PRF-23699"], rig.case.gearboxes["test"]
+    capacity = heat_capacity_flow("bearing_oil", box.bearing_oil.flow)
+    temperature, drag = box.bearing_oil.inlet_temperature, 0.0
+    for _ in range(60):
+        viscosity = oil.dynamic_viscosity(temperature)
+        drag = 2.0 * math.pi * viscosity * state.omega * 0.030 * 0.020**3 / (0.5 * clearance)
+        drag /= math.sqrt(1.0 - eccentricity**2)
+        target = box.bearing_oil.inlet_temperature + 0.5 * (drag * state.omega + heat) / capacity
+        temperature += 0.5 * (target - temperature)
+    return drag, temperature
+
+
+def test_bearing_clearance_lowers_the_drag() -> None:
+    """Petroff: the drag falls as 1/c; a cooler film takes back a third of that, the eccentricity a little."""
+    name = "test.pinion_front"
+    drags = []
+    for result in (warm(), cut("bearing_clearance")):
+        feedback, state = result.last.feedback, result.last.bearings[name]
+        drags.append(
+            petroff_with_heat_balance(
+                name, feedback.bearing_clearance[name], state.eccentricity, feedback.bearing_heat[name]
+            )[0]
+        )
+    by_hand = drags[0] / drags[1] - 1.0
+    before = cut("bearing_clearance").last.bearings[name].drag_torque
+    moved = warm().last.bearings[name].drag_torque / before - 1.0
+    opened = warm().last.feedback.bearing_clearance[name] - 80e-6
+    assert opened > CLEAR * LENGTH
+    assert moved == pytest.approx(by_hand, rel=0.15)
+    assert moved < -CLEAR * TORQUE
+
+
+@pytest.mark.parametrize("name", BEARINGS)
+def test_bearing_heat_warms_its_film(name: str) -> None:
+    """H from shaft and shell would warm the film by H / (2 rho c Q); thinner oil drags less and takes back a part.
+
+    With b = -d ln(eta)/dT and the friction power P: dT = H / (2 rho c Q) / (1 + b P / (2 rho c Q)).
+    """
+    rig, whole, without = held_rig(), warm().last, cut("bearing_heat").last
+    viscosity = rig.oils["MIL-PRF-23699"].dynamic_viscosity
+    low, high = without.bearings[name].film_temperature, whole.bearings[name].film_temperature
+    slope = math.log(viscosity(low) / viscosity(low + 1.0))
+    capacity = 2.0 * heat_capacity_flow("bearing_oil", rig.case.gearboxes["test"].bearing_oil.flow)
+    power = without.bearings[name].power
+    by_hand = whole.feedback.bearing_heat[name] / capacity / (1.0 + slope * power / capacity)
+    assert high - low == pytest.approx(by_hand, rel=0.10)
+    assert high - low > CLEAR * TEMPERATURE
+
+
+def test_wall_heat_cools_the_gear_oil() -> None:
+    """The cold sections take H from the 140 degC oil: its outlet falls by H / (rho c Q)."""
+    whole, without = warm().last, cut("wall_heat").last
+    after = {stream.name: stream for stream in whole.streams}["test.gear_oil"]
+    before = {stream.name: stream for stream in without.streams}["test.gear_oil"]
+    by_hand = whole.feedback.wall_heat["test.gear_oil"] / heat_capacity_flow("gear_oil", after.flow)
+    assert after.outlet - before.outlet == pytest.approx(by_hand, rel=0.03)
+    assert after.outlet - before.outlet < -CLEAR * TEMPERATURE
+
+
+def test_oil_outlet_moves_the_wall_between_both_oils() -> None:
+    """A plate of 15 mm between two films of h = 300 W/(m2 K) with fluids that move by g and b.
+
+    In series 1/h + t/k + 1/h the side of the cold oil follows its fluid by (1/h + t/k) / (2/h + t/k). The rim of
+    the plate hangs on the outer walls, which follow less: the mean of the plate stays up to a tenth below.
+    """
+    whole, without = warm().last, cut("oil_outlet").last
+    outlet, inlet = whole.feedback.oil_outlet, without.feedback.oil_outlet
+    gear = 0.5 * (outlet["test.gear_oil"] - inlet["test.gear_oil"])
+    bearing = outlet["test.bearing_oil"] - inlet["test.bearing_oil"]
+    film, plate = 1.0 / 300.0, 0.015 / 50.0
+    near = (film + plate) / (2.0 * film + plate)
+    rows = [
+        {row.surface: row.mean_temperature for row in result.fields["test"].solution.balance.rows}
+        for result in (whole, without)
+    ]
+    for surface, by_hand in (
+        ("partition_cold_front", near * bearing + (1.0 - near) * gear),
+        ("partition_warm_front", (1.0 - near) * bearing + near * gear),
+    ):
+        moved = rows[0][surface] - rows[1][surface]
+        assert moved == pytest.approx(by_hand, rel=0.10)
+        assert moved > CLEAR * TEMPERATURE
+
+
+def test_oil_outlet_thins_the_tooth_film() -> None:
+    """ISO/TR 14179-2: mu falls with eta^-0.05, taken at the mean of inlet and outlet."""
+    viscosity = held_rig().oils["MIL-PRF-23699"].dynamic_viscosity
+    inlet = held_rig().case.gearboxes["reference"].oil.inlet_temperature
+    outlet = warm().last.feedback.oil_outlet["reference.gear_oil"]
+    by_hand = (viscosity(0.5 * (inlet + outlet)) / viscosity(inlet)) ** -0.05
+    moved = warm().last.models[1].friction.value / cut("oil_outlet").last.models[1].friction.value
+    assert moved == pytest.approx(by_hand, rel=1e-3)
+    assert moved - 1.0 > CLEAR * TORQUE
+
+
+def test_mesh_torque_loads_the_reference_bearings() -> None:
+    """The tooth force T / r_b on the front bearing by the lever rule; the weight does not change."""
+    whole, without = warm().last, cut("mesh_torque").last
+    change = whole.feedback.mesh_torque["reference.main"] - without.feedback.mesh_torque["reference.main"]
+    lever = (277.93 - 159.97) / (277.93 - 32.03)
+    by_hand = lever * change / whole.models[1].pair.base_radii[0]
+    name = "reference.pinion_front"
+    moved = whole.bearings[name].load - without.bearings[name].load
     assert change > 0.0
     assert moved == pytest.approx(by_hand, rel=0.02)
-    assert moved > 20 * LENGTH
+    assert moved > CLEAR * TORQUE * without.bearings[name].load
+
+
+HELICAL = """
+extends = "{base}"
+name = "single_helical"
+title = "Single-helical test gears, shafts located at opposite ends"
+
+[drivetrain.bracing]
+mode = "twist_held"
+
+[gearboxes.test.meshes.main]
+normal_module = "0.94 mm"
+helix_angle = "18 deg"
+remove = ["contact_ratio", "tip_cut"]
+
+[gearboxes.test.bearings.pinion_front]
+locating = true
+axial_play = "0.5 mm"
+
+[gearboxes.test.bearings.pinion_rear]
+remove = ["axial_play"]
+locating = false
+"""
+
+
+def test_tooth_growth_winds_up_a_helical_loop(tmp_path: Path) -> None:
+    """Shafts that grow from opposite ends carry their gears past each other by s.
+
+    The flanks approach by s tan(beta_b), tan(beta_b) = tan(beta) cos(alpha_t); the loop turns by that over r_b
+    and answers with its stiffness. s itself stays below what both shafts would grow freely, pinion from the
+    front and wheel from the rear bearing, since the housing between the bearings grows along.
+    """
+    file = tmp_path / "helical.toml"
+    file.write_text(HELICAL.format(base=(Path(CASE) / "case.toml").resolve().as_posix()), encoding="utf-8")
+    rig = build_rig(load_case(file), "quick")
+    point = held_points(rig)[-1]
+    whole = solve_point(rig, point)
+    without = solve_point(rig, point, hold=frozenset({"tooth_growth"}), start=whole.last.feedback)
+    travel = whole.last.feedback.tooth_growth["test.main"]
+    free = 11.5e-6 * sum(
+        reach * (whole.last.feedback.gear_temperature[gear] - rig.case.ambient.temperature)
+        for reach, gear in ((0.11234, "test.pinion"), (0.12786, "test.wheel"))
+    )
+    helix = math.radians(18.0)
+    transverse = math.atan(math.tan(math.radians(20.0)) / math.cos(helix))
+    approach = travel * math.tan(helix) * math.cos(transverse)
+    stiffness = bracing_drift(rig, whole).cold.loop_stiffness
+    models = zip(whole.last.models, without.last.models)
+    slack = [0.5 * (b.pair.backlash_along_path - a.pair.backlash_along_path) for a, b in models]
+    turn = (approach + slack[0]) / whole.last.models[0].pair.base_radii[0]
+    assert whole.last.response is not None and without.last.response is not None
+    moved = float(whole.last.response.mean[0] - without.last.response.mean[0])
+    assert CLEAR * LENGTH < travel < free
+    assert moved == pytest.approx(stiffness * turn, rel=0.05)
+    assert moved > CLEAR * TORQUE * 180.0
+
+
+def variant(tmp_path: Path, text: str) -> Rig:
+    base = (Path(CASE) / "case.toml").resolve().as_posix()
+    file = tmp_path / "variant.toml"
+    file.write_text(f'extends = "{base}"\nname = "variant"\n{text}', encoding="utf-8")
+    return build_rig(load_case(file), "quick")
+
+
+def mean_to_sink(mesh_heat: float, bore: float, width: float, films: list[tuple[float, float]]) -> float:
+    """Rise of the mean of a gear [K] over its oil by a heat at its rim, lumped.
+
+    films : (h, area) of rim and sides in parallel; beside them the way into the shaft: the disc from its mean
+    radius to the bore, ln(r_m / r_i) / (2 pi k b), then the shaft as two endless fins of sqrt(h P k A) each.
+    """
+    conductivity, shaft_film = 42.0, 120.0
+    section, girth = 0.25 * math.pi * bore**2, math.pi * bore
+    fins = 2.0 * math.sqrt(shaft_film * girth * conductivity * section)
+    outer = 0.0495
+    middle = 2.0 / 3.0 * (outer**3 - (0.5 * bore) ** 3) / (outer**2 - (0.5 * bore) ** 2)
+    disc = math.log(2.0 * middle / bore) / (2.0 * math.pi * conductivity * width)
+    outward = sum(film * area for film, area in films)
+    return mesh_heat / (outward + 1.0 / (1.0 / fins + disc))
+
+
+@pytest.mark.parametrize(("gear", "bore", "width"), [("pinion", 0.04192, 0.007), ("wheel", 0.05754, 0.015)])
+def test_mesh_loss_heats_the_gears(gear: str, bore: float, width: float) -> None:
+    """Without the mesh loss each gear loses half of its 50 % share of it; the oil round it cools along."""
+    base, zero = controlled()[1], without_mesh_loss()
+    loss = next(row for row in base.last.losses if row.name == "test.main" and row.loss.kind == "mesh")
+    rows = base.last.fields["test"].solution.balance.rows
+    films = [
+        (row.coefficient.value, row.area)
+        for row in rows
+        if row.surface.startswith(f"gear_test_{gear}_") and row.coefficient is not None
+    ]
+    oil = 0.5 * (
+        base.last.feedback.oil_outlet["test.gear_oil"] - zero.last.feedback.oil_outlet["test.gear_oil"]
+    )
+    by_hand = oil + mean_to_sink(0.5 * 0.5 * loss.loss.power, bore, width, films)
+    name = f"test.{gear}"
+    moved = base.last.feedback.gear_temperature[name] - zero.last.feedback.gear_temperature[name]
+    assert len(films) == 3
+    assert moved == pytest.approx(by_hand, rel=0.15)
+    assert moved > CLEAR * TEMPERATURE
+
+
+@cache
+def without_mesh_loss() -> PointResult:
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as folder:
+        rig = variant(
+            Path(folder),
+            '[losses.given.none]\ngearbox = "test"\nkind = "mesh"\npart = "main"\npower = "0 W"\n',
+        )
+    _, base = controlled()
+    return solve_point(rig, base.point, start=base.last.feedback)
+
+
+def test_one_friction_coefficient_for_torque_and_heat() -> None:
+    """The mesh law and the loss hold the same number, mu / cos(beta_b) of the transverse section."""
+    _, base = controlled()
+    for model in base.last.models:
+        loss = next(row for row in base.last.losses if row.name == model.name and row.loss.kind == "mesh")
+        assert loss.loss.details["friction_coefficient"] == model.friction.value
+        assert model.law.friction == ToothPath.of_pair(model.pair).transverse_friction(model.friction.value)
+
+
+def test_friction_brakes_the_motor_as_much_as_it_heats(tmp_path: Path) -> None:
+    """A coefficient of 0.08: sliding losses grow as mu, and the motor feels their growth, dT omega = dP."""
+    rig, base = controlled()
+    rough = variant(
+        tmp_path,
+        '[losses.friction]\nlaw = "constant"\ncoefficient = 0.08\n',
+    )
+    point = solve_point(rough, base.point, start=base.last.feedback)
+    assert base.last.response is not None and point.last.response is not None
+    for index, model in enumerate(base.last.models):
+        grown = point.last.response.friction_power[index] / base.last.response.friction_power[index]
+        assert grown == pytest.approx(0.08 / model.friction.value, rel=0.05)
+    speed = rig.drive_speed(base.point.speed)
+    lost = [math.fsum(row.loss.power for row in result.last.losses) for result in (base, point)]
+    driven = point.last.response.drive_torque - base.last.response.drive_torque
+    assert driven * speed == pytest.approx(lost[1] - lost[0], rel=0.01)
+    assert driven > CLEAR * TORQUE * base.last.response.drive_torque
+
+
+def test_passes_settle_to_the_tolerances() -> None:
+    """The first pass moves by more than 100 K, the last by less than the tolerance.
+
+    Growth follows only once temperatures stand, which moves them once more: over five passes, such a step
+    included, the change falls at least to a third.
+    """
+    for residuals in (controlled()[1].residuals, warm().residuals):
+        first, last = residuals[0], residuals[-1]
+        assert first.temperature > 100.0 and first.growth > 10e-6 and first.torque > 0.01
+        assert last.temperature <= TEMPERATURE
+        assert last.growth <= LENGTH
+        assert last.torque <= TORQUE
+        assert len(residuals) <= 20
+        steps = [residual.temperature for residual in residuals]
+        assert all(later < earlier / 3.0 for earlier, later in zip(steps, steps[5:]))
+
+
+def test_too_few_passes_show_their_residuals() -> None:
+    rig = build_rig(shipped().with_value("numerics.coupling_passes", 1), "quick")
+    with pytest.raises(
+        NotConvergedError, match=r"did not settle in 1 passes.*pass 1: [\d.]+ K, [\d.]+ um"
+    ) as caught:
+        solve_point(rig, held_points(rig)[-1])
+    assert caught.value.exit_code == 3
+    assert "numerics.coupling_passes" in str(caught.value)
+
+
+def test_unknown_arrow_is_refused() -> None:
+    point = held_points(held_rig())[-1]
+    cold = cold_feedback(held_rig(), point)
+    with pytest.raises(KeyError, match="no such arrow: wall_haet"):
+        cold.hold(frozenset({"wall_haet"}), cold)
+
+
+def test_all_heat_goes_to_cooler_or_room() -> None:
+    """Losses = oil + room, but for the heats of the last pass that its oil has not seen.
+
+    Every field balances, so what is left is the difference between the heat a pass used and the heat it found:
+    at most rho c Q times the temperature residual for a stream, twice that for a film (T = T_in + H / 2 rho c Q).
+    """
+    rig, base = controlled()
+    sums = cooler(rig, base.last)
+    streams = math.fsum(heat_capacity_flow(s.name.split(".")[1], s.flow) for s in base.last.streams[:2])
+    films = 4.0 * heat_capacity_flow("bearing_oil", rig.case.gearboxes["test"].bearing_oil.flow)
+    bound = base.residuals[-1].temperature * (streams + 2.0 * films)
+    assert abs(sums["open_W"]) <= bound
+    assert bound < 3e-3 * sums["losses_W"]
+
+
+def test_motor_pays_all_losses() -> None:
+    """Drive power less losses is what splines, couplings and shafts damp: positive and small."""
+    rig, base = controlled()
+    assert base.last.response is not None
+    power = base.last.response.drive_torque * rig.drive_speed(base.point.speed)
+    lost = math.fsum(row.loss.power for row in base.last.losses)
+    assert 0.0 <= power - lost < 0.03 * power
