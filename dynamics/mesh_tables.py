@@ -45,6 +45,7 @@ def pack_meshes(laws: Sequence[MeshLaw], *, derivative_torques: bool = True) -> 
     starts: list[int] = [0]
     blocks: list[Array] = []
     in_cell: list[int] = []
+    least: list[Array] = []
     for mesh, law in enumerate(laws):
         n_slices, n_path = law.stiffness.shape
         deviation_at, scale_at = sum(map(len, deviations)), sum(map(len, scales))
@@ -55,7 +56,8 @@ def pack_meshes(laws: Sequence[MeshLaw], *, derivative_torques: bool = True) -> 
             for block in _phase_blocks(law, sign, n_phases):
                 starts.append(starts[-1] + len(block[0]))
                 blocks.append(block[0])
-                in_cell.append(block[1])
+                least.append(block[1])
+                in_cell.append(block[2])
         counts[mesh] = (
             n_slices, n_path - 1, sum(map(len, cells)), sum(map(len, shifts)), individual,
             law.teeth_1, law.teeth_2, law.tooth_offset_2,
@@ -78,6 +80,7 @@ def pack_meshes(laws: Sequence[MeshLaw], *, derivative_torques: bool = True) -> 
         scales=np.concatenate(scales),
         phase_starts=np.array(starts, np.int64),
         phase_counts=np.array(in_cell, np.int64),
+        phase_least=np.concatenate([np.zeros(0), *least]),
         phase_data=np.concatenate([np.zeros(1), *(block.ravel() for block in blocks)])[1:].copy(),
         offsets=np.array([law.offset for law in laws], float),
     )
@@ -124,8 +127,9 @@ def _cells(table: Array) -> Array:
     return np.ascontiguousarray(coefficients.swapaxes(0, 1).reshape(-1, 4))
 
 
-def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[tuple[Array, int]]:
-    """Return for every phase cell the contacts on the path of one flank: groups (n, N_PHASE, LANES), number.
+def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[tuple[Array, Array, int]]:
+    """Return for every phase cell the contacts on the path of one flank: groups (n, N_PHASE, LANES), lower
+    bounds of their gaps in increasing order, number.
 
     The cubics are carried from the path to the phase by value and slope at both ends of the phase cell.
     """
@@ -151,12 +155,21 @@ def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[tuple[Array,
             law.path_start + at * law.path_step,
         )
     )
+    # the control points of the gap bound it from below; contacts that open last come first
+    g_0, g_1, g_2, g_3 = lanes[4:8]
+    bound = np.minimum.reduce([g_0, g_0 + g_1 / 3.0, g_0 + (2.0 * g_1 + g_2) / 3.0, g_0 + g_1 + g_2 + g_3])
+    order = np.lexsort((bound, cells))
+    lanes, bound = lanes[:, order], bound[order]
     blocks = []
-    for own in np.split(lanes, np.searchsorted(cells, np.arange(1, n_phases)), axis=1):
+    ends = np.searchsorted(cells, np.arange(1, n_phases))
+    for own, low in zip(np.split(lanes, ends, axis=1), np.split(bound, ends)):
         groups = -(-own.shape[1] // kernels.LANES)
         padded = np.zeros((kernels.N_PHASE, groups * kernels.LANES))
-        padded[:9, : own.shape[1]] = own
-        blocks.append((padded.reshape(kernels.N_PHASE, groups, kernels.LANES).swapaxes(0, 1), own.shape[1]))
+        padded[:, : own.shape[1]] = own
+        least = np.full(groups * kernels.LANES, np.inf)
+        least[: own.shape[1]] = low
+        table = padded.reshape(kernels.N_PHASE, groups, kernels.LANES).swapaxes(0, 1)
+        blocks.append((table, least, own.shape[1]))
     return blocks
 
 

@@ -45,6 +45,8 @@ class PackedMeshes(NamedTuple):
     """First group of every phase cell, front and back of each mesh."""
     phase_counts: Integers
     """Contacts in every phase cell."""
+    phase_least: Array
+    """Lower bound of the gap of every contact within its phase cell, in increasing order; LANES per group."""
     phase_data: Array
     """Groups (N_PHASE, LANES), flat: cubic of stiffness, cubic of gap, path position at the start of the cell."""
     offsets: Array
@@ -86,11 +88,12 @@ def sliding_direction(ratio: float) -> float:
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
 def list_by_phase(
-    values: Array, counts: Integers, starts: Integers, contacts_in: Integers, data: Array, m: int, sign: float,
-    theta_1: float, omega_1: float, omega_2: float, out: Array, at: int,
+    values: Array, counts: Integers, starts: Integers, contacts_in: Integers, least: Array, data: Array, m: int,
+    sign: float, pressed: float, theta_1: float, omega_1: float, omega_2: float, out: Array, at: int,
 ) -> int:  # fmt: skip
     """List the contacts of one flank of mesh ``m``, all teeth alike, at the angle ``theta_1``.
 
+    Contacts whose gap stays above ``pressed`` in this phase cell are left out (the last ones of the cell).
     ``out`` receives groups of (N_LIST, LANES), flat, from ``at`` on; returns the number of contacts.
     """
     n_phases = counts[m, N_PHASES]
@@ -101,6 +104,11 @@ def list_by_phase(
     f = place - j
     row = (counts[m, FRONT_AT] if sign > 0.0 else counts[m, BACK_AT]) + j
     n = int(contacts_in[row])
+    low = LANES * starts[row]
+    near = 0
+    while near < n and least[low + near] < pressed:
+        near += 4
+    n = min(n, near)
     first = (N_PHASE * LANES * starts[row]) & POSITIVE
     first_out = at & POSITIVE
     per_step = n_phases * values[m, PER_PITCH]
@@ -308,7 +316,8 @@ def mesh_reactions(
     """
     values, counts = meshes.values, meshes.counts
     cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
-    starts, contacts_in, data = meshes.phase_starts, meshes.phase_counts, meshes.phase_data
+    starts, contacts_in = meshes.phase_starts, meshes.phase_counts
+    least, data = meshes.phase_least, meshes.phase_data
     contacts = np.empty(counts[0, GROUPS] * N_LIST * LANES)
     no_pairs = np.empty((2, 0), np.int64)
     r_1 = values[0, R1]
@@ -331,7 +340,20 @@ def mesh_reactions(
                 )  # fmt: skip
             else:
                 found = list_by_phase(
-                    values, counts, starts, contacts_in, data, 0, sign, theta_1[n], w_1, w_2, contacts, 0
+                    values,
+                    counts,
+                    starts,
+                    contacts_in,
+                    least,
+                    data,
+                    0,
+                    sign,
+                    pressed,
+                    theta_1[n],
+                    w_1,
+                    w_2,
+                    contacts,
+                    0,
                 )
             rate = sign * (r_1 * w_1 - r_2 * w_2)
             path_speed = sign * r_1 * w_1

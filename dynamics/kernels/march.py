@@ -314,7 +314,7 @@ def march(
     """
     # fields once into plain names: reading them in the loop would count references
     values, counts, starts, data = meshes.values, meshes.counts, meshes.phase_starts, meshes.phase_data
-    contacts_in = meshes.phase_counts
+    contacts_in, least = meshes.phase_counts, meshes.phase_least
     cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
     mode_tables, through = modes.tables, modes.through_new
     state, ports, slow, powers, damping = (
@@ -397,12 +397,13 @@ def march(
                     if attempt == 0:
                         theta = ports[m, 5] + outputs[4 * m + 3]
                         omega_2 = (values[m, R1] * omega_1 - rate) * values[m, PER_R2]
-                        margin = values[m, LEAST_GAP] - 2.0 * step * abs(rate)
+                        ahead = 2.0 * step * abs(rate)
                         for side in range(2):
                             sign = 1.0 - 2.0 * side
                             part = (2 * m + side) * size
                             found[m, side] = 0
-                            if sign * reach - side * values[m, BACKLASH] <= margin:
+                            pressed = sign * reach - side * values[m, BACKLASH] + ahead
+                            if pressed <= values[m, LEAST_GAP]:
                                 continue
                             if counts[m, INDIVIDUAL] != 0:
                                 found[m, side] = list_on_path(
@@ -411,8 +412,8 @@ def march(
                                 )  # fmt: skip
                             else:
                                 found[m, side] = list_by_phase(
-                                    values, counts, starts, contacts_in, data, m, sign, theta, omega_1, omega_2,
-                                    contacts, part,
+                                    values, counts, starts, contacts_in, least, data, m, sign, pressed, theta,
+                                    omega_1, omega_2, contacts, part,
                                 )  # fmt: skip
                     _react(values, m, contacts, size, found, reach, rate, omega_1, reactions)
                     open_error = _correct(reactions, through, m, tau, outputs)
