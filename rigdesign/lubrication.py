@@ -176,7 +176,7 @@ def rotating_losses(
         losses += _oil_jets(rig, box_name, box, point, pairs)
         losses += _seals(rig, box_name, box, point, feedback)
     losses += _squeezing(rig, point, models)
-    return [_given(rig, point, loss) for loss in losses]
+    return [taken for loss in losses for taken in _taken(rig, point, loss)]
 
 
 def mesh_losses(
@@ -200,7 +200,7 @@ def mesh_losses(
         box_name, mesh = model.name.split(".")
         share = body_split(rig, box_name).mesh_into_gears
         placed = PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=share * loss.power)
-        losses.append(_given(rig, point, placed))
+        losses += _taken(rig, point, placed)
         if response is not None:
             damping = Loss(
                 place=model.name,
@@ -383,13 +383,16 @@ def body_split(rig: Rig, name: str) -> HeatSplit:
     return HeatSplit(mesh_into_gears=0.0, windage_into_gears=0.0, seal_into_shaft=0.0, seal_into_housing=0.0)
 
 
-def _given(rig: Rig, point: OperatingPoint, placed: PlacedLoss) -> PlacedLoss:
-    """The loss of the case in place of the computed one, where the case gives it."""
+def _taken(rig: Rig, point: OperatingPoint, placed: PlacedLoss) -> list[PlacedLoss]:
+    """The loss of the case in place of the computed one, where the case gives it.
+
+    With basis ``input`` a place that the case does not give loses nothing.
+    """
     for entry in rig.case.losses.given.values():
         same = (entry.gearbox, entry.kind, entry.part) == (placed.gearbox, placed.loss.kind, placed.part)
         if same and (not entry.stages or point.stage in entry.stages):
             share = placed.into_body / placed.loss.power if placed.loss.power else _split(rig, placed)
-            return PlacedLoss(
+            given = PlacedLoss(
                 gearbox=placed.gearbox,
                 part=placed.part,
                 loss=Loss(
@@ -401,7 +404,8 @@ def _given(rig: Rig, point: OperatingPoint, placed: PlacedLoss) -> PlacedLoss:
                 into_body=share * entry.power,
                 given=True,
             )
-    return placed
+            return [given]
+    return [placed] if rig.case.losses.basis == "computed" else []
 
 
 def _split(rig: Rig, placed: PlacedLoss) -> float:
