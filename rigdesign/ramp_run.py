@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.propagator import DEFAULT_CUTOFF
 from dynamics.ramp import Command, Kind, Schedule, Stage, s_function
 from dynamics.response import Command as RunCommand
 from dynamics.response import DragCurve, TimeResponse, run_schedule
@@ -28,6 +29,8 @@ SLOT = 0.01
 """Length of the envelope slots [s]."""
 LEAST_TORQUE = 1.0
 """Bracing torque [N m] that is kept at standstill: the flanks just touch."""
+QUICK_CUTOFF = 20e3
+"""Highest mode of the time run at quick fidelity [Hz]."""
 DRIVE_ONSET = 0.1
 """Time over which a constant drive torque is applied by the S-function [s]."""
 COMMAND_INTERVAL = 1e-3
@@ -88,6 +91,7 @@ def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -
         slot=SLOT,
         keep_channels=False,
         keep_accounts=False,
+        cutoff=QUICK_CUTOFF if rig.fidelity == "quick" else DEFAULT_CUTOFF,
     )
     _require_speed(rig, schedule, response)
     return response

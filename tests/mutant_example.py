@@ -1,0 +1,44 @@
+"""Mutants of a case: one number times 0.1 to 10, one choice or one reference changed; for property tests."""
+
+import random
+import re
+from collections.abc import Iterator
+
+from rigdesign.case import Case
+from rigdesign.case.marks import item_name, take_off
+
+QUANTITY = re.compile(r"([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(.*)")
+
+
+def leaves(node: object, path: str = "") -> Iterator[tuple[str, object]]:
+    if isinstance(node, dict):
+        for key, item in node.items():
+            yield from leaves(item, f"{path}.{key}" if path else key)
+    elif isinstance(node, tuple):
+        for index, item in enumerate(node):
+            yield from leaves(item, f"{path}.{item_name(item, index)}")
+    else:
+        yield path, node
+
+
+def mutated(value: object, texts: list[str], choice: random.Random) -> object:
+    factor = 10.0 ** choice.uniform(-1.0, 1.0)
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, int):
+        return round(value * factor)
+    if isinstance(value, float):
+        return value * factor
+    match = QUANTITY.fullmatch(str(value))
+    return f"{float(match[1]) * factor:.6g} {match[2]}" if match else choice.choice(texts)
+
+
+def mutations(case: Case, seed: int) -> Iterator[tuple[str, object]]:
+    """Endless (path, new value) of one seed."""
+    plain, _, _ = take_off(dict(case.origin.tree))
+    found = list(leaves(plain))
+    texts = [value for _, value in found if isinstance(value, str) and not QUANTITY.fullmatch(value)]
+    choice = random.Random(seed)
+    while True:
+        path, value = choice.choice(found)
+        yield path, mutated(value, texts, choice)

@@ -1,0 +1,113 @@
+"""Mutants of the shipped case through the whole chain: whatever a case says, no traceback.
+
+A mutant is the shipped case with one number times 0.1 to 10 (even in its logarithm) or one choice or reference
+exchanged for another text of the file. Each goes the way of `rigdesign check --fidelity quick --json`: load, run,
+document. It ends in a result or in an error of the tool's own tree with a message; anything else is a defect.
+
+So that many can be run, the base is shortened first: a ramp of two seconds with a motor to match, five speeds of
+the curve, a coupling loop of a tenth of its sharpness. Nothing else differs from the shipped case.
+"""
+
+import time
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import islice
+from pathlib import Path
+
+import pytest
+
+from rigdesign.case import Case, load_case
+from rigdesign.errors import CaseError, NotConvergedError, RigdesignError
+from rigdesign.report import results_document
+from rigdesign.run import run_case
+from tests.mutant_example import mutations
+
+PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
+CHUNKS, PER_CHUNK = 6, 10
+MANY = 1000
+SHORTENED = {
+    "schedule.stages.bracing.duration": "50 ms",
+    "schedule.stages.to_transition_speed.duration": "100 ms",
+    "schedule.stages.half_torque.duration": "50 ms",
+    "schedule.stages.run_up.duration": "800 ms",
+    "schedule.stages.full_torque.duration": "50 ms",
+    "schedule.stages.test.duration": "100 ms",
+    "schedule.stages.relief.duration": "50 ms",
+    "schedule.stages.run_down.duration": "600 ms",
+    "schedule.stages.to_start_torque.duration": "50 ms",
+    "schedule.stages.to_standstill.duration": "100 ms",
+    "drivetrain.motor.torque_limit": "200 N m",
+    "numerics.curve_speeds": "5",
+    "numerics.temperature_tolerance": "0.5 K",
+    "numerics.growth_tolerance": "5 um",
+    "numerics.torque_tolerance": "0.01",
+}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of one mutant; ``reached`` says that it passed validation and came to a solver."""
+
+    path: str
+    value: object
+    kind: str
+    reached: bool
+    seconds: float
+    message: str = ""
+
+
+@cache
+def shortened() -> Case:
+    case = load_case(PROTOTYPE)
+    for path, value in SHORTENED.items():
+        case = case.with_value(path, value)
+    return case
+
+
+def mutants(seed: int, count: int) -> list[tuple[str, object]]:
+    """Paths and values of ``count`` mutants; the same seed gives the same."""
+    return list(islice(mutations(shortened(), seed), count))
+
+
+def outcome(path: str, value: object) -> Outcome:
+    """Run one mutant as the command does; an exception outside the tool's own tree is not caught."""
+    started = time.perf_counter()
+    said: list[str] = []
+    try:
+        result = run_case(shortened().with_value(path, value), fidelity="quick", progress=said.append)
+        assert results_document(result)["verdict"] in ("pass", "warn", "fail")
+        kind, message = "solved", ""
+    except CaseError as error:
+        kind, message = "refused", str(error)
+    except NotConvergedError as error:
+        kind, message = "not converged", str(error)
+    except RigdesignError as error:
+        kind, message = type(error).__name__, str(error)
+    reached = any(line.startswith("coupling") for line in said)
+    return Outcome(path, value, kind, reached, time.perf_counter() - started, message)
+
+
+def judge(outcomes: Sequence[Outcome]) -> None:
+    """Every end has words, only errors of the right kinds occur, and at least half came to a solver."""
+    for entry in outcomes:
+        assert entry.kind in ("solved", "refused", "not converged"), entry
+        assert entry.kind == "solved" or len(entry.message.split()) > 4, entry
+    assert sum(entry.reached for entry in outcomes) >= len(outcomes) / 2
+
+
+@pytest.mark.parametrize("seed", range(CHUNKS))
+def test_mutants_end_in_a_result_or_a_plain_error(seed: int) -> None:
+    judge([outcome(path, value) for path, value in mutants(seed, PER_CHUNK)])
+
+
+@pytest.mark.slow
+def test_a_thousand_mutants(capsys: pytest.CaptureFixture[str]) -> None:
+    outcomes = [outcome(path, value) for path, value in mutants(2026, MANY)]
+    seconds = sorted(entry.seconds for entry in outcomes)
+    with capsys.disabled():
+        print(f"\n{MANY} mutants: {sum(entry.reached for entry in outcomes)} came to a solver")
+        print(", ".join(f"{count} {kind}" for kind, count in Counter(o.kind for o in outcomes).items()))
+        print(f"median {seconds[MANY // 2]:.1f} s, longest {seconds[-1]:.1f} s, sum {sum(seconds):.0f} s")
+    judge(outcomes)
