@@ -255,8 +255,13 @@ def no_glu(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("no_glu")
-def test_status_4_names_the_missing_library_and_the_apt_line(rigdesign: Rigdesign, tmp_path: Path) -> None:
-    ended = rigdesign("check", PROTOTYPE, "--fidelity", "quick", "--out", tmp_path / "out")
+def test_status_4_names_the_missing_library_and_the_apt_line(
+    rigdesign: Rigdesign, write: Write, tmp_path: Path
+) -> None:
+    """A housing that no other test meshes: a mesh kept in memory would need no gmsh."""
+    base = (PROTOTYPE / "case.toml").as_posix()
+    case = write(f'extends = "{base}"\nname = "own"\n[gearboxes.test.housing]\nheight = "283 mm"\n')
+    ended = rigdesign("check", case, "--fidelity", "quick", "--out", tmp_path / "out")
     assert ended.status == 4
     assert "libGLU.so.1 is missing" in ended.err and APT_LINE in ended.err
     assert not (tmp_path / "out").exists()
