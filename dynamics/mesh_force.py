@@ -102,7 +102,7 @@ def tooth_forces(
 
     Arguments as in ``evaluate_mesh``; with both speeds zero they are the elastic forces alone.
     """
-    packed = pack_meshes([law])
+    packed = pack_meshes([law], over_phase=False)
     angle, reach, w_1, w_2 = _states(theta_1, approach, omega_1, omega_2)
     length = law.path_step * (law.stiffness.shape[1] - 1)
     low, high = float(law.slice_shift.min()), float(law.slice_shift.max())

@@ -23,11 +23,14 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-def pack_meshes(laws: Sequence[MeshLaw], *, derivative_torques: bool = True) -> PackedMeshes:
+def pack_meshes(
+    laws: Sequence[MeshLaw], *, derivative_torques: bool = True, over_phase: bool = True
+) -> PackedMeshes:
     """Return the packed tables of all ``laws``.
 
     With ``derivative_torques=False`` the torques ``F de/dtheta`` and ``d^2 dk/dtheta / 2`` are left out: the
-    negative control of the energy test, of no other use.
+    negative control of the energy test, of no other use. With ``over_phase=False`` the tables over the phase are
+    left out, which the force of single tooth pairs does not need.
 
     Raises
     ------
@@ -50,7 +53,7 @@ def pack_meshes(laws: Sequence[MeshLaw], *, derivative_torques: bool = True) -> 
         n_slices, n_path = law.stiffness.shape
         deviation_at, scale_at = sum(map(len, deviations)), sum(map(len, scales))
         individual = has_individual_teeth(law)
-        n_phases = 0 if individual else phase_count(law)
+        n_phases = phase_count(law) if over_phase and not individual else 0
         front_at = len(starts) - 1
         for sign in (1.0, -1.0) if n_phases else ():
             for block in _phase_blocks(law, sign, n_phases):
