@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.bracing import BracingDrift, BracingState, drift
+from dynamics.bracing import BracingDrift, drift
 from dynamics.dynamic_factor import DynamicFactorCurve
 from dynamics.dynamic_factor import resonances as find_resonances
 from dynamics.modes import (
@@ -291,11 +291,6 @@ def bracing_drift(rig: Rig, point: PointResult) -> BracingDrift:
     if mode == "torque_controlled" and gear is None:
         mode = "twist_held"
     return drift(system, cold, laws_of(point.last.models), signed_torque(rig, point.point), mode, gear=gear)
-
-
-def actuator_force(state: BracingState) -> float:
-    """Largest force of the load unit: against the teeth and the friction of the spline [N]."""
-    return state.actuator_force + state.friction_force
 
 
 def ramp_history(rig: Rig, ramp: TimeResponse) -> RampHistory:

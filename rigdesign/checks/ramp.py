@@ -2,9 +2,9 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from dynamics.ramp import RampLimits, ramp_rules
-from rigdesign.assemble.dynamics import actuator_force, bracing_drift
 from rigdesign.case.limits import BoughtPart
 from rigdesign.checks.subject import NO_HOUSING, NO_LIMIT, NO_LOADS, Subject, worst
 from rigdesign.checks.thermal import transition_speed_rpm
@@ -60,8 +60,6 @@ def _ramp(subject: Subject) -> Iterator[Check]:
 
 def _exact(check: Check) -> Check:
     """A ramp is commanded, not predicted: a rule met to the digit is met, not near its limit."""
-    from dataclasses import replace
-
     if check.verdict == "warn" and check.margin is not None and check.margin >= 0.0:
         return replace(check, verdict="pass")
     return check
@@ -138,7 +136,7 @@ def _result(subject: Subject, quantity: str) -> tuple[float | None, str]:
         return float(abs(ramp.drive_torque).max()), "time run over the schedule"
     if quantity == "drive_power":
         return float(abs(ramp.drive_torque * ramp.speed).max()), "time run over the schedule"
-    forces = (
-        (actuator_force(bracing_drift(subject.rig, p).hot), f"stage {p.point.stage}") for p in subject.points
+    return worst(
+        (row["actuator_force_N"] + row["spline_friction_N"], f"stage {row['stage']}")
+        for row in subject.dynamics.bracing
     )
-    return worst(forces)

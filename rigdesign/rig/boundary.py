@@ -244,11 +244,3 @@ def _seal_sources(context: _Context, placed: PlacedLoss) -> list[BoundaryConditi
         for stem, share in parts
         for side in ("front", "rear")
     ]
-
-
-def gear_body(context_box: Gearbox, gear: str) -> str:
-    """Name of the body of a gear in the mesh of its housing."""
-    return f"gear_{context_box.gears[gear].shaft}"
-
-
-__all__ = ["AIR", "BEARING_FILM", "BEARING_OIL", "GEAR_OIL", "boundary_conditions", "gear_body"]
