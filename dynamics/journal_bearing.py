@@ -144,6 +144,7 @@ def solve_bearing(
     density: float,
     heat_capacity: float,
     heat_from_bodies: float = 0.0,
+    friction_heat: float | None = None,
 ) -> BearingState:
     """Solve film and heat balance together.
 
@@ -157,6 +158,8 @@ def solve_bearing(
     viscosity : dynamic viscosity [Pa s] of a temperature [K], falling with it
     density, heat_capacity : of the oil [kg/m3], [J/(kg K)]
     heat_from_bodies : heat that shaft and shell give to the film; negative if they cool it [W]
+    friction_heat : measured or assumed heat of the film, not negative [W]; it takes the place of the friction
+        of the film in the heat balance, the drag is that of the film all the same
 
     Returns
     -------
@@ -170,28 +173,31 @@ def solve_bearing(
     Source: ISO 7902-1 / DIN 31652-1: heat carried by the oil alone, effective film temperature the mean of
     inlet and outlet. Heat exchanged with the bodies is an input here instead of an assumed housing film.
     """
-    _check_operation(load, flow, density, heat_capacity, oil_inlet_temperature)
+    _check_operation(load, flow, density, heat_capacity, oil_inlet_temperature, friction_heat)
     speed = abs(omega)
     curve = characteristic(bearing.width / bearing.diameter)
     heat_per_flow = density * heat_capacity
+
+    def heat_into(film: _Film) -> float:
+        own = film.torque * speed if friction_heat is None else friction_heat
+        return own + heat_from_bodies
 
     def film_excess(temperature: float) -> float:
         film = _film(bearing, curve, load, speed, viscosity(temperature))
         cooling_flow = _cooling_flow(bearing, flow, film.side_flow)
         if cooling_flow == 0.0:
             return math.inf
-        rise = (film.torque * speed + heat_from_bodies) / (heat_per_flow * cooling_flow)
+        rise = heat_into(film) / (heat_per_flow * cooling_flow)
         return oil_inlet_temperature + 0.5 * rise - temperature
 
     temperature = _balance(film_excess, oil_inlet_temperature)
     film = _film(bearing, curve, load, speed, viscosity(temperature))
-    heat = film.torque * speed + heat_from_bodies
     return _state(
         bearing,
         film,
         viscosity=viscosity(temperature),
         film_temperature=temperature,
-        outlet_temperature=oil_inlet_temperature + heat / (heat_per_flow * flow),
+        outlet_temperature=oil_inlet_temperature + heat_into(film) / (heat_per_flow * flow),
         flow=flow,
         density=density,
         heat_from_bodies=heat_from_bodies,
@@ -350,10 +356,22 @@ def _warnings(
     return tuple(found)
 
 
-def _check_operation(load: float, flow: float, density: float, heat_capacity: float, inlet: float) -> None:
+def _check_operation(
+    load: float,
+    flow: float,
+    density: float,
+    heat_capacity: float,
+    inlet: float,
+    friction_heat: float | None,
+) -> None:
     if not (load >= 0.0 and math.isfinite(load)):
         raise BearingError(
             f"journal bearing: load = {load} N: must be finite and not negative; give its magnitude"
+        )
+    if friction_heat is not None and not (friction_heat >= 0.0 and math.isfinite(friction_heat)):
+        raise BearingError(
+            f"journal bearing: friction_heat = {friction_heat} W: must be finite and not negative; give the "
+            "measured loss, or none to let the film make its own"
         )
     for name, value, unit in (
         ("oil flow", flow, "m3/s"),

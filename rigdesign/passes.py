@@ -5,17 +5,12 @@ from dataclasses import dataclass
 
 from dynamics.journal_bearing import BearingState
 from dynamics.response_curve import CurvePoint
+from rigdesign.bearing_films import solve_bearings
+from rigdesign.drags import drag_torques
 from rigdesign.growth import HousingGrowth, expand_housing, hot_clearances, uniform_growth
 from rigdesign.loads import MeshModel, Setting, mesh_models, respond
-from rigdesign.lubrication import (
-    OilStream,
-    PlacedLoss,
-    drag_torques,
-    mesh_losses,
-    oil_streams,
-    rotating_losses,
-    solve_bearings,
-)
+from rigdesign.losses import PlacedLoss, mesh_losses, rotating_losses
+from rigdesign.lubrication import OilStream, oil_streams
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 from rigdesign.temperatures import HousingField, body_mean, heat_into_films, heat_into_oil, solve_housing

@@ -10,10 +10,12 @@ from dynamics.propagator import DEFAULT_CUTOFF
 from dynamics.ramp import Command, Kind, Schedule, Stage, s_function
 from dynamics.response import Command as RunCommand
 from dynamics.response import DragCurve, TimeResponse, run_schedule
+from rigdesign.bearing_films import solve_bearings
 from rigdesign.case.schedule import StageValues
+from rigdesign.drags import drag_shafts, drag_torques
 from rigdesign.errors import NotConvergedError
 from rigdesign.loads import Setting, shifted_laws
-from rigdesign.lubrication import drag_torques, rotating_losses, solve_bearings
+from rigdesign.losses import rotating_losses
 from rigdesign.passes import PassResult
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
@@ -126,10 +128,11 @@ def drag_curves(rig: Rig, warm: PassResult, feedback: Feedback) -> dict[str, Dra
     top = max(stage.speed_end for stage in rig.case.schedule.resolved())
     speeds = [share * top for share in DRAG_SHARES]
     tables = [drags_at(rig, warm, feedback, speed) for speed in speeds]
+    assert rig.drivetrain is not None
+    shafts = drag_shafts(rig.drivetrain)
     curves = {}
     for name in tables[-1]:
-        shaft = _shaft_of_drag(rig, name)
-        place = np.array([0.0, *(rig.shaft_speed(shaft, speed) for speed in speeds)])
+        place = np.array([0.0, *(rig.shaft_speed(shafts[name], speed) for speed in speeds)])
         torque = [max(table.get(name, 0.0), 0.0) for table in tables]
         curves[name] = DragCurve(speed=place, torque=np.array([torque[0], *torque]))
     return curves
@@ -140,16 +143,6 @@ def drags_at(rig: Rig, warm: PassResult, feedback: Feedback, speed: float) -> di
     point = replace(warm.point, speed=speed)
     bearings = solve_bearings(rig, point, feedback)
     return drag_torques(rotating_losses(rig, point, feedback, warm.models, bearings), rig, speed)
-
-
-def _shaft_of_drag(rig: Rig, name: str) -> str:
-    box_name, *rest = name.split(".")
-    box = rig.case.gearboxes[box_name]
-    if rest[0] == "seals":
-        return box.seals[rest[1]].shaft
-    if rest[0] in box.bearings:
-        return box.bearings[rest[0]].shaft
-    return box.gears[rest[0]].shaft
 
 
 def _require_speed(rig: Rig, schedule: Schedule, response: TimeResponse) -> None:

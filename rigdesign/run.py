@@ -17,12 +17,13 @@ from rigdesign.assemble.curves import solve_curves
 from rigdesign.assemble.dynamics import DynamicRun, dynamics_result
 from rigdesign.assemble.findings import not_modelled, warnings_of
 from rigdesign.assemble.hand import hand_checks
+from rigdesign.bearing_films import solve_bearings
 from rigdesign.case.model import Case
 from rigdesign.checks import Subject, all_checks
 from rigdesign.coupling import PointResult, solve_point
 from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError
 from rigdesign.loads import mesh_models
-from rigdesign.lubrication import mesh_losses, rotating_losses, solve_bearings
+from rigdesign.losses import mesh_losses, rotating_losses
 from rigdesign.ramp_run import held_points, run_ramp, schedule_of
 from rigdesign.results import AssumptionRecord, Check, Fidelity, LossRow, RunResult
 from rigdesign.rig.model import Rig, build_rig

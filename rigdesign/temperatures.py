@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.journal_bearing import BearingState
-from rigdesign.lubrication import PlacedLoss
+from rigdesign.losses import PlacedLoss
 from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint

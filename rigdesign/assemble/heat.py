@@ -9,7 +9,8 @@ import numpy as np
 
 from rigdesign.coupling import PointResult
 from rigdesign.growth import axes_of, bearing_growth
-from rigdesign.lubrication import OilStream, PlacedLoss
+from rigdesign.losses import PlacedLoss
+from rigdesign.lubrication import OilStream
 from rigdesign.passes import PassResult
 from rigdesign.results import (
     CouplingHistory,

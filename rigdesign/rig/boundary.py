@@ -7,7 +7,7 @@ from dynamics.journal_bearing import BearingState
 from rigdesign.case import housing as laws
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, partner_of
-from rigdesign.lubrication import PlacedLoss
+from rigdesign.losses import PlacedLoss
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 from thermal import convection

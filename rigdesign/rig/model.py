@@ -36,8 +36,11 @@ class Rig:
     oils: Mapping[str, Oil]
     materials: Mapping[str, Material]
     pairs: Mapping[str, GearPair]
-    speed_ratios: Mapping[str, float]
-    """Speed of each shaft per speed of the gear that counts."""
+
+    @cached_property
+    def speed_ratios(self) -> Mapping[str, float]:
+        """Speed of each shaft per speed of the gear that counts."""
+        return speed_ratios(self.case, self.drivetrain)
 
     @cached_property
     def drivetrain(self) -> Drivetrain | None:
@@ -197,7 +200,6 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
         oils=oils,
         materials=materials,
         pairs=pairs,
-        speed_ratios=speed_ratios(case),
     )
 
 

@@ -1,38 +1,34 @@
 """Speed of every shaft of the rig, relative to the gear at which test speed and torque are counted."""
 
-from collections.abc import Iterator
-
+from dynamics import power_loop
+from dynamics.drivetrain import Drivetrain
 from rigdesign.case.model import Case
 
 
-def speed_ratios(case: Case) -> dict[str, float]:
+def speed_ratios(case: Case, drivetrain: Drivetrain | None) -> dict[str, float]:
     """Shaft -> speed ratio to the gear ``drivetrain.torque_at``; magnitude only, every shaft runs forward.
 
     Without a drivetrain the pinion of the first mesh of each gearbox runs at the test speed.
     """
-    if case.drivetrain is None:
-        ratios = {
-            box.gears[next(iter(box.meshes.values())).pinion].shaft: 1.0 for box in case.gearboxes.values()
-        }
-    else:
-        box, gear = case.drivetrain.torque_at.split(".")
-        ratios = {case.gearboxes[box].gears[gear].shaft: 1.0}
-    links = list(_links(case))
-    for _ in links:
-        for first, second, ratio in links:
-            if first in ratios:
-                ratios.setdefault(second, ratios[first] * ratio)
-            elif second in ratios:
-                ratios[first] = ratios[second] / ratio
-    return ratios
+    if drivetrain is None or case.drivetrain is None:
+        return _by_gearbox(case)
+    ratios = power_loop.speed_ratios(drivetrain)
+    reference = ratios[drivetrain.gear(case.drivetrain.torque_at).shaft]
+    return {shaft: ratio / reference for shaft, ratio in ratios.items()}
 
 
-def _links(case: Case) -> Iterator[tuple[str, str, float]]:
-    """(first shaft, second shaft, speed of the second per speed of the first)."""
+def _by_gearbox(case: Case) -> dict[str, float]:
+    """Ratios along the meshes of each gearbox for itself."""
+    ratios: dict[str, float] = {}
     for box in case.gearboxes.values():
-        for mesh in box.meshes.values():
-            pinion, wheel = box.gears[mesh.pinion], box.gears[mesh.wheel]
-            yield pinion.shaft, wheel.shaft, pinion.teeth / wheel.teeth
-    if case.drivetrain is not None:
-        for coupling in case.drivetrain.couplings.values():
-            yield coupling.shafts[0], coupling.shafts[1], 1.0
+        meshes = list(box.meshes.values())
+        ratios[box.gears[meshes[0].pinion].shaft] = 1.0
+        for _ in meshes:
+            for mesh in meshes:
+                pinion, wheel = box.gears[mesh.pinion], box.gears[mesh.wheel]
+                ratio = pinion.teeth / wheel.teeth
+                if pinion.shaft in ratios:
+                    ratios.setdefault(wheel.shaft, ratios[pinion.shaft] * ratio)
+                elif wheel.shaft in ratios:
+                    ratios[pinion.shaft] = ratios[wheel.shaft] / ratio
+    return ratios

@@ -49,6 +49,25 @@ def test_heat_balance_closes() -> None:
     assert state.torsional_damping * state.omega == pytest.approx(state.drag_torque)
 
 
+def test_given_friction_heat_warms_the_film_in_place_of_its_own() -> None:
+    """3 kW into 2 l/min: the film stands half of the rise above the inlet, and drags as thin oil there does."""
+    state = solve(friction_heat=3000.0, heat_from_bodies=100.0)
+    rise = 3100.0 / (DENSITY * HEAT_CAPACITY * state.flow)
+    assert state.outlet_temperature == pytest.approx(INLET + rise, rel=1e-9)
+    assert state.film_temperature == pytest.approx(INLET + 0.5 * rise, abs=1e-6)
+    own = solve()
+    assert state.power < own.power
+    again = solve(friction_heat=own.power)
+    assert again.film_temperature == pytest.approx(own.film_temperature, abs=1e-6)
+    assert again.power == pytest.approx(own.power, rel=1e-6)
+
+
+@pytest.mark.parametrize("heat", [-1.0, math.nan, math.inf])
+def test_impossible_friction_heat(heat: float) -> None:
+    with pytest.raises(BearingError, match="friction_heat"):
+        solve(friction_heat=heat)
+
+
 def test_eccentric_journal_drags_more_than_petroff() -> None:
     light, heavy = solve(load=1.0), solve(load=10000.0)
     assert light.drag_torque == pytest.approx(light.petroff_torque, rel=1e-3)

@@ -1,0 +1,262 @@
+"""Power losses by place at one operating point, and how each divides between oil and bodies."""
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from dynamics.gear import GearPair
+from dynamics.journal_bearing import BearingState
+from dynamics.losses import Loss, ToothPath, mesh_loss, squeeze_loss
+from dynamics.oil_jet import JET_ANGLES, oil_acceleration
+from dynamics.response_curve import CurvePoint
+from dynamics.seal_loss import gap_seal_loss, lip_seal_loss
+from dynamics.windage import GearRotor, Mist, gear_windage
+from rigdesign.bearing_films import constant_drag
+from rigdesign.case.gearbox import Gearbox, HeatSplit
+from rigdesign.given_losses import given_power
+from rigdesign.loads import MeshModel
+from rigdesign.rig.model import Rig
+from rigdesign.state import Feedback, OperatingPoint
+from thermal.air import air
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlacedLoss:
+    """A loss with its place in the case and its way into oil and bodies."""
+
+    gearbox: str
+    part: str
+    """Mesh, bearing, seals or gear of that gearbox."""
+    loss: Loss
+    into_body: float
+    """Power that enters solid bodies [W]; the rest goes into the oil at once."""
+    given: bool = False
+
+    @property
+    def name(self) -> str:
+        """``gearbox.part``."""
+        return f"{self.gearbox}.{self.part}"
+
+    @property
+    def into_oil(self) -> float:
+        """Power that goes into the oil at once [W]."""
+        return self.loss.power - self.into_body
+
+
+def rotating_losses(
+    rig: Rig,
+    point: OperatingPoint,
+    feedback: Feedback,
+    models: Sequence[MeshModel],
+    bearings: Mapping[str, BearingState],
+) -> list[PlacedLoss]:
+    """Every loss that brakes a shaft from outside the teeth: bearings, windage, oil, seals, squeezing."""
+    pairs = {model.name: model.pair for model in models}
+    losses: list[PlacedLoss] = []
+    for name, state in bearings.items():
+        box_name, part = name.split(".")
+        losses.append(_bearing_loss(rig, box_name, part, point, state))
+    for box_name, box in rig.case.gearboxes.items():
+        losses += _windage(rig, box_name, box, point, feedback, pairs)
+        losses += _oil_jets(rig, box_name, box, point, pairs)
+        losses += _seals(rig, box_name, box, point, feedback)
+    losses += _squeezing(rig, point, models)
+    return [taken for loss in losses for taken in _taken(rig, point, loss)]
+
+
+def mesh_losses(
+    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], response: CurvePoint | None = None
+) -> list[PlacedLoss]:
+    """Sliding and damping of every mesh.
+
+    response : gives mu F_N v_g of the dynamic tooth forces and the damping work; without it the sliding is
+        integrated over the path of contact at the mean load
+    """
+    losses = []
+    for index, model in enumerate(models):
+        loss = static_mesh_loss(rig, point, model)
+        if response is not None:
+            source = f"mu F_N v_g of the dynamic tooth forces; {model.friction.source}"
+            loss = replace(
+                loss,
+                power=float(response.friction_power[index]),
+                details=loss.details | {"static_power": loss.power, "source": source},
+            )
+        box_name, mesh = model.name.split(".")
+        share = body_split(rig, box_name).mesh_into_gears
+        placed = PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=share * loss.power)
+        losses += _taken(rig, point, placed)
+        if response is not None:
+            damping = Loss(
+                place=model.name,
+                kind="mesh_damping",
+                power=float(response.damping_power[index]),
+                details={"source": "work of the mesh damper in the periodic response"},
+            )
+            losses.append(PlacedLoss(gearbox=box_name, part=mesh, loss=damping, into_body=0.0))
+    return losses
+
+
+def static_mesh_loss(rig: Rig, point: OperatingPoint, model: MeshModel) -> Loss:
+    """Sliding loss at the mean load, integrated over the path of contact."""
+    box, mesh = rig.mesh(model.name)
+    force = rig.torque_ratio * point.torque / rig.pairs[rig.control_mesh].base_radii[0]
+    return mesh_loss(
+        model.name,
+        ToothPath.of_pair(model.pair),
+        force * model.pair.base_radii[0],
+        rig.shaft_speed(box.gears[box.meshes[mesh].pinion].shaft, point.speed),
+        model.friction,
+        model.stiffness.at,
+    )
+
+
+def _squeezing(rig: Rig, point: OperatingPoint, models: Sequence[MeshModel]) -> Iterator[PlacedLoss]:
+    share = rig.case.losses.squeeze_share
+    for model in models if share > 0.0 else ():
+        box_name, mesh = model.name.split(".")
+        loss = squeeze_loss(model.name, static_mesh_loss(rig, point, model), share)
+        yield PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=0.0)
+
+
+def _bearing_loss(
+    rig: Rig, box_name: str, part: str, point: OperatingPoint, state: BearingState
+) -> PlacedLoss:
+    entry = rig.case.gearboxes[box_name].bearings[part]
+    drag = constant_drag(rig, entry, point)
+    loss = Loss(
+        place=f"{box_name}.{part}",
+        kind="bearing",
+        power=state.power if drag is None else drag,
+        details={
+            "load_N": state.load,
+            "specific_load_MPa": 1e-6 * state.specific_load,
+            "minimum_film_um": 1e6 * state.minimum_film,
+            "film_temperature_degC": state.film_temperature - 273.15,
+            "torsional_damping_Nms_rad": state.torsional_damping,
+            "transition_speed_rpm": state.transition_speed * 30.0 / math.pi,
+            "source": "ISO 7902-1 / DIN 31652-1, film solved",
+        },
+        warnings=state.warnings,
+    )
+    return PlacedLoss(gearbox=box_name, part=part, loss=loss, into_body=0.0)
+
+
+def _windage(
+    rig: Rig,
+    box_name: str,
+    box: Gearbox,
+    point: OperatingPoint,
+    feedback: Feedback,
+    pairs: Mapping[str, GearPair],
+) -> Iterator[PlacedLoss]:
+    mist = chamber_mist(rig, box_name, feedback)
+    for mesh_name, mesh in box.meshes.items():
+        pair = pairs[f"{box_name}.{mesh_name}"]
+        for index, gear_name in enumerate((mesh.pinion, mesh.wheel)):
+            rotor = GearRotor.of_pair(pair, index)
+            omega = rig.shaft_speed(box.gears[gear_name].shaft, point.speed)
+            loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
+            share = body_split(rig, box_name).windage_into_gears
+            yield PlacedLoss(gearbox=box_name, part=gear_name, loss=loss, into_body=share * loss.power)
+
+
+def chamber_mist(rig: Rig, box_name: str, feedback: Feedback) -> Mist:
+    """What the gears and seals turn in: density of the case, viscosity of air at the oil temperature."""
+    box = rig.case.gearboxes[box_name]
+    gas = air(0.5 * (box.oil.inlet_temperature + feedback.oil_outlet[f"{box_name}.gear_oil"]))
+    density = rig.case.losses.chamber_density
+    return Mist(density=gas.density if density is None else density, viscosity=gas.viscosity)
+
+
+def _oil_jets(
+    rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, pairs: Mapping[str, GearPair]
+) -> Iterator[PlacedLoss]:
+    oil = rig.oils[box.oil.oil]
+    for mesh_name, mesh in box.meshes.items():
+        name = f"{box_name}.{mesh_name}"
+        omega = rig.shaft_speed(box.gears[mesh.pinion].shaft, point.speed)
+        loss = oil_acceleration(
+            name,
+            box.oil.flow,
+            oil.density(box.oil.inlet_temperature),
+            omega * pairs[name].working_radii[0],
+            box.oil.jet_velocity,
+            JET_ANGLES[box.oil.jet_direction],
+        )
+        yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0)
+
+
+def _seals(
+    rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, feedback: Feedback
+) -> Iterator[PlacedLoss]:
+    """Seals of each shaft; their lengths are those of the walls, so a gearbox without a housing has none."""
+    geometry = rig.geometries.get(box_name)
+    if geometry is None:
+        return
+    mist = chamber_mist(rig, box_name, feedback)
+    shafts = {shaft.name: shaft for shaft in geometry.shafts}
+    for name, seals in box.seals.items():
+        shaft = shafts[seals.shaft]
+        omega = rig.shaft_speed(seals.shaft, point.speed)
+        gaps = [(shaft.seal_diameter, geometry.partition_thickness)] * 2
+        gaps += [
+            (shaft.overhang_diameter, geometry.bearing_depths(shaft)[0])
+            for overhang in (shaft.overhang_front, shaft.overhang_rear)
+            if overhang > 0.0
+        ]
+        place = f"{box_name}.{name}"
+        if seals.kind == "radial_lip":
+            parts = [lip_seal_loss(place, diameter, omega) for diameter, _ in gaps]
+        else:
+            parts = [
+                gap_seal_loss(
+                    place, 0.5 * diameter, seals.radial_gap, length, omega, mist.density, mist.viscosity
+                )
+                for diameter, length in gaps
+            ]
+        loss = Loss(
+            place=place,
+            kind="seal",
+            power=math.fsum(part.power for part in parts),
+            details=parts[0].details | {"seals": float(len(parts))},
+            warnings=tuple(dict.fromkeys(warning for part in parts for warning in part.warnings)),
+        )
+        split = box.heat_split
+        body = (split.seal_into_shaft + split.seal_into_housing) * loss.power
+        yield PlacedLoss(gearbox=box_name, part=name, loss=loss, into_body=body)
+
+
+def body_split(rig: Rig, name: str) -> HeatSplit:
+    """How losses of a gearbox divide; without a housing all heat ends in the oil."""
+    box = rig.case.gearboxes[name]
+    if box.housing is not None:
+        return box.heat_split
+    return HeatSplit(mesh_into_gears=0.0, windage_into_gears=0.0, seal_into_shaft=0.0, seal_into_housing=0.0)
+
+
+def _taken(rig: Rig, point: OperatingPoint, placed: PlacedLoss) -> list[PlacedLoss]:
+    """The loss of the case in place of the computed one, where the case gives it.
+
+    With basis ``input`` a place that the case does not give loses nothing.
+    """
+    power = given_power(rig.case, point, placed.gearbox, placed.loss.kind, placed.part)
+    if power is None:
+        return [placed] if rig.case.losses.basis == "computed" else []
+    share = placed.into_body / placed.loss.power if placed.loss.power else _split(rig, placed)
+    loss = Loss(
+        place=placed.loss.place,
+        kind=placed.loss.kind,
+        power=power,
+        details={"computed_power": placed.loss.power, "source": "input of the case"},
+    )
+    return [replace(placed, loss=loss, into_body=share * power, given=True)]
+
+
+def _split(rig: Rig, placed: PlacedLoss) -> float:
+    split = body_split(rig, placed.gearbox)
+    return {
+        "mesh": split.mesh_into_gears,
+        "windage": split.windage_into_gears,
+        "seal": split.seal_into_shaft + split.seal_into_housing,
+    }.get(placed.loss.kind, 0.0)
