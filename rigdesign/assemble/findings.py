@@ -6,8 +6,9 @@ from dynamics.modes import sampling_audit
 from rigdesign.assemble.curves import iso_factor
 from rigdesign.checks.subject import Subject
 from rigdesign.results import Finding
+from rigdesign.rig.boundary import printed_films, printed_law
 from rigdesign.temperatures import HousingField
-from thermal.audit import audit_conditions, radiation_too_small
+from thermal.audit import assumed_difference, audit_conditions, radiation_too_small
 from thermal.boundary import Film, Radiation
 
 
@@ -82,28 +83,52 @@ def _films(subject: Subject) -> Iterator[str]:
 
 
 def _audits(subject: Subject) -> Iterator[str]:
-    """Radiation counted twice, and radiation below what any field gives."""
+    """Heat that cannot be, films taken at another temperature difference, radiation counted twice."""
     for field in _fields(subject):
-        yield from audit_conditions(field.conditions)
-        rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
-        films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
-        for condition in field.conditions:
-            if not isinstance(condition, Radiation) or condition.surface not in films:
-                continue
-            film, own = films[condition.surface], rows[(condition.surface, condition.kind)]
-            convection = rows[(film.surface, film.kind)]
-            if convection.coefficient is None or condition.surroundings_temperature != film.fluid_temperature:
-                continue
-            text = radiation_too_small(
-                condition.surface,
-                convection=-convection.power,
-                radiation=-own.power,
-                emissivity=condition.emissivity,
-                film=convection.coefficient.value,
-                ambient=film.fluid_temperature,
-            )
-            if text is not None:
-                yield text
+        found = (
+            *audit_conditions(field.conditions),
+            *_radiation_bound(field),
+            *_assumed_differences(subject, field),
+        )
+        yield from (f"{field.gearbox}: {text}" for text in found)
+
+
+def _radiation_bound(field: HousingField) -> Iterator[str]:
+    rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
+    films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
+    for condition in field.conditions:
+        if not isinstance(condition, Radiation) or condition.surface not in films:
+            continue
+        film, own = films[condition.surface], rows[(condition.surface, condition.kind)]
+        convection = rows[(film.surface, film.kind)]
+        if convection.coefficient is None or condition.surroundings_temperature != film.fluid_temperature:
+            continue
+        text = radiation_too_small(
+            condition.surface,
+            convection=-convection.power,
+            radiation=-own.power,
+            emissivity=condition.emissivity,
+            film=convection.coefficient.value,
+            ambient=film.fluid_temperature,
+        )
+        if text is not None:
+            yield text
+
+
+def _assumed_differences(subject: Subject, field: HousingField) -> Iterator[str]:
+    rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
+    films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
+    for surface, taken in printed_films(subject.rig, field.gearbox):
+        film = films[surface]
+        text = assumed_difference(
+            surface,
+            assumed=taken.temperature_difference,
+            solved=rows[(surface, film.kind)].mean_temperature - film.fluid_temperature,
+            law=printed_law(taken),
+            fluid_temperature=film.fluid_temperature,
+        )
+        if text is not None:
+            yield text
 
 
 def _fields(subject: Subject) -> Iterable[HousingField]:

@@ -13,6 +13,7 @@ from rigdesign.case.fields import (
     Offset,
     Part,
     Temperature,
+    TemperatureDifference,
     Text,
 )
 
@@ -84,12 +85,25 @@ class IsoTr14179(_Condition):
     height: Length
 
 
+class TakenFrom(Part):
+    """Where a printed coefficient to room air was read: at an assumed temperature difference, from a film law."""
+
+    temperature_difference: TemperatureDifference
+    """Wall above air that was assumed; the run warns when it comes out otherwise."""
+    law: Literal["niemann_winter", "recknagel_plate", "iso_tr_14179_2"] | None = None
+    """Film law it was read from: tells what the coefficient would have been, and whether it holds radiation."""
+    height: Length | None = None
+    """h: height of the housing, for niemann_winter and iso_tr_14179_2."""
+
+
 class ConstantFilm(_Condition):
     """A given heat transfer coefficient to a fluid."""
 
     law: Literal["constant_film"]
     heat_transfer_coefficient: HeatTransferCoefficient
     fluid: Fluid
+    taken_from: TakenFrom | None = None
+    """For a printed coefficient to room air: what it was read from."""
     fluid_temperature: Temperature | None = None
     """Overrides the temperature of the fluid."""
 

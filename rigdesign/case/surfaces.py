@@ -5,7 +5,13 @@ from collections.abc import Iterator
 from rigdesign.case.faults import written
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry, matched, partner_of
-from rigdesign.case.housing import GapExchange, Housing, SeriesExchange, ThermalRadiation
+from rigdesign.case.housing import (
+    ConstantFilm,
+    GapExchange,
+    Housing,
+    SeriesExchange,
+    ThermalRadiation,
+)
 from rigdesign.case.paths import nearest
 from rigdesign.errors import Fault
 from rigdesign.units import show
@@ -28,7 +34,8 @@ def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
         names = tuple(surface_names(housing_geometry(gearbox)))
     except ValueError as error:
         return [Fault(f"{at}.housing", "", str(error), "correct the measures of the housing")]
-    return list(_boundary(f"{at}.housing.boundary", housing, names))
+    at = f"{at}.housing.boundary"
+    return [*_boundary(at, housing, names), *_printed_films(at, housing)]
 
 
 def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
@@ -129,3 +136,20 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
             yield Fault(
                 f"{at}.{films[1]}.surfaces", written(surface), f"already has {films[0]}", "name it once"
             )
+
+
+def _printed_films(at: str, housing: Housing) -> Iterator[Fault]:
+    for name, film in housing.boundary.items():
+        if not isinstance(film, ConstantFilm) or film.taken_from is None:
+            continue
+        taken = film.taken_from
+        if film.fluid != "ambient":
+            yield Fault(
+                f"{at}.{name}.taken_from", "", f"stands for films to room air, the fluid is {film.fluid}",
+                'remove it or write fluid = "ambient"',
+            )  # fmt: skip
+        if taken.law in ("niemann_winter", "iso_tr_14179_2") and taken.height is None:
+            yield Fault(
+                f"{at}.{name}.taken_from.height", "", f"{taken.law} needs the height of the housing",
+                'add it, e.g. height = "400 mm"',
+            )  # fmt: skip

@@ -1,6 +1,6 @@
 """Boundary conditions of a housing: the case's laws with this pass's fluids, films, speeds and losses."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from dynamics.journal_bearing import BearingState
@@ -11,6 +11,7 @@ from rigdesign.losses import PlacedLoss
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 from thermal import convection
+from thermal.audit import RADIATION_INCLUDED
 from thermal.boundary import (
     Adiabatic,
     BodySource,
@@ -97,11 +98,7 @@ def boundary_conditions(
     housing = context.box.housing
     assert housing is not None
     rows = conditions_of(housing, surface_names(context.geometry))
-    covered = {
-        surface
-        for entry, surface, _ in rows
-        if isinstance(housing.boundary[entry], laws.NiemannWinter | laws.IsoTr14179)
-    }
+    covered = {surface for entry, surface, _ in rows if _holds_radiation(housing.boundary[entry])}
     conditions: list[BoundaryCondition] = []
     for entry, surface, stood_for in rows:
         condition = housing.boundary[entry]
@@ -109,6 +106,35 @@ def boundary_conditions(
             continue
         conditions.append(_condition(context, condition, surface, stood_for))
     return conditions + _sources(context, losses)
+
+
+def _holds_radiation(condition: laws.Condition) -> bool:
+    """Whether a film to room air is of the size of convection and radiation together."""
+    if isinstance(condition, laws.ConstantFilm):
+        return condition.taken_from is not None and condition.taken_from.law in RADIATION_INCLUDED
+    return condition.law in RADIATION_INCLUDED
+
+
+def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, laws.TakenFrom]]:
+    """(surface, what its coefficient was read from) of every film of a housing that assumes a difference."""
+    housing = rig.case.gearboxes[name].housing
+    assert housing is not None
+    for entry, surface, _ in conditions_of(housing, surface_names(rig.geometries[name])):
+        condition = housing.boundary[entry]
+        if isinstance(condition, laws.ConstantFilm) and condition.taken_from is not None:
+            yield surface, condition.taken_from
+
+
+def printed_law(taken: laws.TakenFrom) -> FilmLaw | None:
+    """Film law a printed coefficient was read from; None if the case does not say."""
+    match taken.law:
+        case "niemann_winter":
+            return convection.niemann_winter(taken.height or 0.0)
+        case "recknagel_plate":
+            return convection.recknagel_plate("dimensional")
+        case "iso_tr_14179_2":
+            return convection.iso_tr_14179_2_free(taken.height or 0.0)
+    return None
 
 
 def _condition(
@@ -156,10 +182,11 @@ def _film_law(context: _Context, condition: laws.Condition, surface: str) -> Fil
         case laws.IsoTr14179():
             return convection.iso_tr_14179_2_free(condition.height)
         case laws.ConstantFilm():
-            source = "input of the case"
             if condition.fluid != "ambient":
                 return convection.oil_wetted(condition.heat_transfer_coefficient)
-            return convection.constant(condition.heat_transfer_coefficient, source)
+            taken = condition.taken_from
+            formula = "constant" if taken is None or taken.law is None else taken.law
+            return convection.constant(condition.heat_transfer_coefficient, "input of the case", formula)
         case laws.RotatingCylinder():
             build = (
                 convection.rotating_cylinder_becker
