@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 
@@ -137,12 +138,19 @@ def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int
 def quasi_static_start(
     problem: Problem, grid: HarmonicGrid, speed: float, drags: Mapping[str, float] | None
 ) -> HarmonicSolution:
-    """Start state: the windup of the slowly rotating loop over one mesh period."""
+    """Start state: the windup of the slowly rotating loop over one mesh period.
+
+    Behind a motor shaft too soft to lead the loop from angle to angle the pinion of the control mesh leads it.
+    """
     angles = np.arange(grid.samples) * (grid.cell_angle / grid.samples)
-    state = solve_static(
-        problem.model, torque=problem.torque, twist=problem.twist, control_mesh=problem.control_mesh,
+    find = partial(
+        solve_static, problem.model, torque=problem.torque, twist=problem.twist, control_mesh=problem.control_mesh,
         angles=np.asarray(angles, float), speed=speed, drag_torques=drags,
     )  # fmt: skip
+    try:
+        state = find()
+    except NotConverged:
+        state = find(held=2 * problem.control_mesh)
     coefficients = np.fft.rfft(state.ports[:, :-1].T, axis=1)[:, : grid.harmonics + 1] / grid.samples
     ports = np.zeros((coefficients.shape[0], grid.top + 1), complex)
     ports[:, :: grid.cells] = coefficients

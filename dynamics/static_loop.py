@@ -122,7 +122,7 @@ class StaticState:
     """Quasi-static state of the loop over some angles of rotation.
 
     twist : bracing twist [rad]; angles : (n_angles,) rotation of the drive freedom [rad]
-    ports : (n_angles, n) windup of the ports against rigid rotation [rad]
+    ports : (n_angles, n) windup of the ports against the rigid rotation of the held one [rad]
     torque : (n_angles, n_meshes) torque transmitted at the pinion, positive on the front flank [N m]
     drive : (n_angles,) drive torque that balances friction and drag [N m]
     """
@@ -156,10 +156,14 @@ def solve_static(
     speed: float = 0.0,
     drag_torques: Mapping[str, float] | None = None,
     start: StaticState | None = None,
+    held: int = -1,
 ) -> StaticState:
     """Quasi-static state for a given twist [rad], or the twist for a given mean torque of one mesh [N m].
 
     speed : reference speed that gives friction and drag their direction [rad/s]; 0 leaves both out.
+    held : port that turns by ``angles`` without windup: the drive freedom, last of all, or the pinion 2 m of
+        mesh m. Behind a soft motor shaft a mesh may step over the pitch point, where friction reverses, and
+        no state exists for some angles of the drive; it does for the angles of a pinion
 
     Raises
     ------
@@ -202,10 +206,10 @@ def solve_static(
         jacobian = np.zeros((where.size, n + 1, n + 1))
         jacobian[:, :n, :n] = model.stiffness - slopes
         jacobian[:, ref, n] = -1.0
-        jacobian[:, n, ref] = 1.0
+        jacobian[:, n, held % n] = 1.0
         right = np.zeros((where.size, n + 1, 2))
         right[:, :n, 0] = -residual
-        right[:, n, 0] = -u[:, ref]
+        right[:, n, 0] = -u[:, held]
         right[:, :n, 1] = model.twist
         try:
             moves = np.asarray(np.linalg.solve(jacobian, right), float)

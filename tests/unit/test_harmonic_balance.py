@@ -39,6 +39,25 @@ def test_mean_torque_is_the_asked_one_and_the_loop_closes() -> None:
         assert np.all(point.dynamic_factor_half_peak_to_peak >= 1.0)
 
 
+def test_motor_on_a_soft_shaft_takes_nothing_from_the_loop() -> None:
+    """A motor that swings at 20 Hz on its shaft has no part in the mesh vibration at 20 kHz.
+
+    Its angle cannot lead the loop from state to state: friction reverses at the pitch point faster than so soft
+    a spring follows.
+    """
+    rig = prototype()
+    stiff, soft = (
+        by_harmonics(
+            prototype_laws(friction=0.04),
+            [12000.0],
+            system=assemble(replace(rig, motor=replace(rig.motor, inertia=0.01, stiffness=stiffness))),
+        ).points[0]
+        for stiffness in (1e5, 160.0)
+    )
+    assert soft.drive_torque == pytest.approx(stiff.drive_torque, rel=5e-3)
+    assert soft.maximum == pytest.approx(stiff.maximum, rel=5e-3)
+
+
 @pytest.mark.parametrize("speed", [1500.0, 6000.0])
 def test_drive_power_is_what_meshes_and_joints_lose(speed: float) -> None:
     """Momentum balance against integrated losses (V12): joints from the harmonics of their ports."""
