@@ -1,17 +1,26 @@
-"""Compiled assembly of matrices row by row, for 10-node tetrahedra and their linear sub-space.
+"""Compiled assembly of matrices row by row, for any cell, from tables of its shape functions.
 
-Each row of the matrix gathers from the cells around its node, so rows are independent of each other and the
-sum has one order. Everything here takes numbers and arrays; names and checks live in thermal.fe.elements.
+Cells are taken in blocks: their element matrices first, one cell beside the other, then every row of the
+matrix gathers its share. Rows and cells are independent of each other and every sum has one order, so the
+result does not depend on the number of threads (NUMBA_NUM_THREADS). Everything here takes numbers and arrays;
+names and checks live in thermal.fe.elements.
 
-Index names: row = node, e = cell, a b = local nodes, q = quadrature point, i j = directions.
+Index names: row = node, e = cell, a b = local nodes, q = quadrature point, i j k = directions.
 """
 
 import numpy as np
-from numba import njit
+from numba import njit, prange
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int32]
+Offsets = NDArray[np.uint16]
+
+BLOCK = 4_000_000
+"""Numbers in the element matrices of one block of cells."""
+
+ROWS = 8192
+"""Rows of the matrix that one thread takes at a time."""
 
 
 @njit(cache=True)
@@ -34,44 +43,58 @@ def cells_of_nodes(cells: Integers, n_nodes: int) -> tuple[Integers, Integers]:
     return start, around
 
 
-@njit(cache=True)
-def pattern(cells: Integers, start: Integers, around: Integers) -> tuple[Integers, Integers]:
-    """``indptr`` and sorted ``indices`` of the matrix that couples all nodes of a cell."""
+@njit(cache=True, parallel=True)
+def pattern(cells: Integers, start: Integers, around: Integers) -> tuple[Integers, Integers, Offsets]:
+    """``indptr`` and sorted ``indices`` of the matrix that couples all nodes of a cell.
+
+    The third array (n_cells, n_local, n_local) is the place of each pair of local nodes in the row of the
+    first of them.
+    """
     n_nodes = len(start) - 1
     n_local = cells.shape[1]
-    seen = np.full(n_nodes, -1, dtype=np.int32)
-    indptr = np.zeros(n_nodes + 1, dtype=np.int32)
-    for row in range(n_nodes):
-        count = 0
-        for at in range(start[row], start[row + 1]):
-            e = around[at] // n_local
-            for b in range(n_local):
-                column = cells[e, b]
-                if seen[column] != row:
-                    seen[column] = row
-                    count += 1
-        indptr[row + 1] = indptr[row] + count
+    n_chunks = (n_nodes + ROWS - 1) // ROWS
+    counts = np.zeros(n_nodes + 1, dtype=np.int32)
+    for chunk in prange(n_chunks):
+        seen = np.full(n_nodes, -1, dtype=np.int32)
+        for row in range(chunk * ROWS, min(n_nodes, (chunk + 1) * ROWS)):
+            for at in range(start[row], start[row + 1]):
+                e = around[at] // n_local
+                for b in range(n_local):
+                    column = cells[e, b]
+                    if seen[column] != row:
+                        seen[column] = row
+                        counts[row + 1] += 1
+    indptr = np.cumsum(counts).astype(np.int32)
     indices = np.empty(indptr[-1], dtype=np.int32)
-    seen[:] = -1
-    for row in range(n_nodes):
-        end = indptr[row]
-        for at in range(start[row], start[row + 1]):
-            e = around[at] // n_local
-            for b in range(n_local):
-                column = cells[e, b]
-                if seen[column] != row:
-                    seen[column] = row
-                    indices[end] = column
-                    end += 1
-        indices[indptr[row] : end] = np.sort(indices[indptr[row] : end])
-    return indptr, indices
+    offsets = np.empty((len(cells), n_local, n_local), dtype=np.uint16)
+    for chunk in prange(n_chunks):
+        place = np.full(n_nodes, -1, dtype=np.int32)
+        for row in range(chunk * ROWS, min(n_nodes, (chunk + 1) * ROWS)):
+            first, end = indptr[row], indptr[row]
+            for at in range(start[row], start[row + 1]):
+                e = around[at] // n_local
+                for b in range(n_local):
+                    column = cells[e, b]
+                    if place[column] < first:
+                        place[column] = end
+                        indices[end] = column
+                        end += 1
+            indices[first:end].sort()
+            for at in range(first, end):
+                place[indices[at]] = at
+            for at in range(start[row], start[row + 1]):
+                e = around[at] // n_local
+                a = around[at] - e * n_local
+                for b in range(n_local):
+                    offsets[e, a, b] = place[cells[e, b]] - first
+    return indptr, indices, offsets
 
 
 @njit(cache=True)
 def _jacobian(points: Floats, nodes: Integers, slopes: Floats, inverse: Floats) -> float:
-    """Fill the 3x3 ``inverse`` of dx/dxi at one point and return the determinant; slopes : (10, 3)."""
+    """Fill the 3x3 ``inverse`` of dx/dxi at one point and return the determinant; slopes : (n_local, 3)."""
     jac = np.zeros((3, 3))
-    for a in range(10):
+    for a in range(len(slopes)):
         for i in range(3):
             for j in range(3):
                 jac[i, j] += points[nodes[a], i] * slopes[a, j]
@@ -93,141 +116,181 @@ def _jacobian(points: Floats, nodes: Integers, slopes: Floats, inverse: Floats) 
     return det
 
 
-@njit(cache=True)
-def quadrature_geometry(
-    points: Floats, cells: Integers, first: Integers, rule_start: Integers, slopes: Floats, weights: Floats
-) -> tuple[Floats, Floats]:
-    """Gradients (n_q, 10, 3) [1/m] and volume weights (n_q,) [m3] at the quadrature points of all cells.
+@njit(cache=True, parallel=True)
+def cell_geometry(points: Floats, cells: Integers, slopes: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    """Inverse Jacobians dxi/dx (n_cells, n_q, 3, 3) [1/m] and volume weights (n_cells, n_q) [m3].
 
-    first : (n_cells + 1,) first quadrature point of each cell
-    rule_start : (n_cells,) row of ``slopes`` (n, 10, 3) and ``weights`` (n,) where the cell's rule starts
+    slopes : (n_q, n_local, 3) reference gradients; weights : (n_q,) of the rule
     """
-    gradients = np.empty((first[-1], 10, 3))
-    volumes = np.empty(first[-1])
-    inverse = np.zeros((3, 3))
-    for e in range(len(cells)):
-        for q in range(first[e], first[e + 1]):
-            at = rule_start[e] + q - first[e]
-            det = _jacobian(points, cells[e], slopes[at], inverse)
-            volumes[q] = det * weights[at]
-            for a in range(10):
-                for i in range(3):
-                    gradients[q, a, i] = (
-                        slopes[at, a, 0] * inverse[0, i]
-                        + slopes[at, a, 1] * inverse[1, i]
-                        + slopes[at, a, 2] * inverse[2, i]
-                    )
-    return gradients, volumes
+    n_q = len(weights)
+    inverse = np.zeros((len(cells), n_q, 3, 3))
+    volumes = np.empty((len(cells), n_q))
+    for e in prange(len(cells)):
+        for q in range(n_q):
+            volumes[e, q] = weights[q] * _jacobian(points, cells[e], slopes[q], inverse[e, q])
+    return inverse, volumes
+
+
+@njit(cache=True, parallel=True)
+def cell_volumes(points: Floats, cells: Integers, slopes: Floats, weights: Floats) -> Floats:
+    """Volume weights (n_cells, n_q) [m3]; arguments as in `cell_geometry`."""
+    volumes = np.empty((len(cells), len(weights)))
+    for e in prange(len(cells)):
+        inverse = np.empty((3, 3))
+        for q in range(len(weights)):
+            volumes[e, q] = weights[q] * _jacobian(points, cells[e], slopes[q], inverse)
+    return volumes
 
 
 @njit(cache=True)
+def _gradients(inverse: Floats, slopes: Floats, out: Floats) -> None:
+    """Fill ``out`` (3, n_local) [1/m] from reference gradients ``slopes`` (3, n_local)."""
+    for i in range(3):
+        c0, c1, c2 = inverse[0, i], inverse[1, i], inverse[2, i]
+        for b in range(slopes.shape[1]):
+            out[i, b] = c0 * slopes[0, b] + c1 * slopes[1, b] + c2 * slopes[2, b]
+
+
+@njit(cache=True, parallel=True)
 def conduction_rows(
     indptr: Integers,
-    indices: Integers,
     start: Integers,
     around: Integers,
-    cells: Integers,
-    first: Integers,
-    gradients: Floats,
+    offsets: Offsets,
+    slopes: Floats,
+    inverse: Floats,
     volumes: Floats,
     conductivity: Floats,
 ) -> Floats:
-    """Values (nnz,) [W/K] of the integral of k grad N_a . grad N_b; conductivity : (n_cells,) [W/(m K)]."""
+    """Values (nnz,) [W/K] of the integral of k grad N_a . grad N_b.
+
+    slopes : (n_q, 3, n_local) reference gradients; inverse, volumes : see `cell_geometry`
+    conductivity : (n_cells, n_q) [W/(m K)]
+    """
     n_nodes = len(start) - 1
-    n_local = cells.shape[1]
-    data = np.zeros(len(indices))
-    slot = np.zeros(n_nodes, dtype=np.int32)
-    for row in range(n_nodes):
-        for at in range(indptr[row], indptr[row + 1]):
-            slot[indices[at]] = at
-        for at in range(start[row], start[row + 1]):
-            e = around[at] // n_local
-            a = around[at] - e * n_local
-            for q in range(first[e], first[e + 1]):
-                factor = conductivity[e] * volumes[q]
-                g0 = factor * gradients[q, a, 0]
-                g1 = factor * gradients[q, a, 1]
-                g2 = factor * gradients[q, a, 2]
+    n_q, _, n_local = slopes.shape
+    n_cells = len(offsets)
+    data = np.zeros(indptr[-1])
+    block = max(1, min(n_cells, BLOCK // (n_local * n_local)))
+    part = np.empty((block, n_local, n_local))
+    fill = start[:-1].copy()
+    for first in range(0, n_cells, block):
+        last = min(n_cells, first + block)
+        for e in prange(first, last):
+            gradients = np.empty((3, n_local))
+            matrix = part[e - first]
+            matrix[:] = 0.0
+            for q in range(n_q):
+                _gradients(inverse[e, q], slopes[q], gradients)
+                factor = conductivity[e, q] * volumes[e, q]
+                for a in range(n_local):
+                    g0 = factor * gradients[0, a]
+                    g1 = factor * gradients[1, a]
+                    g2 = factor * gradients[2, a]
+                    for b in range(n_local):
+                        matrix[a, b] += g0 * gradients[0, b] + g1 * gradients[1, b] + g2 * gradients[2, b]
+        for row in prange(n_nodes):
+            at = fill[row]
+            while at < start[row + 1] and around[at] < last * n_local:
+                e = around[at] // n_local
+                a = around[at] - e * n_local
                 for b in range(n_local):
-                    data[slot[cells[e, b]]] += (
-                        g0 * gradients[q, b, 0] + g1 * gradients[q, b, 1] + g2 * gradients[q, b, 2]
-                    )
+                    data[indptr[row] + offsets[e, a, b]] += part[e - first, a, b]
+                at += 1
+            fill[row] = at
     return data
 
 
-@njit(cache=True)
+@njit(cache=True, parallel=True)
 def elasticity_rows(
     indptr: Integers,
-    indices: Integers,
     start: Integers,
     around: Integers,
-    cells: Integers,
-    first: Integers,
-    gradients: Floats,
+    offsets: Offsets,
+    slopes: Floats,
+    inverse: Floats,
     volumes: Floats,
     lame: Floats,
 ) -> Floats:
-    """Blocks (nnz, 3, 3) [N/m] of isotropic linear elasticity; lame : (n_cells, 2) lambda and mu [Pa]."""
+    """Blocks (nnz, 3, 3) [N/m] of isotropic linear elasticity; lame : (n_cells, 2) lambda and mu [Pa].
+
+    The other arguments are those of `conduction_rows`. A cell keeps int grad_i N_a grad_j N_b for b <= a.
+    """
     n_nodes = len(start) - 1
-    n_local = cells.shape[1]
-    data = np.zeros((len(indices), 3, 3))
-    slot = np.zeros(n_nodes, dtype=np.int32)
-    product = np.empty((n_local, 3, 3))
-    for row in range(n_nodes):
-        for at in range(indptr[row], indptr[row + 1]):
-            slot[indices[at]] = at
-        for at in range(start[row], start[row + 1]):
-            e = around[at] // n_local
-            a = around[at] - e * n_local
-            product[:] = 0.0
-            for q in range(first[e], first[e + 1]):
-                for b in range(n_local):
+    n_q, _, n_local = slopes.shape
+    n_cells = len(offsets)
+    data = np.zeros((indptr[-1], 3, 3))
+    block = max(1, min(n_cells, BLOCK // (9 * n_local * n_local)))
+    part = np.empty((block, n_local, 3, 3, n_local))
+    fill = start[:-1].copy()
+    for first in range(0, n_cells, block):
+        last = min(n_cells, first + block)
+        for e in prange(first, last):
+            gradients = np.empty((3, n_local))
+            products = part[e - first]
+            products[:] = 0.0
+            for q in range(n_q):
+                _gradients(inverse[e, q], slopes[q], gradients)
+                for a in range(n_local):
                     for i in range(3):
-                        factor = volumes[q] * gradients[q, a, i]
+                        factor = volumes[e, q] * gradients[i, a]
                         for j in range(3):
-                            product[b, i, j] += factor * gradients[q, b, j]
-            lam, mu = lame[e, 0], lame[e, 1]
-            for b in range(n_local):
-                block = data[slot[cells[e, b]]]
-                trace = mu * (product[b, 0, 0] + product[b, 1, 1] + product[b, 2, 2])
-                for i in range(3):
-                    block[i, i] += trace
-                    for j in range(3):
-                        block[i, j] += lam * product[b, i, j] + mu * product[b, j, i]
+                            for b in range(a + 1):
+                                products[a, i, j, b] += factor * gradients[j, b]
+        for row in prange(n_nodes):
+            at = fill[row]
+            while at < start[row + 1] and around[at] < last * n_local:
+                e = around[at] // n_local
+                a = around[at] - e * n_local
+                lam, mu = lame[e, 0], lame[e, 1]
+                products = part[e - first]
+                for b in range(n_local):
+                    block_ab = data[indptr[row] + offsets[e, a, b]]
+                    if b <= a:
+                        trace = products[a, 0, 0, b] + products[a, 1, 1, b] + products[a, 2, 2, b]
+                        for i in range(3):
+                            block_ab[i, i] += mu * trace
+                            for j in range(3):
+                                block_ab[i, j] += lam * products[a, i, j, b] + mu * products[a, j, i, b]
+                    else:
+                        trace = products[b, 0, 0, a] + products[b, 1, 1, a] + products[b, 2, 2, a]
+                        for i in range(3):
+                            block_ab[i, i] += mu * trace
+                            for j in range(3):
+                                block_ab[i, j] += lam * products[b, j, i, a] + mu * products[b, i, j, a]
+                at += 1
+            fill[row] = at
     return data
 
 
 @njit(cache=True)
 def expansion_load(
-    points: Floats,
     cells: Integers,
     values: Floats,
     slopes: Floats,
-    weights: Floats,
+    inverse: Floats,
+    volumes: Floats,
     factor: Floats,
     excess: Floats,
 ) -> Floats:
     """Load (n_nodes, 3) [N] of free expansion: the integral of factor * excess * grad N_a.
 
-    values : (n_q, 10), slopes : (n_q, 10, 3), weights : (n_q,) of one rule for all cells
+    values : (n_q, n_local), slopes : (n_q, 3, n_local) of the rule; inverse, volumes : see `cell_geometry`
     factor : (n_cells,) alpha E / (1 - 2 nu) [Pa/K]; excess : (n_nodes,) temperature above the cold one [K]
     """
-    load = np.zeros(points.shape)
-    inverse = np.zeros((3, 3))
+    load = np.zeros((len(excess), 3))
+    n_local = cells.shape[1]
+    gradients = np.empty((3, n_local))
     for e in range(len(cells)):
-        for q in range(len(weights)):
-            det = _jacobian(points, cells[e], slopes[q], inverse)
+        for q in range(len(values)):
             heat = 0.0
-            for a in range(10):
+            for a in range(n_local):
                 heat += values[q, a] * excess[cells[e, a]]
-            scale = factor[e] * heat * det * weights[q]
-            for a in range(10):
+            scale = factor[e] * heat * volumes[e, q]
+            _gradients(inverse[e, q], slopes[q], gradients)
+            for a in range(n_local):
                 for i in range(3):
-                    load[cells[e, a], i] += scale * (
-                        slopes[q, a, 0] * inverse[0, i]
-                        + slopes[q, a, 1] * inverse[1, i]
-                        + slopes[q, a, 2] * inverse[2, i]
-                    )
+                    load[cells[e, a], i] += scale * gradients[i, a]
     return load
 
 
@@ -235,14 +298,14 @@ def expansion_load(
 def facet_geometry(
     points: Floats, facets: Integers, slopes: Floats, weights: Floats
 ) -> tuple[Floats, Floats]:
-    """Area weights (n_f, n_q) [m2], unit normals (n_f, n_q, 3) of (n_f, 6) facets; slopes : (n_q, 6, 2)."""
+    """Area weights (n_f, n_q) [m2], unit normals (n_f, n_q, 3) of (n_f, n) facets; slopes : (n_q, n, 2)."""
     areas = np.empty((len(facets), len(weights)))
     normals = np.empty((len(facets), len(weights), 3))
     tangent = np.empty((2, 3))
     for f in range(len(facets)):
         for q in range(len(weights)):
             tangent[:] = 0.0
-            for a in range(6):
+            for a in range(facets.shape[1]):
                 for i in range(3):
                     tangent[0, i] += points[facets[f, a], i] * slopes[q, a, 0]
                     tangent[1, i] += points[facets[f, a], i] * slopes[q, a, 1]

@@ -1,24 +1,48 @@
-"""Second-order tetrahedral meshes whose bodies and surfaces have names."""
+"""Second-order meshes of tetrahedra or hexahedra whose bodies and surfaces have names."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import permutations
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-FloatArray = NDArray[np.float64]
-IndexArray = NDArray[np.int32]
+from thermal.fe.shapes import (
+    CELLS,
+    HEXAHEDRON_20,
+    HEXAHEDRON_27,
+    TETRAHEDRON_10,
+    CellShape,
+    FloatArray,
+    IndexArray,
+)
 
-CELL_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
-"""Corner pairs of the mid-side nodes 4 to 9 of a cell."""
+__all__ = [
+    "CELL_EDGES",
+    "GMSH_NODE_ORDER",
+    "FacetTable",
+    "FloatArray",
+    "IndexArray",
+    "MeshError",
+    "NamedMesh",
+    "box_mesh",
+    "cell_shape",
+    "disjoint_union",
+    "facet_keys",
+    "facet_table",
+    "from_scikit_fem",
+    "named_mesh",
+    "second_order",
+]
 
-CELL_FACETS = np.array([[0, 2, 1, 6, 5, 4], [0, 1, 3, 4, 8, 7], [1, 2, 3, 5, 9, 8], [0, 3, 2, 7, 9, 6]])
-"""The four 6-node triangles of a cell, corners first, normals outwards."""
+CELL_EDGES = TETRAHEDRON_10.edges
+"""Corner pairs of the mid-side nodes 4 to 9 of a tetrahedron."""
 
-GMSH_NODE_ORDER = (0, 1, 2, 3, 4, 5, 6, 7, 9, 8)
-"""``gmsh_cells[:, GMSH_NODE_ORDER]`` is the node order of NamedMesh (gmsh numbers edge 23 before edge 13)."""
+GMSH_NODE_ORDER = TETRAHEDRON_10.gmsh_order
+"""``gmsh_cells[:, GMSH_NODE_ORDER]`` is the node order of NamedMesh for tetrahedra."""
+
+CellName = Literal["tetra10", "hexahedron20", "hexahedron27"]
 
 
 class MeshError(ValueError):
@@ -27,14 +51,14 @@ class MeshError(ValueError):
 
 @dataclass(frozen=True)
 class NamedMesh:
-    """A mesh of 10-node tetrahedra (VTK node order) with named bodies and surfaces.
+    """A mesh of one kind of second-order cell (VTK node order) with named bodies and surfaces.
 
     points : (n_nodes, 3) coordinates [m]
-    cells : (n_cells, 10) node indices, corners first, mid-side nodes 01 12 20 03 13 23
+    cells : (n_cells, 10, 20 or 27) node indices of tetrahedra or hexahedra, see thermal.fe.shapes
     bodies : name -> (k,) cell indices; every cell belongs to exactly one body
-    surfaces : name -> (k, 6) node indices of 6-node triangles, corners first, mid-sides 01 12 20, normal
-        pointing out of the body they bound; every facet on the boundary of the mesh belongs to exactly one
-        surface. An interface between two bodies that share nodes may be named too (it then has one side).
+    surfaces : name -> (k, 6, 8 or 9) node indices of second-order triangles or quadrilaterals, corners first,
+        normal pointing out of the body they bound; every facet on the boundary of the mesh belongs to exactly
+        one surface. An interface between two bodies that share nodes may be named too (it then has one side).
     """
 
     points: FloatArray
@@ -42,14 +66,27 @@ class NamedMesh:
     bodies: dict[str, IndexArray]
     surfaces: dict[str, IndexArray]
 
+    @property
+    def shape(self) -> CellShape:
+        """The kind of cell. Raises MeshError for a number of nodes that no cell has."""
+        return cell_shape(self.cells)
+
+
+def cell_shape(cells: IndexArray) -> CellShape:
+    """The element with as many nodes as ``cells`` (n, n_local) has columns."""
+    if cells.ndim != 2 or cells.shape[1] not in CELLS:
+        names = ", ".join(f"{n} ({shape.name})" for n, shape in CELLS.items())
+        raise MeshError(f"cells of shape {cells.shape}: need (n_cells, n) with n of {names}")
+    return CELLS[cells.shape[1]]
+
 
 @dataclass(frozen=True)
 class FacetTable:
-    """All facets of all cells, sorted so that two cells' sides of one facet are neighbours.
+    """All sides of all cells, sorted so that two cells' sides of one facet are neighbours; n = all sides.
 
-    keys : (4 n_cells,) one number per set of three corners, ascending
-    cells : (4 n_cells,) cell that owns the side
-    nodes : (4 n_cells, 6) nodes, normal out of that cell
+    keys : (n,) one number per set of corners, ascending
+    cells : (n,) cell that owns the side
+    nodes : (n, n_local) nodes, normal out of that cell
     """
 
     keys: NDArray[np.int64]
@@ -58,23 +95,28 @@ class FacetTable:
 
     @property
     def on_boundary(self) -> NDArray[np.bool_]:
-        """(4 n_cells,) True where no second cell has the same facet."""
+        """(n,) True where no second cell has the same facet."""
         same = self.keys[1:] == self.keys[:-1]
         return np.asarray(~(np.append(same, False) | np.append(False, same)))
 
 
 def facet_keys(corners: IndexArray, n_nodes: int) -> NDArray[np.int64]:
-    """One number per set of three corner nodes, whatever their order. corners : (n, 3)."""
-    a, b, c = np.sort(corners.astype(np.int64), axis=1).T
+    """One number per set of corner nodes, whatever their order: the three smallest name a side.
+
+    corners : (n, 3 or 4); ``n_nodes`` below 2 million
+    """
+    a, b, c = np.sort(corners.astype(np.int64), axis=1).T[:3]
     return np.asarray((a * n_nodes + b) * n_nodes + c)
 
 
 def facet_table(cells: IndexArray, n_nodes: int) -> FacetTable:
-    """Collect the facets of (n, 10) ``cells``; see FacetTable. ``n_nodes`` below 2 million."""
-    nodes = cells[:, CELL_FACETS].reshape(-1, 6)
-    keys = facet_keys(nodes[:, :3], n_nodes)
+    """Collect the sides of (n, n_local) ``cells``; see FacetTable. ``n_nodes`` below 2 million."""
+    shape = cell_shape(cells)
+    sides = cells[:, shape.sides].reshape(-1, shape.side.n_nodes)
+    keys = facet_keys(sides[:, : shape.side.n_corners], n_nodes)
     order = np.argsort(keys, kind="stable")
-    return FacetTable(keys[order], (order // 4).astype(np.int32), nodes[order].astype(np.int32))
+    owners = (order // len(shape.sides)).astype(np.int32)
+    return FacetTable(keys[order], owners, sides[order].astype(np.int32))
 
 
 def named_mesh(
@@ -85,17 +127,18 @@ def named_mesh(
 ) -> NamedMesh:
     """Make a mesh from second-order cells and surfaces of which only corner nodes are known.
 
-    points : (n_nodes, 3) [m]; cells : (n_cells, 10) in NamedMesh order (see GMSH_NODE_ORDER)
+    points : (n_nodes, 3) [m]; cells : (n_cells, n_local) in NamedMesh order (see CellShape.gmsh_order)
     bodies : name -> (k,) cell indices
-    surface_corners : name -> (k, >= 3) node indices, corners first, in any orientation
+    surface_corners : name -> (k, >= n_corners) node indices, corners first, in any orientation
 
     Facets are found by their corners and take mid-side nodes and orientation from the cell they bound (the
     first one at an interface). Raises MeshError if a facet of a surface is no side of any cell.
     """
     table = facet_table(cells, len(points))
+    n_corners = cell_shape(cells).side.n_corners
     surfaces = {}
     for name, corners in surface_corners.items():
-        keys = facet_keys(corners[:, :3], len(points))
+        keys = facet_keys(corners[:, :n_corners], len(points))
         at = np.minimum(np.searchsorted(table.keys, keys), len(table.keys) - 1)
         lost = int(np.count_nonzero(table.keys[at] != keys))
         if lost:
@@ -110,28 +153,30 @@ def named_mesh(
 
 def second_order(
     points: FloatArray,
-    tetrahedra: IndexArray,
+    linear_cells: IndexArray,
     bodies: Mapping[str, IndexArray],
     surface_corners: Mapping[str, IndexArray],
 ) -> NamedMesh:
-    """Raise a mesh of 4-node tetrahedra to second order with straight edges.
+    """Raise a mesh of 4-node tetrahedra or 8-node hexahedra to second order with straight edges.
 
-    points : (n, 3) [m]; tetrahedra : (n_cells, 4) in any orientation; bodies and surface_corners as in
-    named_mesh. The corner nodes keep their numbers, mid-side nodes follow.
+    points : (n, 3) [m]; linear_cells : (n_cells, 4 or 8) in any orientation; bodies and surface_corners as in
+    named_mesh. The corner nodes keep their numbers, mid-side nodes follow. Hexahedra get 20 nodes.
     """
-    tetrahedra = _turned(points, tetrahedra, (0, 2, 1, 3))
-    edges = np.sort(tetrahedra[:, np.array(CELL_EDGES)].reshape(-1, 2), axis=1)
+    shape = TETRAHEDRON_10 if linear_cells.shape[1] == 4 else HEXAHEDRON_20
+    linear_cells = _turned(points, linear_cells, shape)
+    edges = np.sort(linear_cells[:, np.array(shape.edges)].reshape(-1, 2), axis=1)
     unique, which = np.unique(edges, axis=0, return_inverse=True)
     mids = 0.5 * (points[unique[:, 0]] + points[unique[:, 1]])
-    cells = np.hstack([tetrahedra, len(points) + which.reshape(-1, 6)]).astype(np.int32)
+    cells = np.hstack([linear_cells, len(points) + which.reshape(-1, len(shape.edges))]).astype(np.int32)
     return named_mesh(np.vstack([points, mids]), cells, bodies, surface_corners)
 
 
 def from_scikit_fem(mesh: Any) -> NamedMesh:
-    """Convert a scikit-fem ``MeshTet1`` or ``MeshTet2`` with its subdomains and boundaries.
+    """Convert a scikit-fem mesh of tetrahedra or hexahedra with its subdomains and boundaries.
 
-    Cells outside of every subdomain form the body ``rest``, boundary facets outside of every named boundary
-    the surface ``rest``.
+    ``MeshTet1`` and ``MeshHex1`` are raised to second order with straight edges, ``MeshTet2`` and ``MeshHex2``
+    (27 nodes) taken as they are. Cells outside of every subdomain form the body ``rest``, boundary facets
+    outside of every named boundary the surface ``rest``.
     """
     bodies = {name: np.asarray(ix, dtype=np.int32) for name, ix in (mesh.subdomains or {}).items()}
     named = np.concatenate([*bodies.values(), np.empty(0, dtype=np.int32)])
@@ -141,17 +186,22 @@ def from_scikit_fem(mesh: Any) -> NamedMesh:
     if len(rest := np.setdiff1d(mesh.boundary_facets(), np.concatenate([*facets.values(), []]))):
         facets["rest"] = rest
     corners = {name: mesh.facets[:, ix].T for name, ix in facets.items()}
-    if len(mesh.dofs.element_dofs) == 4:
-        return second_order(mesh.p.T, mesh.t.T, bodies, corners)
-    cells = _turned(mesh.doflocs.T, mesh.dofs.element_dofs.T, (0, 2, 1, 3, 6, 5, 4, 7, 9, 8))
-    return named_mesh(mesh.doflocs.T, cells, bodies, corners)
+    local = np.array(mesh.elem.doflocs)
+    shape = {4: TETRAHEDRON_10, 8: HEXAHEDRON_20, 10: TETRAHEDRON_10, 27: HEXAHEDRON_27}[len(local)]
+    wanted = (shape.nodes if shape.n_corners == 4 else 0.5 * (shape.nodes + 1.0))[: len(local)]
+    order = [int(np.argmin(np.linalg.norm(local - place, axis=1))) for place in wanted]
+    cells = mesh.dofs.element_dofs[order].T
+    if len(local) == shape.n_corners:
+        return second_order(mesh.doflocs.T, cells, bodies, corners)
+    return named_mesh(mesh.doflocs.T, _turned(mesh.doflocs.T, cells, shape), bodies, corners)
 
 
-def _turned(points: FloatArray, cells: IndexArray, order: tuple[int, ...]) -> IndexArray:
-    """Cells with the nodes of left-handed ones put into ``order``."""
-    edges = points[cells[:, 1:4]] - points[cells[:, :1]]
+def _turned(points: FloatArray, cells: IndexArray, shape: CellShape) -> IndexArray:
+    """Cells with the nodes of left-handed ones mirrored; cells : (n, n_corners or n_nodes)."""
+    apexes = (1, 2, 3) if shape.n_corners == 4 else (1, 3, 4)
+    edges = points[cells[:, apexes]] - points[cells[:, :1]]
     left_handed = np.linalg.det(edges) < 0.0
-    return np.where(left_handed[:, None], cells[:, list(order)], cells)
+    return np.where(left_handed[:, None], cells[:, list(shape.mirror[: cells.shape[1]])], cells)
 
 
 def box_mesh(
@@ -159,8 +209,9 @@ def box_mesh(
     divisions: tuple[int, int, int],
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
     name: str = "box",
+    cell: CellName = "tetra10",
 ) -> NamedMesh:
-    """Structured mesh of a box: every brick of ``divisions`` becomes six tetrahedra.
+    """Structured mesh of a box: every brick of ``divisions`` becomes six tetrahedra or one hexahedron.
 
     size, origin : edge lengths and lowest corner [m]. One body ``name``; surfaces ``x_min``, ``x_max``,
     ``y_min``, ``y_max``, ``z_min``, ``z_max``. Raises MeshError for an edge or division that is not positive.
@@ -170,38 +221,50 @@ def box_mesh(
     steps = 2 * np.array(divisions)
     axes = [origin[i] + np.linspace(0.0, size[i], steps[i] + 1) for i in range(3)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    cells = _brick_cells(divisions)
-    table = facet_table(cells, len(points))
+    on_grid = _brick_cells(divisions, cell)
+    used, packed = np.unique(on_grid, return_inverse=True)
+    cells: IndexArray = packed.reshape(on_grid.shape).astype(np.int32)
+    table = facet_table(cells, len(used))
     outer = table.nodes[table.on_boundary]
-    grid = np.stack(np.unravel_index(outer, steps + 1), axis=-1)
+    grid = np.stack(np.unravel_index(used[outer], steps + 1), axis=-1)
     surfaces = {}
     for i, axis in enumerate("xyz"):
         surfaces[f"{axis}_min"] = outer[np.all(grid[:, :, i] == 0, axis=1)]
         surfaces[f"{axis}_max"] = outer[np.all(grid[:, :, i] == steps[i], axis=1)]
-    return NamedMesh(points, cells, {name: np.arange(len(cells), dtype=np.int32)}, surfaces)
+    return NamedMesh(points[used], cells, {name: np.arange(len(cells), dtype=np.int32)}, surfaces)
 
 
-def _brick_cells(divisions: tuple[int, int, int]) -> IndexArray:
-    """Kuhn's six tetrahedra in every brick, as indices into the grid of corners and mid-points."""
+def _brick_cells(divisions: tuple[int, int, int], cell: CellName) -> IndexArray:
+    """Cells as indices into the grid of corners and mid-points."""
     bricks = 2 * np.stack(np.meshgrid(*map(np.arange, divisions), indexing="ij"), axis=-1).reshape(-1, 1, 3)
     shape = tuple(2 * np.array(divisions) + 1)
-    cells = []
+    parts = [np.ravel_multi_index(tuple((bricks + nodes).T), shape).T for nodes in _nodes_in_brick(cell)]
+    return np.stack(parts, axis=1).reshape(-1, parts[0].shape[1])
+
+
+def _nodes_in_brick(cell: CellName) -> list[IndexArray]:
+    """Places (n_local, 3) of the nodes of every cell in a brick of edge 2; tetrahedra are Kuhn's six."""
+    if cell != "tetra10":
+        shape = HEXAHEDRON_20 if cell == "hexahedron20" else HEXAHEDRON_27
+        return [(shape.nodes + 1.0).astype(np.int32)]
+    places = []
     for order in permutations(range(3)):
-        path = np.zeros((4, 3), dtype=np.int64)
+        path = np.zeros((4, 3), dtype=np.int32)
         for i, axis in enumerate(order):
             path[i + 1 :, axis] = 2
         if np.linalg.det(path[1:] - path[0]) < 0.0:
             path = path[[0, 2, 1, 3]]
-        mids = np.array([(path[a] + path[b]) // 2 for a, b in CELL_EDGES])
-        cells.append(np.ravel_multi_index(tuple((bricks + np.vstack([path, mids])).T), shape).T)
-    return np.stack(cells, axis=1).reshape(-1, 10).astype(np.int32)
+        places.append(np.vstack([path, *((path[a] + path[b]) // 2 for a, b in CELL_EDGES)]))
+    return places
 
 
 def disjoint_union(*meshes: NamedMesh) -> NamedMesh:
-    """Put meshes beside each other without joining nodes; body and surface names must differ.
+    """Put meshes of one kind of cell beside each other without joining nodes; names must differ.
 
-    Raises MeshError naming a body or surface that occurs twice.
+    Raises MeshError naming a body or surface that occurs twice, or the kinds of cells that do not go together.
     """
+    if len(kinds := {mesh.shape.name for mesh in meshes}) > 1:
+        raise MeshError(f"meshes of {', '.join(sorted(kinds))} in one; mesh all parts with one kind of cell")
     bodies: dict[str, IndexArray] = {}
     surfaces: dict[str, IndexArray] = {}
     n_nodes = n_cells = 0

@@ -22,13 +22,13 @@ def check_topology(mesh: NamedMesh) -> frozenset[str]:
     return _check_surfaces(mesh)
 
 
-def check_volumes(mesh: NamedMesh, first: IndexArray, weights: FloatArray) -> None:
-    """Check that no cell is inverted at any of its quadrature points.
+def check_volumes(mesh: NamedMesh, smallest: FloatArray) -> None:
+    """Check that no cell is inverted.
 
-    first : (n_cells + 1,) first quadrature point of each cell; weights : (n_q,) volume weights [m3].
+    smallest : (n_cells,) smallest volume weight of each cell [m3]
     Raises MeshError with the number of inverted cells by body.
     """
-    bad = np.minimum.reduceat(weights, first[:-1]) <= 0.0
+    bad = smallest <= 0.0
     if not bad.any():
         return
     counts = {name: int(np.count_nonzero(bad[cells])) for name, cells in mesh.bodies.items()}
@@ -42,16 +42,19 @@ def check_volumes(mesh: NamedMesh, first: IndexArray, weights: FloatArray) -> No
 def _check_arrays(mesh: NamedMesh) -> None:
     if mesh.points.ndim != 2 or mesh.points.shape[1] != 3 or not np.isfinite(mesh.points).all():
         raise MeshError(f"points of shape {mesh.points.shape}: need (n_nodes, 3) finite coordinates [m]")
-    if mesh.cells.ndim != 2 or mesh.cells.shape[1] != 10 or not len(mesh.cells):
-        raise MeshError(f"cells of shape {mesh.cells.shape}: need (n_cells, 10), n_cells at least 1")
+    if not len(mesh.cells):
+        raise MeshError("the mesh has no cells; mesh at least one body")
+    columns = mesh.shape.side.n_nodes
     if len(mesh.points) > MAX_NODES:
         raise MeshError(f"{len(mesh.points)} nodes are above the limit of {MAX_NODES}; use larger cells")
     for name, nodes in {"cells": mesh.cells, **mesh.surfaces}.items():
         if nodes.size and (nodes.min() < 0 or nodes.max() >= len(mesh.points)):
             raise MeshError(f"{name}: node number outside of 0 to {len(mesh.points) - 1}")
     for name, nodes in mesh.surfaces.items():
-        if nodes.ndim != 2 or nodes.shape[1] != 6 or not len(nodes):
-            raise MeshError(f"surface {name!r} of shape {nodes.shape}: need (k, 6) nodes, k at least 1")
+        if nodes.ndim != 2 or nodes.shape[1] != columns or not len(nodes):
+            raise MeshError(
+                f"surface {name!r} of shape {nodes.shape}: need (k, {columns}) nodes, k at least 1"
+            )
 
 
 def _check_bodies(mesh: NamedMesh) -> None:
@@ -72,16 +75,17 @@ def _check_bodies(mesh: NamedMesh) -> None:
 
 def _check_surfaces(mesh: NamedMesh) -> frozenset[str]:
     table = facet_table(mesh.cells, len(mesh.points))
+    n_corners = mesh.shape.side.n_corners
     on_boundary = table.on_boundary
     covered = np.zeros(len(table.keys), dtype=np.int64)
     interfaces = set()
     for name, nodes in mesh.surfaces.items():
-        at = np.searchsorted(table.keys, facet_keys(nodes[:, :3], len(mesh.points)))
+        at = np.searchsorted(table.keys, facet_keys(nodes[:, :n_corners], len(mesh.points)))
         at = np.minimum(at, len(table.keys) - 1)
-        outward = _same_side(nodes, table.nodes[at])
+        outward = _same_side(nodes, table.nodes[at], n_corners)
         inner = ~on_boundary[at]
         second = np.minimum(at + 1, len(table.keys) - 1)
-        outward |= inner & _same_side(nodes, table.nodes[second])
+        outward |= inner & _same_side(nodes, table.nodes[second], n_corners)
         if not outward.all():
             raise MeshError(
                 f"surface {name!r}: {np.count_nonzero(~outward)} of {len(nodes)} facets are no side of a cell"
@@ -96,7 +100,7 @@ def _check_surfaces(mesh: NamedMesh) -> frozenset[str]:
         raise MeshError(f"{np.count_nonzero(covered > 1)} facets belong to two surfaces; assign each once")
     open_facets = table.nodes[on_boundary & (covered == 0)]
     if len(open_facets):
-        centre = mesh.points[open_facets[0, :3]].mean(axis=0)
+        centre = mesh.points[open_facets[0, :n_corners]].mean(axis=0)
         raise MeshError(
             f"{len(open_facets)} boundary facets belong to no surface, one at x, y, z = "
             f"{centre[0]:.6g}, {centre[1]:.6g}, {centre[2]:.6g} m; name them"
@@ -104,10 +108,13 @@ def _check_surfaces(mesh: NamedMesh) -> frozenset[str]:
     return frozenset(interfaces)
 
 
-def _same_side(nodes: IndexArray, reference: IndexArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Whether facets are the same 6 nodes as the reference, up to a cyclic shift."""
+def _same_side(
+    nodes: IndexArray, reference: IndexArray, n_corners: int
+) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Whether facets have the same nodes as the reference, corners and mid-sides up to a cyclic shift."""
     same = np.zeros(len(nodes), dtype=np.bool_)
-    for shift in range(3):
-        turn = [(k + shift) % 3 for k in range(3)]
-        same |= np.all(nodes == reference[:, turn + [3 + k for k in turn]], axis=1)
+    for shift in range(n_corners):
+        turn = [(k + shift) % n_corners for k in range(n_corners)]
+        order = [*turn, *(n_corners + k for k in turn), *range(2 * n_corners, nodes.shape[1])]
+        same |= np.all(nodes == reference[:, order], axis=1)
     return same

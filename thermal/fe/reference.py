@@ -1,15 +1,17 @@
-"""Shape functions and quadrature on the reference tetrahedron and triangle.
+"""Quadrature on the reference cells and sides, and which rule serves what.
 
-Rules are positive and lie inside: 4 points of degree 2 and 14 points of degree 5 on the tetrahedron
-(Walkington, Quadrature on simplices of arbitrary dimension, 2000), 7 points of degree 5 on the triangle
-(Radon 1948; Strang and Fix 1973). The test integrates every monomial up to the degree.
+Tetrahedron and triangle: positive rules with points inside, 4 points of degree 2 and 14 of degree 5
+(Walkington, Quadrature on simplices of arbitrary dimension, 2000), 7 points of degree 5 (Radon 1948; Strang
+and Fix 1973). Hexahedron and quadrilateral: products of Gauss's 3-point rule, degree 5 in each coordinate.
+The test integrates every monomial up to the degree.
 """
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
-from thermal.fe.mesh import CELL_EDGES, FloatArray
+from thermal.fe.shapes import TETRAHEDRON_10, TRIANGLE_6, FloatArray, Shape
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ def _tetrahedron_4() -> Rule:
 
 def _tetrahedron_14() -> Rule:
     c = 0.045503704125649649492
-    pairs = [[c if k in pair else 0.5 - c for k in range(4)][1:] for pair in CELL_EDGES]
+    pairs = [[c if k in pair else 0.5 - c for k in range(4)][1:] for pair in TETRAHEDRON_10.edges]
     points = _orbit(0.31088591926330060980, 4) + _orbit(0.092735250310891226402, 4) + pairs
     weights = [0.11268792571801585080] * 4 + [0.073493043116361949544] * 4 + [0.042546020777081466438] * 6
     return Rule(np.array(points), np.array(weights) / 6.0)
@@ -47,47 +49,60 @@ def _triangle_7() -> Rule:
     return Rule(np.array(points), np.array(weights) / 2.0)
 
 
+def _gauss(per_axis: int, dimension: int) -> Rule:
+    points, weights = np.polynomial.legendre.leggauss(per_axis)
+    return Rule(
+        np.array(list(product(points, repeat=dimension))),
+        np.array([np.prod(w) for w in product(weights, repeat=dimension)]),
+    )
+
+
+CENTRE_OF_TETRAHEDRON = Rule(np.full((1, 3), 0.25), np.full(1, 1.0 / 6.0))
 TETRAHEDRON_4 = _tetrahedron_4()
 TETRAHEDRON_14 = _tetrahedron_14()
 TRIANGLE_7 = _triangle_7()
+GAUSS_8 = _gauss(2, 3)
+GAUSS_27 = _gauss(3, 3)
+GAUSS_9 = _gauss(3, 2)
 
 
-def tetrahedron_values(points: FloatArray) -> FloatArray:
-    """(n, 10) values of the quadratic shape functions at (n, 3) reference points."""
-    corner = _barycentric(points)
-    edge = [4.0 * corner[:, a] * corner[:, b] for a, b in CELL_EDGES]
-    return np.column_stack([*(corner * (2.0 * corner - 1.0)).T, *edge])
+@dataclass(frozen=True)
+class Rules:
+    """Rules of one cell: for stiffness, for loads and means, for the linear sub-space, for its sides."""
+
+    stiffness: Rule
+    load: Rule
+    linear: Rule
+    side: Rule
 
 
-def tetrahedron_gradients(points: FloatArray) -> FloatArray:
-    """(n, 10, 3) reference gradients of the quadratic shape functions at (n, 3) points."""
-    return _quadratic_gradients(points, CELL_EDGES)
+_OF_TETRAHEDRA = Rules(TETRAHEDRON_4, TETRAHEDRON_14, CENTRE_OF_TETRAHEDRON, TRIANGLE_7)
+_OF_HEXAHEDRA = Rules(GAUSS_27, GAUSS_27, GAUSS_8, GAUSS_9)
+
+
+def rules_of(shape: Shape) -> Rules:
+    """Rules of a cell; second order needs degree 2 for the stiffness of tetrahedra, curved ones too.
+
+    Source: Ciarlet, The Finite Element Method for Elliptic Problems, theorems 4.1.6 and 4.4.6.
+    """
+    return _OF_TETRAHEDRA if shape.n_corners == 4 else _OF_HEXAHEDRA
 
 
 def triangle_values(points: FloatArray) -> FloatArray:
-    """(n, 6) values of the quadratic shape functions at (n, 2) reference points."""
-    corner = _barycentric(points)
-    edge = [4.0 * corner[:, a] * corner[:, b] for a, b in CELL_EDGES[:3]]
-    return np.column_stack([*(corner * (2.0 * corner - 1.0)).T, *edge])
+    """(n, 6) values of the quadratic shape functions of a triangle at (n, 2) reference points."""
+    return TRIANGLE_6.values(points)
 
 
 def triangle_gradients(points: FloatArray) -> FloatArray:
-    """(n, 6, 2) reference gradients of the quadratic shape functions at (n, 2) points."""
-    return _quadratic_gradients(points, CELL_EDGES[:3])
+    """(n, 6, 2) reference gradients of the quadratic shape functions of a triangle at (n, 2) points."""
+    return TRIANGLE_6.gradients(points)
 
 
-def triangle_corner_values(points: FloatArray) -> FloatArray:
-    """(n, 3) values of the linear shape functions at (n, 2) reference points."""
-    return _barycentric(points)
+def tetrahedron_values(points: FloatArray) -> FloatArray:
+    """(n, 10) values of the quadratic shape functions of a tetrahedron at (n, 3) reference points."""
+    return TETRAHEDRON_10.values(points)
 
 
-def _barycentric(points: FloatArray) -> FloatArray:
-    return np.column_stack([1.0 - points.sum(axis=1), points])
-
-
-def _quadratic_gradients(points: FloatArray, edges: tuple[tuple[int, int], ...]) -> FloatArray:
-    corner = _barycentric(points)
-    slope = np.vstack([-np.ones(points.shape[1]), np.eye(points.shape[1])])
-    corners = (4.0 * corner - 1.0)[:, :, None] * slope
-    mids = [4.0 * (corner[:, a, None] * slope[b] + corner[:, b, None] * slope[a]) for a, b in edges]
-    return np.ascontiguousarray(np.concatenate([corners, np.stack(mids, axis=1)], axis=1))
+def tetrahedron_gradients(points: FloatArray) -> FloatArray:
+    """(n, 10, 3) reference gradients of the quadratic shape functions of a tetrahedron at (n, 3) points."""
+    return TETRAHEDRON_10.gradients(points)
