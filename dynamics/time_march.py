@@ -63,7 +63,7 @@ class TorqueControl:
 
 
 class MarchDiverged(RuntimeError):  # noqa: N818
-    """A march left the finite numbers."""
+    """A march left the finite numbers; the message names mesh, time, speed and the slowest mode."""
 
 
 class Block(NamedTuple):
@@ -136,6 +136,8 @@ class TimeMarch:
         self.propagator = discretise(self.model, step, with_losses=accounts)
         self.packed = pack_meshes(laws, derivative_torques=derivative_torques)
         self.unsettled = 0
+        self._marched = 0
+        self._names = system.dofs
         self._record_all = record_all
         n_meshes, n_slow = len(self.laws), 2 + len(self.drags)
         self._laws_packed = [pack_meshes([law]) for law in self.laws]
@@ -239,14 +241,35 @@ class TimeMarch:
             samples,
         )
         if not np.all(np.isfinite(self._carried.ports)):
-            raise MarchDiverged(
-                "the march left the finite numbers; check inertias, stiffness and mesh tables"
-            )
+            raise MarchDiverged(self._diverged(history[:, 0], samples))
+        self._marched += n_samples
         none = np.empty((n_meshes, 0))
         force, approach, angle, rate, omega, torque = (
             (history[:, i] for i in range(6)) if self._record_all else (history[:, 0], *[none] * 5)
         )
         return Block(force, approach, angle, rate, omega, torque, samples[:, :n_slow], samples[:, n_slow:])
+
+    def _diverged(self, force: Array, samples: Array) -> str:
+        """What is known of a march that left the finite numbers in its last block.
+
+        force : (n_meshes, n_steps) [N]; samples : (n_samples, 2 n_slow) slow inputs and their speeds
+        """
+        broken = ~np.isfinite(force)
+        step = int(np.argmax(broken.any(axis=0)))
+        mesh = int(np.argmax(broken[:, step]))
+        pinion, wheel = (self._names[port] for port in self.model.mesh_ports[mesh])
+        good = np.flatnonzero(np.isfinite(samples).all(axis=1))
+        speed = samples[good[-1], samples.shape[1] // 2] * 30.0 / np.pi if good.size else np.nan
+        elastic = self.model.n_lines
+        frequency = self.model.frequencies[elastic] / (2.0 * np.pi) if elastic < len(self._names) else np.inf
+        where = self._names[int(np.argmax(np.abs(self.model.shapes[:, min(elastic, len(self._names) - 1)])))]
+        return (
+            f"the march left the finite numbers: mesh of {pinion} and {wheel}, "
+            f"{(self._marched * self.substeps + step) * self.step:.6g} s after its start, last drive speed "
+            f"{speed:.6g} rpm; slowest elastic mode {frequency:.4g} Hz, largest at {where}, step {self.step:.3g} s. "
+            "Correct inertia, stiffness or torque that is orders of magnitude off there, or take more internal "
+            "steps"
+        )
 
     def mean_torque_of_first_mesh(self) -> float:
         """Torque of the first mesh at its pinion at this instant, friction left out [N m]."""

@@ -35,6 +35,7 @@ QUICK_CUTOFF = 20e3
 """Highest mode of the time run at quick fidelity [Hz]."""
 DRIVE_ONSET = 0.1
 """Time over which a constant drive torque is applied by the S-function [s]."""
+RPM = np.pi / 30.0
 COMMAND_INTERVAL = 1e-3
 """Interval of the command samples [s]."""
 
@@ -75,7 +76,6 @@ def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -
     command = schedule.command(COMMAND_INTERVAL)
     numerics = rig.case.numerics
     controlled = setting.mode == "torque_controlled"
-    motor = rig.case.drivetrain.motor
     laws = shifted_laws(rig, warm.models, setting)
     response = run_schedule(
         rig.system,
@@ -86,7 +86,7 @@ def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -
             torque=np.maximum(command.torque, LEAST_TORQUE) if controlled else None,
             twist=None if controlled else np.full_like(command.time, setting.twist),
         ),
-        torque_limit=min([motor.torque_limit, *_drive_torques(rig)]),
+        torque_limit=_torque_limit(rig),
         drags=drag_curves(rig, warm, feedback),
         sample_rate=numerics.sample_rate,
         substeps=numerics.internal_steps,
@@ -95,13 +95,16 @@ def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -
         keep_accounts=False,
         cutoff=QUICK_CUTOFF if rig.fidelity == "quick" else DEFAULT_CUTOFF,
     )
-    _require_speed(rig, schedule, response)
+    require_speeds(rig, schedule, response)
     return response
 
 
-def _drive_torques(rig: Rig) -> list[float]:
-    """Constant drive torques that stages ask for [N m]."""
-    return [stage.drive_torque for stage in rig.case.schedule.resolved() if stage.drive_torque is not None]
+def _torque_limit(rig: Rig) -> float:
+    """Largest torque of the motor [N m]: its own limit, or the least constant torque that a stage asks for."""
+    assert rig.case.drivetrain is not None
+    stages = rig.case.schedule.resolved()
+    asked = [stage.drive_torque for stage in stages if stage.drive_torque is not None]
+    return min([rig.case.drivetrain.motor.torque_limit, *asked])
 
 
 def _speed_command(rig: Rig, schedule: Schedule, command: Command) -> NDArray[np.float64]:
@@ -145,25 +148,53 @@ def drags_at(rig: Rig, warm: PassResult, feedback: Feedback, speed: float) -> di
     return drag_torques(rotating_losses(rig, point, feedback, warm.models, bearings), rig, speed)
 
 
-def _require_speed(rig: Rig, schedule: Schedule, response: TimeResponse) -> None:
-    """Every run-up must reach its speed before the next stage begins."""
+def require_speeds(rig: Rig, schedule: Schedule, response: TimeResponse) -> None:
+    """Every run-up and run-down must end at its speed before the next stage begins.
+
+    Raises NotConvergedError with the torque balance at the end of the first stage that does not.
+    """
     limit = SPEED_TOLERANCE * max(max(stage.speed) for stage in schedule.stages)
-    ends = schedule.starts[1:]
-    for stage, end in zip(schedule.stages, ends):
+    for stage, end in zip(schedule.stages, schedule.starts[1:]):
         if stage.kind != "speed":
             continue
         at = min(int(np.searchsorted(response.time, end)), len(response.time) - 1)
-        missing = stage.speed[1] - float(response.speed[at])
-        if missing > limit:
-            drag = sum(float(torque[at]) for torque in response.drag_torque.values())
+        excess = float(response.speed[at]) - stage.speed[1]
+        if abs(excess) > limit:
             raise NotConvergedError(
-                f"stage {stage.name!r} does not reach its speed: {response.speed[at] * 30 / np.pi:.0f} of "
-                f"{stage.speed[1] * 30 / np.pi:.0f} rpm at {end:.2f} s. Torque balance: motor "
-                f"{response.drive_torque[at]:.2f} N m (drivetrain.motor.torque_limit "
-                f"{rig.case.drivetrain.motor.torque_limit if rig.case.drivetrain else 0:.2f} N m), drag of bearings, "
-                f"windage, oil and seals {drag:.2f} N m, the rest tooth friction and acceleration; raise the limit "
-                "or give the stage more time"
+                f"stage {stage.name!r} {_missed(stage, excess)}: {response.speed[at] / RPM:.0f} rpm against "
+                f"{stage.speed[1] / RPM:.0f} rpm at {end:.2f} s, limit {limit / RPM:.0f} rpm. "
+                f"{_balance(rig, response, at)}; {_remedy(rig, float(response.drive_torque[at]))}"
             )
+
+
+def _missed(stage: Stage, excess: float) -> str:
+    """What went wrong at the end of a stage that is ``excess`` too fast [rad/s]."""
+    if stage.actual_direction == "rising":
+        return (
+            "does not reach its speed" if excess < 0.0 else f"overshoots its speed by {excess / RPM:.0f} rpm"
+        )
+    if excess < 0.0:
+        return f"falls through its speed by {-excess / RPM:.0f} rpm"
+    return f"does not come down to its speed, {excess / RPM:.0f} rpm are left"
+
+
+def _balance(rig: Rig, response: TimeResponse, at: int) -> str:
+    assert rig.case.drivetrain is not None
+    drag = sum(float(torque[at]) for torque in response.drag_torque.values())
+    return (
+        f"Torque balance: motor {response.drive_torque[at]:.2f} N m (drivetrain.motor.torque_limit "
+        f"{rig.case.drivetrain.motor.torque_limit:.2f} N m), drag of bearings, windage, oil and seals "
+        f"{drag:.2f} N m, the rest tooth friction and acceleration"
+    )
+
+
+def _remedy(rig: Rig, drive_torque: float) -> str:
+    if abs(drive_torque) >= 0.999 * _torque_limit(rig):
+        return "raise the limit or give the stage more time"
+    return (
+        "the motor is within its limit, so its speed control is still settling: give the stage more time, or "
+        "stiffen the shaft between motor and gears"
+    )
 
 
 def stage_names(schedule: Schedule, time: NDArray[np.float64]) -> list[str]:

@@ -17,6 +17,7 @@ def warnings_of(subject: Subject) -> list[Finding]:
     found = [
         *(Finding(id="gear", text=text) for text in _gears(subject)),
         *(Finding(id="iso_6336_1", text=text) for text in _iso(subject)),
+        *(Finding(id="shaft", text=t.finding) for t in subject.rig.shaft_torsions if t.finding),
         *(Finding(id="loss", text=text) for text in _losses(subject)),
         *(Finding(id="oil", text=text) for text in _oils(subject)),
         *(Finding(id="damping", text=text) for text in _damping(subject)),

@@ -16,6 +16,7 @@ from rigdesign.oil import OILS, Oil
 from rigdesign.results import Fidelity
 from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.gears import build_pairs
+from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
 from thermal.conduction import ConductionSetup
 from thermal.expansion import ExpansionSetup
@@ -53,6 +54,16 @@ class Rig:
     def system(self) -> LinearSystem | None:
         """Matrices of the power circuit without its meshes."""
         return None if self.drivetrain is None else assemble(self.drivetrain)
+
+    @cached_property
+    def shaft_torsions(self) -> tuple[SectionTorsion, ...]:
+        """Static torsion of the shafts at the largest torque of the schedule; empty without a drivetrain."""
+        power = self.case.drivetrain
+        if power is None or self.drivetrain is None:
+            return ()
+        torque = self.torque_ratio * max(abs(stage.torque_end) for stage in self.case.schedule.resolved())
+        force = torque / self.pairs[self.control_mesh].base_radii[0]
+        return section_torsions(self.drivetrain, force, power.motor.torque_limit)
 
     @cached_property
     def geometries(self) -> Mapping[str, HousingGeometry]:
@@ -186,6 +197,8 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
 
     Raises
     ------
+    CaseError
+        A shaft that would twist off.
     ValueError
         Of the solvers: gears that cannot mesh, a loop that cannot close, a housing that cannot be built.
     """
@@ -194,13 +207,15 @@ def build_rig(case: Case, fidelity: Fidelity = "standard") -> Rig:
     pairs = build_pairs(case, materials)
     control = _control_mesh(case)
     pairs = {control: pairs[control]} | pairs
-    return Rig(
+    rig = Rig(
         case=case,
         fidelity=fidelity,
         oils=oils,
         materials=materials,
         pairs=pairs,
     )
+    refuse_broken_shafts(rig.shaft_torsions, str(case.path))
+    return rig
 
 
 def _control_mesh(case: Case) -> str:

@@ -1,0 +1,73 @@
+"""End speeds of the stages of a time run: what is said when the rig is elsewhere."""
+
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
+
+import numpy as np
+import pytest
+
+from dynamics.response import TimeResponse
+from rigdesign.case import load_case
+from rigdesign.errors import NotConvergedError
+from rigdesign.ramp_run import require_speeds, schedule_of
+from rigdesign.rig.model import Rig, build_rig
+
+PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
+RPM = np.pi / 30.0
+
+
+@cache
+def rig() -> Rig:
+    return build_rig(load_case(PROTOTYPE), "quick")
+
+
+def response(stage: str, excess_rpm: float, drive: float) -> TimeResponse:
+    """A run that follows its schedule but for the end of one stage."""
+    schedule = schedule_of(rig())
+    names = [entry.name for entry in schedule.stages]
+    command = schedule.command(1e-3)
+    speed = command.speed.copy()
+    speed[int(np.searchsorted(command.time, schedule.starts[names.index(stage) + 1]))] += excess_rpm * RPM
+    count = len(speed)
+    run = SimpleNamespace(
+        time=command.time,
+        speed=speed,
+        drive_torque=np.full(count, drive),
+        drag_torque={"test.pinion": np.full(count, 1.5), "test.wheel": np.full(count, 2.0)},
+    )
+    return cast("TimeResponse", run)
+
+
+def complaint(stage: str, excess_rpm: float, drive: float = 20.0) -> str:
+    with pytest.raises(NotConvergedError) as raised:
+        require_speeds(rig(), schedule_of(rig()), response(stage, excess_rpm, drive))
+    return str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("stage", "excess", "words"),
+    [
+        ("run_up", -300.0, ("'run_up' does not reach its speed: 11700 rpm against 12000 rpm at 10.00 s",)),
+        ("run_up", 200.0, ("'run_up' overshoots its speed by 200 rpm: 12200 rpm against 12000 rpm",)),
+        ("run_down", 500.0, ("does not come down to its speed, 500 rpm are left: 1250 rpm against 750 rpm",)),
+        ("run_down", -400.0, ("'run_down' falls through its speed by 400 rpm: 350 rpm against 750 rpm",)),
+        ("to_standstill", -150.0, ("falls through its speed by 150 rpm: -150 rpm against 0 rpm",)),
+    ],
+)
+def test_stage_that_ends_at_another_speed(stage: str, excess: float, words: tuple[str, ...]) -> None:
+    text = complaint(stage, excess)
+    for part in (*words, "limit 120 rpm", "motor 20.00 N m", "torque_limit 20.00 N m", "seals 3.50 N m"):
+        assert part in text
+
+
+def test_remedy_follows_the_motor() -> None:
+    assert complaint("run_up", -300.0, 20.0).endswith("raise the limit or give the stage more time")
+    assert complaint("run_down", 300.0, -20.0).endswith("raise the limit or give the stage more time")
+    assert "stiffen the shaft between motor and gears" in complaint("run_down", -300.0, 5.0)
+
+
+@pytest.mark.parametrize("excess", [-100.0, 100.0])
+def test_within_the_tolerance(excess: float) -> None:
+    require_speeds(rig(), schedule_of(rig()), response("run_up", excess, 20.0))
