@@ -4,43 +4,30 @@ Nothing here is shared with the residual that `thermal.conduction` drives to zer
 difference of others, so a sign or an area that is wrong in one place shows as a gap.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from thermal.boundary import (
-    STEFAN_BOLTZMANN,
     Adiabatic,
     BodySource,
-    BoundaryCondition,
     Exchange,
     Film,
-    FilmCoefficient,
     PrescribedTemperature,
     Radiation,
     SurfaceSource,
 )
-from thermal.fe.elements import FiniteElements, SurfaceElements
+from thermal.condition_checks import Condition
+from thermal.conduction_setup import ConductionSetup
+from thermal.contact import Contact
+from thermal.coupled_rows import contact_rows, enclosure_rows, network_rows
+from thermal.enclosure import Enclosure
+from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray
-
-
-@dataclass(frozen=True, kw_only=True)
-class HeatRow:
-    """Heat of one condition at one place."""
-
-    surface: str
-    """Surface, or body for a source in a body."""
-    kind: str
-    power: float
-    """[W], positive into the solid."""
-    area: float
-    """[m2]; 0 for a source in a body."""
-    mean_temperature: float
-    """Area mean of the surface, volume mean of the body [K]."""
-    piece: int
-    """Number of the connected piece of the mesh that takes the heat."""
-    coefficient: FilmCoefficient | None = None
+from thermal.heat_rows import HeatRow as HeatRow
+from thermal.heat_rows import exchange_rows, film_row, radiation_row, surface_row
+from thermal.streams import StreamNetwork
 
 
 @dataclass(frozen=True)
@@ -80,6 +67,12 @@ class HeatBalance:
         """Kind -> power [W]."""
         return self._sums("kind")
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the laws said about their range, each sentence once."""
+        said = [text for row in self.rows if row.coefficient for text in row.coefficient.warnings]
+        return tuple(dict.fromkeys(said))
+
     def _sums(self, field: str) -> dict[str, float]:
         sums: dict[str, float] = {}
         for row in self.rows:
@@ -89,33 +82,45 @@ class HeatBalance:
 
 
 def heat_balance(
-    elements: FiniteElements,
-    conditions: Sequence[BoundaryCondition],
+    setup: ConductionSetup,
+    conditions: Sequence[Condition],
     temperature: FloatArray,
     reactions: FloatArray,
+    volumes: Mapping[str, float] | None = None,
 ) -> HeatBalance:
     """Integrate every condition over its surface.
 
     temperature : (n_nodes,) [K]
     reactions : (n_nodes,) heat that holds the prescribed nodes at their temperature [W], zero elsewhere
+    volumes : volume of a stream network -> outlet temperature [K]
     """
-    held = _holders(elements, conditions)
+    elements = setup.elements
+    held = held_by(elements, conditions)
+    numbers = _volume_numbers(elements, conditions)
     rows: list[HeatRow] = []
     for condition in conditions:
         match condition:
             case Film():
-                rows.append(_film(elements.surfaces[condition.surface], condition, temperature))
+                rows.append(film_row(elements.surfaces[condition.surface], condition, temperature))
             case Radiation():
-                rows.append(_radiation(elements.surfaces[condition.surface], condition, temperature))
+                rows.append(radiation_row(elements.surfaces[condition.surface], condition, temperature))
             case Exchange():
-                rows.extend(_exchange(elements, condition, temperature))
+                rows.extend(exchange_rows(elements, condition, temperature))
+            case Contact():
+                rows.extend(contact_rows(setup, condition, temperature))
+            case Enclosure():
+                rows.extend(enclosure_rows(elements, condition, temperature))
+            case StreamNetwork():
+                rows.extend(network_rows(elements, condition, temperature, volumes or {}, numbers))
             case PrescribedTemperature():
                 surface = elements.surfaces[condition.surface]
                 power = float(np.sum(reactions[surface.nodes] / held[surface.nodes]))
-                rows.append(_row(surface, condition.surface, condition.kind, power, temperature))
+                rows.append(surface_row(surface, condition.surface, condition.kind, power, temperature))
             case SurfaceSource():
                 surface = elements.surfaces[condition.surface]
-                rows.append(_row(surface, condition.surface, condition.kind, condition.power, temperature))
+                rows.append(
+                    surface_row(surface, condition.surface, condition.kind, condition.power, temperature)
+                )
             case BodySource():
                 rows.append(
                     HeatRow(
@@ -132,7 +137,7 @@ def heat_balance(
     return HeatBalance(tuple(rows))
 
 
-def _holders(elements: FiniteElements, conditions: Sequence[BoundaryCondition]) -> FloatArray:
+def held_by(elements: FiniteElements, conditions: Sequence[Condition]) -> FloatArray:
     """(n_nodes,) number of prescribed surfaces that hold each node, at least 1."""
     count = np.zeros(len(elements.mesh.points))
     for condition in conditions:
@@ -141,55 +146,9 @@ def _holders(elements: FiniteElements, conditions: Sequence[BoundaryCondition]) 
     return np.maximum(count, 1.0)
 
 
-def _row(
-    surface: SurfaceElements,
-    name: str,
-    kind: str,
-    power: float,
-    temperature: FloatArray,
-    coefficient: FilmCoefficient | None = None,
-) -> HeatRow:
-    return HeatRow(
-        surface=name,
-        kind=kind,
-        power=power,
-        area=surface.area,
-        mean_temperature=surface.mean(temperature),
-        piece=surface.piece,
-        coefficient=coefficient,
-    )
-
-
-def _film(surface: SurfaceElements, film: Film, temperature: FloatArray) -> HeatRow:
-    coefficient = film.law(surface.mean(temperature), film.fluid_temperature)
-    power = coefficient.value * surface.integral(film.fluid_temperature - surface.at_points(temperature))
-    return _row(surface, film.surface, film.kind, power, temperature, coefficient)
-
-
-def _radiation(surface: SurfaceElements, radiation: Radiation, temperature: FloatArray) -> HeatRow:
-    wall, room = surface.at_points(temperature), radiation.surroundings_temperature
-    power = radiation.emissivity * STEFAN_BOLTZMANN * surface.integral(room**4 - wall**4)
-    mean = surface.mean(temperature)
-    coefficient = FilmCoefficient(
-        value=radiation.emissivity * STEFAN_BOLTZMANN * (mean**2 + room**2) * (mean + room),
-        formula="grey_radiation_to_surroundings",
-        inputs={
-            "emissivity": radiation.emissivity,
-            "mean_temperature": mean,
-            "surroundings_temperature": room,
-        },
-        valid_range="grey, diffuse surface that sees only its surroundings",
-        source="Stefan-Boltzmann law, written as a coefficient at the mean temperature",
-    )
-    return _row(surface, radiation.surface, radiation.kind, power, temperature, coefficient)
-
-
-def _exchange(elements: FiniteElements, exchange: Exchange, temperature: FloatArray) -> list[HeatRow]:
-    a, b = elements.surfaces[exchange.surface_a], elements.surfaces[exchange.surface_b]
-    mean_a, mean_b = a.mean(temperature), b.mean(temperature)
-    coefficient = exchange.law(mean_a, mean_b)
-    power = coefficient.value * a.area * (mean_b - mean_a)
-    return [
-        _row(a, exchange.surface_a, exchange.kind, power, temperature, coefficient),
-        _row(b, exchange.surface_b, exchange.kind, -power, temperature, coefficient),
-    ]
+def _volume_numbers(elements: FiniteElements, conditions: Sequence[Condition]) -> dict[str, int]:
+    """Number of each volume, counted on from the last piece of the mesh."""
+    networks = [c for c in conditions if isinstance(c, StreamNetwork)]
+    names = [volume.name for network in networks for volume in network.volumes]
+    first = int(elements.components.max()) + 1
+    return {name: first + k for k, name in enumerate(names)}

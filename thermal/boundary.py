@@ -12,6 +12,10 @@ STEFAN_BOLTZMANN = 5.670374419e-8
 """Stefan-Boltzmann constant [W/(m2 K4)], CODATA 2018."""
 
 
+class ConditionError(ValueError):
+    """A condition that cannot be computed; the message names place, value, limit and remedy."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class FilmCoefficient:
     """A heat transfer coefficient with its provenance; what the report prints beside every film."""

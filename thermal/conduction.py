@@ -1,22 +1,22 @@
-"""Steady heat conduction with films, radiation and exchange: full Newton, multigrid inside.
+"""Steady heat conduction with everything a surface may do: full Newton, multigrid inside.
 
 `solve_steady` iterates on the residual and Jacobian of thermal.conduction_terms and hands back the field with
 the heat balance of thermal.balance, which closes to 1e-8 of the heat turned over or is no solution.
+`newton` is the iteration itself, which `thermal.transient` runs for every stage of a time step.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
 
 from thermal.balance import HeatBalance, heat_balance
-from thermal.boundary import BoundaryCondition
-from thermal.condition_checks import ConditionError, check_conditions, check_conductivity
+from thermal.condition_checks import Condition, ConditionError, check_conditions
+from thermal.conduction_setup import ConductionSetup as ConductionSetup
 from thermal.conduction_terms import ConductionProblem
-from thermal.fe.elements import FiniteElements
+from thermal.conductivity import Conductivity
 from thermal.fe.mesh import FloatArray, NamedMesh
-from thermal.fe.solver import LowRank, NotConverged, Operator, TwoLevelMultigrid, gmres
+from thermal.fe.solver import NotConverged, TwoLevelMultigrid, gmres
 
 CLOSURE = 1e-8
 """Greatest allowed gap of the heat balance relative to the heat turned over."""
@@ -38,51 +38,35 @@ class TemperatureSolution:
     """GMRES iterations of each Newton step."""
     warnings: tuple[str, ...]
     """What the film laws said about their range, each sentence once."""
+    volumes: dict[str, float]
+    """Volume of a stream network -> temperature at which its fluid leaves [K]."""
 
 
-class ConductionSetup:
-    """Conduction matrices of a mesh, assembled once and used for every stage and coupling pass.
+@dataclass(frozen=True)
+class NewtonResult:
+    """Unknowns (n_nodes + m,) with the history of the iteration and the preconditioner it ended with."""
 
-    conductivity : body -> k [W/(m K)]
-    elements : share the spaces of an earlier setup on the same mesh
-    Raises MeshError for a bad mesh and ConditionError for missing, unknown or impossible conductivities.
-    """
-
-    def __init__(
-        self,
-        mesh: NamedMesh,
-        conductivity: Mapping[str, float],
-        elements: FiniteElements | None = None,
-    ) -> None:
-        check_conductivity(mesh.bodies, conductivity)
-        self.mesh = mesh
-        self.conductivity = dict(conductivity)
-        self.elements = FiniteElements(mesh) if elements is None else elements
-        per_cell = self.elements.per_cell(self.conductivity)
-        self.fine = self.elements.conduction(per_cell, self.elements.fine)
-        """(nnz,) values of the second-order matrix [W/K]."""
-        self.coarse = self.elements.conduction(per_cell, self.elements.coarse)
-        """Values of the linear matrix [W/K]."""
-
-    def matches(self, mesh: NamedMesh, conductivity: Mapping[str, float]) -> bool:
-        """Whether the setup was made for this mesh and these conductivities."""
-        return self.mesh is mesh and self.conductivity == dict(conductivity)
+    field: FloatArray
+    residuals: tuple[float, ...]
+    linear_iterations: tuple[int, ...]
+    multigrid: TwoLevelMultigrid | None
 
 
 def solve_steady(
     mesh: NamedMesh,
-    conductivity: Mapping[str, float],
-    conditions: Sequence[BoundaryCondition],
+    conductivity: Mapping[str, Conductivity],
+    conditions: Sequence[Condition],
     initial: FloatArray | float | None = None,
     *,
     reuse: ConductionSetup | None = None,
     tolerance: float = 1e-9,
     max_steps: int = 30,
 ) -> TemperatureSolution:
-    """Solve for the steady temperature of all bodies of ``mesh``.
+    """Solve for the steady temperature of all bodies of ``mesh`` and of the volumes of stream networks.
 
-    conductivity : body -> k [W/(m K)]
-    conditions : at least one for every surface on the boundary, see thermal.boundary
+    conductivity : body -> k [W/(m K)], a number or a law of the temperature
+    conditions : at least one for every surface on the boundary, see thermal.boundary, contact, enclosure,
+        streams
     initial : (n_nodes,) field or one value [K] to start from; the mean of all given temperatures if None
     reuse : setup of the same mesh and conductivities; all but the boundary terms is then at hand
     tolerance : of the nodal residuals' sum relative to the heat turned over; the balance closes to it
@@ -96,63 +80,77 @@ def solve_steady(
             "the setup to reuse belongs to another mesh or other conductivities; make a new one"
         )
     check_conditions(setup.elements, conditions)
-    problem = ConductionProblem(setup.elements, setup.fine, setup.coarse, conditions)
-    temperature, residuals, iterations = _newton(problem, problem.start(initial), tolerance, max_steps)
-    balance = heat_balance(setup.elements, conditions, temperature, problem.reactions(temperature))
-    if balance.closure > CLOSURE and balance.worst_piece > problem.roundoff(temperature):
+    problem = ConductionProblem(setup, conditions)
+    start = problem.start(initial)
+    problem.check_paths(start)
+    result = newton(problem, start, tolerance, max_steps)
+    n = problem.n_nodes
+    temperature, volumes = result.field[:n], dict(zip(problem.volumes.index, result.field[n:].tolist()))
+    balance = heat_balance(setup, conditions, temperature, problem.reactions(result.field), volumes)
+    if balance.closure > CLOSURE and balance.worst_piece > problem.roundoff(result.field):
         raise NotConverged(
             f"heat balance open by {balance.closure:.3g} of the heat turned over, above {CLOSURE:g}; "
             "lower the tolerance",
-            residuals,
+            result.residuals,
         )
-    said = [text for row in balance.rows if row.coefficient for text in row.coefficient.warnings]
     return TemperatureSolution(
         temperature=temperature,
         balance=balance,
-        residuals=residuals,
-        linear_iterations=iterations,
-        warnings=tuple(dict.fromkeys(said)),
+        residuals=result.residuals,
+        linear_iterations=result.linear_iterations,
+        warnings=balance.warnings,
+        volumes=volumes,
     )
 
 
-def _newton(
-    problem: ConductionProblem, temperature: FloatArray, tolerance: float, max_steps: int
-) -> tuple[FloatArray, tuple[float, ...], tuple[int, ...]]:
-    """Iterate to the tolerance; return field, residual history and linear iterations of each step."""
-    out, turned = problem.heat_out(temperature)
-    residual = np.where(problem.fixed, 0.0, out)
+def newton(
+    problem: ConductionProblem,
+    field: FloatArray,
+    tolerance: float,
+    max_steps: int = 30,
+    multigrid: TwoLevelMultigrid | None = None,
+) -> NewtonResult:
+    """Iterate on nodes and volumes from ``field`` (n_nodes + m,) until the residual is within tolerance.
+
+    multigrid : of a problem nearby, taken as it is; made from the first Jacobian if None
+
+    Raises NotConverged with its history and the hottest place.
+    """
+    out, turned = problem.heat_out(field)
+    residual = problem.residual(out)
     history: list[float] = []
     iterations: list[int] = []
-    multigrid: TwoLevelMultigrid | None = None
     while True:
         size = float(np.abs(residual).sum())
-        limit = max(tolerance * turned, problem.roundoff(temperature))
+        limit = max(tolerance * turned, problem.roundoff(field))
         history.append(size / turned if turned > 0.0 else 0.0)
         if size <= limit:
-            return temperature, tuple(history), tuple(iterations)
+            return NewtonResult(field, tuple(history), tuple(iterations), multigrid)
         if len(iterations) == max_steps:
             raise NotConverged(
                 f"Newton: residual {history[-1]:.3g} of the heat after {max_steps} steps is above "
-                f"{tolerance:g}; check the film laws for jumps or start from a nearer field",
+                f"{tolerance:g}; {_hottest(problem, field)}; check the film laws for jumps or start from a "
+                "nearer field",
                 tuple(history),
             )
-        slopes = problem.point_coefficients(temperature)
-        jacobian = problem.jacobian(slopes)
-        low_rank = problem.low_rank(temperature)
+        linear = problem.linearise(field)
         if multigrid is None:
-            multigrid = problem.multigrid(jacobian, slopes, temperature)
-        multigrid.set_low_rank(low_rank)
+            multigrid = problem.multigrid(linear, field)
+        multigrid.set_low_rank(linear.low_rank)
+        load = linear.load(residual)
+        step = gmres(linear, load, multigrid, tolerance=_forcing(history, limit / size))
+        iterations.append(step.iterations)
+        whole = linear.whole(residual, step.values)
+        field, residual, turned = _line_search(problem, field, whole, residual)
 
-        linear = gmres(
-            _sum(jacobian, low_rank), -residual, multigrid, tolerance=_forcing(history, limit / size)
-        )
-        iterations.append(linear.iterations)
-        temperature, residual, turned = _line_search(problem, temperature, linear.values, residual)
 
-
-def _sum(matrix: sparse.csr_array, part: LowRank | None) -> Operator:
-    """The operator ``matrix + part``."""
-    return lambda x: matrix @ x if part is None else matrix @ x + part @ x
+def _hottest(problem: ConductionProblem, field: FloatArray) -> str:
+    """Where the last field is hottest, in words."""
+    node = int(field[: problem.n_nodes].argmax())
+    mesh = problem.elements.mesh
+    body = next((name for name, cells in mesh.bodies.items() if (mesh.cells[cells] == node).any()), "?")
+    x, y, z = mesh.points[node]
+    return f"hottest in body {body} at x, y, z = {x:.4g}, {y:.4g}, {z:.4g} m with {field[node]:.5g} K"
 
 
 def _forcing(history: list[float], enough: float) -> float:
@@ -183,7 +181,7 @@ def _line_search(
                 if last:
                     raise
             else:
-                after = np.where(problem.fixed, 0.0, out)
+                after = problem.residual(out)
                 if last or float(np.linalg.norm(after)) <= (1.0 - 1e-4 * share) * before:
                     return trial, after, turned
         share *= 0.5

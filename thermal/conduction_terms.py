@@ -1,70 +1,114 @@
-"""Residual and Jacobian of steady conduction under one set of boundary conditions.
+"""Residual and Jacobian of conduction under one set of conditions.
 
-The residual of node a is the heat that leaves it [W],
+The unknowns are the temperatures of the nodes followed by those of the volumes of thermal.streams. The
+residual of node a is the heat that leaves it [W],
 
-    R_a = int k grad N_a . grad T + films: int h(Tm) (T - Tf) N_a + radiation: int eps sigma (T^4 - Ts^4) N_a
-          + exchange: int Q / A N_a  -  sources,
+    R_a = int k grad N_a . grad T + what films, radiation, exchanges, contacts, enclosures and volumes take
+          + heat stored per time  -  sources.
 
-with Tm the area mean of the film's own surface. The Jacobian is a sparse symmetric matrix plus one rank for
-every law that depends on a mean temperature and one for every exchange. Both parts enter the preconditioner:
-means live in the linear space, where the small-rank part is inverted exactly.
+The Jacobian is a sparse symmetric matrix plus one rank for every law that depends on a mean temperature, for
+every exchange, every surface of an enclosure and every film of a volume; the volumes themselves are
+eliminated. Both parts enter the preconditioner: means live in the linear space, where the small-rank part is
+inverted exactly.
 """
 
+import copy
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
 
-from thermal.boundary import (
-    STEFAN_BOLTZMANN,
-    BodySource,
-    BoundaryCondition,
-    Exchange,
-    Film,
-    PrescribedTemperature,
-    Radiation,
-    SurfaceSource,
-)
-from thermal.condition_checks import ConditionError, check_heat_paths
-from thermal.fe.elements import FiniteElements, SurfaceElements
-from thermal.fe.mesh import FloatArray, IndexArray
-from thermal.fe.solver import LowRank, TwoLevelMultigrid, constrain
-
-DIFFERENCE = 0.01
-"""Half step of the central difference that gives the slope of a film law [K]."""
+from thermal.boundary import BodySource, Exchange, Film, PrescribedTemperature, Radiation, SurfaceSource
+from thermal.capacity import Storage
+from thermal.condition_checks import Condition, ConditionError, check_heat_paths
+from thermal.conduction_setup import ConductionSetup
+from thermal.contact import Contact
+from thermal.contact_terms import ContactTerms
+from thermal.enclosure import Enclosure, EnclosureTerms
+from thermal.fe.mesh import FloatArray
+from thermal.fe.solver import BoolArray, LowRank, Operator, TwoLevelMultigrid, constrain
+from thermal.low_rank import Column, stack
+from thermal.stream_terms import Elimination, VolumeTerms, eliminate
+from thermal.streams import StreamNetwork, volume_links
+from thermal.surface_terms import SurfaceTerms
 
 EXCHANGE_SHIFT = 1e-4
 """Share of its exchange coefficient that a body without any film gets in the coarse factor."""
 
+OFF_REST = 1.0
+"""Step [K] by which pieces and volumes start apart: laws of free convection give nothing at rest."""
+
+
+@dataclass(frozen=True)
+class Linearisation:
+    """The Jacobian around one field, volumes eliminated: what a Newton step solves with."""
+
+    matrix: sparse.csr_array
+    low_rank: LowRank | None
+    conductivity_slope: Operator | None
+    elimination: Elimination | None
+    fixed: BoolArray
+    """(n_nodes,)"""
+
+    def __call__(self, x: FloatArray) -> FloatArray:
+        """Apply the reduced Jacobian to (n_nodes,)."""
+        y = self.matrix @ x
+        if self.low_rank is not None:
+            y = y + self.low_rank @ x
+        if self.conductivity_slope is not None:
+            y = y + np.where(self.fixed, 0.0, self.conductivity_slope(x))
+        return np.asarray(y)
+
+    def load(self, residual: FloatArray) -> FloatArray:
+        """(n_nodes,) right-hand side of a step from the whole residual."""
+        n = len(self.fixed)
+        load = -residual[:n]
+        if self.elimination is not None:
+            nodes, values = self.elimination.node_load(residual[n:])
+            load = load - np.bincount(nodes, values, minlength=n)
+        return np.where(self.fixed, 0.0, load)
+
+    def whole(self, residual: FloatArray, step: FloatArray) -> FloatArray:
+        """The step of nodes and volumes from that of the nodes."""
+        if self.elimination is None:
+            return step
+        return np.append(step, self.elimination.volume_step(residual[len(step) :], step))
+
 
 class ConductionProblem:
-    """Residual and Jacobian of one set of checked conditions.
+    """Residual and Jacobian of one set of checked conditions."""
 
-    fine, coarse : conduction values of the second-order and the linear matrix [W/K]
-    """
-
-    def __init__(
-        self,
-        elements: FiniteElements,
-        fine: FloatArray,
-        coarse: FloatArray,
-        conditions: Sequence[BoundaryCondition],
-    ) -> None:
-        self.elements = elements
+    def __init__(self, setup: ConductionSetup, conditions: Sequence[Condition]) -> None:
+        self.setup = setup
+        self.elements = elements = setup.elements
         self.surfaces = elements.surfaces
-        self.fine, self.coarse = fine, coarse
-        self.films = [c for c in conditions if isinstance(c, Film)]
-        self.radiations = [c for c in conditions if isinstance(c, Radiation)]
-        self.exchanges = [c for c in conditions if isinstance(c, Exchange)]
+        self.conditions = tuple(conditions)
+        self.matrix = elements.fine.matrix(setup.fine)
+        self.walls = SurfaceTerms(
+            elements,
+            [c for c in conditions if isinstance(c, Film)],
+            [c for c in conditions if isinstance(c, Radiation)],
+            [c for c in conditions if isinstance(c, Exchange)],
+        )
+        contacts = [c for c in conditions if isinstance(c, Contact)]
+        self.contacts = ContactTerms(contacts, [setup.joint(c) for c in contacts])
+        self.enclosures = [EnclosureTerms(elements, c) for c in conditions if isinstance(c, Enclosure)]
+        self.networks = [c for c in conditions if isinstance(c, StreamNetwork)]
+        self.volumes = VolumeTerms(elements, self.networks)
+        self.storage: Storage | None = None
+        self.n_nodes = n = len(elements.mesh.points)
+        self.fixed = np.zeros(n, dtype=np.bool_)
+        self.held = np.zeros(n)
         self.prescribed = [c for c in conditions if isinstance(c, PrescribedTemperature)]
-        self.matrix = elements.fine.matrix(fine)
-        self.fixed = np.zeros(len(elements.mesh.points), dtype=np.bool_)
-        self.held = np.zeros(len(elements.mesh.points))
         for condition in self.prescribed:
             nodes = self.surfaces[condition.surface].nodes
             self.fixed[nodes], self.held[nodes] = True, condition.temperature
-        self.source = np.zeros(len(elements.mesh.points))
+        self._add_sources(conditions)
+
+    def _add_sources(self, conditions: Sequence[Condition]) -> None:
+        self.source = np.zeros(self.n_nodes)
         self.source_turnover = 0.0
         for source in conditions:
             if isinstance(source, SurfaceSource):
@@ -76,170 +120,203 @@ class ConductionProblem:
                 self.source += source.power / share.sum() * share
                 self.source_turnover += abs(source.power)
 
+    def storing(self, storage: Storage) -> "ConductionProblem":
+        """The same problem with heat stored over a time step."""
+        problem = copy.copy(self)
+        problem.storage = storage
+        return problem
+
     def start(self, initial: FloatArray | float | None) -> FloatArray:
-        """First field of the iteration, prescribed nodes at their temperature."""
+        """First unknowns of the iteration, prescribed nodes at their temperature.
+
+        initial : (n_nodes,) or (n_nodes + m,) field or one value [K]; near the mean of all given ones if None
+        """
+        m = len(self.volumes)
         if initial is None:
-            given = [c.fluid_temperature for c in self.films]
-            given += [c.surroundings_temperature for c in self.radiations]
-            given += [c.temperature for c in self.prescribed]
-            initial = math.fsum(given) / len(given) if given else 293.15
-        field = np.broadcast_to(np.asarray(initial, dtype=np.float64), self.held.shape).copy()
-        if not (np.isfinite(field).all() and field.min() > 0.0):
+            given = [c.fluid_temperature for c in self.walls.films]
+            given += [c.surroundings_temperature for c in self.walls.radiations]
+            given += [c.temperature for c in self.prescribed] + self.volumes.given
+            rooms = (terms.enclosure.opening_temperature for terms in self.enclosures)
+            given += [room for room in rooms if room is not None]
+            mean = math.fsum(given) / len(given) if given else 293.15
+            initial = np.asarray(mean + OFF_REST * (1.0 + self.elements.piece_of_node))
+        field = np.asarray(initial, dtype=np.float64)
+        if field.shape == (self.n_nodes + m,):
+            field, volumes = field[: self.n_nodes], field[self.n_nodes :]
+        else:
+            volumes = np.full(m, float(field.mean()) - OFF_REST)
+        field = np.broadcast_to(field, self.held.shape)
+        whole = np.append(np.where(self.fixed, self.held, field), volumes)
+        if not (np.isfinite(whole).all() and min(field.min(), whole.min()) > 0.0):
             raise ConditionError(
                 "initial temperature must be finite and above 0 K at every node; give kelvin"
             )
-        return np.where(self.fixed, self.held, field)
+        return whole
 
-    def film_value(self, film: Film, mean: float) -> float:
-        """Coefficient of a film [W/(m2 K)], checked."""
-        return _checked(film.law(mean, film.fluid_temperature).value, film.surface, film.kind)
-
-    def exchange_value(self, exchange: Exchange, mean_a: float, mean_b: float) -> float:
-        """Coefficient of an exchange [W/(m2 K)], checked."""
-        return _checked(exchange.law(mean_a, mean_b).value, exchange.surface_a, exchange.kind)
-
-    def heat_out(self, temperature: FloatArray) -> tuple[FloatArray, float]:
-        """Heat (n_nodes,) that leaves every node by conduction and conditions; heat turned over [W]."""
-        out = self.matrix @ temperature - self.source
+    def heat_out(self, field: FloatArray) -> tuple[FloatArray, float]:
+        """Heat (n_nodes + m,) that leaves every node and volume; heat turned over [W]."""
+        n = self.n_nodes
+        temperature, volumes = field[:n], field[n:]
+        nodes = self.matrix @ temperature - self.source
         turned = self.source_turnover
-        for film in self.films:
-            surface = self.surfaces[film.surface]
-            mean = surface.mean(temperature)
-            value = self.film_value(film, mean)
-            out += value * surface.load(surface.at_points(temperature) - film.fluid_temperature)
-            turned += value * surface.area * abs(mean - film.fluid_temperature)
-        for radiation in self.radiations:
-            surface = self.surfaces[radiation.surface]
-            excess = surface.at_points(temperature) ** 4 - radiation.surroundings_temperature**4
-            part = radiation.emissivity * STEFAN_BOLTZMANN * surface.load(excess)
-            out += part
-            turned += abs(float(part.sum()))
-        for exchange in self.exchanges:
-            a, b, mean_a, mean_b = self._sides(exchange, temperature)
-            into_a = self.exchange_value(exchange, mean_a, mean_b) * a.area * (mean_b - mean_a)
-            out += into_a * (b.shares / b.area - a.shares / a.area)
-            turned += 2.0 * abs(into_a)
+        if self.setup.variable is not None:
+            nodes += self.setup.variable.heat_out(temperature)
+        for heat_out in (self.walls.heat_out, self.contacts.heat_out, *(e.heat_out for e in self.enclosures)):
+            part, size = heat_out(temperature)
+            nodes += part
+            turned += size
+        films, fluid, size = self.volumes.heat_out(temperature, volumes)
+        out = np.append(nodes + films, fluid)
+        turned += size
+        if self.storage is not None:
+            stored = self.storage.heat_out(field)
+            out += stored
+            turned += self._stored_turnover(stored)
         for condition in self.prescribed:
             turned += abs(float(out[self.surfaces[condition.surface].nodes].sum()))
         return out, 0.5 * turned
 
-    def reactions(self, temperature: FloatArray) -> FloatArray:
-        """(n_nodes,) heat that holds the prescribed nodes [W], zero elsewhere."""
-        return np.where(self.fixed, self.heat_out(temperature)[0], 0.0)
+    def _stored_turnover(self, stored: FloatArray) -> float:
+        """Sum of the sizes of the heats stored in each piece and volume [W]."""
+        pieces = np.bincount(self.elements.piece_of_node, stored[: self.n_nodes])
+        return float(np.abs(pieces).sum() + np.abs(stored[self.n_nodes :]).sum())
 
-    def roundoff(self, temperature: FloatArray) -> float:
+    def residual(self, out: FloatArray) -> FloatArray:
+        """`heat_out` with the prescribed nodes taken out."""
+        return np.where(np.append(self.fixed, np.zeros(len(self.volumes), dtype=np.bool_)), 0.0, out)
+
+    def reactions(self, field: FloatArray) -> FloatArray:
+        """(n_nodes,) heat that holds the prescribed nodes [W], zero elsewhere."""
+        return np.where(self.fixed, self.heat_out(field)[0][: self.n_nodes], 0.0)
+
+    def roundoff(self, field: FloatArray) -> float:
         """Size [W] below which the residual is rounding error."""
-        return 4.0 * float(np.finfo(np.float64).eps * (abs(self.matrix) @ np.abs(temperature)).sum())
+        temperature = np.abs(field[: self.n_nodes])
+        size = float((self.setup.size @ temperature).sum())
+        joints = self.contacts.matrix(temperature)
+        if joints is not None:
+            size += float((abs(joints) @ temperature).sum())
+        if self.storage is not None:
+            size += self.storage.rate * float((self.storage.capacity.matrix @ temperature).sum())
+            size += self.storage.rate * float(self.storage.volumes @ np.abs(field[self.n_nodes :]))
+        size += float(self.volumes.rate @ np.abs(field[self.n_nodes :]))
+        return 4.0 * float(np.finfo(np.float64).eps) * size
 
     def point_coefficients(self, temperature: FloatArray) -> dict[str, FloatArray]:
-        """Surface -> (n_f, n_q) slope of the local heat flux [W/(m2 K)]: films and 4 eps sigma T^3."""
-        slopes: dict[str, FloatArray] = {}
-        for film in self.films:
-            surface = self.surfaces[film.surface]
-            value = np.full_like(surface.weights, self.film_value(film, surface.mean(temperature)))
-            slopes[film.surface] = slopes.get(film.surface, 0.0) + value
-        for radiation in self.radiations:
-            wall = self.surfaces[radiation.surface].at_points(temperature)
-            value = 4.0 * radiation.emissivity * STEFAN_BOLTZMANN * wall**3
-            slopes[radiation.surface] = slopes.get(radiation.surface, 0.0) + value
+        """Surface -> (n_f, n_q) slope of the local heat flux [W/(m2 K)] that leaves through it."""
+        slopes = self.walls.slopes(temperature)
+        for terms in self.enclosures:
+            for name, slope in terms.slopes(temperature).items():
+                slopes[name] = slopes.get(name, 0.0) + slope
         return slopes
 
-    def jacobian(self, slopes: Mapping[str, FloatArray]) -> sparse.csr_array:
-        """Symmetric part of the Jacobian with local slopes, prescribed nodes taken out."""
-        values = self.fine.copy()
-        for name, slope in slopes.items():
-            self.surfaces[name].add_mass(values, slope)
-        return constrain(self.elements.fine.matrix(values), self.fixed)
+    def linearise(self, field: FloatArray) -> Linearisation:
+        """The Jacobian at a field, prescribed nodes taken out."""
+        n = self.n_nodes
+        temperature, volumes = field[:n], field[n:]
+        values = self.setup.fine.copy()
+        slope: Operator | None = None
+        if self.setup.variable is not None:
+            values += self.setup.variable.fine_values(temperature)
+            slope = self.setup.variable.slope(temperature)
+        for name, local in self._local_slopes(field).items():
+            self.surfaces[name].add_mass(values, local)
+        if self.storage is not None:
+            values += self.storage.rate * self.storage.capacity.fine
+        matrix = self.elements.fine.matrix(values)
+        joints = self.contacts.matrix(temperature)
+        if joints is not None:
+            matrix = sparse.csr_array(matrix + joints)
+        columns = self.walls.columns(temperature) + self.contacts.columns(temperature)
+        for terms in self.enclosures:
+            columns += terms.columns(temperature)
+        elimination = None
+        if len(self.volumes):
+            stored = (
+                np.zeros(len(volumes)) if self.storage is None else self.storage.rate * self.storage.volumes
+            )
+            elimination = eliminate(self.volumes, temperature, volumes, stored)
+            columns += elimination.columns
+        return Linearisation(
+            constrain(matrix, self.fixed), self._low_rank(columns), slope, elimination, self.fixed
+        )
 
-    def low_rank(self, temperature: FloatArray) -> LowRank | None:
-        """Part of the Jacobian that comes from mean temperatures."""
-        left: list[Column] = []
-        right: list[Column] = []
-        for film in self.films:
-            surface = self.surfaces[film.surface]
-            mean = surface.mean(temperature)
-            slope = self.film_value(film, mean + DIFFERENCE) - self.film_value(film, mean - DIFFERENCE)
-            if slope != 0.0:
-                excess = surface.load(surface.at_points(temperature) - film.fluid_temperature)
-                left.append((surface.nodes, slope / (2.0 * DIFFERENCE) * excess[surface.nodes]))
-                right.append(_mean_of(surface))
-        for exchange in self.exchanges:
-            a, b, mean_a, mean_b = self._sides(exchange, temperature)
-            by_a, by_b = self._exchange_slopes(exchange, mean_a, mean_b)
-            left.append(_join(_mean_of(b), _mean_of(a), 1.0, -1.0))
-            right.append(_join(_mean_of(b), _mean_of(a), a.area * by_b, a.area * by_a))
-        if not left:
+    def _low_rank(self, columns: list[tuple[Column, Column]]) -> LowRank | None:
+        columns = [(left, right) for left, right in columns if len(left[0]) and len(right[0])]
+        if not columns:
             return None
-        free = [(nodes, np.where(self.fixed[nodes], 0.0, values)) for nodes, values in left]
-        return LowRank(_columns(free, len(self.fixed)), _columns(right, len(self.fixed)))
+        free = [(nodes, np.where(self.fixed[nodes], 0.0, values)) for (nodes, values), _ in columns]
+        return LowRank(stack(free, self.n_nodes), stack([right for _, right in columns], self.n_nodes))
 
-    def _sides(
-        self, exchange: Exchange, temperature: FloatArray
-    ) -> tuple[SurfaceElements, SurfaceElements, float, float]:
-        """Both surfaces of an exchange and their mean temperatures [K]."""
-        a, b = self.surfaces[exchange.surface_a], self.surfaces[exchange.surface_b]
-        return a, b, a.mean(temperature), b.mean(temperature)
+    def _local_slopes(self, field: FloatArray) -> dict[str, FloatArray]:
+        """Local slopes of all conditions, films of volumes included."""
+        n = self.n_nodes
+        slopes = self.point_coefficients(field[:n])
+        terms = self.volumes
+        state = terms.state(terms.means(field[:n]), field[n:])
+        for film, value in zip(terms.films, state.coefficient, strict=True):
+            surface = self.surfaces[film.surface]
+            slopes[film.surface] = slopes.get(film.surface, 0.0) + np.full_like(surface.weights, value)
+        return slopes
 
-    def _exchange_slopes(self, exchange: Exchange, mean_a: float, mean_b: float) -> tuple[float, float]:
-        """Slopes of the heat flux h (Tb - Ta) by both mean temperatures [W/(m2 K)]."""
-        value = self.exchange_value(exchange, mean_a, mean_b)
-        slopes = []
-        for da, db in ((DIFFERENCE, 0.0), (0.0, DIFFERENCE)):
-            above = self.exchange_value(exchange, mean_a + da, mean_b + db)
-            below = self.exchange_value(exchange, mean_a - da, mean_b - db)
-            slopes.append((above - below) / (2.0 * DIFFERENCE) * (mean_b - mean_a))
-        return slopes[0] - value, slopes[1] + value
+    def check_paths(self, field: FloatArray, *, storing: bool = False) -> None:
+        """Check that the temperature of every piece and volume is determined (ConditionError).
 
-    def multigrid(
-        self, jacobian: sparse.csr_array, slopes: Mapping[str, FloatArray], temperature: FloatArray
-    ) -> TwoLevelMultigrid:
-        """Preconditioner around one linearisation; the heat paths are checked on the way."""
-        links: dict[tuple[str, str], float] = {}
-        for exchange in self.exchanges:
-            means = self._sides(exchange, temperature)[2:]
-            links[exchange.surface_a, exchange.surface_b] = self.exchange_value(exchange, *means)
+        storing : True where heat capacities count as well, in a transient
+        """
+        temperature = field[: self.n_nodes]
+        slopes = self.walls.slopes(temperature)
         grounded = [name for name, slope in slopes.items() if slope.max() > 0.0]
         grounded += [c.surface for c in self.prescribed]
-        loose = check_heat_paths(
-            self.elements, grounded, [pair for pair, value in links.items() if value > 0.0]
-        )
-        values = self.coarse.copy()
+        links = [*self.walls.links(temperature), *self.contacts.links(temperature)]
+        for terms in self.enclosures:
+            grounded += terms.grounded
+            links += terms.links
+        if storing:
+            grounded += [*self.surfaces, *(v.name for v in self.volumes.volumes if v.heat_capacity > 0.0)]
+        for volume, other in volume_links(self.networks):
+            if other is None:
+                grounded.append(volume)
+            else:
+                links.append((volume, other))
+        state = self.volumes.state(self.volumes.means(temperature), field[self.n_nodes :])
+        for film, value in zip(self.volumes.films, state.coefficient, strict=True):
+            if value > 0.0:
+                links.append((film.surface, film.volume))
+        check_heat_paths(self.elements, grounded, links, list(self.volumes.index))
+
+    def multigrid(self, linear: Linearisation, field: FloatArray) -> TwoLevelMultigrid:
+        """Preconditioner around one linearisation."""
+        temperature = field[: self.n_nodes]
+        values = self.setup.coarse.copy()
+        if self.setup.variable is not None:
+            values += self.setup.variable.coarse_values(temperature)
+        slopes = self._local_slopes(field)
         for name, slope in slopes.items():
             self.surfaces[name].add_coarse_mass(values, slope)
-        for pair, value in links.items():
-            for name in pair if loose else ():
+        if self.storage is not None:
+            values += self.storage.rate * self.storage.capacity.coarse
+        else:
+            self._shift_exchanges(values, slopes, temperature)
+        coarse = self.elements.coarse.matrix(values)
+        joints = self.contacts.matrix(temperature)
+        if joints is not None:
+            up = self.elements.prolongation
+            coarse = sparse.csr_array(coarse + up.T @ joints @ up)
+        fixed = self.fixed[self.elements.corners]
+        return TwoLevelMultigrid(
+            linear.matrix, constrain(coarse, fixed), self.elements.prolongation, self.fixed, fixed
+        )
+
+    def _shift_exchanges(
+        self, values: FloatArray, slopes: Mapping[str, FloatArray], temperature: FloatArray
+    ) -> None:
+        """Keep the coarse factor regular where a piece is held by exchanges only (they are of small rank)."""
+        firm = {self.surfaces[name].piece for name, slope in slopes.items() if slope.max() > 0.0}
+        firm |= {self.surfaces[c.surface].piece for c in self.prescribed}
+        if len(firm) == int(self.elements.components.max()) + 1:
+            return
+        for pair, value in self.walls.links(temperature).items():
+            for name in pair:
                 surface = self.surfaces[name]
                 surface.add_coarse_mass(values, np.full_like(surface.weights, EXCHANGE_SHIFT * value))
-        fixed = self.fixed[self.elements.corners]
-        coarse = constrain(self.elements.coarse.matrix(values), fixed)
-        return TwoLevelMultigrid(jacobian, coarse, self.elements.prolongation, self.fixed, fixed)
-
-
-Column = tuple[IndexArray, FloatArray]
-"""Nodes and values of a sparse column."""
-
-
-def _mean_of(surface: SurfaceElements) -> Column:
-    """The area mean as a functional of the nodal temperatures [-]."""
-    return surface.nodes, surface.shares[surface.nodes] / surface.area
-
-
-def _join(first: Column, second: Column, factor_1: float, factor_2: float) -> Column:
-    """The sum of two columns times a factor each; nodes may occur twice."""
-    return np.append(first[0], second[0]), np.append(factor_1 * first[1], factor_2 * second[1])
-
-
-def _columns(columns: list[Column], n_rows: int) -> sparse.csc_array:
-    """(n_rows, len(columns)) matrix; values of equal nodes are added."""
-    rows = np.concatenate([nodes for nodes, _ in columns])
-    values = np.concatenate([values for _, values in columns])
-    which = np.repeat(np.arange(len(columns)), [len(nodes) for nodes, _ in columns])
-    return sparse.csc_array(sparse.coo_array((values, (rows, which)), shape=(n_rows, len(columns))))
-
-
-def _checked(value: float, surface: str, kind: str) -> float:
-    if not (math.isfinite(value) and value >= 0.0):
-        raise ConditionError(
-            f"{surface}: coefficient of {kind!r} is {value} W/(m2 K); a film law must give a number >= 0"
-        )
-    return value

@@ -20,7 +20,7 @@ PLACES = [(type(c).__name__, getattr(c, "kind", "")) for c in conditions() if ha
 def solved() -> tuple[ConductionSetup, TemperatureSolution, np.ndarray]:
     setup = ConductionSetup(two_blocks(), CONDUCTIVITY)
     solution = solve_steady(setup.mesh, CONDUCTIVITY, conditions(), reuse=setup)
-    problem = ConductionProblem(setup.elements, setup.fine, setup.coarse, conditions())
+    problem = ConductionProblem(setup, conditions())
     return setup, solution, problem.reactions(solution.temperature)
 
 
@@ -74,7 +74,7 @@ def test_one_wrong_sign_in_the_rows_opens_the_balance(solved, index: int) -> Non
     wrong = list(with_kind)
     wrong[index] = reversed_heat(wrong[index])
     signed = -reactions if isinstance(wrong[index], PrescribedTemperature) else reactions
-    balance = heat_balance(setup.elements, wrong, solution.temperature, signed)
+    balance = heat_balance(setup, wrong, solution.temperature, signed)
     assert balance.closure > 1e5 * CLOSURE
 
 
@@ -107,9 +107,9 @@ def test_one_side_of_an_exchange_with_the_wrong_sign_is_no_solution() -> None:
 
     def wrong(self: ConductionProblem, temperature: np.ndarray) -> tuple[np.ndarray, float]:
         out, turned = right(self, temperature)
-        exchange = self.exchanges[0]
-        _, _, mean_a, mean_b = self._sides(exchange, temperature)
-        into_a = self.exchange_value(exchange, mean_a, mean_b) * side.area * (mean_b - mean_a)
+        exchange = self.walls.exchanges[0]
+        _, _, mean_a, mean_b = self.walls._sides(exchange, temperature)
+        into_a = exchange.law(mean_a, mean_b).value * side.area * (mean_b - mean_a)
         return out + 2.0 * into_a * side.shares / side.area, turned
 
     with pytest.MonkeyPatch.context() as patch:
