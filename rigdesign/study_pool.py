@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from multiprocessing import active_children, get_context, parent_process
-from multiprocessing.connection import wait
+from multiprocessing import get_context
+from multiprocessing.connection import Connection, wait
 from typing import TypeVar
 
 Task = TypeVar("Task")
@@ -53,9 +53,15 @@ def _alone(work: Callable[[Task], Outcome], tasks: Sequence[Task], index: int) -
 def _pool(
     work: Callable[[Task], Outcome], tasks: Sequence[Task], indices: Sequence[int], workers: int
 ) -> Iterator[tuple[int, Outcome]]:
-    others = set(active_children())
-    count = max(1, min(workers, len(indices)))
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=_begin_worker)
+    """Compute in fresh processes; they end when their lifeline closes, so none outlives a pool left early."""
+    context = get_context("spawn")
+    end_of_workers, end_of_parent = context.Pipe(duplex=False)
+    pool = ProcessPoolExecutor(
+        max(1, min(workers, len(indices))),
+        mp_context=context,
+        initializer=_begin_worker,
+        initargs=(end_of_workers,),
+    )
     try:
         futures: dict[Future[Outcome], int] = {pool.submit(work, tasks[index]): index for index in indices}
         for future in as_completed(futures):
@@ -63,9 +69,10 @@ def _pool(
         pool.shutdown()
     except BaseException:
         pool.shutdown(wait=False, cancel_futures=True)
-        for process in set(active_children()) - others:
-            process.terminate()
         raise
+    finally:
+        end_of_parent.close()
+        end_of_workers.close()
 
 
 @contextmanager
@@ -83,14 +90,12 @@ def _one_thread_each() -> Iterator[None]:
                 os.environ[name] = value
 
 
-def _begin_worker() -> None:
-    """Leave interrupts to the parent, and end when it ends, even by SIGKILL."""
+def _begin_worker(lifeline: Connection) -> None:
+    """Leave interrupts to the parent, and end when the lifeline does: closed, or its holder dead by SIGKILL."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
 
 
-def _end_with_parent() -> None:
-    parent = parent_process()
-    if parent is not None:
-        wait([parent.sentinel])
-        os._exit(1)
+def _end_with(lifeline: Connection) -> None:
+    wait([lifeline])
+    os._exit(1)
