@@ -57,7 +57,7 @@ class HarmonicGrid:
 class HarmonicSolution:
     """Coefficients of a periodic state, ``q(t) = sum over k of q_k exp(i k w t)``, k from -top to top.
 
-    ports : (n_ports, top + 1) one-sided windup of the mesh bodies [rad]; drive_windup : mean windup, always 0
+    ports : (n_bodies, top + 1) one-sided windup of the gear bodies that mesh [rad]
     twist [rad], drive [N m]; residual : largest error of the approach over its mean; iterations : Newton
     steps
     """
@@ -75,7 +75,8 @@ class HarmonicSolution:
 class _Reactions:
     """Mesh torques over time and their cell-averaged tangents, as harmonics.
 
-    torque : (n_ports, top + 1); per_approach, per_rate : (n_ports, samples) two-sided over one cell
+    torque : (n_bodies, top + 1) on each gear body, of all its meshes
+    per_approach, per_rate : (n_meshes, 2, samples) of the torques on pinion and wheel, two-sided over one cell
     """
 
     torque: Complex
@@ -120,7 +121,7 @@ def solve_periodic(
 
     speed : mean speed of the drive freedom [rad/s]; start : state whose coefficients are taken, see
     ``resample``
-    excitation : (n_ports, top + 1) one-sided harmonics of further torques on the mesh bodies [N m]
+    excitation : (n_bodies, top + 1) one-sided harmonics of further torques on the mesh bodies [N m]
 
     Raises NotConverged with the residual reached. A stalled iteration counts as converged below
     STALL_LIMIT; its residual stands in the result.
@@ -128,20 +129,20 @@ def solve_periodic(
     model = problem.model
     base = speed * 2.0 * np.pi / (grid.cell_angle * grid.cells)
     omega = base * np.arange(1, grid.top + 1)
-    n_ports = 2 * model.n_meshes
-    receptance = problem.form.receptance(np.asarray(omega, float), model.dofs[:n_ports])
+    n_bodies = model.n_bodies
+    receptance = problem.form.receptance(np.asarray(omega, float), model.dofs[:n_bodies])
     drag = model.drag(speed, drag_torques)
     newton = _Newton(problem, grid, base, receptance)
     ports, twist, drive = start.ports.copy(), start.twist, start.drive
-    rest = np.zeros(n_ports + 1)
-    rest[:n_ports] = ports[:, 0].real
+    rest = np.zeros(n_bodies + 1)
+    rest[:n_bodies] = ports[:, 0].real
     best = HarmonicSolution(
         grid=grid, speed=speed, ports=ports, twist=twist, drive=drive, residual=np.inf, iterations=0
     )
     damp, previous = 1.0, np.inf
     step: tuple[Complex, Array, float, float] | None = None
     for iteration in range(max_iterations):
-        ports[:, 0] = rest[:n_ports]
+        ports[:, 0] = rest[:n_bodies]
         reactions = _evaluate(model, grid, speed, base, ports)
         torque = reactions.torque if excitation is None else reactions.torque + excitation
         miss = np.einsum("kij,jk->ik", receptance, torque[:, 1:]) - ports[:, 1:]
@@ -224,7 +225,7 @@ def waveform(model: PortModel, solution: HarmonicSolution, samples: int | None =
     touching = np.empty(shape, bool)
     friction, damping = np.empty(model.n_meshes), np.empty(model.n_meshes)
     for m, packed in enumerate(model.packed):
-        p, w = 2 * m, 2 * m + 1
+        p, w = int(model.pinions[m]), int(model.wheels[m])
         radius_1, radius_2 = model.base_radii[m]
         angle[m] = model.ratios[p] * speed * time + motion[p]
         approach[m] = radius_1 * motion[p] - radius_2 * motion[w] + model.offsets[m]
@@ -241,7 +242,7 @@ def waveform(model: PortModel, solution: HarmonicSolution, samples: int | None =
 
 
 def _in_time(ports: Complex, base: float, count: int) -> tuple[Array, Array]:
-    """Windup and its rate (n_ports, count) from one-sided coefficients."""
+    """Windup and its rate (n_bodies, count) from one-sided coefficients."""
     order = np.arange(ports.shape[1])
     motion = np.fft.irfft(ports, count, axis=1) * count
     rate = np.fft.irfft(1j * base * order * ports, count, axis=1) * count
@@ -252,11 +253,11 @@ def _evaluate(model: PortModel, grid: HarmonicGrid, speed: float, base: float, p
     count = grid.count
     time_angle = np.arange(count) * (grid.cell_angle * grid.cells / count)
     motion, rate = _in_time(ports, base, count)
-    torque = np.empty((2 * model.n_meshes, count))
-    tangents = np.empty((2, 2 * model.n_meshes, grid.samples))
+    torque = np.zeros((model.n_bodies, count))
+    tangents = np.empty((2, model.n_meshes, 2, grid.samples))
     transmitted = np.empty((model.n_meshes, count))
     for m, packed in enumerate(model.packed):
-        p, w = 2 * m, 2 * m + 1
+        p, w = int(model.pinions[m]), int(model.wheels[m])
         radius_1, radius_2 = model.base_radii[m]
         reaction = evaluate_mesh(
             packed,
@@ -265,28 +266,34 @@ def _evaluate(model: PortModel, grid: HarmonicGrid, speed: float, base: float, p
             model.ratios[p] * speed + rate[p],
             model.ratios[w] * speed + rate[w],
         )
-        torque[p], torque[w] = reaction.torque_1, reaction.torque_2
+        torque[p] += reaction.torque_1
+        torque[w] += reaction.torque_2
         transmitted[m] = radius_1 * (reaction.force_front - reaction.force_back)
         for row, value in (
-            ((0, p), reaction.torque_1_per_approach),
-            ((0, w), reaction.torque_2_per_approach),
-            ((1, p), reaction.torque_1_per_rate),
-            ((1, w), reaction.torque_2_per_rate),
+            ((0, m, 0), reaction.torque_1_per_approach),
+            ((0, m, 1), reaction.torque_2_per_approach),
+            ((1, m, 0), reaction.torque_1_per_rate),
+            ((1, m, 1), reaction.torque_2_per_rate),
         ):
             tangents[row] = value.reshape(grid.cells, grid.samples).mean(axis=0)
     harmonics = np.fft.rfft(torque, axis=1)[:, : grid.top + 1] / count
-    spectra = np.fft.fft(tangents, axis=2) / grid.samples
+    spectra = np.fft.fft(tangents, axis=3) / grid.samples
     return _Reactions(harmonics, spectra[0], spectra[1], transmitted)
 
 
 def _error(problem: Problem, miss: Complex, balance: Array, asked: float) -> float:
     """Largest of: approach error over its mean, unbalanced torque and missed torque over the asked one."""
     model, scale = problem.model, problem.approach_scale
-    moving = np.abs(miss).sum(axis=1).reshape(-1, 2) * model.base_radii
+    moving = np.abs(miss).sum(axis=1)[_sides(model)] * model.base_radii
     torque = max(abs(problem.torque or 0.0), 1.0)
     return max(
         2.0 * float(moving.max()) / scale, float(np.max(np.abs(balance))) / torque, abs(asked) / torque
     )
+
+
+def _sides(model: PortModel) -> NDArray[np.int64]:
+    """(n_meshes, 2) ports of pinion and wheel."""
+    return np.stack([model.pinions, model.wheels], axis=1)
 
 
 class _Newton:
@@ -295,14 +302,15 @@ class _Newton:
     def __init__(self, problem: Problem, grid: HarmonicGrid, base: float, receptance: Complex) -> None:
         self.problem, self.grid, self.base = problem, grid, base
         self.receptance = receptance
+        self.sides = _sides(problem.model)
         approach = problem.model.approach[:, :-1]
         self.gain = np.einsum("mi,kij->kmj", approach, receptance)
-        """(top, n_meshes, n_ports) approach per port torque."""
+        """(top, n_meshes, n_bodies) approach per port torque."""
 
     def step(
         self, reactions: _Reactions, miss: Complex, balance: Array, asked: float
     ) -> tuple[Complex, Array, float, float]:
-        """Changes of the harmonics (n_ports, top), of the mean windup (n,), of drive torque and twist."""
+        """Changes of the harmonics (n_bodies, top), of the mean windup (n,), of drive torque and twist."""
         approach_miss = self.problem.model.approach[:, :-1] @ miss
         change, rest, drive, twist = self._meshing(reactions, approach_miss, balance, asked)
         grid = self.grid
@@ -315,13 +323,11 @@ class _Newton:
     def _tangent(self, reactions: _Reactions, order: NDArray[np.int64], omega: Array) -> Complex:
         """(n_meshes, 2, n, n): harmonics of pinion and wheel torque per harmonics of approach."""
         lag = np.subtract.outer(order, order)
-        n_meshes, n = self.problem.model.n_meshes, order.size
-        stiff = reactions.per_approach[:, lag].reshape(n_meshes, 2, n, n)
-        damp = reactions.per_rate[:, lag].reshape(n_meshes, 2, n, n)
+        stiff, damp = reactions.per_approach[:, :, lag], reactions.per_rate[:, :, lag]
         return np.asarray(stiff + damp * (1j * omega))
 
     def _gain_at(self, index: NDArray[np.int64]) -> Complex:
-        """(n_index, n_meshes, n_ports) approach per torque at signed harmonics, zero at the mean."""
+        """(n_index, n_meshes, n_bodies) approach per torque at signed harmonics, zero at the mean."""
         gain = self.gain[np.maximum(np.abs(index) - 1, 0)]
         gain = np.where((index < 0)[:, None, None], gain.conj(), gain)
         gain[index == 0] = 0.0
@@ -330,9 +336,15 @@ class _Newton:
     def _block(self, tangent: Complex, gain: Complex) -> Complex:
         """Identity less gain times tangent, ordered mesh by mesh: (n_meshes n, n_meshes n)."""
         n_meshes, n = self.problem.model.n_meshes, tangent.shape[-1]
-        split = gain.reshape(n, n_meshes, n_meshes, 2)
+        split = gain[:, :, self.sides]
         coupled = np.einsum("kamp,mpkl->akml", split, tangent, optimize=True)
         return np.asarray(np.eye(n_meshes * n) - coupled.reshape(n_meshes * n, n_meshes * n))
+
+    def _on_bodies(self, tangent: Complex, approach: NDArray[np.complexfloating]) -> Complex:
+        """Torque on every gear body (n_bodies, n) from the change of approach (n_meshes, n)."""
+        torque = np.zeros((self.problem.model.n_bodies, approach.shape[1]), complex)
+        np.add.at(torque, self.sides, np.einsum("mpkl,ml->mpk", tangent, approach))
+        return torque
 
     def _meshing(
         self, reactions: _Reactions, approach_miss: Complex, balance: Array, asked: float
@@ -361,8 +373,8 @@ class _Newton:
         # balance of mean torques
         matrix[rest : rest + size, rest : rest + size] = model.stiffness
         for m in range(n_meshes):
-            for side in range(2):
-                matrix[rest + 2 * m + side, m * n : (m + 1) * n] -= tangent[m, side, mean]
+            for side, body in enumerate(self.sides[m]):
+                matrix[rest + body, m * n : (m + 1) * n] -= tangent[m, side, mean]
         matrix[rest + size - 1, rest + size] = -1.0
         matrix[rest : rest + size, rest + size + 1] = -model.twist
         right[rest : rest + size] = -balance
@@ -377,12 +389,12 @@ class _Newton:
         scale = np.abs(matrix).max(axis=1)
         solution = np.linalg.solve(matrix / scale[:, None], right / scale)
         approach = solution[:rest].reshape(n_meshes, n)
-        torque = np.einsum("mpkl,ml->mpk", tangent, approach).reshape(2 * n_meshes, n)
+        torque = self._on_bodies(tangent, approach)
         tail = solution[rest:].real
         return torque[:, mean + 1 :], tail[:size], float(tail[size]), float(tail[size + 1])
 
     def _sideband(self, reactions: _Reactions, miss: Complex, residue: int, torque: Complex) -> None:
-        """Class of the harmonics ``residue + cells * j``: fills its places in ``torque`` (n_ports, top)."""
+        """Class of the harmonics ``residue + cells * j``: fills its places in ``torque`` (n_bodies, top)."""
         model, grid = self.problem.model, self.grid
         j = np.arange(-grid.harmonics, grid.harmonics)
         index = residue + grid.cells * j
@@ -392,7 +404,7 @@ class _Newton:
         known = miss[:, np.abs(index) - 1]
         known = np.where(index < 0, known.conj(), known)
         approach = np.linalg.solve(block, known.ravel()).reshape(model.n_meshes, j.size)
-        change = np.einsum("mpkl,ml->mpk", tangent, approach).reshape(2 * model.n_meshes, j.size)
+        change = self._on_bodies(tangent, approach)
         positive = index > 0
         torque[:, index[positive] - 1] = change[:, positive]
         torque[:, -index[~positive] - 1] = change[:, ~positive].conj()

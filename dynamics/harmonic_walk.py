@@ -112,8 +112,9 @@ def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int
     All meshes share the cell: the shortest rotation that is a whole number of mesh periods of each.
     """
     law = model.laws[control_mesh]
+    own = model.ratios[model.pinions[control_mesh]]
     pitch = [
-        Fraction(float(m.teeth_1 * model.ratios[2 * i] / (law.teeth_1 * model.ratios[2 * control_mesh])))
+        Fraction(float(m.teeth_1 * model.ratios[model.pinions[i]] / (law.teeth_1 * own)))
         .limit_denominator(10_000)
         for i, m in enumerate(model.laws)
     ]  # fmt: skip
@@ -124,7 +125,7 @@ def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int
                 "the frequency of the control mesh; integrate in time"
             )
     common = math.lcm(*(value.denominator for value in pitch))
-    cell_angle = common * 2.0 * math.pi / (law.teeth_1 * float(model.ratios[2 * control_mesh]))
+    cell_angle = common * 2.0 * math.pi / (law.teeth_1 * float(own))
     if period == "mesh":
         return 1, cell_angle
     meshes = math.lcm(law.teeth_1, common)
@@ -150,7 +151,7 @@ def quasi_static_start(
     try:
         state = find()
     except NotConverged:
-        state = find(held=2 * problem.control_mesh)
+        state = find(held=int(problem.model.pinions[problem.control_mesh]))
     coefficients = np.fft.rfft(state.ports[:, :-1].T, axis=1)[:, : grid.harmonics + 1] / grid.samples
     ports = np.zeros((coefficients.shape[0], grid.top + 1), complex)
     ports[:, :: grid.cells] = coefficients

@@ -24,9 +24,13 @@ class NotConverged(RuntimeError):  # noqa: N818
 
 @dataclass(frozen=True, kw_only=True)
 class PortModel:
-    """Loop reduced to the mesh ports (pinion, wheel of every mesh, in order) and, last, the drive freedom.
+    """Loop reduced to its ports: the gear bodies that mesh, each once, and, last, the drive freedom.
 
-    stiffness : (n, n) [N m/rad] with n = 2 n_meshes + 1; twist : (n,) torque per bracing twist [N m/rad]
+    An idler is one port with the torques of two meshes.
+
+    dofs : (n,) freedom of every port; n = number of gear bodies + 1
+    pinions, wheels : (n_meshes,) ports of each mesh
+    stiffness : (n, n) [N m/rad]; twist : (n,) torque per bracing twist [N m/rad]
     drag_per_speed : (n,) torque of linear drag per reference speed [N m s/rad], negative
     drags : name -> (n,) reduced share of a drag load
     approach : (n_meshes, n) approach per port angle [m/rad]
@@ -36,6 +40,8 @@ class PortModel:
     """
 
     dofs: NDArray[np.int64]
+    pinions: NDArray[np.int64]
+    wheels: NDArray[np.int64]
     stiffness: Array
     twist: Array
     drag_per_speed: Array
@@ -52,6 +58,11 @@ class PortModel:
     def n_meshes(self) -> int:
         """Number of meshes."""
         return len(self.laws)
+
+    @property
+    def n_bodies(self) -> int:
+        """Number of gear bodies that mesh."""
+        return self.dofs.size - 1
 
     def drag(self, speed: float, torques: Mapping[str, float] | None) -> Array:
         """Drag torques on the ports (n,) at a reference speed [rad/s]: linear drag and named torques."""
@@ -87,8 +98,13 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
         raise ValueError(
             f"{len(laws)} mesh laws for {len(system.mesh_ports)} meshes: give one per mesh, in order"
         )
-    kept = np.append(system.mesh_ports.ravel(), system.drive_dof)
-    if len(set(kept.tolist())) < kept.size:
+    bodies = np.array(list(dict.fromkeys(system.mesh_ports.ravel().tolist())), dtype=np.int64)
+    port = {int(dof): i for i, dof in enumerate(bodies)}
+    pinions, wheels = (
+        np.array([port[int(dof)] for dof in side], dtype=np.int64) for side in system.mesh_ports.T
+    )
+    kept = np.append(bodies, system.drive_dof)
+    if system.drive_dof in bodies:
         raise ValueError("the motor acts on a gear body that also meshes: place it on a shaft station")
     inner = np.setdiff1d(np.arange(system.inertia.size), kept)
     coupling = system.stiffness[np.ix_(kept, inner)]
@@ -100,9 +116,11 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
 
     approach = np.zeros((len(laws), kept.size))
     for m, law in enumerate(laws):
-        approach[m, 2 * m], approach[m, 2 * m + 1] = law.base_radius_1, -law.base_radius_2
+        approach[m, pinions[m]], approach[m, wheels[m]] = law.base_radius_1, -law.base_radius_2
     return PortModel(
         dofs=kept,
+        pinions=pinions,
+        wheels=wheels,
         stiffness=system.stiffness[np.ix_(kept, kept)] - carry @ coupling.T,
         twist=reduce(system.twist_load),
         drag_per_speed=reduce(-system.damping @ ratios),
@@ -161,9 +179,9 @@ def solve_static(
     """Quasi-static state for a given twist [rad], or the twist for a given mean torque of one mesh [N m].
 
     speed : reference speed that gives friction and drag their direction [rad/s]; 0 leaves both out.
-    held : port that turns by ``angles`` without windup: the drive freedom, last of all, or the pinion 2 m of
-        mesh m. Behind a soft motor shaft a mesh may step over the pitch point, where friction reverses, and
-        no state exists for some angles of the drive; it does for the angles of a pinion
+    held : port that turns by ``angles`` without windup: the drive freedom, last of all, or a pinion.
+        Behind a soft motor shaft a mesh may step over the pitch point, where friction
+        reverses, and no state exists for some angles of the drive; it does for the angles of a pinion
 
     Raises
     ------
@@ -189,7 +207,7 @@ def solve_static(
     previous, damp = np.inf, 1.0
     step: tuple[Array, Array, float] = (np.zeros_like(u), np.zeros(where.size), 0.0)
     for _ in range(80):
-        tau, slopes, transmitted = _reactions(model, u, where, speed)
+        tau, slopes, own, transmitted = _reactions(model, u, where, speed)
         residual = u @ model.stiffness - tau - model.twist * phi - drag - drive[:, None] * unit
         miss = 0.0 if torque is None else torque - float(transmitted[:, control_mesh].mean())
         error = max(float(np.max(np.abs(residual))), abs(miss)) / scale
@@ -217,7 +235,7 @@ def solve_static(
             break
         d_phi = 0.0
         if torque is not None:
-            gain = _transmitted_change(model, slopes, moves[:, :n, :], control_mesh)
+            gain = _transmitted_change(own, moves[:, :n, :], control_mesh)
             if gain[1] == 0.0:
                 break
             d_phi = (miss - gain[0]) / gain[1]
@@ -230,31 +248,35 @@ def solve_static(
     )
 
 
-def _transmitted_change(model: PortModel, slopes: Array, moves: Array, mesh: int) -> Array:
+def _transmitted_change(own: Array, moves: Array, mesh: int) -> Array:
     """Mean change of the torque transmitted by one mesh for each column of moves (n_angles, n, columns)."""
-    row = slopes[:, 2 * mesh, :]
+    row = own[:, mesh, :]
     return np.asarray(-np.einsum("aj,ajc->c", row, moves) / len(row))
 
 
-def _reactions(model: PortModel, u: Array, angles: Array, speed: float) -> tuple[Array, Array, Array]:
-    """Port torques (n_angles, n), slopes (n_angles, n, n), transmitted torques (n_angles, n_meshes)."""
+def _reactions(model: PortModel, u: Array, angles: Array, speed: float) -> tuple[Array, Array, Array, Array]:
+    """Port torques (n_angles, n), their slopes (n_angles, n, n), those of each mesh at its own pinion
+    (n_angles, n_meshes, n), transmitted torques (n_angles, n_meshes)."""
     tau = np.zeros_like(u)
     slopes = np.zeros((*u.shape, u.shape[1]))
+    own = np.zeros((u.shape[0], model.n_meshes, u.shape[1]))
     transmitted = np.empty((u.shape[0], model.n_meshes))
     reach = u @ model.approach.T + model.offsets
     for m, packed in enumerate(model.elastic):
-        p, w = 2 * m, 2 * m + 1
+        p, w = int(model.pinions[m]), int(model.wheels[m])
         ratio_1, ratio_2 = model.ratios[p], model.ratios[w]
         reaction = evaluate_mesh(
             packed, ratio_1 * angles + u[:, p], reach[:, m], ratio_1 * speed, ratio_2 * speed
         )
-        tau[:, p], tau[:, w] = reaction.torque_1, reaction.torque_2
-        slopes[:, p, :] = reaction.torque_1_per_approach[:, None] * model.approach[m]
-        slopes[:, w, :] = reaction.torque_2_per_approach[:, None] * model.approach[m]
-        slopes[:, p, p] += reaction.torque_1_per_angle
+        tau[:, p] += reaction.torque_1
+        tau[:, w] += reaction.torque_2
+        own[:, m] = reaction.torque_1_per_approach[:, None] * model.approach[m]
+        own[:, m, p] += reaction.torque_1_per_angle
+        slopes[:, p] += own[:, m]
+        slopes[:, w] += reaction.torque_2_per_approach[:, None] * model.approach[m]
         slopes[:, w, p] += reaction.torque_2_per_angle
         transmitted[:, m] = model.base_radii[m, 0] * (reaction.force_front - reaction.force_back)
-    return tau, slopes, transmitted
+    return tau, slopes, own, transmitted
 
 
 def _bilateral(

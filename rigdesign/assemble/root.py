@@ -34,7 +34,8 @@ def dynamic_stress(model: MeshModel, point: CurvePoint, mesh: int) -> tuple[Stre
 
 def static_stress(model: MeshModel, state: StaticState, ports: PortModel, mesh: int) -> tuple[Stress, Stress]:
     """The same for the quasi-static state of the loop."""
-    angle = ports.ratios[2 * mesh] * state.angles + state.ports[:, 2 * mesh]
+    pinion = ports.pinions[mesh]
+    angle = ports.ratios[pinion] * state.angles + state.ports[:, pinion]
     forces = tooth_forces(model.law, angle, state.approach[:, mesh])
     return _stress(model, forces, bool(state.mean_torque[mesh] > 0.0))
 
