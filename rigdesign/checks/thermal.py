@@ -3,12 +3,18 @@
 import math
 from collections.abc import Iterable, Iterator
 
+from dynamics.journal_bearing import BearingState
 from rigdesign.checks.subject import NO_HOUSING, NO_LIMIT, Subject, worst
 from rigdesign.results import Check
 from rigdesign.rules import Rule, hold, not_applicable
 
 ZERO = 273.15
 MM, UM = 1e3, 1e6
+
+
+Values = Iterable[tuple[float, str]]
+GROUPS = {"temperature": "temperatures", "clearance": "clearances", "bearing": "bearings", "oil": "oil"}
+"""First part of the id of a check -> its group in the report."""
 
 
 def checks(subject: Subject) -> list[Check]:
@@ -22,15 +28,27 @@ def checks(subject: Subject) -> list[Check]:
 
 
 def _held(
-    subject: Subject, rule: Rule, values: Iterable[tuple[float, str]], resting: tuple[str, ...]
+    id: str,  # noqa: A002 - the name in the contract of the results
+    title: str,
+    unit: str,
+    limit: float | None,
+    values: Values,
+    resting: tuple[str, ...],
+    *,
+    source: str,
+    at_least: bool = False,
 ) -> Check:
-    """Hold the governing one of some values, or say why there is none."""
-    if rule.limit is None:
+    """Hold the governing one of some values (value, where), or say why there is none; all in ``unit``."""
+    rule = Rule(
+        id=id, title=title, unit=unit, source=source, group=GROUPS[id.partition(".")[0]], limit=limit,
+        comparison=">=" if at_least else "<=",
+    )  # fmt: skip
+    if limit is None:
         return not_applicable(rule, NO_LIMIT)
     listed = list(values)
     if not listed:
         return not_applicable(rule, NO_HOUSING)
-    value, where = worst(listed, smallest=rule.comparison == ">=")
+    value, where = worst(listed, smallest=at_least)
     return hold(rule, value, where, resting)
 
 
@@ -50,105 +68,90 @@ def _temperatures(subject: Subject) -> Iterator[Check]:
         "losses",
     )
     yield _held(
-        subject,
-        Rule(
-            id="temperature.housing", title="hottest place of the housing", unit="degC",
-            source="limits.temperatures.housing_maximum", group="temperatures",
-            limit=_degrees(limits.housing_maximum),
-        ),
+        "temperature.housing", "hottest place of the housing", "degC", _degrees(limits.housing_maximum),
         ((row.bodies["housing"]["max_degC"], f"{row.gearbox}, stage {row.stage}") for row in subject.thermal),
-        resting,
+        resting, source="limits.temperatures.housing_maximum",
     )  # fmt: skip
     yield _held(
-        subject,
-        Rule(
-            id="temperature.bearing_film", title="hottest bearing film", unit="degC",
-            source="limits.temperatures.bearing_film_maximum; ISO 7902-1 heat balance", group="temperatures",
-            limit=_degrees(limits.bearing_film_maximum),
-        ),
-        (
-            (state.film_temperature - ZERO, f"{name}, stage {point.point.stage}")
-            for point in subject.points
-            for name, state in point.last.bearings.items()
-        ),
+        "temperature.bearing_film", "hottest bearing film", "degC", _degrees(limits.bearing_film_maximum),
+        ((state.film_temperature - ZERO, where) for where, state in _films(subject)),
         subject.assumed(*(f"gearboxes.{name}.bearings" for name in subject.case.gearboxes)),
+        source="limits.temperatures.bearing_film_maximum; ISO 7902-1 heat balance",
     )  # fmt: skip
     yield _held(
-        subject,
-        Rule(
-            id="temperature.oil_outlet", title="hottest oil outlet", unit="degC",
-            source="limits.temperatures.oil_outlet_maximum", group="temperatures",
-            limit=_degrees(limits.oil_outlet_maximum),
-        ),
+        "temperature.oil_outlet", "hottest oil outlet", "degC", _degrees(limits.oil_outlet_maximum),
         (
             (stream.outlet - ZERO, f"{stream.name}, stage {point.point.stage}")
             for point in subject.points
             for stream in point.last.streams
         ),
-        resting,
+        resting, source="limits.temperatures.oil_outlet_maximum",
     )  # fmt: skip
-    yield _tempering(subject, resting)
+    yield _held(
+        "temperature.gear_bulk", "gear bulk temperature below tempering temperature", "K",
+        limits.tempering_distance_minimum, _tempering_distances(subject), resting,
+        source="limits.temperatures.tempering_distance_minimum", at_least=True,
+    )  # fmt: skip
 
 
-def _tempering(subject: Subject, resting: tuple[str, ...]) -> Check:
-    limit = subject.case.limits.temperatures.tempering_distance_minimum
-    rule = Rule(
-        id="temperature.gear_bulk", title="gear bulk temperature below tempering temperature", unit="K",
-        source="limits.temperatures.tempering_distance_minimum", group="temperatures", limit=limit,
-        comparison=">=",
-    )  # fmt: skip
-    values = []
+def _tempering_distances(subject: Subject) -> Iterator[tuple[float, str]]:
+    """Tempering temperature less bulk temperature of every gear whose material has one [K]."""
     for point in subject.points:
         for name, temperature in point.last.feedback.gear_temperature.items():
             box, gear = name.split(".")
             material = subject.rig.materials[subject.case.gearboxes[box].gears[gear].material]
             if material.tempering_temperature is not None:
-                distance = material.tempering_temperature - temperature
-                values.append(
-                    (distance, f"{name} at {temperature - ZERO:.1f} degC, stage {point.point.stage}")
-                )
-    return _held(subject, rule, values, resting)
+                where = f"{name} at {temperature - ZERO:.1f} degC, stage {point.point.stage}"
+                yield material.tempering_temperature - temperature, where
+
+
+def _films(subject: Subject) -> list[tuple[str, BearingState]]:
+    """(place and stage, state) of every journal bearing at every held stage."""
+    return [
+        (f"{name}, stage {point.point.stage}", state)
+        for point in subject.points
+        for name, state in point.last.bearings.items()
+    ]
 
 
 def _clearances(subject: Subject) -> Iterator[Check]:
     limits = subject.case.limits.clearances
     resting = subject.assumed(*(f"gearboxes.{row.gearbox}.housing" for row in subject.growth))
-    lists: tuple[tuple[str, str, float | None, float, str, list[tuple[float, str]]], ...] = (
+    gears = [gear for row in subject.growth for gear in row.gears]
+    seals = [seal for row in subject.growth for seal in row.seal_gaps]
+    shafts = [shaft for row in subject.growth for shaft in row.shafts]
+    bearings = [
+        (UM * clearance, f"{name}, stage {point.point.stage}")
+        for point in subject.points
+        for name, clearance in point.last.feedback.bearing_clearance.items()
+    ]
+    rows: tuple[tuple[str, str, float | None, float, str, Values], ...] = (
         (
             "seal_gap", "smallest hot radial gap of a seal", limits.seal_gap_minimum, MM, "mm",
-            [
-                (s["hot_min_mm"], f"{s['seal']} at {s['angle_of_min_deg']:.0f} deg")
-                for r in subject.growth
-                for s in r.seal_gaps
-            ],
+            ((s["hot_min_mm"], f"{s['seal']} at {s['angle_of_min_deg']:.0f} deg") for s in seals),
         ),
         (
             "axial_play", "smallest hot axial play of a shaft", limits.axial_play_minimum, MM, "mm",
-            [(s["axial_play_hot_mm"], s["shaft"]) for r in subject.growth for s in r.shafts],
+            ((shaft["axial_play_hot_mm"], shaft["shaft"]) for shaft in shafts),
         ),
         (
             "backlash", "smallest hot backlash", limits.backlash_minimum, MM, "mm",
-            [(g["backlash_hot_mm"], g["gear_pair"]) for r in subject.growth for g in r.gears],
+            ((gear["backlash_hot_mm"], gear["gear_pair"]) for gear in gears),
         ),
         (
             "tip_clearance", "smallest hot tip clearance", limits.tip_clearance_minimum, MM, "mm",
-            [(g["tip_clearance_hot_mm"], g["gear_pair"]) for r in subject.growth for g in r.gears],
+            ((gear["tip_clearance_hot_mm"], gear["gear_pair"]) for gear in gears),
         ),
         (
-            "bearing_clearance", "smallest hot diametral bearing clearance", limits.bearing_clearance_minimum, UM, "um",
-            [
-                (UM * clearance, f"{name}, stage {p.point.stage}")
-                for p in subject.points
-                for name, clearance in p.last.feedback.bearing_clearance.items()
-            ],
+            "bearing_clearance", "smallest hot diametral bearing clearance", limits.bearing_clearance_minimum,
+            UM, "um", bearings,
         ),
     )  # fmt: skip
-    for key, title, limit, scale, unit, values in lists:
-        rule = Rule(
-            id=f"clearance.{key}", title=title, unit=unit, source=f"limits.clearances.{key}_minimum",
-            group="clearances", limit=_scaled(limit, scale), comparison=">=",
+    for key, title, limit, scale, unit, values in rows:
+        yield _held(
+            f"clearance.{key}", title, unit, _scaled(limit, scale), values, resting,
+            source=f"limits.clearances.{key}_minimum", at_least=True,
         )  # fmt: skip
-        yield _held(subject, rule, values, resting)
     yield from _seal_travel(subject, resting)
 
 
@@ -156,18 +159,17 @@ def _seal_travel(subject: Subject, resting: tuple[str, ...]) -> Iterator[Check]:
     """Axial movement of the shaft in its seals against what they take."""
     for row in subject.growth:
         for name, seals in subject.case.gearboxes[row.gearbox].seals.items():
-            rule = Rule(
-                id=f"clearance.seal_travel.{row.gearbox}.{name}",
-                title=f"axial movement of the {name} shaft in its seals ({row.gearbox})", unit="mm",
-                source=f"gearboxes.{row.gearbox}.seals.{name}.axial_travel", group="clearances",
-                limit=MM * seals.axial_travel,
-            )  # fmt: skip
-            values = [
+            values = (
                 (abs(seal["axial_shift_mm"]), seal["seal"])
                 for seal in row.seal_gaps
                 if seal["seal"].startswith(seals.shaft)
-            ]
-            yield _held(subject, rule, values, resting)
+            )
+            yield _held(
+                f"clearance.seal_travel.{row.gearbox}.{name}",
+                f"axial movement of the {name} shaft in its seals ({row.gearbox})", "mm",
+                MM * seals.axial_travel, values, resting,
+                source=f"gearboxes.{row.gearbox}.seals.{name}.axial_travel",
+            )  # fmt: skip
 
 
 def _bearings(subject: Subject) -> Iterator[Check]:
@@ -175,30 +177,17 @@ def _bearings(subject: Subject) -> Iterator[Check]:
     resting = subject.assumed(
         *(f"gearboxes.{name}.bearings" for name in subject.case.gearboxes), "limits.bearing"
     )
-    states = [
-        (f"{name}, stage {point.point.stage}", state)
-        for point in subject.points
-        for name, state in point.last.bearings.items()
-    ]
     yield _held(
-        subject,
-        Rule(
-            id="bearing.minimum_film", title="smallest film of a journal bearing", unit="um",
-            source="limits.bearing.film_thickness_minimum; film after ISO 7902-1", group="bearings",
-            limit=_scaled(limits.film_thickness_minimum, UM), comparison=">=",
-        ),
-        ((UM * state.minimum_film, where) for where, state in states),
-        resting,
+        "bearing.minimum_film", "smallest film of a journal bearing", "um",
+        _scaled(limits.film_thickness_minimum, UM),
+        ((UM * state.minimum_film, where) for where, state in _films(subject)), resting,
+        source="limits.bearing.film_thickness_minimum; film after ISO 7902-1", at_least=True,
     )  # fmt: skip
     yield _held(
-        subject,
-        Rule(
-            id="bearing.specific_load", title="largest specific load of a journal bearing", unit="MPa",
-            source="limits.bearing.specific_load_maximum", group="bearings",
-            limit=_scaled(limits.specific_load_maximum, 1e-6),
-        ),
-        ((1e-6 * state.specific_load, where) for where, state in states),
-        resting,
+        "bearing.specific_load", "largest specific load of a journal bearing", "MPa",
+        _scaled(limits.specific_load_maximum, 1e-6),
+        ((1e-6 * state.specific_load, where) for where, state in _films(subject)), resting,
+        source="limits.bearing.specific_load_maximum",
     )  # fmt: skip
 
 
@@ -208,22 +197,17 @@ def _oil(subject: Subject) -> Iterator[Check]:
         f"gearboxes.{name}.{part}" for name in subject.case.gearboxes for part in ("oil", "bearing_oil")
     ]
     resting = subject.assumed("losses", *streams)
+    where = f"stage {subject.test.point.stage}"
     rows = (
-        ("flow", "oil flow of the rig", "l/min", "flow_maximum", 6e4, 1.0, "flow_l_min"),
-        ("cooler", "power the cooler carries", "kW", "cooler_power_maximum", 1e-3, 1e-3, "cooler_W"),
-        ("room", "heat to the room", "kW", "room_heat_maximum", 1e-3, 1e-3, "room_W"),
-    )
-    for key, title, unit, name, limit_scale, scale, entry in rows:
-        limit = _scaled(getattr(limits, name), limit_scale)
-        rule = Rule(
-            id=f"oil.{key}", title=title, unit=unit, source=f"limits.oil.{name}", group="oil", limit=limit
+        ("flow", "oil flow of the rig", "l/min", "flow_maximum", 6e4, subject.cooler["flow_l_min"]),
+        ("cooler", "power the cooler carries", "kW", "cooler_power_maximum", 1e-3, 1e-3 * subject.cooler["cooler_W"]),
+        ("room", "heat to the room", "kW", "room_heat_maximum", 1e-3, 1e-3 * subject.cooler["room_W"]),
+    )  # fmt: skip
+    for key, title, unit, name, scale, value in rows:
+        yield _held(
+            f"oil.{key}", title, unit, _scaled(getattr(limits, name), scale), [(value, where)], resting,
+            source=f"limits.oil.{name}",
         )  # fmt: skip
-        value = scale * subject.cooler[entry]
-        yield (
-            hold(rule, value, f"stage {subject.test.point.stage}", resting)
-            if limit is not None
-            else not_applicable(rule, NO_LIMIT)
-        )
 
 
 def transition_speed_rpm(subject: Subject, load_share: float) -> tuple[float, str]:
