@@ -5,6 +5,7 @@ import math
 from dynamics.journal_bearing import BearingState, JournalBearing, solve_bearing
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gearbox import JournalBearing as CaseBearing
+from rigdesign.errors import named
 from rigdesign.given_losses import given_power
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
@@ -29,23 +30,25 @@ def solve_bearings(rig: Rig, point: OperatingPoint, feedback: Feedback) -> dict[
     for name, box, entry in rig.bearings():
         oil = rig.oils[box.bearing_oil.oil]
         inlet = box.bearing_oil.inlet_temperature
-        states[name] = solve_bearing(
-            JournalBearing(
-                diameter=entry.diameter,
-                width=entry.width,
-                diametral_clearance=feedback.bearing_clearance[name],
-                feed_share=entry.feed_share,
-            ),
-            loads[name],
-            rig.shaft_speed(entry.shaft, point.speed),
-            inlet,
-            box.bearing_oil.flow,
-            oil.dynamic_viscosity,
-            oil.density(inlet),
-            oil.heat_capacity(inlet),
-            feedback.bearing_heat[name],
-            friction_heat=_imposed_heat(rig, name, entry, point),
-        )
+        box_name, part = name.split(".")
+        with named(f"gearboxes.{box_name}.bearings.{part}"):
+            states[name] = solve_bearing(
+                JournalBearing(
+                    diameter=entry.diameter,
+                    width=entry.width,
+                    diametral_clearance=feedback.bearing_clearance[name],
+                    feed_share=entry.feed_share,
+                ),
+                loads[name],
+                rig.shaft_speed(entry.shaft, point.speed),
+                inlet,
+                box.bearing_oil.flow,
+                oil.dynamic_viscosity,
+                oil.density(inlet),
+                oil.heat_capacity(inlet),
+                feedback.bearing_heat[name],
+                friction_heat=_imposed_heat(rig, name, entry, point),
+            )
     return states
 
 

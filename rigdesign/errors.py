@@ -12,7 +12,8 @@ A message states name, value, limit and remedy. The solvers raise ValueError and
 ``rigdesign.run`` turns them into this tree.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 
@@ -95,3 +96,14 @@ class MeasurementError(RigdesignError):
     """Measured data that cannot be used."""
 
     exit_code = 5
+
+
+@contextmanager
+def named(path: str) -> Iterator[None]:
+    """Put the case path of a part before what a solver says of it; the kind of the error stays."""
+    try:
+        yield
+    except RigdesignError:
+        raise
+    except (ValueError, RuntimeError) as error:
+        raise type(error)(f"{path}: {error}") from error

@@ -1,6 +1,6 @@
 """Rules that span several keys, gathered: each yields the faults it finds."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from rigdesign.case.drivetrain_rules import drivetrain_faults
@@ -16,7 +16,11 @@ from rigdesign.oil import OILS
 from rigdesign.units import show
 
 if TYPE_CHECKING:
+    from rigdesign.case.drivetrain import Shaft
     from rigdesign.case.model import Case
+
+MOST_SHAFT_ELEMENTS = 500
+"""Elements of all shafts together: their modes come from a dense eigenvalue problem."""
 
 
 def broken_rules(case: "Case") -> list[Fault]:
@@ -87,6 +91,10 @@ def _missing(plain: object, path: str) -> bool:
     return False
 
 
+def _shafts(case: "Case") -> "Iterable[Shaft]":
+    return [] if case.drivetrain is None else case.drivetrain.shafts.values()
+
+
 def _numerics(case: "Case") -> Iterator[Fault]:
     numbers = case.numerics
     if numbers.curve_speed_start >= numbers.curve_speed_end:
@@ -94,6 +102,14 @@ def _numerics(case: "Case") -> Iterator[Fault]:
             "numerics.curve_speed_start", show(numbers.curve_speed_start, "speed"),
             f"is not below curve_speed_end = {show(numbers.curve_speed_end, 'speed')}",
             "exchange or correct them",
+        )  # fmt: skip
+    length = sum(s.length for shaft in _shafts(case) for s in shaft.sections)
+    if length > MOST_SHAFT_ELEMENTS * numbers.shaft_element_length:
+        yield Fault(
+            "numerics.shaft_element_length", show(numbers.shaft_element_length, "length"),
+            f"makes {length / numbers.shaft_element_length:.0f} elements of the shafts, limit "
+            f"{MOST_SHAFT_ELEMENTS}: the modes of more take minutes",
+            f"write at least {show(length / MOST_SHAFT_ELEMENTS, 'length')}",
         )  # fmt: skip
     if not 0.0 < numbers.torque_tolerance <= 0.1:
         yield Fault(

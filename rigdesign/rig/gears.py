@@ -6,6 +6,7 @@ from dynamics.gear import GearBodies, GearPair, Rack
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import GearMesh
 from rigdesign.case.model import Case
+from rigdesign.errors import named
 from rigdesign.materials import Material
 
 
@@ -17,11 +18,12 @@ def build_pairs(case: Case, materials: Mapping[str, Material]) -> dict[str, Gear
     GearGeometryError
         Gears that cannot be made or cannot mesh.
     """
-    return {
-        f"{box_name}.{mesh_name}": build_pair(box, mesh, materials)
-        for box_name, box in case.gearboxes.items()
-        for mesh_name, mesh in box.meshes.items()
-    }
+    pairs = {}
+    for box_name, box in case.gearboxes.items():
+        for mesh_name, mesh in box.meshes.items():
+            with named(f"gearboxes.{box_name}.meshes.{mesh_name}"):
+                pairs[f"{box_name}.{mesh_name}"] = build_pair(box, mesh, materials)
+    return pairs
 
 
 def build_pair(box: Gearbox, mesh: GearMesh, materials: Mapping[str, Material]) -> GearPair:

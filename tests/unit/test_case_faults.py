@@ -292,6 +292,13 @@ BAD = [
     ("test_plan.load_cycles = inf", "test_plan.load_cycles", "finite", "a number"),
     ('losses.friction.law = "doleschel"', "losses.friction.doleschel", "constants of the oil", "schlenk"),
     ('losses.friction.law = "constant"', "losses.friction.coefficient", "needs its coefficient", "0.04"),
+    # a computation without end
+    (
+        'numerics.shaft_element_length = "1 mm"',
+        "numerics.shaft_element_length",
+        "elements of the shafts, limit 500",
+        "write at least",
+    ),
     # a check on a part that is not there
     (
         'limits.bought_parts.torque_flange.part = "drivetrain.couplings.wheel_sid"',

@@ -1,11 +1,19 @@
 """The error tree: exit status of every class, messages, pickling across a process pool."""
 
 import pickle
+from pathlib import Path
 
 import pytest
 
 from rigdesign import errors
+from rigdesign.bearing_films import solve_bearings
+from rigdesign.case import load_case
+from rigdesign.cold import cold_feedback
 from rigdesign.errors import CaseError, Fault, RigdesignError
+from rigdesign.ramp_run import held_points
+from rigdesign.rig.model import build_rig
+
+PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 
 
 @pytest.mark.parametrize(
@@ -51,3 +59,17 @@ def test_several_faults_are_listed() -> None:
         "  case: is empty; fill it",
     ]
     assert error.faults == tuple(faults)
+
+
+def test_a_part_is_named_before_what_its_solver_says() -> None:
+    with pytest.raises(ZeroDivisionError), errors.named("a.b"):
+        raise ZeroDivisionError("a defect stays as it is")
+    with pytest.raises(CaseError, match=r"^no$"), errors.named("a.b"):
+        raise CaseError("no")
+    thin = load_case(PROTOTYPE).with_value("gearboxes.reference.bearings.wheel_rear.width", "3 mm")
+    rig = build_rig(thin, "quick")
+    point = held_points(rig)[-1]
+    with pytest.raises(ValueError, match=r"^gearboxes\.reference\.bearings\.wheel_rear: .*B/D = 0\.075"):
+        solve_bearings(rig, point, cold_feedback(rig, point))
+    with pytest.raises(ValueError, match=r"^gearboxes\.reference\.meshes\.main: rack: "):
+        build_rig(load_case(PROTOTYPE).with_value("gearboxes.reference.meshes.main.rack.dedendum", "6.1"))
