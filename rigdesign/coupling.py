@@ -1,5 +1,6 @@
 """The coupling loop: passes at one operating point until nothing moves any more."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rigdesign.cold import cold_feedback
@@ -32,6 +33,14 @@ class PointResult:
     last: PassResult
     setting: Setting | None
     residuals: tuple[Residual, ...]
+
+
+def governing_point(points: Sequence[PointResult]) -> PointResult:
+    """The held point that speaks for the rig where only one can: most torque, of equals the fastest, then the last.
+
+    Checks do not ask it: they take the worst over all held points.
+    """
+    return max(reversed(points), key=lambda result: (abs(result.point.torque), result.point.speed))
 
 
 def solve_point(

@@ -250,7 +250,9 @@ class RunResult:
     dynamics: DynamicsResult | None
     losses: list[LossRow]
     oil: list[OilRow]
-    cooler: dict[str, float]
+    cooler: list[dict[str, float | str]]
+    """Per held stage {stage, losses_W, heater_W, cooler_W, room_W, open_W, flow_l_min}: losses and heaters put
+    in what cooler and room take out."""
     thermal: list[ThermalResult]
     growth: list[GrowthResult]
     coupling: list[CouplingHistory]

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 from threadpoolctl import threadpool_limits
 
-from dynamics.ramp import Schedule
 from rigdesign.assemble import heat
 from rigdesign.assemble.curves import solve_curves
 from rigdesign.assemble.dynamics import DynamicRun, dynamics_result
@@ -20,7 +19,7 @@ from rigdesign.assemble.hand import hand_checks
 from rigdesign.bearing_films import solve_bearings
 from rigdesign.case.model import Case
 from rigdesign.checks import Subject, all_checks
-from rigdesign.coupling import PointResult, solve_point
+from rigdesign.coupling import PointResult, governing_point, solve_point
 from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError
 from rigdesign.loads import mesh_models
 from rigdesign.losses import mesh_losses, rotating_losses
@@ -53,46 +52,54 @@ def run_case(case: Case, fidelity: Fidelity = "standard", progress: Progress | N
         A system library that gmsh needs.
     """
     say = progress or (lambda message: None)
+    clock = _Clock()
     with _solver_errors(case), threadpool_limits(limits=1):
-        return _run(case, fidelity, say, _Clock())
+        return _assemble(solve_case(case, fidelity, say, clock.lap), clock)
 
 
-def _run(case: Case, fidelity: Fidelity, say: Progress, clock: "_Clock") -> RunResult:
+def solve_case(
+    case: Case, fidelity: Fidelity, say: Progress = lambda message: None, lap: Progress = lambda name: None
+) -> Subject:
+    """The solved rig before its checks; ``lap`` is called with the name of every part that is done."""
     say("building the rig")
     rig = build_rig(case, fidelity)
-    schedule: Schedule = schedule_of(rig)
+    schedule_of(rig)
     for name in rig.models:
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
-    clock.lap("rig_and_mesh")
+    lap("rig_and_mesh")
     points: list[PointResult] = []
     for point in held_points(rig):
         say(f"coupling loads, losses, temperatures and growth at stage {point.stage}")
         start = points[-1].last.feedback if points else None
         points.append(solve_point(rig, point, start=start))
-    clock.lap("coupling")
-    run = None if rig.drivetrain is None else _dynamic_run(rig, tuple(points), say, clock)
+    lap("coupling")
+    run = None if rig.drivetrain is None else _dynamic_run(rig, tuple(points), say, lap)
     say("assembling the result")
-    last = max(points, key=lambda point: abs(point.point.torque))
-    subject = Subject(
+    return Subject(
         rig=rig,
         points=points,
         run=run,
         dynamics=None if run is None else dynamics_result(rig, run),
         thermal=[heat.thermal_result(rig, p, field) for p in points for field in p.last.fields.values()],
         growth=[heat.growth_result(rig, p, name) for p in points for name in p.last.growth],
-        cooler=heat.cooler(rig, last.last),
+        cooler=[heat.cooler(rig, point.last) for point in points],
     )
+
+
+def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
+    """Checks and records of a solved rig."""
+    case, rig, points = subject.case, subject.rig, list(subject.points)
     checks = all_checks(subject)
     clock.lap("checks")
     return RunResult(
         case={"name": case.name, "title": case.title, "path": case.path.name, "hash": case.hash},
-        fidelity=fidelity,
+        fidelity=rig.fidelity,
         verdict=overall(checks),
         checks=checks,
         dynamics=subject.dynamics,
-        losses=_all_losses(rig, schedule, points),
+        losses=_all_losses(rig, points),
         oil=[row for p in points for row in heat.oil_rows(p.point.stage, p.last.streams)],
-        cooler=dict(subject.cooler),
+        cooler=[dict(row) for row in subject.cooler],
         thermal=list(subject.thermal),
         growth=list(subject.growth),
         coupling=[heat.coupling_history(p) for p in points],
@@ -106,23 +113,23 @@ def _run(case: Case, fidelity: Fidelity, say: Progress, clock: "_Clock") -> RunR
     )
 
 
-def _dynamic_run(rig: Rig, points: tuple[PointResult, ...], say: Progress, clock: "_Clock") -> DynamicRun:
+def _dynamic_run(rig: Rig, points: tuple[PointResult, ...], say: Progress, lap: Progress) -> DynamicRun:
     """Response over speed and the time run over the schedule, once, with the warm rig."""
-    test = max(points, key=lambda point: abs(point.point.torque))
+    test = governing_point(points)
     say("response over speed")
     curves = solve_curves(rig, test.last)
-    clock.lap("response_over_speed")
+    lap("response_over_speed")
     say("time run over the schedule")
     assert test.setting is not None
     ramp = run_ramp(rig, test.last, test.setting, test.last.feedback)
-    clock.lap("time_run")
+    lap("time_run")
     return DynamicRun(points=points, curves=curves, ramp=ramp)
 
 
-def _all_losses(rig: Rig, schedule: Schedule, points: list[PointResult]) -> list[LossRow]:
+def _all_losses(rig: Rig, points: list[PointResult]) -> list[LossRow]:
     """Losses by place at the end of every stage: coupled at the held ones, with their warm rig at the others."""
     held = {point.point.stage: point for point in points}
-    test = max(points, key=lambda point: abs(point.point.torque))
+    test = governing_point(points)
     rows = []
     for stage in rig.case.schedule.resolved():
         if stage.name in held:

@@ -451,7 +451,17 @@ def make_result(**changes):
                 heat_W=2900.0,
             )
         ],
-        "cooler": {"cooler_W": 9900.0, "room_W": 2379.0, "sum_W": 12279.0, "losses_W": 12279.0},
+        "cooler": [
+            {
+                "stage": "dwell",
+                "losses_W": 12279.0,
+                "heater_W": 600.0,
+                "cooler_W": 10500.0,
+                "room_W": 2379.0,
+                "open_W": 0.0,
+                "flow_l_min": 26.0,
+            }
+        ],
         "thermal": [thermal],
         "growth": [growth],
         "coupling": [

@@ -23,7 +23,7 @@ from dynamics.static_loop import port_model, solve_static
 from rigdesign.assemble import root
 from rigdesign.assemble.curves import Curves, factor_points, iso_factor
 from rigdesign.cold import cold_feedback
-from rigdesign.coupling import PointResult
+from rigdesign.coupling import PointResult, governing_point
 from rigdesign.loads import laws_of, mesh_models, shifted_gear, signed_torque
 from rigdesign.ramp_run import SLOT, schedule_of, stage_names
 from rigdesign.results import (
@@ -52,8 +52,8 @@ class DynamicRun:
 
     @property
     def test(self) -> PointResult:
-        """The held point with the highest torque."""
-        return max(self.points, key=lambda point: abs(point.point.torque))
+        """The held point that speaks for the rig."""
+        return governing_point(self.points)
 
 
 def dynamics_result(rig: Rig, run: DynamicRun) -> DynamicsResult:

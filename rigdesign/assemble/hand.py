@@ -55,8 +55,14 @@ def _losses(subject: Subject) -> list[dict[str, Any]]:
                 for key in ("transmitted_power", "friction_coefficient", "tooth_loss_factor")
             )
             rows.append(_row(f"sliding loss, {placed.name}", placed.loss.power, by_hand, "W", "P mu H_V"))
-    lost, out = subject.cooler["losses_W"], subject.cooler["cooler_W"] + subject.cooler["room_W"]
-    rows.append(_row("heat carried away", out, lost, "W", "sum of all losses; cooler and room"))
+    for row in subject.cooler:
+        given, taken = (
+            math.fsum(float(row[key]) for key in keys)
+            for keys in (("losses_W", "heater_W"), ("cooler_W", "room_W"))
+        )
+        rows.append(
+            _row(f"heat carried away, stage {row['stage']}", taken, given, "W", "cooler + room = losses + heaters")
+        )  # fmt: skip
     return rows
 
 

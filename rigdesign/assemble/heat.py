@@ -62,16 +62,29 @@ def oil_rows(stage: str, streams: Sequence[OilStream]) -> list[OilRow]:
     ]
 
 
-def cooler(rig: Rig, last: PassResult) -> dict[str, float]:
-    """What the cooler carries and what goes to the room, against what is lost [W]."""
+def cooler(rig: Rig, last: PassResult) -> dict[str, float | str]:
+    """What cooler and room take out against what losses and heaters put in [W], at one held stage.
+
+    Streams of one oil and inlet temperature are one circuit and mix in its tank. A circuit that comes back
+    colder than it went needs a heater: its oil is too warm to cool another one, so nothing is netted.
+    """
     lost = math.fsum(placed.loss.power for placed in last.losses)
-    oil = math.fsum(stream.heat for stream in last.streams)
+    circuits: dict[tuple[str, float], float] = {}
+    for stream in last.streams:
+        box, kind = stream.name.split(".")
+        entry = rig.case.gearboxes[box]
+        oil = (entry.oil if kind == "gear_oil" else entry.bearing_oil).oil
+        circuits[oil, stream.inlet] = circuits.get((oil, stream.inlet), 0.0) + stream.heat
+    carried = math.fsum(max(heat, 0.0) for heat in circuits.values())
+    heater = math.fsum(max(-heat, 0.0) for heat in circuits.values())
     room = math.fsum(heat_to_room(field) for field in last.fields.values())
     return {
+        "stage": last.point.stage,
         "losses_W": lost,
-        "cooler_W": oil,
+        "heater_W": heater,
+        "cooler_W": carried,
         "room_W": room,
-        "open_W": lost - oil - room,
+        "open_W": lost + heater - carried - room,
         "flow_l_min": L_MIN * math.fsum(stream.flow for stream in last.streams),
     }
 

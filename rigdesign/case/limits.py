@@ -52,6 +52,8 @@ class OilLimits(Part):
 
     flow_maximum: Flow | None = None
     cooler_power_maximum: Power | None = None
+    heater_power_maximum: Power | None = None
+    """Of all circuits whose oil comes back colder than it went."""
     room_heat_maximum: Power | None = None
 
 

@@ -74,11 +74,11 @@ def _transition(subject: Subject) -> Check:
         limit=None if limit is None else limit * RPM,
     )  # fmt: skip
     start = subject.case.limits.bearing.start_torque_limit
-    if limit is None or start is None or subject.test.point.torque == 0.0:
+    if limit is None or start is None or not any(point.point.torque for point in subject.points):
         return not_applicable(rule, NO_LIMIT)
-    value, where = transition_speed_rpm(subject, start / abs(subject.test.point.torque))
+    value, where = transition_speed_rpm(subject, start)
     resting = subject.assumed(*(f"gearboxes.{name}.bearings" for name in subject.case.gearboxes))
-    return hold(rule, value, f"{where}, load of the start torque at the viscosity of the test", resting)
+    return hold(rule, value, f"{where}, load of the start torque", resting)
 
 
 def _bought(subject: Subject, name: str, part: BoughtPart) -> Check:
@@ -108,7 +108,7 @@ def _result(subject: Subject, quantity: str) -> tuple[float | None, str]:
         "circulating_power": worst(
             (abs(stage.torque_end) * stage.speed_end, f"stage {stage.name}") for stage in schedule.resolved()
         ),
-        "oil_flow": (subject.cooler["flow_l_min"] / 6e4, "all circuits"),
+        "oil_flow": worst((float(row["flow_l_min"]) / 6e4, "all circuits") for row in subject.cooler),
     }
     if quantity in simple:
         return simple[quantity]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from rigdesign.assemble.dynamics import DynamicRun
 from rigdesign.case.model import Case
-from rigdesign.coupling import PointResult
+from rigdesign.coupling import PointResult, governing_point
 from rigdesign.results import DynamicsResult, GrowthResult, ThermalResult
 from rigdesign.rig.model import Rig
 
@@ -21,7 +21,8 @@ class Subject:
     dynamics: DynamicsResult | None
     thermal: Sequence[ThermalResult]
     growth: Sequence[GrowthResult]
-    cooler: Mapping[str, float]
+    cooler: Sequence[Mapping[str, float | str]]
+    """Where the heat goes, one row for each held stage (`assemble.heat.cooler`)."""
 
     @property
     def case(self) -> Case:
@@ -30,8 +31,8 @@ class Subject:
 
     @property
     def test(self) -> PointResult:
-        """The held point with the highest torque."""
-        return max(self.points, key=lambda point: abs(point.point.torque))
+        """The held point that speaks for the rig."""
+        return governing_point(self.points)
 
     def assumed(self, *prefixes: str) -> tuple[str, ...]:
         """Paths of the assumptions under any of these parts of the case."""

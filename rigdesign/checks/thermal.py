@@ -197,22 +197,31 @@ def _oil(subject: Subject) -> Iterator[Check]:
         f"gearboxes.{name}.{part}" for name in subject.case.gearboxes for part in ("oil", "bearing_oil")
     ]
     resting = subject.assumed("losses", *streams)
-    where = f"stage {subject.test.point.stage}"
     rows = (
-        ("flow", "oil flow of the rig", "l/min", "flow_maximum", 6e4, subject.cooler["flow_l_min"]),
-        ("cooler", "power the cooler carries", "kW", "cooler_power_maximum", 1e-3, 1e-3 * subject.cooler["cooler_W"]),
-        ("room", "heat to the room", "kW", "room_heat_maximum", 1e-3, 1e-3 * subject.cooler["room_W"]),
+        ("flow", "oil flow of the rig", "l/min", "flow_maximum", 6e4, "flow_l_min", 1.0),
+        ("cooler", "power the cooler carries", "kW", "cooler_power_maximum", 1e-3, "cooler_W", 1e-3),
+        ("heater", "power the heaters of the warm circuits give", "kW", "heater_power_maximum", 1e-3, "heater_W", 1e-3),
+        ("room", "heat to the room", "kW", "room_heat_maximum", 1e-3, "room_W", 1e-3),
     )  # fmt: skip
-    for key, title, unit, name, scale, value in rows:
+    for key, title, unit, name, limit_scale, entry, scale in rows:
+        values = ((scale * float(row[entry]), f"stage {row['stage']}") for row in subject.cooler)
         yield _held(
-            f"oil.{key}", title, unit, _scaled(getattr(limits, name), scale), [(value, where)], resting,
+            f"oil.{key}", title, unit, _scaled(getattr(limits, name), limit_scale), values, resting,
             source=f"limits.oil.{name}",
         )  # fmt: skip
 
 
-def transition_speed_rpm(subject: Subject, load_share: float) -> tuple[float, str]:
-    """Highest Vogelpohl transition speed of all bearings [rpm] at a share of the test load, and where."""
+def transition_speed_rpm(subject: Subject, torque: float) -> tuple[float, str]:
+    """Highest Vogelpohl transition speed [rpm] of all bearings under the load of a stated torque [N m], and where.
+
+    Taken from the films of each loaded held stage; the speed grows with the load.
+    """
     return worst(
-        (load_share * state.transition_speed * 30.0 / math.pi, name)
-        for name, state in subject.test.last.bearings.items()
+        (
+            torque / abs(point.point.torque) * state.transition_speed * 30.0 / math.pi,
+            f"{name} at the viscosity of stage {point.point.stage}",
+        )
+        for point in subject.points
+        if point.point.torque
+        for name, state in point.last.bearings.items()
     )

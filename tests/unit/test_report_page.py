@@ -174,7 +174,7 @@ def test_everything_from_the_case_is_escaped():
     [
         {"dynamics": None},
         {"thermal": [], "growth": [], "fields": [], "coupling": []},
-        {"losses": [], "oil": [], "cooler": {}, "dynamics": None},
+        {"losses": [], "oil": [], "cooler": [], "dynamics": None},
         {
             "checks": [],
             "assumptions": [],

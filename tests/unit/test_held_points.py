@@ -1,0 +1,47 @@
+"""Several held points: which one speaks for the rig, and what cooler and heaters have to do at each."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from rigdesign.assemble.heat import cooler
+from rigdesign.coupling import governing_point
+
+
+def held(stage: str, speed: float, torque: float) -> Any:
+    return SimpleNamespace(point=SimpleNamespace(stage=stage, speed=speed, torque=torque))
+
+
+def test_the_highest_torque_governs_then_the_highest_speed_then_the_last() -> None:
+    slow, fast = held("slow", 300.0, -180.0), held("fast", 1200.0, 180.0)
+    again, light = held("again", 1200.0, 180.0), held("light", 1500.0, 90.0)
+    assert governing_point([slow, fast, light]).point.stage == "fast"
+    assert governing_point([fast, slow, light]).point.stage == "fast"
+    assert governing_point([fast, again]).point.stage == "again"
+    assert governing_point([light, slow]).point.stage == "slow"
+
+
+def test_oil_that_must_be_heated_cools_nothing() -> None:
+    """140 degC oil that comes back 1.4 kW colder does not carry what a 40 degC circuit brings."""
+    box = SimpleNamespace(oil=SimpleNamespace(oil="ester"), bearing_oil=SimpleNamespace(oil="ester"))
+    rig: Any = SimpleNamespace(case=SimpleNamespace(gearboxes={"test": box, "reference": box}))
+    heats = {
+        "test.gear_oil": (413.15, -1400.0),
+        "test.bearing_oil": (313.15, 6200.0),
+        "reference.gear_oil": (313.15, -200.0),
+        "reference.bearing_oil": (313.15, 4700.0),
+    }
+    last: Any = SimpleNamespace(
+        point=SimpleNamespace(stage="test"),
+        losses=[SimpleNamespace(loss=SimpleNamespace(power=9300.0))],
+        streams=[
+            SimpleNamespace(name=name, inlet=inlet, heat=heat, flow=1e-4)
+            for name, (inlet, heat) in heats.items()
+        ],
+        fields={},
+    )
+    row = cooler(rig, last)
+    assert row["heater_W"] == pytest.approx(1400.0)
+    assert row["cooler_W"] == pytest.approx(6200.0 - 200.0 + 4700.0)
+    assert row["open_W"] == pytest.approx(0.0)
