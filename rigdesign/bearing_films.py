@@ -5,6 +5,7 @@ import math
 from dynamics.journal_bearing import BearingState, JournalBearing, solve_bearing
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gearbox import JournalBearing as CaseBearing
+from rigdesign.case.gears import GearMesh
 from rigdesign.errors import named
 from rigdesign.given_losses import given_power
 from rigdesign.rig.model import Rig
@@ -69,33 +70,49 @@ def constant_drag(rig: Rig, entry: CaseBearing, point: OperatingPoint) -> float 
 
 
 def bearing_loads(rig: Rig, feedback: Feedback) -> dict[str, float]:
-    """Radial load of every bearing [N]: tooth force and weight by the lever rule on its shaft.
+    """Radial load of every bearing [N]: tooth forces and weight by the lever rule on its shaft.
 
-    Tangential forces of the meshes of a shaft add, as at an idler; weight is counted with the tangential
-    force, which is on the safe side for the loaded bearings. Axial forces of a double-helical gear cancel.
+    Tooth forces add as vectors where the housing says where the axes stand: at an idler between two wheels the
+    tangential forces add and the separating ones cancel. Without a housing they add as if all pointed one way.
+    Weight is counted with the tangential force, which is on the safe side. Axial forces of a double-helical gear
+    cancel; those of a single-helical one and their tilting moment are left out.
     """
-    loads = {}
-    for name, box, entry in rig.bearings():
-        if entry.radial_load is not None:
-            loads[name] = entry.radial_load
+    return {
+        name: _radial_load(rig, name, box, entry, feedback)
+        if entry.radial_load is None
+        else entry.radial_load
+        for name, box, entry in rig.bearings()
+    }
+
+
+def _radial_load(rig: Rig, name: str, box: Gearbox, entry: CaseBearing, feedback: Feedback) -> float:
+    box_name = name.split(".")[0]
+    tangential, separating, weight = 0.0, 0.0, 0.5 * GRAVITY * rig.shaft_mass(entry.shaft)
+    first = box.first_meshes()
+    for gear_name, gear in box.gears.items():
+        if gear.shaft != entry.shaft:
             continue
-        box_name = name.split(".")[0]
-        tangential, radial, weight = 0.0, 0.0, 0.5 * GRAVITY * rig.shaft_mass(entry.shaft)
-        for gear_name, gear in box.gears.items():
-            if gear.shaft != entry.shaft:
-                continue
-            share = _lever(box, entry.shaft, entry.position, gear.position)
-            for mesh_name, mesh in box.meshes.items():
-                if gear_name not in (mesh.pinion, mesh.wheel):
-                    continue
+        share = _lever(box, entry.shaft, entry.position, gear.position)
+        mesh_name, side = first[gear_name]
+        weight += share * GRAVITY * box.halves(gear_name) * rig.pairs[f"{box_name}.{mesh_name}"].masses[side]
+        for mesh_name, mesh in box.meshes.items():
+            if gear_name in (mesh.pinion, mesh.wheel):
                 full = f"{box_name}.{mesh_name}"
+                towards, drives = _direction(box, mesh, gear_name, feedback.mesh_torque[full])
                 pair = rig.pairs[full]
-                force = abs(feedback.mesh_torque[full]) / pair.base_radii[0]
-                tangential += share * force * math.cos(pair.working_pressure_angle)
-                radial += share * force * math.sin(pair.working_pressure_angle)
-                weight += share * GRAVITY * pair.masses[0 if gear_name == mesh.pinion else 1]
-        loads[name] = math.hypot(tangential + weight, radial)
-    return loads
+                force = share * abs(feedback.mesh_torque[full]) / pair.base_radii[0]
+                tangential += towards * drives * force * math.cos(pair.working_pressure_angle)
+                separating += towards * force * math.sin(pair.working_pressure_angle)
+    return math.hypot(abs(tangential) + weight, separating)
+
+
+def _direction(box: Gearbox, mesh: GearMesh, gear: str, torque: float) -> tuple[float, float]:
+    """Side on which the partner stands, +1 towards y, and +1 if the gear drives it; 1, 1 without a housing."""
+    if box.housing is None:
+        return 1.0, 1.0
+    here, there = (mesh.pinion, mesh.wheel) if gear == mesh.pinion else (mesh.wheel, mesh.pinion)
+    y = [box.housing.shafts[box.gears[name].shaft].lateral_position for name in (here, there)]
+    return math.copysign(1.0, y[1] - y[0]), math.copysign(1.0, torque if here == mesh.pinion else -torque)
 
 
 def _lever(box: Gearbox, shaft: str, position: float | None, gear_position: float | None) -> float:

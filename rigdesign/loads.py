@@ -183,9 +183,9 @@ def signed_torque(rig: Rig, point: OperatingPoint) -> float:
 
 
 def first_torques(rig: Rig, point: OperatingPoint) -> Mapping[str, float]:
-    """Mesh torques before any response: the same tooth force in every mesh of the loop."""
+    """Mesh torques before any response: every shaft line in balance without losses."""
     force = signed_torque(rig, point) / rig.pairs[rig.control_mesh].base_radii[0]
-    return {name: force * pair.base_radii[0] for name, pair in rig.pairs.items()}
+    return {name: rig.mesh_forces[name] * force * pair.base_radii[0] for name, pair in rig.pairs.items()}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,7 +14,7 @@ from dynamics.windage import GearRotor, Mist, gear_windage
 from rigdesign.bearing_films import constant_drag
 from rigdesign.case.gearbox import Gearbox, HeatSplit
 from rigdesign.given_losses import given_power
-from rigdesign.loads import MeshModel
+from rigdesign.loads import MeshModel, first_torques
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 from thermal.air import air
@@ -100,11 +100,10 @@ def mesh_losses(
 def static_mesh_loss(rig: Rig, point: OperatingPoint, model: MeshModel) -> Loss:
     """Sliding loss at the mean load, integrated over the path of contact."""
     box, mesh = rig.mesh(model.name)
-    force = rig.torque_ratio * point.torque / rig.pairs[rig.control_mesh].base_radii[0]
     return mesh_loss(
         model.name,
         ToothPath.of_pair(model.pair),
-        force * model.pair.base_radii[0],
+        first_torques(rig, point)[model.name],
         rig.shaft_speed(box.gears[box.meshes[mesh].pinion].shaft, point.speed),
         model.friction,
         model.stiffness.at,
@@ -150,15 +149,15 @@ def _windage(
     feedback: Feedback,
     pairs: Mapping[str, GearPair],
 ) -> Iterator[PlacedLoss]:
+    """Windage of every gear, once however many meshes it is in; a double-helical gear has both its halves."""
     mist = chamber_mist(rig, box_name, feedback)
-    for mesh_name, mesh in box.meshes.items():
-        pair = pairs[f"{box_name}.{mesh_name}"]
-        for index, gear_name in enumerate((mesh.pinion, mesh.wheel)):
-            rotor = GearRotor.of_pair(pair, index)
-            omega = rig.shaft_speed(box.gears[gear_name].shaft, point.speed)
-            loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
-            share = body_split(rig, box_name).windage_into_gears
-            yield PlacedLoss(gearbox=box_name, part=gear_name, loss=loss, into_body=share * loss.power)
+    share = body_split(rig, box_name).windage_into_gears
+    for gear_name, (mesh_name, index) in box.first_meshes().items():
+        rotor = GearRotor.of_pair(pairs[f"{box_name}.{mesh_name}"], index)
+        rotor = replace(rotor, face_width=box.body_width(gear_name))
+        omega = rig.shaft_speed(box.gears[gear_name].shaft, point.speed)
+        loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
+        yield PlacedLoss(gearbox=box_name, part=gear_name, loss=loss, into_body=share * loss.power)
 
 
 def chamber_mist(rig: Rig, box_name: str, feedback: Feedback) -> Mist:

@@ -119,7 +119,8 @@ def feedback_of(rig: Rig, done: PassResult) -> Feedback:
     clearance |= hot_clearances(rig, done.point.speed, done.growth)
     torque = old.mesh_torque
     if done.response is not None:
-        torque = dict(zip(rig.mesh_names, map(float, done.response.mean)))
+        signed = done.response.flank * done.response.mean
+        torque = dict(zip(rig.mesh_names, map(float, signed)))
     return Feedback(
         gear_temperature=gear_temperature,
         centre_distance=centre_distance,

@@ -36,7 +36,7 @@ class Feedback:
     oil_outlet: Values
     """Outlet temperature of each oil stream [K]: it wets the walls and thins the tooth film."""
     mesh_torque: Values
-    """Mean torque of each mesh at its pinion [N m]: it loads the bearings."""
+    """Mean torque of each mesh at its pinion [N m], positive where the pinion drives: it loads the bearings."""
     tooth_growth: Values
     """Axial growth that shifts a helical gear against its partner, by mesh [m]: it changes the bracing."""
 

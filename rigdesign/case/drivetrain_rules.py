@@ -97,6 +97,12 @@ def _bracing(case: "Case", gears: "dict[str, Gear]") -> Iterator[Fault]:
     if bracing.shifted_gear in gears:
         box, _, gear = bracing.shifted_gear.partition(".")
         helices = [m.helix_angle for m in case.gearboxes[box].meshes.values() if gear in (m.pinion, m.wheel)]
+        if len(helices) > 1:
+            yield Fault(
+                f"{at}.shifted_gear", written(bracing.shifted_gear),
+                f"is in {len(helices)} meshes: an idler that is shifted only turns, it braces nothing",
+                "name one of its partners",
+            )  # fmt: skip
         if not any(helices):
             yield Fault(
                 f"{at}.shifted_gear", written(bracing.shifted_gear),

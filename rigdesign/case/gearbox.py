@@ -124,3 +124,19 @@ class Gearbox(Part):
     heat_split: HeatSplit
     housing: Housing | None = None
     """Geometry and boundary conditions; a gearbox without one has no temperature field."""
+
+    def first_meshes(self) -> dict[str, tuple[str, int]]:
+        """The first mesh each gear is in, with its side there: 0 as pinion, 1 as wheel."""
+        found: dict[str, tuple[str, int]] = {}
+        for name, mesh in self.meshes.items():
+            for side, gear in enumerate((mesh.pinion, mesh.wheel)):
+                found.setdefault(gear, (name, side))
+        return found
+
+    def halves(self, gear: str) -> int:
+        """2 for a double-helical gear, whose face width is that of one half; else 1."""
+        return 2 if self.meshes[self.first_meshes()[gear][0]].double_helical else 1
+
+    def body_width(self, gear: str) -> float:
+        """Face width of a gear with both its halves [m]."""
+        return self.halves(gear) * self.gears[gear].face_width

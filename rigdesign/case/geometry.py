@@ -119,7 +119,7 @@ def _shaft(name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[
         bore_diameter=shaft.bore_diameter,
         overhang_front=shaft.overhang_front,
         overhang_rear=shaft.overhang_rear,
-        gear=GearDisc(outer_diameter=diameters[on_shaft[0]], width=on_shaft[1].face_width)
+        gear=GearDisc(outer_diameter=diameters[on_shaft[0]], width=gearbox.body_width(on_shaft[0]))
         if on_shaft
         else None,
     )

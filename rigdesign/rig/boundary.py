@@ -231,13 +231,11 @@ def _bearing_film(context: _Context, surface: str) -> Film:
 
 def _sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
     """Losses that enter solids: meshes into the rims, windage into the gears, seals into shaft and bore."""
-    sources: list[BoundaryCondition] = []
+    sources: list[BoundaryCondition] = [*_mesh_sources(context, losses)]
     for placed in losses:
         if placed.gearbox != context.name or placed.into_body == 0.0:
             continue
-        if placed.loss.kind == "mesh":
-            sources += _mesh_sources(context, placed)
-        elif placed.loss.kind == "windage":
+        if placed.loss.kind == "windage":
             shaft = context.box.gears[placed.part].shaft
             sources.append(BodySource(body=f"gear_{shaft}", power=placed.into_body, kind="windage"))
         elif placed.loss.kind == "seal":
@@ -245,16 +243,18 @@ def _sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCo
     return sources
 
 
-def _mesh_sources(context: _Context, placed: PlacedLoss) -> list[BoundaryCondition]:
-    mesh = context.box.meshes[placed.part]
+def _mesh_sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
+    """Into the rim of every gear its share of the heat of all meshes it is in."""
     pinion_share = context.box.heat_split.mesh_pinion_share
+    into_rim: dict[str, float] = {}
+    for placed in losses:
+        if placed.gearbox == context.name and placed.loss.kind == "mesh" and placed.into_body:
+            mesh = context.box.meshes[placed.part]
+            for gear, share in ((mesh.pinion, pinion_share), (mesh.wheel, 1.0 - pinion_share)):
+                into_rim[gear] = into_rim.get(gear, 0.0) + share * placed.into_body
     return [
-        SurfaceSource(
-            surface=f"gear_{context.box.gears[gear].shaft}_rim",
-            power=share * placed.into_body,
-            kind="mesh_loss",
-        )
-        for gear, share in ((mesh.pinion, pinion_share), (mesh.wheel, 1.0 - pinion_share))
+        SurfaceSource(surface=f"gear_{context.box.gears[gear].shaft}_rim", power=power, kind="mesh_loss")
+        for gear, power in into_rim.items()
     ]
 
 

@@ -83,7 +83,7 @@ def _gear_bodies(
             if inertia is None:
                 radius = _reference_radius(name, box_name, case, pairs)
                 density = materials[gear.material].density
-                inertia = disc_inertia(2.0 * radius, gear.bore_diameter, gear.face_width, density)
+                inertia = disc_inertia(2.0 * radius, gear.bore_diameter, box.body_width(name), density)
             assert gear.position is not None
             bodies.append(
                 dyn.GearBody(

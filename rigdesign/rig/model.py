@@ -16,6 +16,7 @@ from rigdesign.oil import OILS, Oil
 from rigdesign.results import Fidelity
 from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.gears import build_pairs
+from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
 from thermal.conduction import ConductionSetup
@@ -49,6 +50,13 @@ class Rig:
         return (
             None if self.case.drivetrain is None else build_drivetrain(self.case, self.pairs, self.materials)
         )
+
+    @cached_property
+    def mesh_forces(self) -> Mapping[str, float]:
+        """Signed tooth force of each mesh per force in the control mesh, positive where the pinion drives."""
+        if self.drivetrain is None:
+            return gearbox_forces(self.case, self.pairs)
+        return loop_forces(self.case, self.pairs, self.drivetrain.lines())
 
     @cached_property
     def system(self) -> LinearSystem | None:
