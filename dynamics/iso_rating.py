@@ -34,6 +34,8 @@ class RatingOptions:
     """f_pb [m]; None: from the grade."""
     profile_form_deviation: float | None = None
     """f_falpha [m]; None: from the grade."""
+    relief_grade: int = 6
+    """Coarsest grade whose tip relief counts in K_V."""
 
 
 def mesh_data(pair: GearPair) -> MeshData:
@@ -121,6 +123,7 @@ def dynamic_factor(
         low_load_factor=options.low_load_factor,
         C_M=options.measured_correction,
         exact_m_red=_exact_reduced_mass(pair) if options.exact_inertia else None,
+        relief_grade=options.relief_grade,
     )
 
 

@@ -292,12 +292,14 @@ def dynamic_factor(
     low_load_factor: bool = True,
     C_M: float = 0.8,
     exact_m_red: float | None = None,
+    relief_grade: int = 6,
 ) -> DynamicFactor:
     """K_V by method B.
 
     F_t [N] transverse tangential force at d_1, n_1 [1/min], f_pb and f_falpha [um] larger of both gears,
     C_a [um] designed tip relief or None for the running-in relief C_ay, sigma_Hlim [N/mm2] of both gears,
-    exact_m_red [kg/mm] replaces the disc formula. Raises ValueError for a load or speed that is not positive.
+    exact_m_red [kg/mm] replaces the disc formula. relief_grade: coarsest tolerance grade whose tip relief counts;
+    deviations of a coarser gear drown it, B_k = 1. Raises ValueError for a load or speed that is not positive.
     """
     for name, value, unit in (("F_t", F_t, "N"), ("K_A", K_A, "")):
         if not value > 0.0:
@@ -314,11 +316,12 @@ def dynamic_factor(
     B_p = tooth.c_prime * (f_pb - y_p) / load
     B_f = tooth.c_prime * (f_falpha - y_f) / load
     B_k = abs(1.0 - tooth.c_prime * relief / load)
-    if grade > 6:
+    if grade > relief_grade:
         warnings.append(
-            f"tolerance grade {grade} coarser than 6: tip relief has little effect, B_k = {B_k:.3f} may be "
-            "low; use C_a = 0 (B_k = 1) or a finer grade"
+            f"tolerance grade {grade} coarser than {relief_grade}: tip relief is not counted, B_k = 1 instead of "
+            f"{B_k:.3f}; a finer grade would let it count"
         )
+        B_k = 1.0
     mass = m_red(data) if exact_m_red is None else exact_m_red
     n_E1 = 30000.0 / (pi * data.z_1) * sqrt(tooth.c_gamma_alpha / mass)
     N, limit = n_1 / n_E1, N_S(load)

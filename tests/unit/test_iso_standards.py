@@ -143,7 +143,8 @@ def test_regression_range_and_speed_warnings():
     slow = iso.dynamic_factor(DATA, **{**LOAD, "n_1": 10.0})
     assert any("below 3 m/s" in warning for warning in slow.warnings)
     coarse = iso.dynamic_factor(DATA, **{**LOAD, "grade": 8})
-    assert any("grade 8" in warning for warning in coarse.warnings)
+    assert any("grade 8 coarser than 6" in warning for warning in coarse.warnings)
+    assert (coarse.B_k, iso.dynamic_factor(DATA, **{**LOAD, "grade": 6}).B_k < 1.0) == (1.0, True)
     long = iso.dynamic_factor(replace(DATA, epsilon_beta=11.0), **LOAD)
     assert any("C_v4" in warning for warning in long.warnings)
     assert long.C_v4 < 0.0

@@ -116,10 +116,22 @@ K_V_TABLE = {
 
 @pytest.mark.parametrize(("grade", "relief"), K_V_TABLE)
 def test_dynamic_factor_of_the_test_gear(grade, relief):
-    options = replace(AS_IN_THE_PAPER, grade=grade, tip_relief=relief * 1e-6)
+    """The row of grade 7 counts the tip relief, to show the deviations alone."""
+    options = replace(AS_IN_THE_PAPER, grade=grade, tip_relief=relief * 1e-6, relief_grade=7)
     curve = dynamic_factor_curve(TEST_GEAR, 180.0, [n * RPM for n in (2500, 2953, 4500)], options)
     assert [round(f.K_V, 3) for f in curve] == list(K_V_TABLE[grade, relief])
     assert [f.range for f in curve] == ["subcritical", "main resonance", "supercritical"]
+
+
+def test_tip_relief_of_a_coarse_gear_does_not_count():
+    """B_k = 1: without relief 1 - B_k of the dynamic load below resonance is missing."""
+    relieved, plain = (
+        dynamic_factor(TEST_GEAR, 180.0, 2500 * RPM, replace(AS_IN_THE_PAPER, grade=8, tip_relief=relief))
+        for relief in (20e-6, 0.0)
+    )
+    assert relieved.K_V == plain.K_V
+    counted = replace(AS_IN_THE_PAPER, grade=8, tip_relief=20e-6, relief_grade=8)
+    assert dynamic_factor(TEST_GEAR, 180.0, 2500 * RPM, counted).K_V < 0.9 * plain.K_V
 
 
 def test_run_in_relief_of_case_hardened_gears_is_the_2_um_row():
