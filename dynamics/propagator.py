@@ -22,10 +22,12 @@ from math import factorial
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import connected_components
 
-from dynamics.kernels import LANES, N_TABLE, DiscreteModes
+from dynamics.kernels import WIDTH, DiscreteModes
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
+from dynamics.modal_layout import Layout, branch_layout, port_blocks
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -43,7 +45,8 @@ class ModalModel:
     """Complex modes of the linear part with inputs (mesh torques, then slow loads) and velocity outputs.
 
     eigenvalues : (n_modes,) kept, one of each conjugate pair [1/s]
-    weights : (n_modes,) 2 for a conjugate pair, 1 for a real mode
+    branches : (n_modes,) index of the branch (lines tied by damping) a mode belongs to, not decreasing
+    port_branches : (2 n_meshes,) branch of each mesh port
     inputs : (n_modes, n_inputs) modal forcing per unit input
     outputs : (n_rows, n_modes) velocity outputs; rows as in ``row_names``
     through : (n_rows, n_inputs) output of the dropped modes per unit input
@@ -58,7 +61,8 @@ class ModalModel:
     """
 
     eigenvalues: ComplexArray
-    weights: Array
+    branches: NDArray[np.int64]
+    port_branches: NDArray[np.int64]
     inputs: ComplexArray
     outputs: ComplexArray
     through: Array
@@ -81,11 +85,13 @@ class Propagator:
     """The modal model at one step length [s], in the layout of ``dynamics.kernels``.
 
     hold : (n_modes, n_inputs) part of the modal state that follows the inputs at once: z = w + hold u
+    layout : where each mode stands in the marched state
     """
 
     step: float
     modes: DiscreteModes
     hold: ComplexArray
+    layout: Layout
 
 
 def modal_model(
@@ -111,25 +117,19 @@ def modal_model(
     shapes, frequencies, n_lines = _line_modes(system)
     damping = shapes.T @ system.damping @ shapes
     damping[np.abs(damping) < 1e-13 * max(np.abs(damping).max(), 1e-300)] = 0.0
-    elastic = frequencies[n_lines:]
     m = n - n_lines
     matrix = np.zeros((n + m, n + m))
     matrix[:n, :n] = -damping
-    matrix[n_lines:n, n:] = -np.diag(elastic)
-    matrix[n:, n_lines:n] = np.diag(elastic)
-    values, vectors = scipy.linalg.eig(matrix)
-    condition = float(np.linalg.cond(vectors))
-    if not condition < 1e12:
-        raise DefectiveModes(
-            f"complex modes: condition number {condition:.1e} of the eigenvectors, limit 1e12; two modes coincide, "
-            "change a joint damping by a part in 1e4"
-        )
-    inverse = np.linalg.inv(vectors)
-    kept_half = values.imag >= 0.0
-    values, vectors, inverse = values[kept_half], vectors[:, kept_half], inverse[kept_half]
+    matrix[n_lines:n, n:] = -np.diag(frequencies[n_lines:])
+    matrix[n:, n_lines:n] = np.diag(frequencies[n_lines:])
+    branch_of = _branches(system, shapes, damping)
+    of_state = np.concatenate((branch_of, branch_of[n_lines:]))
+    solved = [_branch_modes(matrix, np.flatnonzero(of_state == branch)) for branch in np.unique(branch_of)]
+    values = np.concatenate([own for own, _, _ in solved])
+    vectors = np.hstack([right for _, right, _ in solved])
+    inverse = np.vstack([left for _, _, left in solved])
+    branches = np.repeat(np.arange(len(solved)), [len(own) for own, _, _ in solved])
     weights = np.where(values.imag > 0.0, 2.0, 1.0)
-    order = np.lexsort((values.imag, np.abs(values)))
-    values, vectors, inverse, weights = values[order], vectors[:, order], inverse[order], weights[order]
 
     forcing = np.zeros((n + m, 2 * len(laws) + loads.shape[1]))
     forcing[:n] = shapes.T @ np.column_stack((_port_columns(system), loads))
@@ -140,9 +140,11 @@ def modal_model(
     lost, lost_forcing = values[~keep], modal_forcing[~keep]
     static = -lost_forcing / lost[:, None]
     delayed = -lost_forcing / lost[:, None] ** 2
+    ports = system.mesh_ports.ravel()
     return ModalModel(
         eigenvalues=values[keep],
-        weights=weights[keep],
+        branches=branches[keep],
+        port_branches=np.array([branch_of[np.argmax(np.abs(shapes[port]))] for port in ports], np.int64),
         inputs=modal_forcing[keep],
         outputs=seen[:, keep],
         through=(seen[:, ~keep] @ static).real,
@@ -172,31 +174,47 @@ def discretise(model: ModalModel, step: float, *, with_losses: bool = True) -> P
     hold = step * phi_2 * model.inputs
     driven = decay[:, None] * hold + old
 
-    n_rows = model.outputs.shape[0] if with_losses else 4 * model.n_meshes + model.n_slow
+    n_fast = 2 * model.n_meshes
+    n_ports = 2 * n_fast
+    n_rows = model.outputs.shape[0] if with_losses else n_ports + model.n_slow
     seen = model.outputs[:n_rows]
     through, through_rate = model.through[:n_rows], model.through_rate[:n_rows] / step
-    rows = seen * decay
-    through_old = (seen @ driven).real - through_rate
+    rows = seen.copy()
+    through_old = -through_rate
     through_new = (seen @ hold).real + through + through_rate
-    # rows 2 and 3 of each mesh are the steps of approach and pinion angle: integrals of a velocity output
+    speed, turn = np.arange(0, n_ports, 2), np.arange(1, n_ports, 2)
+    rows[speed] = seen[speed] * decay
+    through_old[speed] += (seen[speed] @ driven).real
+    # the turn of a port is the integral of its speed over the step
+    rows[turn] = seen[turn] * (step * phi_1[:, 0])
     integral = step * phi_1 * hold + step**2 * (phi_2 - phi_3) * model.inputs
-    for mesh in range(model.n_meshes):
-        at = slice(4 * mesh + 2, 4 * mesh + 4)
-        rows[at] = seen[at] * (step * phi_1[:, 0])
-        dropped, dropped_rate = 0.5 * step * model.through[at], model.through_rate[at]
-        through_old[at] = (seen[at] @ integral).real + dropped - dropped_rate
-        through_new[at] = (seen[at] @ (step**2 * phi_3 * model.inputs)).real + dropped + dropped_rate
-    fast = 2 * model.n_meshes
-    discrete = DiscreteModes(
-        tables=_tables(decay, driven[:, :fast].T),
-        rows=_filled(_lanes(rows.conj()).T).T.copy(),
-        through_old=_filled(through_old[:, :fast].T),
-        through_new=_filled(through_new[:, :fast].T),
-        slow_inputs=_lanes(driven[:, fast:].T),
-        slow_old=np.ascontiguousarray(through_old[:, fast:]),
-        slow_new=np.ascontiguousarray(through_new[:, fast:]),
+    dropped, dropped_rate = 0.5 * step * model.through[turn], model.through_rate[turn]
+    through_old[turn] = (seen[turn] @ integral).real + dropped - dropped_rate
+    through_new[turn] = (seen[turn] @ (step**2 * phi_3 * model.inputs)).real + dropped + dropped_rate
+    layout = branch_layout(model.branches, model.port_branches)
+    blocks, tables, port_rows = port_blocks(
+        model.port_branches,
+        layout,
+        decay,
+        driven[:, :n_fast],
+        rows[:n_ports].conj(),
+        through_old[:n_ports, :n_fast],
+        through_new[:n_ports, :n_fast],
     )
-    return Propagator(step=step, modes=discrete, hold=hold)
+    discrete = DiscreteModes(
+        blocks=blocks,
+        slots=layout.slots,
+        tables=tables,
+        port_rows=port_rows,
+        port_new=np.ascontiguousarray(through_new[:n_ports, :n_fast].T),
+        rows=layout.lay(rows[n_ports:].conj()),
+        through_old=np.ascontiguousarray(through_old[n_ports:, :n_fast].T),
+        through_new=np.ascontiguousarray(through_new[n_ports:, :n_fast].T),
+        slow_inputs=layout.lay(driven[:, n_fast:].T),
+        slow_old=np.ascontiguousarray(through_old[:, n_fast:]),
+        slow_new=np.ascontiguousarray(through_new[:, n_fast:]),
+    )
+    return Propagator(step=step, modes=discrete, hold=hold, layout=layout)
 
 
 def modal_state(
@@ -210,14 +228,13 @@ def modal_state(
     scaled = np.concatenate(
         (model.shapes.T @ (model.inertia * speeds), (model.frequencies * moved)[model.n_lines :])
     )
-    z = model.to_modes @ scaled - propagator.hold @ inputs
-    return _lanes(z)
+    return propagator.layout.lay(model.to_modes @ scaled - propagator.hold @ inputs)
 
 
 def scaled_state(model: ModalModel, propagator: Propagator, state: Array, inputs: Array) -> Array:
     """Return the scaled coordinates (modal velocities, Omega eta); half their square is the energy [J]."""
-    parts = state.reshape(-1, 2, LANES)
-    z = (parts[:, 0] + 1j * parts[:, 1]).ravel()[: len(model.eigenvalues)] + propagator.hold @ inputs
+    real = propagator.layout.modes
+    z = state[real] + 1j * state[real + WIDTH] + propagator.hold @ inputs
     scaled: Array = (model.to_scaled @ z).real + model.scaled_through @ inputs
     return scaled
 
@@ -277,6 +294,38 @@ def _line_modes(system: LinearSystem) -> tuple[Array, Array, int]:
     return shapes, np.concatenate((np.zeros(len(lines)), *frequencies)), len(lines)
 
 
+def _branches(system: LinearSystem, shapes: Array, damping: Array) -> NDArray[np.int64]:
+    """Return (n,) the branch of every real mode: lines between which nothing but a mesh acts are apart."""
+    lines, line_of = np.unique(system.lines, return_inverse=True)
+    line_of_mode = line_of[np.argmax(np.abs(shapes), axis=0)]
+    tied = np.zeros((len(lines), len(lines)), bool)
+    first, second = np.nonzero(damping)
+    tied[line_of_mode[first], line_of_mode[second]] = True
+    _, branch_of_line = connected_components(tied, directed=False)
+    return np.asarray(branch_of_line[line_of_mode], np.int64)
+
+
+def _branch_modes(
+    matrix: Array, members: NDArray[np.int64]
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Return eigenvalues (one of each pair, slow ones first), right and left vectors of some states alone."""
+    values, vectors = scipy.linalg.eig(matrix[np.ix_(members, members)])
+    condition = float(np.linalg.cond(vectors))
+    if not condition < 1e12:
+        raise DefectiveModes(
+            f"complex modes: condition number {condition:.1e} of the eigenvectors, limit 1e12; two modes coincide, "
+            "change a joint damping by a part in 1e4"
+        )
+    inverse = np.linalg.inv(vectors)
+    half = np.flatnonzero(values.imag >= 0.0)
+    half = half[np.lexsort((values[half].imag, np.abs(values[half])))]
+    right = np.zeros((len(matrix), len(half)), complex)
+    left = np.zeros((len(half), len(matrix)), complex)
+    right[members] = vectors[:, half]
+    left[:, members] = inverse[half]
+    return values[half], right, left
+
+
 def _port_columns(system: LinearSystem) -> Array:
     columns = np.zeros((len(system.inertia), 2 * len(system.mesh_ports)))
     for mesh, (pinion, wheel) in enumerate(system.mesh_ports):
@@ -286,21 +335,11 @@ def _port_columns(system: LinearSystem) -> Array:
 
 
 def _velocity_rows(system: LinearSystem, laws: Sequence[MeshLaw], loads: Array) -> Array:
-    """Rows of velocity outputs: four per mesh, one per slow load, then square roots of the joint loss."""
-    n = len(system.inertia)
-    rows = []
-    for law, (pinion, wheel) in zip(laws, system.mesh_ports):
-        approach = np.zeros(n)
-        approach[pinion] = law.base_radius_1
-        approach[wheel] -= law.base_radius_2
-        turn = np.zeros(n)
-        turn[pinion] = 1.0
-        rows += [approach, turn, approach, turn]
-    rows += list(loads.T)
+    """Rows of velocity outputs: two per mesh port, one per slow load, then square roots of the joint loss."""
+    ports = np.repeat(_port_columns(system).T, 2, axis=0)
     squares, vectors = scipy.linalg.eigh(system.damping)
     lossy = squares > 1e-13 * max(float(squares.max()), 1e-300)
-    rows += list((vectors[:, lossy] * np.sqrt(squares[lossy])).T)
-    return np.array(rows)
+    return np.vstack((ports, loads.T, (vectors[:, lossy] * np.sqrt(squares[lossy])).T))
 
 
 def _phi(k: int, x: ComplexArray) -> ComplexArray:
@@ -315,33 +354,3 @@ def _phi(k: int, x: ComplexArray) -> ComplexArray:
     for j in range(k):
         value = (value - 1.0 / factorial(j)) / far
     return np.where(small, series, value)
-
-
-def _lanes(values: ComplexArray) -> Array:
-    """Return (..., n_modes) as (..., n_states): groups of LANES real and LANES imaginary parts, filled with zeros."""
-    n = values.shape[-1]
-    groups = -(-n // LANES)
-    whole = np.zeros((*values.shape[:-1], groups * LANES), complex)
-    whole[..., :n] = values
-    split = whole.reshape(*values.shape[:-1], groups, LANES)
-    return np.stack((split.real, split.imag), axis=-2).reshape(*values.shape[:-1], groups * 2 * LANES)
-
-
-def _tables(decay: ComplexArray, inputs: ComplexArray) -> Array:
-    """Return ``DiscreteModes.tables`` from decay (n_modes,) and inputs (2 n_meshes, n_modes)."""
-    n_inputs = len(inputs)
-    pairs = -(-n_inputs // 4)
-    whole = np.zeros((4 * pairs, len(decay)), complex)
-    whole[:n_inputs] = inputs
-    pushes = _lanes(whole).reshape(pairs, 4, -1, 2, LANES)
-    tables = np.zeros((pairs, pushes.shape[2], N_TABLE, LANES))
-    tables[0, :, 0:2] = _lanes(decay).reshape(-1, 2, LANES)
-    tables[1:, :, 0] = 1.0  # a further pair adds to a state that has decayed already
-    tables[:, :, 2:6] = pushes[:, :, :, 0].swapaxes(1, 2)
-    tables[:, :, 6:10] = pushes[:, :, :, 1].swapaxes(1, 2)
-    return tables.reshape(pairs, -1)
-
-
-def _filled(table: Array) -> Array:
-    """Return the table with columns of zeros up to a multiple of 4."""
-    return np.hstack((table, np.zeros((table.shape[0], -table.shape[1] % 4))))

@@ -1,26 +1,22 @@
 """Compiled loops of the dynamics, the only numba in this package: plain numbers and arrays in and out.
 
-The disk cache of a compiled function is keyed by its own file: after an edit of ``contact`` touch ``march``
-too.
+``contact`` lists and sums the tooth contacts of a flank, ``reactions`` evaluates meshes at given states,
+``linear_step`` takes the modes over one step, ``mesh_solve`` the meshes, ``march`` joins them. The disk cache of
+a compiled function is keyed by its own file: after an edit of one of the others touch ``reactions`` and
+``march`` too.
 """
 
-from dynamics.kernels.contact import (
-    LANES,
-    N_COUNTS,
-    N_PHASE,
-    N_VALUES,
-    PackedMeshes,
-    mesh_reactions,
-    tooth_pair_forces,
-)
-from dynamics.kernels.march import N_TABLE, Carried, DiscreteModes, Orders, march
+from dynamics.kernels.contact import LANES, N_COUNTS, N_PHASE, N_VALUES, PackedMeshes
+from dynamics.kernels.linear_step import WIDTH, DiscreteModes
+from dynamics.kernels.march import Carried, Orders, march
+from dynamics.kernels.reactions import mesh_reactions, tooth_pair_forces
 
 __all__ = [
     "LANES",
     "N_COUNTS",
     "N_PHASE",
-    "N_TABLE",
     "N_VALUES",
+    "WIDTH",
     "Carried",
     "DiscreteModes",
     "Orders",

@@ -66,6 +66,8 @@ N_PHASES, FRONT_AT, BACK_AT = 17, 18, 19
 N_COUNTS = 20
 N_PHASE = 9
 LANES = 16
+VECTOR = 4
+"""Numbers in a vector register. More than two contacts are filled up to whole registers with some of no stiffness."""
 POSITIVE = (
     1 << 40
 ) - 1  # masks a first index, so that the compiler knows it and what is added to be positive
@@ -94,7 +96,8 @@ def list_by_phase(
     """List the contacts of one flank of mesh ``m``, all teeth alike, at the angle ``theta_1``.
 
     Contacts whose gap stays above ``pressed`` in this phase cell are left out (the last ones of the cell).
-    ``out`` receives groups of (N_LIST, LANES), flat, from ``at`` on; returns the number of contacts.
+    ``out`` receives groups of (N_LIST, LANES), flat, from ``at`` on; returns their number, filled up to whole
+    vectors.
     """
     n_phases = counts[m, N_PHASES]
     origin = values[m, PHASE] if sign > 0.0 else values[m, BACK_PHASE]
@@ -103,12 +106,13 @@ def list_by_phase(
     j = max(0, min(int(place), n_phases - 1))  # also where a run that left the finite numbers asks
     f = place - j
     row = (counts[m, FRONT_AT] if sign > 0.0 else counts[m, BACK_AT]) + j
-    n = int(contacts_in[row])
     low = LANES * starts[row]
-    near = 0
-    while near < n and least[low + near] < pressed:
-        near += 4
-    n = min(n, near)
+    n = int(contacts_in[row])
+    if n > 2:
+        near = 0
+        while near < n and least[low + near] < pressed:
+            near += VECTOR
+        n = near
     first = (N_PHASE * LANES * starts[row]) & POSITIVE
     first_out = at & POSITIVE
     per_step = n_phases * values[m, PER_PITCH]
@@ -203,213 +207,139 @@ def list_on_path(
             column += 1
             turn -= 1.0
             place += pitch
+    for blank in range(column, VECTOR * ((column + VECTOR - 1) // VECTOR)):
+        lane = at + (blank // LANES) * N_LIST * LANES + blank % LANES
+        for row in range(N_LIST):
+            out[lane + row * LANES] = 0.0
     return column
 
 
+class Pressed(NamedTuple):
+    """What the contacts of one flank do together, and how far that is from linear."""
+
+    force: float
+    a_1: float
+    """sum F m_1 + k' d^2 / 2: torque on the pinion per base radius"""
+    a_2: float
+    """sum F m_2"""
+    force_x: float
+    """Slopes over the reach"""
+    a_1_x: float
+    a_2_x: float
+    force_v: float
+    """Slopes over the rate"""
+    a_1_v: float
+    a_2_v: float
+    kinked: float
+    """Stiffness that could switch on, off or to full damping within ``guard`` of depth"""
+    curved: float
+    """Mixed second derivative of the force over reach and rate"""
+
+
 @njit(cache=True, fastmath=LOOSE, inline="always")
-def sum_flank(
-    contacts: Array,
-    start: int,
-    n: int,
-    reach: float,
-    rate: float,
-    path_speed: float,
-    damp_time: float,
-    per_depth: float,
-) -> tuple[float, float, float, float, float, float, float, float, float, float]:
+def press_flank(
+    contacts: Array, start: int, n: int, reach: float, rate: float, path_speed: float, damp_time: float,
+    per_depth: float, guard: float,
+) -> Pressed:  # fmt: skip
     """Sum the contacts of one flank listed from ``start`` on, pressed by ``reach`` and closing with ``rate``.
 
-    ``damp_time`` = damping / mean stiffness [s], ``per_depth`` = 1 / damping depth. Returns (force, a_1,
-    a_2, k_1, k_2, c_1, c_2, friction power, damping power, damping force): ``a_1 = sum F m_1 + k' d^2 /
-    2``, ``a_2 = sum F m_2`` are the torques per base radius, ``k_1, k_2`` their slopes over ``reach``,
-    ``c_1, c_2`` over ``rate``.
+    ``damp_time`` = damping / mean stiffness [s], ``per_depth`` = 1 / damping depth, ``n`` as listed.
     """
-    force = 0.0
-    a_1 = 0.0
-    a_2 = 0.0
-    k_1 = 0.0
-    k_2 = 0.0
-    c_1 = 0.0
-    c_2 = 0.0
-    friction_power = 0.0
-    damping_power = 0.0
-    damping_force = 0.0
+    force, a_1, a_2 = 0.0, 0.0, 0.0
+    force_x, a_1_x, a_2_x = 0.0, 0.0, 0.0
+    force_v, a_1_v, a_2_v = 0.0, 0.0, 0.0
+    kinked, curved = 0.0, 0.0
+    full = 1.0 / per_depth
     first = start & POSITIVE
     for group in range((n + LANES - 1) // LANES):
         at = first + N_LIST * LANES * group
+        for i in range(min(n - LANES * group, LANES)):
+            closing = damp_time * (rate - contacts[at + LIST_DE * LANES + i] * path_speed)
+            over = reach - contacts[at + LIST_E * LANES + i]
+            depth = over if over > 0.0 else 0.0
+            stiffness = contacts[at + LIST_K * LANES + i]
+            k = stiffness if over > 0.0 else 0.0
+            grown = depth * per_depth
+            per = per_depth if grown < 1.0 else 0.0
+            grown = grown if grown < 1.0 else 1.0
+            pressed = depth + grown * closing
+            k = k if pressed > 0.0 else 0.0
+            f = k * pressed
+            k_x = k * (1.0 + per * closing)
+            k_v = k * grown
+            m_1 = contacts[at + LIST_M1 * LANES + i]
+            m_2 = contacts[at + LIST_M2 * LANES + i]
+            slope = contacts[at + LIST_HK * LANES + i] * depth
+            force += f
+            a_1 += f * m_1 + slope * depth
+            a_2 += f * m_2
+            force_x += k_x
+            a_1_x += k_x * m_1 + 2.0 * slope
+            a_2_x += k_x * m_2
+            force_v += k_v
+            a_1_v += k_v * m_1
+            a_2_v += k_v * m_2
+            margin = abs(pressed) if abs(pressed) < abs(depth - full) else abs(depth - full)
+            margin = margin if over > 0.0 else guard
+            margin = margin if margin < abs(over) else abs(over)
+            kinked += stiffness if margin < guard else 0.0
+            curved += k * per
+    return Pressed(
+        force, a_1, a_2, force_x, a_1_x, a_2_x, force_v * damp_time, a_1_v * damp_time, a_2_v * damp_time,
+        kinked, curved * damp_time,
+    )  # fmt: skip
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def flank_powers(
+    contacts: Array, start: int, n: int, reach: float, rate: float, path_speed: float, damp_time: float,
+    per_depth: float,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Return friction power, damping power and damping force of one flank, arguments as in ``press_flank``."""
+    friction_power, damping_power, damping_force = 0.0, 0.0, 0.0
+    for group in range((n + LANES - 1) // LANES):
+        at = (start & POSITIVE) + N_LIST * LANES * group
         for i in range(min(n - LANES * group, LANES)):
             closing = rate - contacts[at + LIST_DE * LANES + i] * path_speed
             depth = reach - contacts[at + LIST_E * LANES + i]
             depth = depth if depth > 0.0 else 0.0
             k = contacts[at + LIST_K * LANES + i]
-            k = k if depth > 0.0 else 0.0
             grown = depth * per_depth
-            grown_slope = per_depth if grown < 1.0 else 0.0
             grown = grown if grown < 1.0 else 1.0
             f = k * (depth + damp_time * grown * closing)
-            k_p = k if f > 0.0 else 0.0
-            f = f if f > 0.0 else 0.0
-            k_x = k_p * (1.0 + damp_time * grown_slope * closing)
-            k_v = k_p * grown
-            m_1 = contacts[at + LIST_M1 * LANES + i]
-            m_2 = contacts[at + LIST_M2 * LANES + i]
-            slope = contacts[at + LIST_HK * LANES + i] * depth
+            f = f if (depth > 0.0 and f > 0.0) else 0.0
             damped = f - k * depth
-            force += f
-            a_1 += f * m_1 + slope * depth
-            a_2 += f * m_2
-            k_1 += k_x * m_1 + 2.0 * slope
-            k_2 += k_x * m_2
-            c_1 += k_v * m_1
-            c_2 += k_v * m_2
             friction_power += f * contacts[at + LIST_POWER * LANES + i]
             damping_power += damped * closing
             damping_force += damped
-    return (
-        force, a_1, a_2, k_1, k_2, c_1 * damp_time, c_2 * damp_time, friction_power, damping_power, damping_force
-    )  # fmt: skip
+    return friction_power, damping_power, damping_force
 
 
-@njit(cache=True, fastmath=LOOSE)
-def path_slopes(
-    contacts: Array,
-    n: int,
-    reach: float,
-    rate: float,
-    path_speed: float,
-    damp_time: float,
-    per_depth: float,
-) -> tuple[float, float, float]:
-    """Return (da_1/ds, da_2/ds, elastic energy) of one flank at fixed reach, rate and friction levers."""
-    slope_1 = 0.0
-    slope_2 = 0.0
-    energy = 0.0
-    for group in range((n + LANES - 1) // LANES):
-        at = N_LIST * LANES * group
-        for i in range(min(n - LANES * group, LANES)):
-            depth = reach - contacts[at + LIST_E * LANES + i]
-            depth = depth if depth > 0.0 else 0.0
-            k = contacts[at + LIST_K * LANES + i]
-            k = k if depth > 0.0 else 0.0
-            gap_slope = contacts[at + LIST_DE * LANES + i]
-            stiffness_slope = 2.0 * contacts[at + LIST_HK * LANES + i]
-            closing = damp_time * (rate - gap_slope * path_speed)
-            grown = depth * per_depth
-            grown_slope = per_depth if grown < 1.0 else 0.0
-            grown = grown if grown < 1.0 else 1.0
-            pressed = depth + grown * closing
-            df = stiffness_slope * pressed - k * gap_slope * (1.0 + grown_slope * closing)
-            df = df if (depth > 0.0 and pressed > 0.0) else 0.0
-            energy += 0.5 * k * depth * depth
-            slope_1 += df * contacts[at + LIST_M1 * LANES + i] - stiffness_slope * depth * gap_slope
-            slope_2 += df * contacts[at + LIST_M2 * LANES + i]
-    return slope_1, slope_2, energy
-
-
-@njit(cache=True, fastmath=LOOSE)
-def mesh_reactions(
-    meshes: PackedMeshes, theta_1: Array, reach: Array, omega_1: Array, omega_2: Array, out: Array
-) -> None:
-    """Evaluate the first mesh at many states; ``out`` (n, 13) in the order of ``MeshReaction``.
-
-    ``reach`` (n,) is the approach including the offset of the law.
-    """
-    values, counts = meshes.values, meshes.counts
-    cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
-    starts, contacts_in = meshes.phase_starts, meshes.phase_counts
-    least, data = meshes.phase_least, meshes.phase_data
-    contacts = np.empty(counts[0, GROUPS] * N_LIST * LANES)
-    no_pairs = np.empty((2, 0), np.int64)
-    r_1 = values[0, R1]
-    r_2 = values[0, R2]
-    damp_time, per_depth = values[0, DAMP_TIME], values[0, PER_DEPTH]
-    for n in range(theta_1.shape[0]):
-        w_1 = omega_1[n]
-        w_2 = omega_2[n]
-        for column in range(out.shape[1]):
-            out[n, column] = 0.0
-        for side in range(2):
-            sign = 1.0 - 2.0 * side
-            pressed = sign * reach[n] - side * values[0, BACKLASH]
-            if pressed <= values[0, LEAST_GAP]:
-                continue
-            if counts[0, INDIVIDUAL] != 0:
-                found = list_on_path(
-                    values, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], w_1, w_2, contacts, 0,
-                    no_pairs,
-                )  # fmt: skip
-            else:
-                found = list_by_phase(
-                    values,
-                    counts,
-                    starts,
-                    contacts_in,
-                    least,
-                    data,
-                    0,
-                    sign,
-                    pressed,
-                    theta_1[n],
-                    w_1,
-                    w_2,
-                    contacts,
-                    0,
-                )
-            rate = sign * (r_1 * w_1 - r_2 * w_2)
-            path_speed = sign * r_1 * w_1
-            force, a_1, a_2, k_1, k_2, c_1, c_2, friction_power, damping_power, _ = sum_flank(
-                contacts, 0, found, pressed, rate, path_speed, damp_time, per_depth
-            )
-            slope_1, slope_2, energy = path_slopes(
-                contacts, found, pressed, rate, path_speed, damp_time, per_depth
-            )
-            out[n, 0] -= sign * r_1 * a_1
-            out[n, 1] += sign * r_2 * a_2
-            out[n, 2 + side] += force
-            out[n, 4] -= r_1 * k_1
-            out[n, 5] += r_2 * k_2
-            out[n, 6] -= r_1 * c_1
-            out[n, 7] += r_2 * c_2
-            out[n, 8] -= r_1 * r_1 * slope_1
-            out[n, 9] += r_1 * r_2 * slope_2
-            out[n, 10] += friction_power
-            out[n, 11] += damping_power
-            out[n, 12] += energy
-
-
-@njit(cache=True, fastmath=LOOSE)
-def tooth_pair_forces(
-    meshes: PackedMeshes,
-    theta_1: Array,
-    reach: Array,
-    omega_1: Array,
-    omega_2: Array,
-    lowest: Integers,
-    force: Array,
-) -> None:
-    """Fill ``force`` (n, n_pairs, n_slices, 2), front and back; ``lowest`` (n,) is the pair of column 0."""
-    values, counts = meshes.values, meshes.counts
-    cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
-    contacts = np.empty(counts[0, GROUPS] * N_LIST * LANES)
-    pairs = np.empty((2, counts[0, GROUPS] * LANES), np.int64)
-    for n in range(theta_1.shape[0]):
-        for side in range(2):
-            sign = 1.0 - 2.0 * side
-            pressed = sign * reach[n] - side * values[0, BACKLASH]
-            if pressed <= values[0, LEAST_GAP]:
-                continue
-            found = list_on_path(
-                values, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], omega_1[n], omega_2[n],
-                contacts, 0, pairs,
-            )  # fmt: skip
-            path_speed = sign * values[0, R1] * omega_1[n]
-            rate = sign * (values[0, R1] * omega_1[n] - values[0, R2] * omega_2[n])
-            for i in range(found):
-                at = (i // LANES) * N_LIST * LANES + i % LANES
-                depth = pressed - contacts[at + LIST_E * LANES]
-                closing = rate - contacts[at + LIST_DE * LANES] * path_speed
-                grown = min(max(depth, 0.0) * values[0, PER_DEPTH], 1.0)
-                f = contacts[at + LIST_K * LANES] * (depth + values[0, DAMP_TIME] * grown * closing)
-                column = pairs[0, i] - lowest[n]
-                if depth > 0.0 and f > 0.0 and 0 <= column < force.shape[1]:
-                    force[n, column, pairs[1, i], side] = f
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def list_flank(
+    values: Array, counts: Integers, starts: Integers, contacts_in: Integers, least: Array, data: Array,
+    cells: Array, shifts: Array, deviations: Array, scales: Array, m: int, sign: float, pressed: float,
+    theta_1: float, omega_1: float, omega_2: float, out: Array, at: int, no_pairs: Integers,
+) -> int:  # fmt: skip
+    """List the contacts of one flank by phase or on the path; return their number, filled up to whole vectors."""
+    if counts[m, INDIVIDUAL] == 0:
+        return list_by_phase(
+            values, counts, starts, contacts_in, least, data, m, sign, pressed, theta_1, omega_1, omega_2, out, at
+        )  # fmt: skip
+    found = list_on_path(
+        values,
+        counts,
+        cells,
+        shifts,
+        deviations,
+        scales,
+        m,
+        sign,
+        theta_1,
+        omega_1,
+        omega_2,
+        out,
+        at,
+        no_pairs,
+    )
+    return VECTOR * ((found + VECTOR - 1) // VECTOR)
