@@ -67,6 +67,7 @@ class Resonance:
     force_share : amplitude over mean torque [-]
     amplification : amplitude over the level it rises from [-]
     lift_off_share : share of time without contact [-]
+    at_end : the torque still rises at the highest speed of the curve: the peak lies there or above
     """
 
     mesh: int
@@ -76,6 +77,7 @@ class Resonance:
     force_share: float
     amplification: float
     lift_off_share: float
+    at_end: bool = False
 
 
 def factor_curve(
@@ -115,24 +117,39 @@ def factor_curve(
 
 
 def resonances(curve: DynamicFactorCurve, *, least_prominence: float = 0.02) -> tuple[Resonance, ...]:
-    """Return the peaks of every mesh that stand out by ``least_prominence`` of the mean torque, by mesh and speed."""
+    """Return the peaks of every mesh that stand out by ``least_prominence`` of the mean torque, by mesh and speed.
+
+    A curve that still rises at its highest speed has a peak there (``at_end``).
+    """
     found: list[Resonance] = []
     for mesh, amplitude in enumerate(curve.amplitude):
         share = amplitude / np.abs(curve.mean_torque[mesh])
         peaks, properties = find_peaks(share, prominence=least_prominence)
-        for peak, prominence in zip(peaks, properties["prominences"]):
+        standing = dict(zip(peaks.tolist(), properties["prominences"].tolist()))
+        if (rise := _rise_at_end(share)) >= least_prominence:
+            standing[share.size - 1] = rise
+        for peak, prominence in standing.items():
             found.append(
                 Resonance(
                     mesh=mesh,
-                    speed=_peak_speed(curve.speed[peak - 1 : peak + 2], share[peak - 1 : peak + 2]),
+                    speed=_peak_speed(curve.speed, share, peak),
                     factor=float(curve.factor[mesh, peak]),
                     amplitude=float(amplitude[peak]),
                     force_share=float(share[peak]),
                     amplification=float(share[peak] / max(share[peak] - prominence, 1e-9)),
                     lift_off_share=float(curve.lift_off_share[mesh, peak]),
+                    at_end=peak == share.size - 1,
                 )
             )
     return tuple(found)
+
+
+def _rise_at_end(values: Array) -> float:
+    """Height of the last value over the lowest one since the last that was higher; 0 unless it ends rising."""
+    if values.size < 2 or values[-1] <= values[-2]:
+        return 0.0
+    higher = np.flatnonzero(values > values[-1])
+    return float(values[-1] - values[higher[-1] if higher.size else 0 :].min())
 
 
 def _mean(values: Array) -> Array:
@@ -144,8 +161,11 @@ def _mean(values: Array) -> Array:
     return mean
 
 
-def _peak_speed(speed: Array, factor: Array) -> float:
-    """Return the apex of the parabola through three points; the middle one if it lies flat."""
+def _peak_speed(speeds: Array, factors: Array, peak: int) -> float:
+    """Return the apex of the parabola through a peak and its neighbours; the peak if they lie flat or it is last."""
+    if peak == speeds.size - 1:
+        return float(speeds[peak])
+    speed, factor = speeds[peak - 1 : peak + 2], factors[peak - 1 : peak + 2]
     slope_1, slope_2 = np.diff(factor) / np.diff(speed)
     if slope_1 == slope_2:
         return float(speed[1])

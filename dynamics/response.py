@@ -102,7 +102,7 @@ class TimeResponse:
     lift_off : intervals in which a mesh lost contact for longer than the asked share of a mesh period
     energy : the balance of the run, None if no accounts were kept
     drive_limited_share : share of samples at the torque limit of the motor
-    speed_missed : largest lag behind the speed command at the end of the schedule [rad/s]
+    speed_missed : lag behind the speed command at the end of the schedule [rad/s]
     end : state at the end; unsettled_steps : contact iterations that ended early
     """
 
@@ -216,7 +216,8 @@ def run_schedule(
 
     n_samples = max(1, round(float(command.time[-1] - command.time[0]) * sample_rate))
     per_slot = max(1, round(slot * sample_rate))
-    statistics = SlotStatistics(laws, per_slot * substeps, march.step, lift_off_share)
+    pinions = [ratios[ports[0]] for ports in system.mesh_ports]
+    statistics = SlotStatistics(laws, per_slot * substeps, march.step, lift_off_share, pinions)
     low_pass = LowPass(len(laws), substeps)
     energy_before = march.energy()
     columns: list[tuple[Array, Array, Array]] = []

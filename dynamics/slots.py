@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import pi
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from dynamics.mesh_law import MeshLaw
 
@@ -42,11 +42,47 @@ class LiftOff:
     longest_gap: float
 
 
-class SlotStatistics:
-    """Collect slots of ``per_slot`` internal steps of ``step`` seconds from consecutive blocks."""
+def split_lift_off(slots: Slots, intervals: Sequence[LiftOff], times: ArrayLike) -> tuple[LiftOff, ...]:
+    """Intervals cut at ``times`` [s], share and longest gap taken afresh for every piece.
 
-    def __init__(self, laws: Sequence[MeshLaw], per_slot: int, step: float, lift_off_share: float) -> None:
-        self._teeth = np.array([law.teeth_1 for law in laws])
+    A slot belongs to the piece in which its middle lies; a cut within a slot moves to the nearer slot end.
+    """
+    cuts = np.sort(np.asarray(times, float))
+    middle = slots.time - 0.5 * slots.duration
+    piece = np.searchsorted(cuts, middle, side="right")
+    found = []
+    for whole in intervals:
+        inside = (middle > whole.start) & (middle < whole.end)
+        for part in np.unique(piece[inside]):
+            own = np.flatnonzero(inside & (piece == part))
+            found.append(
+                LiftOff(
+                    mesh=whole.mesh,
+                    start=float(slots.time[own[0]] - slots.duration),
+                    end=float(slots.time[own[-1]]),
+                    out_of_contact=float(slots.out_of_contact[whole.mesh, own].mean()),
+                    longest_gap=float(slots.longest_gap[whole.mesh, own].max()),
+                )
+            )
+    return tuple(found)
+
+
+class SlotStatistics:
+    """Collect slots of ``per_slot`` internal steps of ``step`` seconds from consecutive blocks.
+
+    pinion_ratios : (n_meshes,) speed of the pinion of each mesh per speed of the first pinion; 1 when left out
+    """
+
+    def __init__(
+        self,
+        laws: Sequence[MeshLaw],
+        per_slot: int,
+        step: float,
+        lift_off_share: float,
+        pinion_ratios: ArrayLike = 1.0,
+    ) -> None:
+        teeth = np.array([law.teeth_1 for law in laws])
+        self._meshes_per_turn = teeth * np.abs(np.broadcast_to(np.asarray(pinion_ratios, float), teeth.shape))
         self._per_slot = per_slot
         self._step = step
         self._share = lift_off_share
@@ -94,10 +130,9 @@ class SlotStatistics:
         """Return intervals of slots whose longest gap exceeds the asked share of the mesh period."""
         slots = self.slots(start)
         found = []
-        first_teeth = self._teeth[0]
-        for mesh in range(len(self._teeth)):
+        for mesh, meshes_per_turn in enumerate(self._meshes_per_turn):
             with np.errstate(divide="ignore"):
-                mesh_period = 2.0 * pi / (np.abs(slots.speed) * first_teeth)
+                mesh_period = 2.0 * pi / (np.abs(slots.speed) * meshes_per_turn)
             lost = np.concatenate(([False], slots.longest_gap[mesh] > self._share * mesh_period, [False]))
             edges = np.flatnonzero(np.diff(lost.astype(int)))
             for a, b in zip(edges[::2], edges[1::2]):

@@ -48,6 +48,17 @@ def test_resonances_are_found_where_they_are() -> None:
     assert curve.factor.shape == (2, 241)
 
 
+def test_a_curve_that_ends_rising_has_its_peak_at_the_end_or_above() -> None:
+    speed = np.linspace(50.0, 1250.0, 241)
+    torques = [180.0 + (5.0 + 60.0 / (1.0 + ((s - 1300.0) / 60.0) ** 2)) * WAVE for s in speed]
+    (last,) = resonances(factor_curve(speed, torques, np.zeros((241, 1))))
+    assert last.at_end and last.speed == speed[-1]
+    assert last.force_share == pytest.approx(last.amplitude / 180.0)
+    assert last.amplification > 4.0
+    falling = [180.0 + (70.0 - 0.05 * s) * WAVE for s in speed]
+    assert resonances(factor_curve(speed, falling, np.zeros((241, 1)))) == ()
+
+
 def test_unsorted_speeds_are_refused() -> None:
     with pytest.raises(ValueError, match="must increase"):
         factor_curve([2.0, 1.0], [WAVE + 3.0] * 2, np.zeros((2, 1)))

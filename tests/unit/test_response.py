@@ -8,7 +8,7 @@ import pytest
 
 from dynamics.drivetrain import assemble
 from dynamics.response import Command, DragCurve, LowPass, TimeResponse, run_schedule
-from dynamics.slots import SlotStatistics
+from dynamics.slots import SlotStatistics, split_lift_off
 from tests.mesh_example import spur_law
 from tests.rig_example import prototype, prototype_laws
 
@@ -133,6 +133,34 @@ def test_slots_carry_gaps_over_their_borders() -> None:
     (lost,) = slots.lift_off(2.0)
     assert (lost.mesh, lost.start, lost.end) == (0, pytest.approx(2.0), pytest.approx(2.003))
     assert lost.longest_gap == pytest.approx(1.2e-3)
+
+
+def test_a_loss_of_contact_is_shared_out_over_the_stages_it_runs_through() -> None:
+    """80 % of the first slot free, 20 % of the second, then closed and lost again: cut between the two slots."""
+    slots = SlotStatistics([spur_law()], 100, 1e-5, 0.05)
+    torque = np.full((1, 400), 50.0)
+    torque[0, 20:120] = 0.0
+    torque[0, 310:390] = 0.0
+    slots.add(torque, np.full(40, 100.0))
+    whole = slots.lift_off(2.0)
+    assert [one.start for one in whole] == pytest.approx([2.0, 2.003])
+    assert [one.end for one in whole] == pytest.approx([2.002, 2.004])
+    first, second, third = split_lift_off(slots.slots(2.0), whole, [0.0, 2.001, 5.0])
+    assert (first.start, first.end, second.start, second.end) == pytest.approx((2.0, 2.001, 2.001, 2.002))
+    assert (first.out_of_contact, second.out_of_contact) == pytest.approx((0.8, 0.2))
+    assert (third.start, third.out_of_contact) == pytest.approx((2.003, 0.8))
+
+
+def test_a_gap_is_measured_by_the_mesh_period_of_its_own_pair() -> None:
+    """A pinion that turns at a third of the speed has a mesh period three times as long."""
+    law = spur_law()
+    period = 2.0 * np.pi / (100.0 * law.teeth_1)
+    gap = round(0.1 * period / 1e-6)
+    torque = np.full((2, 4000), 50.0)
+    torque[:, 1000 : 1000 + gap] = 0.0
+    slots = SlotStatistics([law, law], 4000, 1e-6, 0.05, (1.0, 1.0 / 3.0))
+    slots.add(torque, np.full(40, 100.0))
+    assert [lost.mesh for lost in slots.lift_off(0.0)] == [0]
 
 
 @pytest.mark.parametrize(
