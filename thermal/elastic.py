@@ -1,7 +1,8 @@
 """Thermo-elastic displacement of a mesh: K u = int B^T D alpha (T - T0).
 
 Every connected piece must be supported; `three_two_one` gives a statically determinate support, under which a
-piece swells freely: the supports carry nothing whatever its temperature field.
+piece swells freely: the supports carry nothing whatever its temperature field. Such a piece is solved without
+its supports, which would strain the three nodes they hold, and then moved as a rigid body onto them.
 """
 
 import math
@@ -12,13 +13,21 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thermal.fe.aggregation import rigid_modes
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray, IndexArray
 from thermal.fe.solver import BoolArray, TwoLevelMultigrid, conjugate_gradient, constrain
+from thermal.supports import ElasticError, FreePieces, check_held, three_two_one
 
-
-class ElasticError(ValueError):
-    """Elastic data or supports that cannot be computed; the message names body, value, limit and remedy."""
+__all__ = [
+    "Displacement",
+    "Elastic",
+    "ElasticError",
+    "ElasticSetup",
+    "check_elastic",
+    "rigid_motion",
+    "three_two_one",
+]
 
 
 class Elastic(NamedTuple):
@@ -61,7 +70,7 @@ class ElasticSetup:
         self.elements = elements
         self.elastic = check_elastic(elements, elastic)
         self.fixed = fixed
-        _check_held(elements, fixed)
+        check_held(elements, fixed)
         young = elements.per_cell({body: m.young for body, m in self.elastic.items()})
         poisson = elements.per_cell({body: m.poisson for body, m in self.elastic.items()})
         alpha = elements.per_cell({body: m.expansion for body, m in self.elastic.items()})
@@ -70,13 +79,17 @@ class ElasticSetup:
         self._factor = alpha * young / (1.0 - 2.0 * poisson)
         fine = elements.elasticity(young, poisson, elements.fine)
         coarse = elements.elasticity(young, poisson, elements.coarse)
-        self._held_rows = _rows_of(elements, fine, fixed)
-        self._flat = fixed.ravel()
-        held_corners = fixed[elements.corners].ravel()
-        self.matrix = constrain(elements.fine.block_matrix(fine), self._flat)
+        self.free = FreePieces.of(elements, fixed)
+        """Pieces on six determinate supports, solved without them."""
+        held = fixed & ~self.free.nodes[:, None]
+        self._held_rows = _rows_of(elements, fine, held)
+        self._held = held.ravel()
+        held_corners = held[elements.corners].ravel()
+        self.matrix = constrain(elements.fine.block_matrix(fine), self._held)
         coarse_matrix = constrain(elements.coarse.block_matrix(coarse), held_corners)
+        modes = rigid_modes(elements.mesh.points[elements.corners])
         self.multigrid = TwoLevelMultigrid(
-            self.matrix, coarse_matrix, elements.prolongation, self._flat, held_corners
+            self.matrix, coarse_matrix, elements.prolongation, self._held, held_corners, modes
         )
 
     def load(self, temperature: FloatArray, reference: float) -> FloatArray:
@@ -99,14 +112,15 @@ class ElasticSetup:
         start : (n_nodes, 3) displacement of a neighbouring temperature field [m]
         """
         load = self.load(temperature, reference)
-        right = np.where(self.fixed, 0.0, load).ravel()
-        first = None if start is None else start.ravel()
+        right = np.where(self._held, 0.0, load.ravel())
+        first = None if start is None else np.where(self._held, 0.0, start.ravel())
         solution = conjugate_gradient(self.matrix, right, self.multigrid, start=first, tolerance=tolerance)
-        values = solution.values.reshape(-1, 3)
+        values = self.free.onto_supports(solution.values.reshape(-1, 3))
         rows, columns, blocks = self._held_rows
         forces = np.zeros_like(values)
         np.add.at(forces, rows, np.einsum("kij,kj->ki", blocks, values[columns]))
-        reactions = np.where(self.fixed, forces - load, 0.0)
+        reactions = np.where(self._held.reshape(-1, 3), forces - load, 0.0)
+        reactions += self.free.reactions(load)
         return Displacement(values, reactions, solution.residuals)
 
 
@@ -134,29 +148,6 @@ def check_elastic(
     return materials
 
 
-def three_two_one(points: FloatArray, nodes: IndexArray) -> list[tuple[int, tuple[int, ...]]]:
-    """Statically determinate support on three of ``nodes`` (k,): (node, held directions) three times.
-
-    points : (n_nodes, 3) [m]. The first node is held in x, y and z, the second across its line to the first,
-    the third across the plane of the three. Raises ElasticError if all nodes lie on one line.
-    """
-    at = points[nodes]
-    first = int(np.argmax(np.linalg.norm(at - at.mean(axis=0), axis=1)))
-    second = int(np.argmax(np.linalg.norm(at - at[first], axis=1)))
-    a, b = at[first], at[second]
-    normals = np.cross(b - a, at - a)
-    third = int(np.argmax(np.linalg.norm(normals, axis=1)))
-    if np.linalg.norm(normals[third]) <= 1e-9 * float((b - a) @ (b - a)):
-        raise ElasticError("support surface: all its nodes lie on one line; choose a surface with an extent")
-    along = int(np.argmax(np.abs(b - a)))
-    across = int(np.argmax(np.abs(normals[third])))
-    return [
-        (int(nodes[first]), (0, 1, 2)),
-        (int(nodes[second]), tuple(i for i in range(3) if i != along)),
-        (int(nodes[third]), (across,)),
-    ]
-
-
 def rigid_motion(
     points: FloatArray, displacement: FloatArray, weights: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -174,17 +165,6 @@ def rigid_motion(
     matrix = (basis * root[:, :, None]).reshape(-1, 6)
     motion = np.asarray(np.linalg.lstsq(matrix, (displacement * root).ravel())[0])
     return centre, motion[:3], motion[3:]
-
-
-def _check_held(elements: FiniteElements, fixed: BoolArray) -> None:
-    mesh = elements.mesh
-    piece = elements.piece_of_node
-    held = np.bincount(piece, fixed.sum(axis=1), minlength=int(piece.max()) + 1)
-    for number in np.flatnonzero(held < 6):
-        names = [b for b, cells in mesh.bodies.items() if (elements.components[cells] == number).any()]
-        raise ElasticError(
-            f"body {', '.join(names)} is held in {held[number]:.0f} directions; a piece needs at least six"
-        )
 
 
 def _rows_of(

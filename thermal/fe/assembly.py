@@ -1,9 +1,8 @@
 """Compiled assembly of matrices row by row, for any cell, from tables of its shape functions.
 
-Cells are taken in blocks: their element matrices first, one cell beside the other, then every row of the
-matrix gathers its share. Rows and cells are independent of each other and every sum has one order, so the
-result does not depend on the number of threads (NUMBA_NUM_THREADS). Everything here takes numbers and arrays;
-names and checks live in thermal.fe.elements.
+Each row of the matrix gathers from the cells around its node, so rows are independent of each other, every
+sum has one order, and the result does not depend on the number of threads (NUMBA_NUM_THREADS). Everything
+here takes numbers and arrays; names and checks live in thermal.fe.levels and thermal.fe.elements.
 
 Index names: row = node, e = cell, a b = local nodes, q = quadrature point, i j k = directions.
 """
@@ -12,111 +11,46 @@ import numpy as np
 from numba import njit, prange
 from numpy.typing import NDArray
 
+from thermal.fe.kernels import Integers, Offsets
+
 Floats = NDArray[np.float64]
-Integers = NDArray[np.int32]
-Offsets = NDArray[np.uint16]
 
-BLOCK = 4_000_000
-"""Numbers in the element matrices of one block of cells."""
+THREADED = 32_768
+"""Nodes or cells from which on the work is spread over NUMBA_NUM_THREADS threads."""
 
-ROWS = 8192
-"""Rows of the matrix that one thread takes at a time."""
-
-
-@njit(cache=True)
-def cells_of_nodes(cells: Integers, n_nodes: int) -> tuple[Integers, Integers]:
-    """Start (n_nodes + 1,) and list (cells.size,) of entries ``cell * n_local + local`` around every node."""
-    n_cells, n_local = cells.shape
-    start = np.zeros(n_nodes + 1, dtype=np.int32)
-    for e in range(n_cells):
-        for a in range(n_local):
-            start[cells[e, a] + 1] += 1
-    for row in range(n_nodes):
-        start[row + 1] += start[row]
-    fill = start[:-1].copy()
-    around = np.empty(start[-1], dtype=np.int32)
-    for e in range(n_cells):
-        for a in range(n_local):
-            node = cells[e, a]
-            around[fill[node]] = e * n_local + a
-            fill[node] += 1
-    return start, around
-
-
-@njit(cache=True, parallel=True)
-def pattern(cells: Integers, start: Integers, around: Integers) -> tuple[Integers, Integers, Offsets]:
-    """``indptr`` and sorted ``indices`` of the matrix that couples all nodes of a cell.
-
-    The third array (n_cells, n_local, n_local) is the place of each pair of local nodes in the row of the
-    first of them.
-    """
-    n_nodes = len(start) - 1
-    n_local = cells.shape[1]
-    n_chunks = (n_nodes + ROWS - 1) // ROWS
-    counts = np.zeros(n_nodes + 1, dtype=np.int32)
-    for chunk in prange(n_chunks):
-        seen = np.full(n_nodes, -1, dtype=np.int32)
-        for row in range(chunk * ROWS, min(n_nodes, (chunk + 1) * ROWS)):
-            for at in range(start[row], start[row + 1]):
-                e = around[at] // n_local
-                for b in range(n_local):
-                    column = cells[e, b]
-                    if seen[column] != row:
-                        seen[column] = row
-                        counts[row + 1] += 1
-    indptr = np.cumsum(counts).astype(np.int32)
-    indices = np.empty(indptr[-1], dtype=np.int32)
-    offsets = np.empty((len(cells), n_local, n_local), dtype=np.uint16)
-    for chunk in prange(n_chunks):
-        place = np.full(n_nodes, -1, dtype=np.int32)
-        for row in range(chunk * ROWS, min(n_nodes, (chunk + 1) * ROWS)):
-            first, end = indptr[row], indptr[row]
-            for at in range(start[row], start[row + 1]):
-                e = around[at] // n_local
-                for b in range(n_local):
-                    column = cells[e, b]
-                    if place[column] < first:
-                        place[column] = end
-                        indices[end] = column
-                        end += 1
-            indices[first:end].sort()
-            for at in range(first, end):
-                place[indices[at]] = at
-            for at in range(start[row], start[row + 1]):
-                e = around[at] // n_local
-                a = around[at] - e * n_local
-                for b in range(n_local):
-                    offsets[e, a, b] = place[cells[e, b]] - first
-    return indptr, indices, offsets
+CHUNK = 4096
+"""Rows or cells that one thread takes at a time."""
 
 
 @njit(cache=True)
 def _jacobian(points: Floats, nodes: Integers, slopes: Floats, inverse: Floats) -> float:
     """Fill the 3x3 ``inverse`` of dx/dxi at one point and return the determinant; slopes : (n_local, 3)."""
-    jac = np.zeros((3, 3))
+    xr, xs, xt, yr, ys, yt, zr, zs, zt = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for a in range(len(slopes)):
-        for i in range(3):
-            for j in range(3):
-                jac[i, j] += points[nodes[a], i] * slopes[a, j]
-    c00 = jac[1, 1] * jac[2, 2] - jac[1, 2] * jac[2, 1]
-    c01 = jac[1, 2] * jac[2, 0] - jac[1, 0] * jac[2, 2]
-    c02 = jac[1, 0] * jac[2, 1] - jac[1, 1] * jac[2, 0]
-    det = float(jac[0, 0] * c00 + jac[0, 1] * c01 + jac[0, 2] * c02)
+        x, y, z = points[nodes[a], 0], points[nodes[a], 1], points[nodes[a], 2]
+        r, s, t = slopes[a, 0], slopes[a, 1], slopes[a, 2]
+        xr += x * r
+        xs += x * s
+        xt += x * t
+        yr += y * r
+        ys += y * s
+        yt += y * t
+        zr += z * r
+        zs += z * s
+        zt += z * t
+    c0, c1, c2 = ys * zt - yt * zs, yt * zr - yr * zt, yr * zs - ys * zr
+    det = xr * c0 + xs * c1 + xt * c2
     if det == 0.0:
         return det
-    inverse[0, 0] = c00 / det
-    inverse[1, 0] = c01 / det
-    inverse[2, 0] = c02 / det
-    inverse[0, 1] = (jac[0, 2] * jac[2, 1] - jac[0, 1] * jac[2, 2]) / det
-    inverse[1, 1] = (jac[0, 0] * jac[2, 2] - jac[0, 2] * jac[2, 0]) / det
-    inverse[2, 1] = (jac[0, 1] * jac[2, 0] - jac[0, 0] * jac[2, 1]) / det
-    inverse[0, 2] = (jac[0, 1] * jac[1, 2] - jac[0, 2] * jac[1, 1]) / det
-    inverse[1, 2] = (jac[0, 2] * jac[1, 0] - jac[0, 0] * jac[1, 2]) / det
-    inverse[2, 2] = (jac[0, 0] * jac[1, 1] - jac[0, 1] * jac[1, 0]) / det
+    one = 1.0 / det
+    inverse[0, 0], inverse[1, 0], inverse[2, 0] = c0 * one, c1 * one, c2 * one
+    inverse[0, 1], inverse[0, 2] = (xt * zs - xs * zt) * one, (xs * yt - xt * ys) * one
+    inverse[1, 1], inverse[1, 2] = (xr * zt - xt * zr) * one, (xt * yr - xr * yt) * one
+    inverse[2, 1], inverse[2, 2] = (xs * zr - xr * zs) * one, (xr * ys - xs * yr) * one
     return det
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def cell_geometry(points: Floats, cells: Integers, slopes: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """Inverse Jacobians dxi/dx (n_cells, n_q, 3, 3) [1/m] and volume weights (n_cells, n_q) [m3].
 
@@ -125,18 +59,18 @@ def cell_geometry(points: Floats, cells: Integers, slopes: Floats, weights: Floa
     n_q = len(weights)
     inverse = np.zeros((len(cells), n_q, 3, 3))
     volumes = np.empty((len(cells), n_q))
-    for e in prange(len(cells)):
+    for e in range(len(cells)):
         for q in range(n_q):
             volumes[e, q] = weights[q] * _jacobian(points, cells[e], slopes[q], inverse[e, q])
     return inverse, volumes
 
 
-@njit(cache=True, parallel=True)
+@njit(cache=True)
 def cell_volumes(points: Floats, cells: Integers, slopes: Floats, weights: Floats) -> Floats:
     """Volume weights (n_cells, n_q) [m3]; arguments as in `cell_geometry`."""
     volumes = np.empty((len(cells), len(weights)))
-    for e in prange(len(cells)):
-        inverse = np.empty((3, 3))
+    inverse = np.empty((3, 3))
+    for e in range(len(cells)):
         for q in range(len(weights)):
             volumes[e, q] = weights[q] * _jacobian(points, cells[e], slopes[q], inverse)
     return volumes
@@ -151,7 +85,65 @@ def _gradients(inverse: Floats, slopes: Floats, out: Floats) -> None:
             out[i, b] = c0 * slopes[0, b] + c1 * slopes[1, b] + c2 * slopes[2, b]
 
 
+@njit(cache=True)
+def _conduction_rows(
+    first: int,
+    last: int,
+    data: Floats,
+    indptr: Integers,
+    start: Integers,
+    around: Integers,
+    offsets: Offsets,
+    slopes: Floats,
+    inverse: Floats,
+    volumes: Floats,
+    conductivity: Floats,
+) -> None:
+    """Fill rows first to last of the values (nnz,); see `conduction_rows`."""
+    n_q, _, n_local = slopes.shape
+    sums = np.empty(n_local)
+    for row in range(first, last):
+        for at in range(start[row], start[row + 1]):
+            e = around[at] // n_local
+            a = around[at] - e * n_local
+            sums[:] = 0.0
+            for q in range(n_q):
+                factor = conductivity[e, q] * volumes[e, q]
+                to = inverse[e, q]
+                r, s, t = slopes[q, 0, a], slopes[q, 1, a], slopes[q, 2, a]
+                x = factor * (to[0, 0] * r + to[1, 0] * s + to[2, 0] * t)
+                y = factor * (to[0, 1] * r + to[1, 1] * s + to[2, 1] * t)
+                z = factor * (to[0, 2] * r + to[1, 2] * s + to[2, 2] * t)
+                r = to[0, 0] * x + to[0, 1] * y + to[0, 2] * z
+                s = to[1, 0] * x + to[1, 1] * y + to[1, 2] * z
+                t = to[2, 0] * x + to[2, 1] * y + to[2, 2] * z
+                for b in range(n_local):
+                    sums[b] += r * slopes[q, 0, b] + s * slopes[q, 1, b] + t * slopes[q, 2, b]
+            for b in range(n_local):
+                data[indptr[row] + offsets[e, a, b]] += sums[b]
+
+
 @njit(cache=True, parallel=True)
+def _conduction_threads(
+    data: Floats,
+    indptr: Integers,
+    start: Integers,
+    around: Integers,
+    offsets: Offsets,
+    slopes: Floats,
+    inverse: Floats,
+    volumes: Floats,
+    conductivity: Floats,
+) -> None:
+    """All rows of `_conduction_rows`, in parallel."""
+    n = len(indptr) - 1
+    for chunk in prange((n + CHUNK - 1) // CHUNK):
+        first, last = chunk * CHUNK, min(n, (chunk + 1) * CHUNK)
+        _conduction_rows(
+            first, last, data, indptr, start, around, offsets, slopes, inverse, volumes, conductivity
+        )
+
+
 def conduction_rows(
     indptr: Integers,
     start: Integers,
@@ -167,41 +159,74 @@ def conduction_rows(
     slopes : (n_q, 3, n_local) reference gradients; inverse, volumes : see `cell_geometry`
     conductivity : (n_cells, n_q) [W/(m K)]
     """
-    n_nodes = len(start) - 1
-    n_q, _, n_local = slopes.shape
-    n_cells = len(offsets)
     data = np.zeros(indptr[-1])
-    block = max(1, min(n_cells, BLOCK // (n_local * n_local)))
-    part = np.empty((block, n_local, n_local))
-    fill = start[:-1].copy()
-    for first in range(0, n_cells, block):
-        last = min(n_cells, first + block)
-        for e in prange(first, last):
-            gradients = np.empty((3, n_local))
-            matrix = part[e - first]
-            matrix[:] = 0.0
-            for q in range(n_q):
-                _gradients(inverse[e, q], slopes[q], gradients)
-                factor = conductivity[e, q] * volumes[e, q]
-                for a in range(n_local):
-                    g0 = factor * gradients[0, a]
-                    g1 = factor * gradients[1, a]
-                    g2 = factor * gradients[2, a]
-                    for b in range(n_local):
-                        matrix[a, b] += g0 * gradients[0, b] + g1 * gradients[1, b] + g2 * gradients[2, b]
-        for row in prange(n_nodes):
-            at = fill[row]
-            while at < start[row + 1] and around[at] < last * n_local:
-                e = around[at] // n_local
-                a = around[at] - e * n_local
-                for b in range(n_local):
-                    data[indptr[row] + offsets[e, a, b]] += part[e - first, a, b]
-                at += 1
-            fill[row] = at
+    n = len(indptr) - 1
+    if n < THREADED:
+        _conduction_rows(0, n, data, indptr, start, around, offsets, slopes, inverse, volumes, conductivity)
+    else:
+        _conduction_threads(data, indptr, start, around, offsets, slopes, inverse, volumes, conductivity)
     return data
 
 
+@njit(cache=True)
+def _elasticity_rows(
+    first: int,
+    last: int,
+    data: Floats,
+    indptr: Integers,
+    start: Integers,
+    around: Integers,
+    offsets: Offsets,
+    slopes: Floats,
+    inverse: Floats,
+    volumes: Floats,
+    lame: Floats,
+) -> None:
+    """Fill rows first to last of the blocks (nnz, 3, 3); see `elasticity_rows`."""
+    n_q, _, n_local = slopes.shape
+    gradients = np.empty((3, n_local))
+    sums = np.empty((3, 3, n_local))
+    for row in range(first, last):
+        for at in range(start[row], start[row + 1]):
+            e = around[at] // n_local
+            a = around[at] - e * n_local
+            sums[:] = 0.0
+            for q in range(n_q):
+                _gradients(inverse[e, q], slopes[q], gradients)
+                for i in range(3):
+                    factor = volumes[e, q] * gradients[i, a]
+                    for j in range(3):
+                        for b in range(n_local):
+                            sums[i, j, b] += factor * gradients[j, b]
+            lam, mu = lame[e, 0], lame[e, 1]
+            for b in range(n_local):
+                block = data[indptr[row] + offsets[e, a, b]]
+                same = mu * (sums[0, 0, b] + sums[1, 1, b] + sums[2, 2, b])
+                for i in range(3):
+                    block[i, i] += same
+                    for j in range(3):
+                        block[i, j] += lam * sums[i, j, b] + mu * sums[j, i, b]
+
+
 @njit(cache=True, parallel=True)
+def _elasticity_threads(
+    data: Floats,
+    indptr: Integers,
+    start: Integers,
+    around: Integers,
+    offsets: Offsets,
+    slopes: Floats,
+    inverse: Floats,
+    volumes: Floats,
+    lame: Floats,
+) -> None:
+    """All rows of `_elasticity_rows`, in parallel."""
+    n = len(indptr) - 1
+    for chunk in prange((n + CHUNK - 1) // CHUNK):
+        first, last = chunk * CHUNK, min(n, (chunk + 1) * CHUNK)
+        _elasticity_rows(first, last, data, indptr, start, around, offsets, slopes, inverse, volumes, lame)
+
+
 def elasticity_rows(
     indptr: Integers,
     start: Integers,
@@ -214,52 +239,14 @@ def elasticity_rows(
 ) -> Floats:
     """Blocks (nnz, 3, 3) [N/m] of isotropic linear elasticity; lame : (n_cells, 2) lambda and mu [Pa].
 
-    The other arguments are those of `conduction_rows`. A cell keeps int grad_i N_a grad_j N_b for b <= a.
+    The other arguments are those of `conduction_rows`.
     """
-    n_nodes = len(start) - 1
-    n_q, _, n_local = slopes.shape
-    n_cells = len(offsets)
     data = np.zeros((indptr[-1], 3, 3))
-    block = max(1, min(n_cells, BLOCK // (9 * n_local * n_local)))
-    part = np.empty((block, n_local, 3, 3, n_local))
-    fill = start[:-1].copy()
-    for first in range(0, n_cells, block):
-        last = min(n_cells, first + block)
-        for e in prange(first, last):
-            gradients = np.empty((3, n_local))
-            products = part[e - first]
-            products[:] = 0.0
-            for q in range(n_q):
-                _gradients(inverse[e, q], slopes[q], gradients)
-                for a in range(n_local):
-                    for i in range(3):
-                        factor = volumes[e, q] * gradients[i, a]
-                        for j in range(3):
-                            for b in range(a + 1):
-                                products[a, i, j, b] += factor * gradients[j, b]
-        for row in prange(n_nodes):
-            at = fill[row]
-            while at < start[row + 1] and around[at] < last * n_local:
-                e = around[at] // n_local
-                a = around[at] - e * n_local
-                lam, mu = lame[e, 0], lame[e, 1]
-                products = part[e - first]
-                for b in range(n_local):
-                    block_ab = data[indptr[row] + offsets[e, a, b]]
-                    if b <= a:
-                        trace = products[a, 0, 0, b] + products[a, 1, 1, b] + products[a, 2, 2, b]
-                        for i in range(3):
-                            block_ab[i, i] += mu * trace
-                            for j in range(3):
-                                block_ab[i, j] += lam * products[a, i, j, b] + mu * products[a, j, i, b]
-                    else:
-                        trace = products[b, 0, 0, a] + products[b, 1, 1, a] + products[b, 2, 2, a]
-                        for i in range(3):
-                            block_ab[i, i] += mu * trace
-                            for j in range(3):
-                                block_ab[i, j] += lam * products[b, j, i, a] + mu * products[b, i, j, a]
-                at += 1
-            fill[row] = at
+    n = len(indptr) - 1
+    if n < THREADED:
+        _elasticity_rows(0, n, data, indptr, start, around, offsets, slopes, inverse, volumes, lame)
+    else:
+        _elasticity_threads(data, indptr, start, around, offsets, slopes, inverse, volumes, lame)
     return data
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from thermal.fe import assembly
+from thermal.fe import assembly, kernels
 from thermal.fe.reference import Rule
 from thermal.fe.shapes import CellShape, FloatArray, IndexArray
 
@@ -33,7 +33,7 @@ class Level:
     """(n_cells, n_q) volume weights [m3]."""
     start: IndexArray
     around: IndexArray
-    offsets: assembly.Offsets
+    offsets: kernels.Offsets
     indptr: IndexArray
     indices: IndexArray
 
@@ -46,8 +46,8 @@ class Level:
         points : (n_nodes, 3) [m]; values, gradients : (n_q, n_local) and (n_q, n_local, 3) of ``rule``
         """
         inverse, volumes = assembly.cell_geometry(points, cells, gradients, rule.weights)
-        start, around = assembly.cells_of_nodes(cells, len(points))
-        indptr, indices, offsets = assembly.pattern(cells, start, around)
+        start, around = kernels.cells_of_nodes(cells, len(points))
+        indptr, indices, offsets = kernels.pattern(cells, start, around)
         slopes = np.ascontiguousarray(np.swapaxes(gradients, 1, 2))
         return cls(
             len(points), cells, values, slopes, inverse, volumes, start, around, offsets, indptr, indices
@@ -135,16 +135,15 @@ def prolongation(
     around it: a field that is linear in space stays so, and a rigid rotation stays rigid on curved cells.
     """
     nodes, cell, local = _largest_cell_around(cells, coarse.volumes.sum(axis=1), shape)
-    between = shape.nodes[local]
-    corner_points = points[corners][coarse.cells[cell]]
-    weights = shape.corner_values(between)
-    off = points[nodes] - np.einsum("nc,nci->ni", weights, corner_points)
-    slopes = shape.corner_gradients(between)
-    jacobian = np.einsum("ncj,nci->nij", slopes, corner_points)
-    size = np.linalg.norm(jacobian, axis=(1, 2))
-    curved = (np.linalg.norm(off, axis=1) > STRAIGHT * size) & (np.linalg.det(jacobian) > 0.0)
-    moved = np.linalg.solve(jacobian[curved], off[curved][:, :, None])[:, :, 0]
-    weights[curved] += np.einsum("ncj,nj->nc", slopes[curved], moved)
+    weights = shape.corner_values(shape.nodes)[local]
+    ends = points[corners][coarse.cells[cell]]
+    off = points[nodes] - np.einsum("nc,nci->ni", weights, ends)
+    curved = np.abs(off).max(axis=1) > STRAIGHT * np.abs(ends - ends[:, :1]).max(axis=(1, 2))
+    slopes = shape.corner_gradients(shape.nodes)[local[curved]]
+    jacobian = np.einsum("ncj,nci->nij", slopes, ends[curved])
+    sound = np.linalg.det(jacobian) > 0.0
+    moved = np.linalg.solve(jacobian[sound], off[curved][sound][:, :, None])[:, :, 0]
+    weights[np.flatnonzero(curved)[sound]] += np.einsum("ncj,nj->nc", slopes[sound], moved)
     kept = weights != 0.0
     rows = np.concatenate([corners, np.repeat(nodes, kept.sum(axis=1))])
     columns = np.concatenate([np.arange(len(corners)), coarse.cells[cell][kept]])
@@ -157,9 +156,14 @@ def _largest_cell_around(
     cells: IndexArray, volumes: FloatArray, shape: CellShape
 ) -> tuple[IndexArray, IndexArray, IndexArray]:
     """Nodes that are no corners, the largest cell around each, and their local number in it."""
-    n_corners = shape.n_corners
-    inner = cells[:, n_corners:].ravel()
-    by_size = np.argsort(-np.repeat(volumes, cells.shape[1] - n_corners), kind="stable")
-    nodes, first = np.unique(inner[by_size], return_index=True)
-    cell, local = np.divmod(by_size[first], cells.shape[1] - n_corners)
-    return nodes, cell.astype(np.int32), (local + n_corners).astype(np.int32)
+    order = np.argsort(volumes, kind="stable")
+    inner = cells[order, shape.n_corners :]
+    largest = np.full(int(cells.max()) + 1, -1)
+    local = np.zeros(len(largest), dtype=np.int32)
+    rank = np.arange(len(cells))
+    for column in inner.T:
+        np.maximum.at(largest, column, rank)
+    for number, column in enumerate(inner.T, start=shape.n_corners):
+        local[column[largest[column] == rank]] = number
+    nodes = np.flatnonzero(largest >= 0).astype(np.int32)
+    return nodes, order[largest[nodes]].astype(np.int32), local[nodes]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import permutations
 from typing import Any, Literal
 
@@ -86,12 +87,24 @@ class FacetTable:
 
     keys : (n,) one number per set of corners, ascending
     cells : (n,) cell that owns the side
-    nodes : (n, n_local) nodes, normal out of that cell
+    sides : (n,) number of the side in its cell
+    mesh_cells : (n_cells, n_local) nodes of all cells
     """
 
     keys: NDArray[np.int64]
     cells: IndexArray
-    nodes: IndexArray
+    sides: IndexArray
+    mesh_cells: IndexArray
+
+    def nodes_at(self, rows: NDArray[np.integer[Any]]) -> IndexArray:
+        """(k, n_local) nodes of k rows of the table, normal out of the cell that owns the side."""
+        local = cell_shape(self.mesh_cells).sides[self.sides[rows]]
+        return np.take_along_axis(self.mesh_cells[self.cells[rows]], local, axis=1)
+
+    @cached_property
+    def nodes(self) -> IndexArray:
+        """(n, n_local) nodes of every row; see `nodes_at`."""
+        return self.nodes_at(np.arange(len(self.keys)))
 
     @property
     def on_boundary(self) -> NDArray[np.bool_]:
@@ -112,11 +125,11 @@ def facet_keys(corners: IndexArray, n_nodes: int) -> NDArray[np.int64]:
 def facet_table(cells: IndexArray, n_nodes: int) -> FacetTable:
     """Collect the sides of (n, n_local) ``cells``; see FacetTable. ``n_nodes`` below 2 million."""
     shape = cell_shape(cells)
-    sides = cells[:, shape.sides].reshape(-1, shape.side.n_nodes)
-    keys = facet_keys(sides[:, : shape.side.n_corners], n_nodes)
+    corners = cells[:, shape.sides[:, : shape.side.n_corners]].reshape(-1, shape.side.n_corners)
+    keys = facet_keys(corners, n_nodes)
     order = np.argsort(keys, kind="stable")
-    owners = (order // len(shape.sides)).astype(np.int32)
-    return FacetTable(keys[order], owners, sides[order].astype(np.int32))
+    owners, sides = np.divmod(order.astype(np.int32), len(shape.sides))
+    return FacetTable(keys[order], owners, sides, cells)
 
 
 def named_mesh(
@@ -146,7 +159,7 @@ def named_mesh(
                 f"surface {name!r}: {lost} of {len(keys)} facets are no side of any cell; "
                 "take surfaces and cells from the same mesh"
             )
-        surfaces[name] = table.nodes[at]
+        surfaces[name] = table.nodes_at(at).astype(np.int32)
     as_index = {name: np.asarray(index, dtype=np.int32) for name, index in bodies.items()}
     return NamedMesh(np.ascontiguousarray(points), cells.astype(np.int32), as_index, surfaces)
 
@@ -225,7 +238,7 @@ def box_mesh(
     used, packed = np.unique(on_grid, return_inverse=True)
     cells: IndexArray = packed.reshape(on_grid.shape).astype(np.int32)
     table = facet_table(cells, len(used))
-    outer = table.nodes[table.on_boundary]
+    outer = table.nodes_at(np.flatnonzero(table.on_boundary))
     grid = np.stack(np.unravel_index(used[outer], steps + 1), axis=-1)
     surfaces = {}
     for i, axis in enumerate("xyz"):

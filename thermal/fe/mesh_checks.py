@@ -68,7 +68,7 @@ def _check_bodies(mesh: NamedMesh) -> None:
             f"{np.count_nonzero(owners == 0)} cells are in no body and {np.count_nonzero(owners > 1)} in "
             "several; give every cell exactly one"
         )
-    loose = len(mesh.points) - len(np.unique(mesh.cells))
+    loose = np.count_nonzero(np.bincount(mesh.cells.ravel(), minlength=len(mesh.points)) == 0)
     if loose:
         raise MeshError(f"{loose} nodes belong to no cell; remove them and renumber")
 
@@ -82,10 +82,10 @@ def _check_surfaces(mesh: NamedMesh) -> frozenset[str]:
     for name, nodes in mesh.surfaces.items():
         at = np.searchsorted(table.keys, facet_keys(nodes[:, :n_corners], len(mesh.points)))
         at = np.minimum(at, len(table.keys) - 1)
-        outward = _same_side(nodes, table.nodes[at], n_corners)
+        outward = _same_side(nodes, table.nodes_at(at), n_corners)
         inner = ~on_boundary[at]
         second = np.minimum(at + 1, len(table.keys) - 1)
-        outward |= inner & _same_side(nodes, table.nodes[second], n_corners)
+        outward |= inner & _same_side(nodes, table.nodes_at(second), n_corners)
         if not outward.all():
             raise MeshError(
                 f"surface {name!r}: {np.count_nonzero(~outward)} of {len(nodes)} facets are no side of a cell"
@@ -98,7 +98,7 @@ def _check_surfaces(mesh: NamedMesh) -> frozenset[str]:
         np.add.at(covered, at, 1)
     if (covered > 1).any():
         raise MeshError(f"{np.count_nonzero(covered > 1)} facets belong to two surfaces; assign each once")
-    open_facets = table.nodes[on_boundary & (covered == 0)]
+    open_facets = table.nodes_at(np.flatnonzero(on_boundary & (covered == 0)))
     if len(open_facets):
         centre = mesh.points[open_facets[0, :n_corners]].mean(axis=0)
         raise MeshError(

@@ -1,8 +1,6 @@
-"""Linear solvers: two-level multigrid as a preconditioner, conjugate gradients, GMRES, and a direct check.
+"""Linear solvers: conjugate gradients and GMRES round the multigrid, supports, and a direct check.
 
-The second-order space is smoothed by a Chebyshev polynomial in the (block) Jacobi-scaled matrix; the linear
-space on the same mesh is factorised. Sources: Adams, Brezina, Hu, Tuminaro, J. Comput. Phys. 188 (2003) 593
-for the smoother; Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., algorithms 9.1 and 9.6.
+Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., algorithms 9.1 and 9.6.
 """
 
 from collections.abc import Callable
@@ -10,18 +8,27 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from thermal.fe.mesh import FloatArray
+from thermal.fe.multigrid import BoolArray, LowRank, Matrix, Product, TwoLevelMultigrid
+from thermal.fe.shapes import FloatArray
 
-Matrix = sparse.csr_array | sparse.bsr_array
+__all__ = [
+    "BoolArray",
+    "LinearSolution",
+    "LowRank",
+    "Matrix",
+    "NotConverged",
+    "Operator",
+    "TwoLevelMultigrid",
+    "conjugate_gradient",
+    "constrain",
+    "gmres",
+    "solve_direct",
+]
+
 M = TypeVar("M", sparse.csr_array, sparse.bsr_array)
-SMOOTHED_RANGE = 10.0
-"""Largest eigenvalue over the smallest one that the smoother damps; iterations hardly depend on it."""
-
-BoolArray = NDArray[np.bool_]
 Operator = Callable[[FloatArray], FloatArray]
 
 
@@ -44,17 +51,6 @@ class LinearSolution:
     def iterations(self) -> int:
         """Number of iterations made."""
         return len(self.residuals) - 1
-
-
-@dataclass(frozen=True)
-class LowRank:
-    """The sum of left_k right_k^T over k, as two (n, k) sparse matrices."""
-
-    left: sparse.csc_array
-    right: sparse.csc_array
-
-    def __matmul__(self, x: FloatArray) -> FloatArray:
-        return np.asarray(self.left @ (self.right.T @ x))
 
 
 def constrain(matrix: M, fixed: BoolArray) -> M:
@@ -84,125 +80,6 @@ def _constrain_blocks(matrix: sparse.bsr_array, fixed: BoolArray) -> sparse.bsr_
     return sparse.bsr_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
-class TwoLevelMultigrid:
-    """One symmetric V-cycle between a second-order matrix and the matrix of its linear sub-space.
-
-    fine, coarse : constrained matrices (see `constrain`), 1 or 3 unknowns per node
-    prolongation : (n_nodes, n_corners) from FiniteElements
-    fixed, fixed_coarse : unknowns held at zero in the two spaces
-    degree : of the smoothing polynomial, before and after the linear space
-
-    A small-rank part of the operator (`set_low_rank`) enters both levels; the cycle is then not symmetric.
-    """
-
-    def __init__(
-        self,
-        fine: Matrix,
-        coarse: Matrix,
-        prolongation: sparse.csr_array,
-        fixed: BoolArray,
-        fixed_coarse: BoolArray,
-        degree: int = 3,
-    ) -> None:
-        self._fine = fine
-        self._down = sparse.csr_array(prolongation.T)
-        self._up = prolongation
-        self._block = fine.shape[0] // prolongation.shape[0]
-        self._free = ~fixed
-        self._free_coarse = ~fixed_coarse
-        self._inverse = _inverse_diagonal(fine)
-        self._degree = degree
-        self._largest = 1.05 * _largest_eigenvalue(fine, self._inverse)
-        self._factor = splu(
-            sparse.csc_array(coarse), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )  # fmt: skip
-        self._low_rank: LowRank | None = None
-        self._correction: tuple[FloatArray, FloatArray] | None = None
-
-    def set_low_rank(self, low_rank: LowRank | None) -> None:
-        """Replace the small-rank part; its coarse form is inverted by the Woodbury identity."""
-        self._low_rank, self._correction = low_rank, None
-        if low_rank is None:
-            return
-        left = (self._down @ low_rank.left).toarray() * self._free_coarse[:, None]
-        right = (self._down @ low_rank.right).toarray() * self._free_coarse[:, None]
-        solved = self._factor.solve(left)
-        inner = np.eye(left.shape[1]) + right.T @ solved
-        self._correction = (solved, np.linalg.solve(inner, right.T))
-
-    def __call__(self, residual: FloatArray) -> FloatArray:
-        """Apply the cycle to a residual (n,)."""
-        x = self._smooth(np.zeros_like(residual), residual)
-        x += self._coarse_correction(residual - self._apply(x))
-        return self._smooth(x, residual - self._apply(x))
-
-    def _apply(self, x: FloatArray) -> FloatArray:
-        y = self._fine @ x
-        return y if self._low_rank is None else y + self._low_rank @ x
-
-    def _coarse_correction(self, residual: FloatArray) -> FloatArray:
-        shape = (-1, self._block)
-        coarse = (self._down @ residual.reshape(shape)).ravel() * self._free_coarse
-        y = self._factor.solve(coarse)
-        if self._correction is not None:
-            solved, inner = self._correction
-            y -= solved @ (inner @ y)
-        return np.asarray((self._up @ y.reshape(shape)).ravel() * self._free)
-
-    def _smooth(self, x: FloatArray, residual: FloatArray) -> FloatArray:
-        """Chebyshev iteration on the upper part of the spectrum; ``residual`` belongs to ``x``."""
-        upper = self._largest
-        lower = upper / SMOOTHED_RANGE
-        centre, half = 0.5 * (upper + lower), 0.5 * (upper - lower)
-        rho = half / centre
-        step = (self._inverse @ residual) / centre
-        x = x + step
-        for _ in range(self._degree - 1):
-            residual = residual - self._apply(step)
-            following = 1.0 / (2.0 * centre / half - rho)
-            step = following * rho * step + (2.0 * following / half) * (self._inverse @ residual)
-            rho = following
-            x += step
-        return x
-
-
-def _inverse_diagonal(matrix: Matrix) -> Matrix:
-    """Inverse of the diagonal, or of the 3x3 diagonal blocks."""
-    if not isinstance(matrix, sparse.bsr_array):
-        return sparse.csr_array(sparse.diags_array(1.0 / matrix.diagonal()))
-    n = len(matrix.indptr) - 1
-    rows = np.repeat(np.arange(n), np.diff(matrix.indptr))
-    blocks = np.linalg.inv(matrix.data[rows == matrix.indices])
-    return sparse.bsr_array((blocks, np.arange(n), np.arange(n + 1)), shape=matrix.shape)
-
-
-def _largest_eigenvalue(matrix: Matrix, inverse: Matrix, steps: int = 12) -> float:
-    """Largest eigenvalue of inverse @ matrix from a short Lanczos run with a fixed start."""
-    n = matrix.shape[0]
-    v = np.cos(1.0 + np.arange(n) * 2.399963)
-    w = inverse @ v
-    beta = np.sqrt(v @ w)
-    v, w = v / beta, w / beta
-    last = np.zeros(n)
-    alphas: list[float] = []
-    betas: list[float] = []
-    for _ in range(min(steps, n)):
-        u = matrix @ w - (betas[-1] * last if betas else 0.0)
-        alpha = float(u @ w)
-        u -= alpha * v
-        z = inverse @ u
-        alphas.append(alpha)
-        beta = float(np.sqrt(max(u @ z, 0.0)))
-        if beta < 1e-10 * alpha:
-            break
-        betas.append(beta)
-        last, v, w = v, u / beta, z / beta
-    k = len(alphas)
-    small = np.diag(alphas) + np.diag(betas[: k - 1], 1) + np.diag(betas[: k - 1], -1)
-    return float(np.linalg.eigvalsh(small)[-1])
-
-
 def conjugate_gradient(
     matrix: Matrix,
     load: FloatArray,
@@ -216,11 +93,12 @@ def conjugate_gradient(
 
     Raises NotConverged with the residual history after ``max_iterations``.
     """
+    product_of = Product(matrix)
     x = np.zeros_like(load) if start is None else start.copy()
     scale = float(np.linalg.norm(load))
     if scale == 0.0:
         return LinearSolution(np.zeros_like(load), (0.0,))
-    residual = load - matrix @ x
+    residual = load - product_of @ x
     residuals = [float(np.linalg.norm(residual)) / scale]
     direction = np.zeros_like(load)
     last = 1.0
@@ -231,7 +109,7 @@ def conjugate_gradient(
         product = float(residual @ z)
         direction = z + (product / last) * direction if len(residuals) > 1 else z
         last = product
-        image = matrix @ direction
+        image = product_of @ direction
         length = product / float(direction @ image)
         x += length * direction
         residual -= length * image

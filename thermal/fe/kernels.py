@@ -1,0 +1,222 @@
+"""Compiled work on sparse matrices: their pattern, their products, the grouping of nodes for the multigrid.
+
+Products take any float type. Rows are independent, so results do not depend on the number of threads; small
+products stay on one, because waking the others costs more than it saves.
+"""
+
+import numpy as np
+from numba import njit, prange
+from numpy.typing import NDArray
+
+Numbers = NDArray[np.floating]
+Integers = NDArray[np.int32]
+Offsets = NDArray[np.uint16]
+
+THREADED = 65_536
+"""Rows from which on the work is spread over NUMBA_NUM_THREADS threads."""
+
+CHUNK = 8192
+"""Rows that one thread takes at a time."""
+
+
+@njit(cache=True)
+def cells_of_nodes(cells: Integers, n_nodes: int) -> tuple[Integers, Integers]:
+    """Start (n_nodes + 1,) and list (cells.size,) of entries ``cell * n_local + local`` around every node."""
+    n_cells, n_local = cells.shape
+    start = np.zeros(n_nodes + 1, dtype=np.int32)
+    for e in range(n_cells):
+        for a in range(n_local):
+            start[cells[e, a] + 1] += 1
+    for row in range(n_nodes):
+        start[row + 1] += start[row]
+    fill = start[:-1].copy()
+    around = np.empty(start[-1], dtype=np.int32)
+    for e in range(n_cells):
+        for a in range(n_local):
+            node = cells[e, a]
+            around[fill[node]] = e * n_local + a
+            fill[node] += 1
+    return start, around
+
+
+@njit(cache=True)
+def _count_columns(
+    first: int, last: int, cells: Integers, start: Integers, around: Integers, counts: Integers
+) -> None:
+    """Fill counts (n_nodes + 1,) with the number of columns of rows first to last, one place later."""
+    n_local = cells.shape[1]
+    seen = np.full(len(start) - 1, -1, dtype=np.int32)
+    for row in range(first, last):
+        for at in range(start[row], start[row + 1]):
+            e = around[at] // n_local
+            for b in range(n_local):
+                column = cells[e, b]
+                if seen[column] != row:
+                    seen[column] = row
+                    counts[row + 1] += 1
+
+
+@njit(cache=True)
+def _list_columns(
+    first: int,
+    last: int,
+    cells: Integers,
+    start: Integers,
+    around: Integers,
+    indptr: Integers,
+    indices: Integers,
+    offsets: Offsets,
+) -> None:
+    """Fill the columns of rows first to last, sorted, and the places of the pairs of local nodes."""
+    n_local = cells.shape[1]
+    place = np.full(len(start) - 1, -1, dtype=np.int32)
+    for row in range(first, last):
+        begin, end = indptr[row], indptr[row]
+        for at in range(start[row], start[row + 1]):
+            e = around[at] // n_local
+            for b in range(n_local):
+                column = cells[e, b]
+                if place[column] < begin:
+                    place[column] = end
+                    indices[end] = column
+                    end += 1
+        indices[begin:end].sort()
+        for at in range(begin, end):
+            place[indices[at]] = at
+        for at in range(start[row], start[row + 1]):
+            e = around[at] // n_local
+            a = around[at] - e * n_local
+            for b in range(n_local):
+                offsets[e, a, b] = place[cells[e, b]] - begin
+
+
+@njit(cache=True)
+def pattern(cells: Integers, start: Integers, around: Integers) -> tuple[Integers, Integers, Offsets]:
+    """``indptr`` and sorted ``indices`` of the matrix that couples all nodes of a cell.
+
+    The third array (n_cells, n_local, n_local) is the place of each pair of local nodes in the row of the
+    first of them.
+    """
+    n_nodes, n_local = len(start) - 1, cells.shape[1]
+    counts = np.zeros(n_nodes + 1, dtype=np.int32)
+    _count_columns(0, n_nodes, cells, start, around, counts)
+    indptr = np.cumsum(counts).astype(np.int32)
+    indices = np.empty(indptr[-1], dtype=np.int32)
+    offsets = np.empty((len(cells), n_local, n_local), dtype=np.uint16)
+    _list_columns(0, n_nodes, cells, start, around, indptr, indices, offsets)
+    return indptr, indices, offsets
+
+
+@njit(cache=True)
+def scalar_rows(
+    first: int, last: int, indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers
+) -> None:
+    """Rows of y = A x for scalar entries; data : (nnz,)."""
+    for row in range(first, last):
+        total = y.dtype.type(0)
+        for at in range(indptr[row], indptr[row + 1]):
+            total += data[at] * x[indices[at]]
+        y[row] = total
+
+
+@njit(cache=True)
+def block_rows(
+    first: int, last: int, indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers
+) -> None:
+    """Rows of y = A x for 3x3 blocks; data : (nnz, 3, 3), x, y : (n, 3)."""
+    for row in range(first, last):
+        y0, y1, y2 = y.dtype.type(0), y.dtype.type(0), y.dtype.type(0)
+        for at in range(indptr[row], indptr[row + 1]):
+            block = data[at]
+            column = indices[at]
+            x0, x1, x2 = x[column, 0], x[column, 1], x[column, 2]
+            y0 += block[0, 0] * x0 + block[0, 1] * x1 + block[0, 2] * x2
+            y1 += block[1, 0] * x0 + block[1, 1] * x1 + block[1, 2] * x2
+            y2 += block[2, 0] * x0 + block[2, 1] * x1 + block[2, 2] * x2
+        y[row, 0], y[row, 1], y[row, 2] = y0, y1, y2
+
+
+@njit(cache=True, parallel=True)
+def scalar_threads(indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers) -> None:
+    """`scalar_rows` for all rows, in parallel."""
+    n = len(indptr) - 1
+    for chunk in prange((n + CHUNK - 1) // CHUNK):
+        scalar_rows(chunk * CHUNK, min(n, (chunk + 1) * CHUNK), indptr, indices, data, x, y)
+
+
+@njit(cache=True, parallel=True)
+def block_threads(indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers) -> None:
+    """`block_rows` for all rows, in parallel."""
+    n = len(indptr) - 1
+    for chunk in prange((n + CHUNK - 1) // CHUNK):
+        block_rows(chunk * CHUNK, min(n, (chunk + 1) * CHUNK), indptr, indices, data, x, y)
+
+
+def scalar_product(indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers) -> None:
+    """y = A x for scalar entries; data : (nnz,)."""
+    if len(y) < THREADED:
+        scalar_rows(0, len(y), indptr, indices, data, x, y)
+    else:
+        scalar_threads(indptr, indices, data, x, y)
+
+
+def block_product(indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers) -> None:
+    """y = A x for 3x3 blocks; data : (nnz, 3, 3), x, y : (n, 3)."""
+    if len(y) < THREADED:
+        block_rows(0, len(y), indptr, indices, data, x, y)
+    else:
+        block_threads(indptr, indices, data, x, y)
+
+
+@njit(cache=True)
+def diagonal_product(data: Numbers, x: Numbers, y: Numbers) -> None:
+    """y = D x for 3x3 blocks on the diagonal; data : (n, 3, 3), x, y : (n, 3)."""
+    for row in range(len(x)):
+        block = data[row]
+        x0, x1, x2 = x[row, 0], x[row, 1], x[row, 2]
+        for i in range(3):
+            y[row, i] = block[i, 0] * x0 + block[i, 1] * x1 + block[i, 2] * x2
+
+
+@njit(cache=True)
+def aggregates(indptr: Integers, indices: Integers, strong: NDArray[np.bool_]) -> Integers:
+    """(n,) number of the aggregate of every node, -1 for a node without strong neighbours.
+
+    strong : (nnz,) which entries couple. First every node whose strong neighbours are all free makes an
+    aggregate with them, then the rest join a neighbour's, then what is left makes its own.
+    Source: Vanek, Mandel, Brezina, Computing 56 (1996) 179, algorithm 5.1.
+    """
+    n = len(indptr) - 1
+    group = np.full(n, -1, dtype=np.int32)
+    count = 0
+    for row in range(n):
+        free, neighbours = group[row] < 0, 0
+        for at in range(indptr[row], indptr[row + 1]):
+            if strong[at] and indices[at] != row:
+                neighbours += 1
+                free = free and group[indices[at]] < 0
+        if free and neighbours > 0:
+            group[row] = count
+            for at in range(indptr[row], indptr[row + 1]):
+                if strong[at]:
+                    group[indices[at]] = count
+            count += 1
+    first_pass = group.copy()
+    for row in range(n):
+        if group[row] < 0:
+            for at in range(indptr[row], indptr[row + 1]):
+                if strong[at] and first_pass[indices[at]] >= 0:
+                    group[row] = first_pass[indices[at]]
+                    break
+    for row in range(n):
+        if group[row] < 0:
+            neighbours = 0
+            for at in range(indptr[row], indptr[row + 1]):
+                if strong[at] and indices[at] != row:
+                    neighbours += 1
+                    if group[indices[at]] < 0:
+                        group[indices[at]] = count
+            if neighbours > 0:
+                group[row] = count
+                count += 1
+    return group
