@@ -41,6 +41,9 @@ KEPT = (0.9, 1.3)
 NEAR = 2.0
 """Ratio of step lengths up to which a preconditioner serves."""
 
+NEWTON_STEPS = 12
+"""Newton steps of a stage before the time step is shortened."""
+
 ProblemAt = Callable[[float], ConductionProblem]
 """The problem at a time [s]."""
 
@@ -110,7 +113,9 @@ class Stepper:
         storing = problem.storing(Storage(self.capacity, problem.volumes.capacity, rate, base))
         start = guess if guess.min() > 0.0 else base
         start = start if start.min() > 0.0 else np.full_like(base, float(np.abs(base).mean()))
-        result = newton(storing, storing.start(start), self._tolerance, multigrid=self._multigrid)
+        result = newton(
+            storing, storing.start(start), self._tolerance, NEWTON_STEPS, multigrid=self._multigrid
+        )
         self._multigrid = result.multigrid
         n = problem.n_nodes
         balance = heat_balance(

@@ -28,7 +28,7 @@ FIRST_STEP = 1e-2
 LARGEST_STEP = 0.1
 """Greatest step as a share of the stage, where none is given."""
 
-SMALLEST_STEP = 1e-9
+SMALLEST_STEP = 1e-7
 """Step as a share of the stage at which the run gives up."""
 
 ConditionsAt = Callable[[float], Sequence[Condition]]

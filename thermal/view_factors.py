@@ -51,7 +51,7 @@ def view_factors(
             "same surface names"
         )
     others = [name for name in obstacles if name not in surfaces]
-    walls = _triangles(mesh, [*surfaces, *others])
+    walls = Walls(_triangles(mesh, [*surfaces, *others]))
     exchange = np.zeros((len(surfaces), len(surfaces)))
     for i in range(len(owner)):
         per_triangle = seen.area[i] * _from_triangle(seen, walls, i)
@@ -70,7 +70,7 @@ def _triangles(mesh: NamedMesh, surfaces: Sequence[str]) -> FacetTriangles:
     )
 
 
-def _from_triangle(seen: FacetTriangles, walls: FacetTriangles, i: int) -> FloatArray:
+def _from_triangle(seen: FacetTriangles, walls: "Walls", i: int) -> FloatArray:
     """(n,) view factors from triangle ``i`` to every triangle, what is hidden left out."""
     rule = TRIANGLE_7
     inner = np.column_stack([1.0 - rule.points.sum(axis=1), rule.points])
@@ -102,44 +102,57 @@ def _from_point(place: FloatArray, normal: FloatArray, corners: FloatArray) -> F
 
 
 def _visible(
-    places: FloatArray, seen: FacetTriangles, walls: FacetTriangles, i: int, facing: NDArray[np.int64]
+    places: FloatArray, seen: FacetTriangles, walls: "Walls", i: int, facing: NDArray[np.int64]
 ) -> FloatArray:
     """(n_places, n) 1 where the ray from each place to the centre of each triangle is free, else 0."""
+    ends = seen.centre[facing]
+    ahead = ends @ walls.normal.T - walls.offset
+    behind = seen.corners[i] @ walls.normal.T - walls.offset
+    able = ((ahead < 0.0) & (behind.max(axis=0) > 0.0)) | ((ahead > 0.0) & (behind.min(axis=0) < 0.0))
+    able[:, i] = False
+    able[np.arange(len(facing)), facing] = False
+    ray, wall = np.nonzero(able)
+    near = _near(seen.centre[i], ends[ray], walls.centre[wall], walls.radius[wall] + seen.radius[i])
+    ray, wall = ray[near], wall[near]
+    beyond = ahead[ray, wall]
     free = np.ones((len(places), len(facing)))
-    start = seen.centre[i]
-    along = seen.centre[facing] - start
-    length = np.linalg.norm(along, axis=1)
-    unit = along / length[:, None]
-    to_wall = walls.centre - start
-    at = unit @ to_wall.T
-    distance = np.einsum("kd,kd->k", to_wall, to_wall) - at**2
-    width = walls.radius + seen.radius[i]
-    near = (distance < width**2) & (at > -width) & (at < length[:, None] + walls.radius)
-    near[:, i] = False
-    near[np.arange(len(facing)), facing] = False
-    ray, wall = np.nonzero(near)
     for p, place in enumerate(places):
-        hit = _hits(place, seen.centre[facing[ray]] - place, walls, wall)
-        free[p, ray[hit]] = 0.0
+        before = walls.normal @ place - walls.offset
+        height = before[wall]
+        apart = np.abs(height - beyond)
+        crossing = (height * beyond < 0.0) & (np.minimum(np.abs(height), np.abs(beyond)) > EDGE * apart)
+        r, w = ray[crossing], wall[crossing]
+        share = np.abs(height[crossing]) / apart[crossing]
+        u, v = walls.barycentric(place + share[:, None] * (ends[r] - place), w)
+        free[p, r[(u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)]] = 0.0
     return free
 
 
-def _hits(
-    place: FloatArray, rays: FloatArray, walls: FacetTriangles, wall: NDArray[np.int64]
-) -> NDArray[np.bool_]:
-    """(n,) whether a ray from ``place`` meets a triangle before its end.
+def _near(start: FloatArray, ends: FloatArray, centres: FloatArray, widths: FloatArray) -> NDArray[np.bool_]:
+    """(n,) whether (n, 3) centres lie within (n,) widths of the lines from ``start`` to (n, 3) ends."""
+    along, to_centre = ends - start, centres - start
+    share = np.einsum("nd,nd->n", to_centre, along) / np.einsum("nd,nd->n", along, along)
+    off = to_centre - np.clip(share, 0.0, 1.0)[:, None] * along
+    return np.asarray(np.einsum("nd,nd->n", off, off) < widths**2)
 
-    Source: Möller, Trumbore, J. Graphics Tools 2 (1997) 21.
-    """
-    corner = walls.corners[wall]
-    first, second = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    side = np.cross(rays, second)
-    det = np.einsum("nd,nd->n", first, side)
-    crossing = np.abs(det) > 0.0
-    inverse = np.divide(1.0, det, out=np.zeros_like(det), where=crossing)
-    off = place - corner[:, 0]
-    u = np.einsum("nd,nd->n", off, side) * inverse
-    turned = np.cross(off, first)
-    v = np.einsum("nd,nd->n", rays, turned) * inverse
-    t = np.einsum("nd,nd->n", second, turned) * inverse
-    return np.asarray(crossing & (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (t > EDGE) & (t < 1.0 - EDGE))
+
+class Walls:
+    """What may stand in the way of rays: n triangles with their planes."""
+
+    def __init__(self, triangles: FacetTriangles) -> None:
+        self.centre, self.radius, self.normal = triangles.centre, triangles.radius, triangles.normal
+        self.offset = np.einsum("nd,nd->n", self.normal, self.centre)
+        """(n,) normal times place in the plane [m]."""
+        self._corner = triangles.corners[:, 0]
+        first, second = (triangles.corners[:, k] - self._corner for k in (1, 2))
+        doubled = 2.0 * triangles.area[:, None]
+        self._by_first = np.cross(second, self.normal) / doubled
+        self._by_second = np.cross(self.normal, first) / doubled
+
+    def barycentric(self, places: FloatArray, wall: NDArray[np.int64]) -> tuple[FloatArray, FloatArray]:
+        """Two coordinates (k,) of (k, 3) places in the planes of triangles ``wall`` (k,)."""
+        off = places - self._corner[wall]
+        return (
+            np.asarray(np.einsum("nd,nd->n", off, self._by_first[wall])),
+            np.asarray(np.einsum("nd,nd->n", off, self._by_second[wall])),
+        )
