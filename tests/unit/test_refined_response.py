@@ -14,7 +14,7 @@ NARROW = 3.0
 
 
 def factor(speed: float) -> float:
-    return float(1.05 + 0.6 / (1.0 + ((speed - 241.5) / NARROW) ** 2))
+    return float(1.05 + 0.6 / (1.0 + ((speed - 239.2) / NARROW) ** 2))
 
 
 class Solver:
