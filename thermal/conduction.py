@@ -37,7 +37,7 @@ class TemperatureSolution:
     linear_iterations: tuple[int, ...]
     """GMRES iterations of each Newton step."""
     warnings: tuple[str, ...]
-    """What the film laws said about their range, each sentence once."""
+    """What is to be said of joints, and what the film laws said about their range; each sentence once."""
     volumes: dict[str, float]
     """Volume of a stream network -> temperature at which its fluid leaves [K]."""
 
@@ -98,7 +98,7 @@ def solve_steady(
         balance=balance,
         residuals=result.residuals,
         linear_iterations=result.linear_iterations,
-        warnings=balance.warnings,
+        warnings=(*setup.notes(conditions), *balance.warnings),
         volumes=volumes,
     )
 

@@ -1,12 +1,13 @@
 """What conduction on one mesh needs whatever its conditions: matrices, joints of touching surfaces."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from thermal.condition_checks import check_conductivity
+from thermal.boundary import Adiabatic
+from thermal.condition_checks import Condition, check_conductivity, surfaces_of
 from thermal.conductivity import Conductivity, VariableConduction
-from thermal.contact import Contact, Joint, join
+from thermal.contact import Contact, Joint, covered, join
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh
 
@@ -45,13 +46,21 @@ class ConductionSetup:
         if self.variable is not None:
             usual = np.full(len(mesh.points), USUAL)
             size = size + self.variable.fine_values(usual)
-        self.size = abs(self.elements.fine.matrix(size))
-        """Sizes of the matrix entries [W/K], for the rounding error of the residual."""
+        self.size = np.add.reduceat(np.abs(size), self.elements.fine.indptr[:-1])
+        """(n_nodes,) sum of the sizes of each row's entries [W/K], for the rounding error of the residual."""
         self._joints: dict[tuple[str, str, float | None, float], Joint] = {}
 
     def matches(self, mesh: NamedMesh, conductivity: Mapping[str, Conductivity]) -> bool:
         """Whether the setup was made for this mesh and these conductivities."""
         return self.mesh is mesh and self.conductivity == dict(conductivity)
+
+    def notes(self, conditions: Sequence[Condition]) -> tuple[str, ...]:
+        """What is to be said of the joints among ``conditions``: surfaces that touch and give heat to others."""
+        others = {
+            name for c in conditions if not isinstance(c, Contact | Adiabatic) for name in surfaces_of(c)
+        }
+        contacts = (c for c in conditions if isinstance(c, Contact))
+        return tuple(text for c in contacts for text in covered(c, self.joint(c), others))
 
     def joint(self, contact: Contact) -> Joint:
         """Common part of the surfaces of a contact, found once."""

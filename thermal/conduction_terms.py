@@ -192,8 +192,8 @@ class ConductionProblem:
     def roundoff(self, field: FloatArray) -> float:
         """Size [W] below which the residual is rounding error."""
         temperature = np.abs(field[: self.n_nodes])
-        size = float((self.setup.size @ temperature).sum())
-        joints = self.contacts.matrix(temperature)
+        size = float(self.setup.size @ temperature)
+        joints = self.contacts.matrix(field[: self.n_nodes])
         if joints is not None:
             size += float((abs(joints) @ temperature).sum())
         if self.storage is not None:

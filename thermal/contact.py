@@ -10,6 +10,7 @@ uniform flux through a flat joint is passed on exactly. Facets are taken flat fo
 their area.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,9 @@ from thermal.fe.reference import TRIANGLE_7
 OPPOSED = -0.5
 """Greatest product of the normals of two facets that are taken to face each other."""
 
+COVERED = 0.02
+"""Share of a surface with other conditions that may touch before it is worth a sentence."""
+
 REACH = 0.25
 """Distance to which facets touch where none is given, as a share of the facets' size."""
 
@@ -37,8 +41,9 @@ SLIVER = 1e-10
 class Contact:
     """Heat between two named surfaces that lie on each other: q = h (T_b - T_a) point by point.
 
-    Outside of the common part the surfaces pass no heat by this condition. Surfaces that share nodes conduct
-    already and need none.
+    Outside of the common part the surfaces pass no heat by this condition. Another condition on the same
+    surface acts on all of it, the common part included: `covered` says where that is much. Surfaces that
+    share nodes conduct already and need no contact. A conductance of 1e6 W/(m2 K) is as good as none between.
     """
 
     surface_a: str
@@ -111,6 +116,17 @@ def join(elements: FiniteElements, contact: Contact) -> Joint:
         _interpolation(b, second.facet[at[:, 1]], ref_b, n_nodes),
         touching / a.area,
         touching / b.area,
+    )
+
+
+def covered(contact: Contact, joint: Joint, others: Collection[str]) -> tuple[str, ...]:
+    """A sentence for each side of a joint that carries other conditions (surfaces ``others``) as well."""
+    shares = ((contact.surface_a, joint.coverage_a), (contact.surface_b, joint.coverage_b))
+    return tuple(
+        f"{name}: {100.0 * share:.3g} % touches ({contact.kind}), above {100.0 * COVERED:g} %, and its other "
+        "conditions act there too; split the surface along the joint"
+        for name, share in shares
+        if name in others and share > COVERED
     )
 
 

@@ -69,7 +69,7 @@ class TransientSolution:
     """Steps that were repeated with a shorter length."""
     linear_iterations: int
     warnings: tuple[str, ...]
-    """What the film laws said about their range, each sentence once."""
+    """What is to be said of joints, and what the film laws said about their range; each sentence once."""
 
 
 def solve_transient(
@@ -196,6 +196,7 @@ class _Run:
         problems = _Problems(self._setup, stage, self._begin)
         problem = problems(self._begin)
         self._enter(problem)
+        self._warnings |= dict.fromkeys(problems.notes)
         if not self._times:
             self._record(0, 0.0)
         self._stepper.forget()
@@ -329,3 +330,9 @@ class _Problems:
         except ConditionError as error:
             raise ConditionError(f"stage {self._stage.name!r}: {error}") from error
         return ConductionProblem(self._setup, conditions)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be said of the joints at the start of the stage."""
+        conditions = self._stage.conditions
+        return self._setup.notes(conditions(0.0) if callable(conditions) else conditions)

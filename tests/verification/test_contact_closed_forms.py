@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from tests.curved_blocks import cylinder_sector
 from tests.two_blocks import law, renamed
-from thermal.boundary import Adiabatic, PrescribedTemperature
+from thermal.boundary import Adiabatic, Film, PrescribedTemperature
 from thermal.condition_checks import Condition
 from thermal.conduction import solve_steady
 from thermal.contact import Contact
@@ -99,3 +99,19 @@ def test_a_foot_on_a_field_spreads_its_heat() -> None:
         solution = solve_steady(mesh, {"field": 50.0, "foot": 50.0}, conditions)
         heats[name] = next(r.power for r in solution.balance.rows if r.surface == "foot_z_max")
     assert heats["other mesh"] == pytest.approx(heats["same mesh"], rel=5e-3)
+
+
+def test_a_film_on_a_surface_that_touches_is_said() -> None:
+    field = renamed(box_mesh((0.3, 0.3, 0.1), (6, 6, 2), name="field"), "field")
+    foot = renamed(box_mesh((0.1, 0.1, 0.1), (3, 3, 3), (0.1, 0.1, 0.1), "foot"), "foot")
+    sides = [f"{body}_{a}_{e}" for body in ("field", "foot") for a in "xy" for e in ("min", "max")]
+    conditions: list[Condition] = [
+        PrescribedTemperature(surface="field_z_min", temperature=300.0),
+        PrescribedTemperature(surface="foot_z_max", temperature=400.0),
+        Contact(surface_a="foot_z_min", surface_b="field_z_max", kind="foot", law=law(2e3)),
+        Film(surface="field_z_max", kind="air", fluid_temperature=293.0, law=law(5.0)),
+        *(Adiabatic(surface=side) for side in sides),
+    ]
+    solution = solve_steady(disjoint_union(field, foot), {"field": 50.0, "foot": 50.0}, conditions)
+    assert len(solution.warnings) == 1
+    assert solution.warnings[0].startswith("field_z_max: 11.1 % touches (foot), above 2 %")
