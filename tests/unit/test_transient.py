@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 from tests.coupled_blocks import CAPACITY, CONDUCTIVITY, conditions, coupled_blocks, network
 from tests.two_blocks import law, renamed
 from thermal.boundary import Adiabatic, BodySource, Film, FilmCoefficient, PrescribedTemperature
+from thermal.capacity import Storage
 from thermal.condition_checks import Condition, ConditionError
 from thermal.conduction import ConductionSetup, solve_steady
 from thermal.conductivity import Conductivity
@@ -97,6 +98,17 @@ def test_what_is_stored_is_the_heat_content_of_the_last_field(setup, ran) -> Non
         elements = setup.elements
         content = capacity * elements.volume(body) * (elements.body_mean(solution.temperature, body) - 300.0)
         assert solution.energy.stored[body] == pytest.approx(content, rel=1e-9)
+
+
+@pytest.mark.parametrize("share", [-1.0, 0.5, 0.999])
+def test_heat_that_is_stored_wrongly_is_no_solution(
+    setup, share: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    right = Storage.heat_out
+    monkeypatch.setattr(Storage, "heat_out", lambda self, field: share * right(self, field))
+    stage = ThermalStage(name="run", duration=60.0, conditions=conditions())
+    with pytest.raises(NotConverged):
+        solve_transient(setup.mesh, VARIABLE, CAPACITY, [stage], 300.0, reuse=setup, tolerance=1.0)
 
 
 def test_a_long_stage_ends_in_the_steady_state(setup, ran) -> None:
