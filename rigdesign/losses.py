@@ -31,6 +31,8 @@ class PlacedLoss:
     into_body: float
     """Power that enters solid bodies [W]; the rest goes into the oil at once."""
     given: bool = False
+    end_share: float = 0.0
+    """Of a seal loss, the share that arises where the shaft leaves the housing: beside the bearings, in their oil."""
 
     @property
     def name(self) -> str:
@@ -41,6 +43,11 @@ class PlacedLoss:
     def into_oil(self) -> float:
         """Power that goes into the oil at once [W]."""
         return self.loss.power - self.into_body
+
+    @property
+    def into_bearing_oil(self) -> float:
+        """Of ``into_oil``, what goes into the oil of the bearings [W]; the rest goes into that of the gears."""
+        return self.into_oil * (1.0 if self.loss.kind == "bearing" else self.end_share)
 
 
 def rotating_losses(
@@ -198,7 +205,8 @@ def _seals(
     for name, seals in box.seals.items():
         shaft = shafts[seals.shaft]
         omega = rig.shaft_speed(seals.shaft, point.speed)
-        gaps = [(shaft.seal_diameter, geometry.partition_thickness)] * 2
+        partitions = 2
+        gaps = [(shaft.seal_diameter, geometry.partition_thickness)] * partitions
         gaps += [
             (shaft.overhang_diameter, geometry.bearing_depths(shaft)[0])
             for overhang in (shaft.overhang_front, shaft.overhang_rear)
@@ -223,7 +231,9 @@ def _seals(
         )
         split = box.heat_split
         body = (split.seal_into_shaft + split.seal_into_housing) * loss.power
-        yield PlacedLoss(gearbox=box_name, part=name, loss=loss, into_body=body)
+        ends = math.fsum(part.power for part in parts[partitions:])
+        share = ends / loss.power if loss.power > 0.0 else 0.0
+        yield PlacedLoss(gearbox=box_name, part=name, loss=loss, into_body=body, end_share=share)
 
 
 def body_split(rig: Rig, name: str) -> HeatSplit:

@@ -32,8 +32,8 @@ def oil_streams(
     for name, box in rig.case.gearboxes.items():
         gear, bearing = f"{name}.gear_oil", f"{name}.bearing_oil"
         own = [placed for placed in losses if placed.gearbox == name]
-        into_bearings = math.fsum(placed.into_oil for placed in own if placed.loss.kind == "bearing")
-        into_gears = math.fsum(placed.into_oil for placed in own if placed.loss.kind != "bearing")
+        into_bearings = math.fsum(placed.into_bearing_oil for placed in own)
+        into_gears = math.fsum(placed.into_oil - placed.into_bearing_oil for placed in own)
         films = math.fsum(heat for part, heat in bearing_heat.items() if part.split(".")[0] == name)
         for stream, entry, count, loss, heat in (
             (gear, box.oil, len(box.meshes), into_gears, wall_heat[gear]),

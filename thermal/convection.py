@@ -55,18 +55,30 @@ __all__ = [
 ]
 
 
-def constant(value: float, source: str, formula: str = "constant") -> FilmLaw:
+OIL_RANGE = (100.0, 600.0)
+"""Usual films of oil-wetted walls [W/(m2 K)] (limits assumed)."""
+
+
+def constant(
+    value: float, source: str, formula: str = "constant", usual: tuple[float, float] | None = None
+) -> FilmLaw:
     """A given coefficient [W/(m2 K)], measured or published, with its source.
 
     formula : how the source got it; a name that starts with ``niemann_winter`` tells the audits that it
         includes radiation.
+    usual : range of such films; a value outside warns
     """
     not_negative("film coefficient", value, "W/(m2 K)")
     if not source.strip():
         raise FilmError("source of a constant film coefficient is empty; say where the number comes from")
     return _always(
         FilmCoefficient(
-            value=value, formula=formula, inputs={"value": value}, valid_range="as given", source=source
+            value=value,
+            formula=formula,
+            inputs={"value": value},
+            valid_range="as given" if usual is None else f"as given; usually {usual[0]:g} to {usual[1]:g}",
+            source=source,
+            warnings=() if usual is None else outside("film", value, *usual, "check the unit", "W/(m2 K)"),
         )
     )
 
@@ -81,7 +93,7 @@ def oil_wetted(value: float = 300.0) -> FilmLaw:
             inputs={"value": value},
             valid_range="splash- or jet-wetted walls of a gear chamber; 100 to 600 W/(m2 K) (limits assumed)",
             source="P2 Figure 11, after Niemann/Winter",
-            warnings=outside("oil film", value, 100.0, 600.0, "check the unit", "W/(m2 K)"),
+            warnings=outside("oil film", value, *OIL_RANGE, "check the unit", "W/(m2 K)"),
         )
     )
 

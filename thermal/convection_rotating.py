@@ -1,12 +1,18 @@
 """Films of rotating shafts, discs and narrow gaps in air. Speeds in rad/s, fixed when the law is made.
 
-The Jungnickel/Grossmann laws (P2 Ref. 18) carry constants for air near room temperature and do not depend on
-the temperatures they are given; the others take air at the film temperature. At standstill the rotating films
-vanish: use a free-convection law there.
+The Jungnickel/Grossmann laws (P2 Ref. 18) carry constants for air near room temperature, do not depend on the
+temperatures they are given and warn at others; the rest take air at the film temperature. At standstill the
+rotating films vanish: use a free-convection law there.
+
+The laws with a Reynolds number also serve in a mist of oil drops: ``density`` [kg/m3] replaces that of dry air in
+it, as the windage laws take it. Drops that are brought to the speed of the wall are brought to its temperature too
+(Reynolds analogy); conductivity and heat capacity stay those of air, which leaves out what the drops store. No
+measurement of such films is known: the density is an estimate with a wide range.
 """
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 from thermal.air import Air, air
 from thermal.boundary import FilmCoefficient, FilmLaw
@@ -16,7 +22,9 @@ from thermal.film_inputs import not_negative, outside, positive
 JUNGNICKEL = "Jungnickel/Grossmann 2010 (P2 Ref. 18)"
 _STANDSTILL = "use a free-convection law for slow or standing shafts"
 
-_FAST = "compare with another law for rotating cylinders"
+_FAST = "compare with another law for rotating bodies"
+ROOM = (283.15, 333.15)
+"""Film temperatures [K] for which the fixed constants of Jungnickel/Grossmann are taken to hold (limits assumed)."""
 
 
 def rotating_cylinder_jungnickel(speed: float, diameter: float) -> FilmLaw:
@@ -57,16 +65,18 @@ def narrow_gap_jungnickel(speed: float, radius: float, gap: float) -> FilmLaw:
     return _fixed(value, "narrow_gap_jungnickel", {"speed": speed, "radius": radius, "gap": gap})
 
 
-def rotating_cylinder_becker(speed: float, diameter: float) -> FilmLaw:
+def rotating_cylinder_becker(speed: float, diameter: float, density: float | None = None) -> FilmLaw:
     """Cylinder turning in still air: Nu_D = 0.133 Re^(2/3) Pr^(1/3), Re = w D^2/(2 nu) (Becker 1963).
 
     speed : w [rad/s]
     diameter : D [m]. Range 800 < Re < 4e5.
+    density : of a mist [kg/m3]; that of air when left out
     """
     return _cylinder(
         speed, diameter, "rotating_cylinder_becker", (800.0, 4e5),
         "Becker, Int. J. Heat Mass Transfer 6 (1963) 1053",
         lambda reynolds, _, gas: 0.133 * reynolds ** (2.0 / 3.0) * gas.prandtl ** (1.0 / 3.0),
+        density,
     )  # fmt: skip
 
 
@@ -95,7 +105,7 @@ def rotating_cylinder_etemad(speed: float, diameter: float) -> FilmLaw:
     )  # fmt: skip
 
 
-def rotating_disc(speed: float, radius: float) -> FilmLaw:
+def rotating_disc(speed: float, radius: float, density: float | None = None) -> FilmLaw:
     """Mean over one side of a disc turning in still air, laminar inside and turbulent outside.
 
     Laminar Nu_r = 0.36 Re_r^(1/2), so that h is the same at every radius; turbulent mean over a whole disc
@@ -106,12 +116,14 @@ def rotating_disc(speed: float, radius: float) -> FilmLaw:
 
     speed : w [rad/s]
     radius : R [m]
+    density : of a mist [kg/m3]; that of air when left out
     """
     positive("disc radius", radius, "m")
     not_negative("speed", speed, "rad/s")
+    _check_density(density)
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
-        gas = air(0.5 * (wall + fluid))
+        gas = _medium(0.5 * (wall + fluid), density)
         reynolds = speed * radius**2 / gas.kinematic_viscosity
         share = min(1.0, math.sqrt(2.5e5 / reynolds)) if reynolds > 0.0 else 1.0
         nusselt = 0.36 * math.sqrt(reynolds) * share**2 + 0.015 * reynolds**0.8 * (1.0 - share**2.6)
@@ -120,17 +132,19 @@ def rotating_disc(speed: float, radius: float) -> FilmLaw:
             formula="rotating_disc",
             inputs={
                 "speed": speed, "radius": radius, "reynolds": reynolds, "laminar_share_of_radius": share,
-                "film_temperature": gas.temperature,
+                "film_temperature": gas.temperature, "density": gas.density,
             },
             valid_range="still air, 1e3 < Re_r < 1e7 (limits assumed)",
             source="Kreith, Adv. Heat Transfer 5 (1968) 129: laminar 0.36 Re^0.5, turbulent 0.015 Re^0.8",
-            warnings=outside("Reynolds number w r^2/nu", reynolds, 1e3, 1e7, _STANDSTILL),
+            warnings=outside(
+                "Reynolds number w r^2/nu", reynolds, 1e3, 1e7, _STANDSTILL if reynolds < 1e3 else _FAST
+            ),
         )  # fmt: skip
 
     return law
 
 
-def narrow_gap_taylor(speed: float, radius: float, gap: float) -> FilmLaw:
+def narrow_gap_taylor(speed: float, radius: float, gap: float, density: float | None = None) -> FilmLaw:
     """Air in the gap between a turning shaft and a bore, surface to surface, with onset of Taylor vortices.
 
     With Ta^2 = w^2 r_m s^3/nu^2 and Nu = 2 h s/k: Nu = 2 (conduction) up to Ta = 41, then
@@ -139,13 +153,15 @@ def narrow_gap_taylor(speed: float, radius: float, gap: float) -> FilmLaw:
     speed : w [rad/s]
     radius : of the shaft [m]
     gap : s, radial [m]
+    density : of a mist [kg/m3]; that of air when left out
     """
     positive("shaft radius", radius, "m")
     positive("gap", gap, "m")
     not_negative("speed", speed, "rad/s")
+    _check_density(density)
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
-        gas = air(0.5 * (wall + fluid))
+        gas = _medium(0.5 * (wall + fluid), density)
         taylor = speed**2 * (radius + gap / 2.0) * gap**3 / gas.kinematic_viscosity**2
         if taylor < 41.0**2:
             nusselt = 2.0
@@ -160,7 +176,7 @@ def narrow_gap_taylor(speed: float, radius: float, gap: float) -> FilmLaw:
             formula="narrow_gap_taylor",
             inputs={
                 "speed": speed, "radius": radius, "gap": gap, "taylor_squared": taylor,
-                "film_temperature": gas.temperature,
+                "film_temperature": gas.temperature, "density": gas.density,
             },
             valid_range="Ta^2 < 1e7, s/r < 0.1, no axial flow",
             source="Becker and Kaye, J. Heat Transfer 84 (1962) 97",
@@ -177,13 +193,15 @@ def _cylinder(
     limits: tuple[float, float],
     source: str,
     nusselt: Callable[[float, float, Air], float],
+    density: float | None = None,
 ) -> FilmLaw:
     """A law Nu(Re, Gr, air) on the diameter, Re = w D^2/(2 nu)."""
     positive("cylinder diameter", diameter, "m")
     not_negative("speed", speed, "rad/s")
+    _check_density(density)
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
-        gas = air(0.5 * (wall + fluid))
+        gas = _medium(0.5 * (wall + fluid), density)
         nu = gas.kinematic_viscosity
         reynolds = speed * diameter**2 / (2.0 * nu)
         slow = reynolds < limits[0]
@@ -193,7 +211,7 @@ def _cylinder(
             formula=formula,
             inputs={
                 "speed": speed, "diameter": diameter, "reynolds": reynolds, "grashof": grashof,
-                "film_temperature": gas.temperature,
+                "film_temperature": gas.temperature, "density": gas.density,
             },
             valid_range=f"{limits[0]:g} < Re < {limits[1]:g}",
             source=source,
@@ -203,19 +221,31 @@ def _cylinder(
     return law
 
 
+def _check_density(density: float | None) -> None:
+    if density is not None:
+        positive("density of the mist", density, "kg/m3")
+
+
+def _medium(temperature: float, density: float | None) -> Air:
+    """Air at the film temperature [K], with the density of the mist if there is one."""
+    gas = air(temperature)
+    return gas if density is None else replace(gas, density=density)
+
+
 def _fixed(value: float, formula: str, inputs: dict[str, float]) -> FilmLaw:
-    """A Jungnickel law: one number at any temperature."""
-    warnings = () if inputs["speed"] > 0.0 else (f"speed = 0 rad/s gives no film; {_STANDSTILL}",)
-    coefficient = FilmCoefficient(
-        value=value,
-        formula=formula,
-        inputs=inputs,
-        valid_range="air near room temperature, turning shaft",
-        source=JUNGNICKEL,
-        warnings=warnings,
-    )
+    """A Jungnickel law: one number at any temperature, with a warning away from room temperature."""
+    slow = () if inputs["speed"] > 0.0 else (f"speed = 0 rad/s gives no film; {_STANDSTILL}",)
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
-        return coefficient
+        film = 0.5 * (wall + fluid)
+        other = "its constants are those of air near room temperature: use a law that takes air at the film temperature"
+        return FilmCoefficient(
+            value=value,
+            formula=formula,
+            inputs=inputs | {"film_temperature": film},
+            valid_range=f"air near room temperature, film at {ROOM[0]:g} to {ROOM[1]:g} K (limits assumed)",
+            source=JUNGNICKEL,
+            warnings=slow + outside("film temperature", film, *ROOM, other, "K"),
+        )
 
     return law

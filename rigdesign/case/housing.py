@@ -16,6 +16,7 @@ from rigdesign.case.fields import (
     TemperatureDifference,
     Text,
 )
+from thermal.audit import RADIATION_INCLUDED
 
 Fluid = Literal[
     "ambient",
@@ -27,6 +28,9 @@ Fluid = Literal[
     "bearing_oil_outlet",
 ]
 """What wets a surface: room air, or the oil of the chamber at inlet, outlet or their mean."""
+Medium = Literal["air", "mist"]
+"""What a surface of the chamber turns in: dry air at the film temperature, or the mist whose density
+``losses.chamber_density`` gives for windage."""
 
 
 class HousingShaft(Part):
@@ -66,8 +70,8 @@ class NiemannWinter(_Condition):
     law: Literal["niemann_winter"]
     draught_factor: float = Field(default=1.0, gt=0.0, le=5.0)
     """f_k: 1 in still room air."""
-    height: Length
-    """h: height of the housing."""
+    height: Length | None = None
+    """h; the height of the housing when left out."""
 
 
 class RecknagelPlate(_Condition):
@@ -82,7 +86,8 @@ class IsoTr14179(_Condition):
     """Housing to room air by ISO/TR 14179-2, free convection."""
 
     law: Literal["iso_tr_14179_2"]
-    height: Length
+    height: Length | None = None
+    """The height of the housing when left out."""
 
 
 class TakenFrom(Part):
@@ -112,16 +117,20 @@ class RotatingCylinder(_Condition):
     """Rotating shaft in air or oil mist; diameter and speed from the shaft."""
 
     law: Literal["rotating_cylinder"]
-    correlation: Literal["jungnickel", "becker"] = "jungnickel"
+    correlation: Literal["becker", "jungnickel"] = "becker"
+    """becker: air at the film temperature; jungnickel: constants of air near room temperature."""
     fluid: Fluid
+    medium: Medium = "air"
 
 
 class RotatingDisc(_Condition):
     """Rotating end or gear face in air or oil mist; radius and speed from the shaft."""
 
     law: Literal["rotating_disc"]
-    correlation: Literal["jungnickel"] = "jungnickel"
+    correlation: Literal["kreith", "jungnickel"] = "kreith"
+    """kreith: air at the film temperature; jungnickel: constants of air near room temperature."""
     fluid: Fluid
+    medium: Medium = "air"
 
 
 class BearingFilm(_Condition):
@@ -143,9 +152,13 @@ class GapExchange(_Condition):
     """Heat across a narrow rotating gap from each surface to its partner (area means)."""
 
     law: Literal["narrow_gap"]
+    correlation: Literal["becker_kaye", "jungnickel"] = "becker_kaye"
+    """becker_kaye: air at the mean temperature, with the onset of vortices; jungnickel: constants of air near room
+    temperature."""
     partner: Text
     """Surface on the other side; ``*`` is filled with what it stood for in ``surfaces``."""
-    gap: Length
+    gap: Length | None = None
+    """The radial gap of the seals of the shaft when left out."""
 
 
 class SeriesExchange(_Condition):
@@ -188,6 +201,13 @@ Condition = Annotated[
 """One boundary condition; ``law`` says which."""
 
 
+def holds_radiation(condition: Condition) -> bool:
+    """Whether a film to room air is of the size of convection and radiation together."""
+    if isinstance(condition, ConstantFilm):
+        return condition.taken_from is not None and condition.taken_from.law in RADIATION_INCLUDED
+    return condition.law in RADIATION_INCLUDED
+
+
 class Housing(Part):
     """A box with a warm chamber between two cold sections, on a clamping field.
 
@@ -215,5 +235,6 @@ class Housing(Part):
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
     boundary: Mapping[Name, Condition] = Field(min_length=1)
     radiation_included: bool
-    """True: the film to room air already contains radiation, explicit radiation of those surfaces is left
-    out of the verdicts; the other reading is computed beside it."""
+    """True: a Niemann/Winter film to room air already contains radiation, explicit radiation of those surfaces is
+    left out of the verdicts; the other reading is computed beside it. Other films hold none: beside them explicit
+    radiation stays."""

@@ -41,6 +41,7 @@ def loss_faults(case: "Case") -> Iterator[Fault]:
             "losses.friction.doleschel", "", "Doleschel's law needs the constants of the oil",
             "add [losses.friction.doleschel], or take the law schlenk or michaelis",
         )  # fmt: skip
+    yield from _mist(case)
     for name, loss in losses.given.items():
         at = f"losses.given.{name}"
         if loss.gearbox not in case.gearboxes:
@@ -62,6 +63,25 @@ def loss_faults(case: "Case") -> Iterator[Fault]:
                         f"gearboxes.{box_name}.bearings.{name}.torsional_damping", "",
                         "a constant bearing drag needs it", 'add it, e.g. "0.0007 N m s/rad"',
                     )  # fmt: skip
+
+
+def _mist(case: "Case") -> Iterator[Fault]:
+    """Films in the mist of the chamber need its density, and the fluid of the chamber."""
+    for box_name, box in case.gearboxes.items():
+        films = {} if box.housing is None else box.housing.boundary
+        for name, film in films.items():
+            if getattr(film, "medium", "air") == "air":
+                continue
+            at = f"gearboxes.{box_name}.housing.boundary.{name}.medium"
+            if case.losses.chamber_density is None:
+                yield Fault(
+                    at, '"mist"', "losses.chamber_density is not given", 'add it or write medium = "air"'
+                )
+            if not getattr(film, "fluid", "").startswith("gear_oil"):
+                yield Fault(
+                    at, '"mist"', "the mist is that of the chamber of the gears, the fluid is not its oil",
+                    'write fluid = "gear_oil_mean" or medium = "air"',
+                )  # fmt: skip
 
 
 def _parts_that_lose(box: "Gearbox", kind: str) -> list[str]:

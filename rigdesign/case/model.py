@@ -82,10 +82,13 @@ class Case(Part):
             if mark.measured is not None
         )
 
-    @property
-    def sources(self) -> dict[str, str]:
-        """Case path -> where the value is printed."""
-        return {mark.path: mark.source for mark in self._origin.marks if mark.source is not None}
+    def provenance(self, path: str) -> str:
+        """Where the value at a path comes from: measured, printed or assumed; an input that says nothing is that."""
+        mark = next((mark for mark in self._origin.marks if mark.path == path), None)
+        if mark is None:
+            return "input of the case"
+        said = (("measured: ", mark.measured), ("", mark.source), ("assumed: ", mark.assumed))
+        return "; ".join(f"{how}{text}" for how, text in said if text is not None) or "input of the case"
 
     @property
     def hash(self) -> str:

@@ -9,6 +9,8 @@ from rigdesign.case.housing import (
     ConstantFilm,
     GapExchange,
     Housing,
+    IsoTr14179,
+    NiemannWinter,
     SeriesExchange,
     ThermalRadiation,
 )
@@ -35,7 +37,11 @@ def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
     except ValueError as error:
         return [Fault(f"{at}.housing", "", str(error), "correct the measures of the housing")]
     at = f"{at}.housing.boundary"
-    return [*_boundary(at, housing, names), *_printed_films(at, housing)]
+    return [
+        *_boundary(at, housing, names),
+        *_printed_films(at, housing),
+        *_said_twice(at, gearbox, housing, names),
+    ]
 
 
 def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
@@ -136,6 +142,30 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
             yield Fault(
                 f"{at}.{films[1]}.surfaces", written(surface), f"already has {films[0]}", "name it once"
             )
+
+
+def _said_twice(at: str, gearbox: Gearbox, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
+    """Heights and gaps that a film repeats must be those of the housing and its seals."""
+    for name, film in housing.boundary.items():
+        if isinstance(film, NiemannWinter | IsoTr14179) and film.height not in (None, housing.height):
+            yield Fault(
+                f"{at}.{name}.height", show(film.height or 0.0, "length"),
+                f"is not the height of the housing, {show(housing.height, 'length')}",
+                "leave it out: the film takes the height of the housing",
+            )  # fmt: skip
+    for name, surface, _ in conditions_of(housing, names):
+        film = housing.boundary[name]
+        if not isinstance(film, GapExchange):
+            continue
+        own = next((s for s in gearbox.seals.values() if f"shaft_{s.shaft}_seal_" in surface), None)
+        if own is None and film.gap is None:
+            yield Fault(f"{at}.{name}.gap", "", f"{surface} is no seal, its gap is not known", "add the gap")
+        elif own is not None and film.gap not in (None, own.radial_gap):
+            yield Fault(
+                f"{at}.{name}.gap", show(film.gap or 0.0, "length"),
+                f"is not the radial gap of the seals of {own.shaft}, {show(own.radial_gap, 'length')}",
+                "leave it out: the film takes the gap of the seals",
+            )  # fmt: skip
 
 
 def _printed_films(at: str, housing: Housing) -> Iterator[Fault]:

@@ -11,7 +11,6 @@ from rigdesign.losses import PlacedLoss
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 from thermal import convection
-from thermal.audit import RADIATION_INCLUDED
 from thermal.boundary import (
     Adiabatic,
     BodySource,
@@ -23,7 +22,7 @@ from thermal.boundary import (
     Radiation,
     SurfaceSource,
 )
-from thermal.housing_geometry import HousingGeometry, ShaftGeometry
+from thermal.housing_geometry import SIDES, HousingGeometry, ShaftGeometry
 from thermal.housing_surfaces import surface_names
 
 GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"
@@ -43,6 +42,22 @@ class _Context:
     @property
     def box(self) -> Gearbox:
         return self.rig.case.gearboxes[self.name]
+
+    @property
+    def housing(self) -> laws.Housing:
+        housing = self.box.housing
+        assert housing is not None
+        return housing
+
+    def source(self, condition: laws.ConstantFilm) -> str:
+        """Where the case has the coefficient of a given film from."""
+        entry = next(name for name, own in self.housing.boundary.items() if own is condition)
+        path = f"gearboxes.{self.name}.housing.boundary.{entry}.heat_transfer_coefficient"
+        return self.rig.case.provenance(path)
+
+    def density(self, medium: laws.Medium) -> float | None:
+        """Density of the mist a surface turns in [kg/m3]; None for dry air."""
+        return self.rig.case.losses.chamber_density if medium == "mist" else None
 
     @property
     def geometry(self) -> HousingGeometry:
@@ -98,7 +113,7 @@ def boundary_conditions(
     housing = context.box.housing
     assert housing is not None
     rows = conditions_of(housing, surface_names(context.geometry))
-    covered = {surface for entry, surface, _ in rows if _holds_radiation(housing.boundary[entry])}
+    covered = {surface for entry, surface, _ in rows if laws.holds_radiation(housing.boundary[entry])}
     conditions: list[BoundaryCondition] = []
     for entry, surface, stood_for in rows:
         condition = housing.boundary[entry]
@@ -106,13 +121,6 @@ def boundary_conditions(
             continue
         conditions.append(_condition(context, condition, surface, stood_for))
     return conditions + _sources(context, losses)
-
-
-def _holds_radiation(condition: laws.Condition) -> bool:
-    """Whether a film to room air is of the size of convection and radiation together."""
-    if isinstance(condition, laws.ConstantFilm):
-        return condition.taken_from is not None and condition.taken_from.law in RADIATION_INCLUDED
-    return condition.law in RADIATION_INCLUDED
 
 
 def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, laws.TakenFrom]]:
@@ -175,29 +183,30 @@ def _fluid_of(context: _Context, condition: laws.Condition) -> tuple[str, float]
 def _film_law(context: _Context, condition: laws.Condition, surface: str) -> FilmLaw:
     match condition:
         case laws.NiemannWinter():
-            return convection.niemann_winter(condition.height, condition.draught_factor)
+            return convection.niemann_winter(
+                condition.height or context.housing.height, condition.draught_factor
+            )
         case laws.RecknagelPlate():
             turbulent = condition.correlation == "turbulent"
             return convection.recknagel_plate("turbulent" if turbulent else "dimensional")
         case laws.IsoTr14179():
-            return convection.iso_tr_14179_2_free(condition.height)
+            return convection.iso_tr_14179_2_free(condition.height or context.housing.height)
         case laws.ConstantFilm():
-            if condition.fluid != "ambient":
-                return convection.oil_wetted(condition.heat_transfer_coefficient)
             taken = condition.taken_from
             formula = "constant" if taken is None or taken.law is None else taken.law
-            return convection.constant(condition.heat_transfer_coefficient, "input of the case", formula)
+            usual = None if condition.fluid == "ambient" else convection.OIL_RANGE
+            value, source = condition.heat_transfer_coefficient, context.source(condition)
+            return convection.constant(value, source, formula, usual)
         case laws.RotatingCylinder():
-            build = (
-                convection.rotating_cylinder_becker
-                if condition.correlation == "becker"
-                else convection.rotating_cylinder_jungnickel
-            )
-            return build(context.speed(surface), context.diameter(surface))
+            turning = context.speed(surface), context.diameter(surface)
+            if condition.correlation == "jungnickel":
+                return convection.rotating_cylinder_jungnickel(*turning)
+            return convection.rotating_cylinder_becker(*turning, context.density(condition.medium))
         case laws.RotatingDisc():
-            return convection.rotating_disc_jungnickel(
-                context.speed(surface), 0.5 * context.diameter(surface)
-            )
+            turning = context.speed(surface), 0.5 * context.diameter(surface)
+            if condition.correlation == "jungnickel":
+                return convection.rotating_disc_jungnickel(*turning)
+            return convection.rotating_disc(*turning, context.density(condition.medium))
     raise TypeError(f"no film law for {type(condition).__name__}")
 
 
@@ -205,9 +214,11 @@ def _exchange_law(
     context: _Context, condition: laws.GapExchange | laws.SeriesExchange, surface: str
 ) -> FilmLaw:
     if isinstance(condition, laws.GapExchange):
-        return convection.narrow_gap_jungnickel(
-            context.speed(surface), 0.5 * context.diameter(surface), condition.gap
-        )
+        gap = condition.gap or context.shaft(surface).seal_gap
+        turning = context.speed(surface), 0.5 * context.diameter(surface)
+        if condition.correlation == "jungnickel":
+            return convection.narrow_gap_jungnickel(*turning, gap)
+        return convection.narrow_gap_taylor(*turning, gap)
     first, second = condition.coefficients
     source = "input of the case"
     return convection.series(convection.constant(first, source), convection.constant(second, source))
@@ -259,15 +270,21 @@ def _mesh_sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[Bound
 
 
 def _seal_sources(context: _Context, placed: PlacedLoss) -> list[BoundaryCondition]:
-    """Evenly on the two partition seals of the shaft."""
-    shaft = context.box.seals[placed.part].shaft
+    """Shaft and bore of every seal: evenly on the two in the partitions, evenly on those where the shaft leaves."""
+    name = context.box.seals[placed.part].shaft
+    shaft = next(shaft for shaft in context.geometry.shafts if shaft.name == name)
+    ends = [f"{side}_end" for side in SIDES if shaft.overhang(side) > 0.0]
     split = context.box.heat_split
     total = split.seal_into_shaft + split.seal_into_housing
-    parts = ((f"shaft_{shaft}_seal", split.seal_into_shaft), (f"seal_bore_{shaft}", split.seal_into_housing))
+    bodies = ((f"shaft_{name}_seal", split.seal_into_shaft), (f"seal_bore_{name}", split.seal_into_housing))
     return [
         SurfaceSource(
-            surface=f"{stem}_{side}", power=0.5 * placed.into_body * share / total, kind="seal_loss"
+            surface=f"{stem}_{place}",
+            power=part / len(places) * placed.into_body * share / total,
+            kind="seal_loss",
         )
-        for stem, share in parts
-        for side in ("front", "rear")
+        for places, part in ((list(SIDES), 1.0 - placed.end_share), (ends, placed.end_share))
+        for place in places
+        for stem, share in bodies
+        if part > 0.0
     ]

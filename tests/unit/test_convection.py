@@ -87,6 +87,8 @@ def test_a_warm_plate_facing_down_and_a_cold_one_facing_up_are_calm() -> None:
         (films.rotating_cylinder_becker(1.0, 0.04), ("Reynolds number", "800 to 400000", "free-convection")),
         (films.rotating_cylinder_becker(1e5, 0.2), ("Reynolds number", "another law for rotating")),
         (films.rotating_cylinder_jungnickel(0.0, 0.04), ("speed = 0", "free-convection")),
+        (films.rotating_disc(1e5, 0.2, density=5.0), ("Reynolds number", "another law for rotating")),
+        (films.rotating_disc(0.1, 0.02), ("Reynolds number", "free-convection")),
         (films.narrow_gap_taylor(1000.0, 0.02, 5e-3), ("gap / radius = 0.25", "wider-gap")),
         (films.horizontal_plate_mcadams(1e-3), ("Rayleigh number", "10000 to 1e+11")),
         (films.oil_wetted(3e5), ("oil film = 3e+05", "check the unit")),
@@ -121,6 +123,7 @@ def test_a_wall_colder_than_the_air_warns_for_the_housing_formula() -> None:
         lambda: films.horizontal_plate_vdi(1.0, "sideways"),  # type: ignore[arg-type]
         lambda: films.rotating_cylinder_becker(-1.0, 0.04),
         lambda: films.rotating_disc(math.inf, 0.04),
+        lambda: films.rotating_disc(1000.0, 0.04, density=0.0),
         lambda: films.narrow_gap_jungnickel(1.0, 0.02, 0.0),
         lambda: films.iso_tr_14179_2_radiation(1.2),
         lambda: films.constant(-5.0, "measured"),
@@ -156,6 +159,44 @@ def test_series_keeps_inputs_sources_and_warnings_of_both() -> None:
 def test_series_with_no_film_at_all_is_zero() -> None:
     nothing = films.constant(0.0, "vacuum")
     assert films.series(nothing, nothing)(WALL, FLUID).value == 0.0
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        films.rotating_cylinder_jungnickel(1257.0, 0.042),
+        films.rotating_disc_jungnickel(1257.0, 0.05),
+        films.narrow_gap_jungnickel(1257.0, 0.021, 6e-4),
+    ],
+)
+def test_constants_of_room_air_warn_in_a_hot_chamber(law: FilmLaw) -> None:
+    assert law(330.0, 300.0).warnings == ()
+    (warning,) = law(440.0, 408.0).warnings
+    assert "film temperature = 424 K" in warning
+    assert "283.15 to 333.15 K" in warning
+    assert "air at the film temperature" in warning
+
+
+def test_hot_air_cools_a_disc_less_than_room_air_and_a_gap_more() -> None:
+    """At 12,000 rpm and 135 degC the fixed constants read 136 for a disc of 50 mm, 80 for a gap of 0.6 mm."""
+    hot = 408.15
+    disc, gap = films.rotating_disc(1257.0, 0.05), films.narrow_gap_taylor(1257.0, 0.021, 6e-4)
+    assert disc(hot, hot).value == pytest.approx(83.0, rel=0.02)
+    assert gap(hot, hot).value == pytest.approx(106.0, rel=0.02)
+    assert films.rotating_disc_jungnickel(1257.0, 0.05)(hot, hot).value == pytest.approx(136.0, rel=0.01)
+    assert films.narrow_gap_jungnickel(1257.0, 0.021, 6e-4)(hot, hot).value == pytest.approx(80.0, rel=0.02)
+
+
+def test_mist_density_acts_through_the_reynolds_number() -> None:
+    """Becker goes with density^(2/3); at the density of air the mist is air."""
+    gas = air(0.5 * (WALL + FLUID))
+    plain = films.rotating_cylinder_becker(1000.0, 0.04)(WALL, FLUID).value
+    same = films.rotating_cylinder_becker(1000.0, 0.04, gas.density)(WALL, FLUID).value
+    thick = films.rotating_cylinder_becker(1000.0, 0.04, 8.0 * gas.density)(WALL, FLUID)
+    assert same == pytest.approx(plain, rel=1e-12)
+    # Pr = mu c / k does not know the density
+    assert thick.value == pytest.approx(4.0 * plain, rel=1e-12)
+    assert thick.inputs["density"] == pytest.approx(8.0 * gas.density)
 
 
 def test_kays_bjorklund_holds_at_standstill() -> None:

@@ -1,0 +1,152 @@
+"""Films and sources of the shipped housing as the case states them, without solving a field."""
+
+from pathlib import Path
+
+import pytest
+
+from rigdesign import load_case
+from rigdesign.bearing_films import solve_bearings
+from rigdesign.case import Case
+from rigdesign.cold import cold_feedback
+from rigdesign.errors import CaseError
+from rigdesign.loads import mesh_models
+from rigdesign.losses import PlacedLoss, rotating_losses
+from rigdesign.lubrication import oil_streams
+from rigdesign.ramp_run import held_points
+from rigdesign.rig.boundary import boundary_conditions
+from rigdesign.rig.model import build_rig
+from thermal.boundary import Exchange, Film, FilmCoefficient, SurfaceSource
+
+PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
+BOUNDARY = "gearboxes.test.housing.boundary"
+WALL, FLUID = 440.0, 408.15
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    return load_case(PROTOTYPE)
+
+
+def films(case: Case) -> dict[str, FilmCoefficient]:
+    """Coefficient of every film and exchange at one wall and fluid temperature."""
+    conditions, _ = conditions_of(case)
+    return {
+        c.surface_a if isinstance(c, Exchange) else c.surface: c.law(WALL, FLUID)
+        for c in conditions
+        if isinstance(c, Film | Exchange)
+    }
+
+
+def conditions_of(case: Case) -> tuple[list[object], list[PlacedLoss]]:
+    rig = build_rig(case, "quick")
+    point = held_points(rig)[0]
+    feedback = cold_feedback(rig, point)
+    bearings = solve_bearings(rig, point, feedback)
+    losses = rotating_losses(rig, point, feedback, mesh_models(rig, point, feedback), bearings)
+    return list(
+        boundary_conditions(rig, "test", point, feedback, bearings, losses, radiation_included=True)
+    ), losses
+
+
+def test_rotating_films_take_air_at_the_film_temperature(case: Case) -> None:
+    found = films(case)
+    assert found["gear_test_pinion_side_front"].formula == "rotating_disc"
+    assert found["shaft_test_pinion_warm"].formula == "rotating_cylinder_becker"
+    assert found["shaft_test_pinion_seal_front"].formula == "narrow_gap_taylor"
+    assert not any(film.warnings for name, film in found.items() if "gear_" in name)
+
+
+def test_room_air_constants_are_a_choice_that_warns(case: Case) -> None:
+    chosen = case.with_value(f"{BOUNDARY}.gear_sides.correlation", "jungnickel")
+    film = films(chosen)["gear_test_pinion_side_front"]
+    assert film.formula == "rotating_disc_jungnickel"
+    assert "film temperature" in film.warnings[0]
+
+
+def test_gear_sides_turn_in_the_mist_of_the_windage(case: Case) -> None:
+    dry = case.with_value(f"{BOUNDARY}.gear_sides.medium", "air")
+    name = "gear_test_pinion_side_front"
+    mist, air = films(case)[name], films(dry)[name]
+    assert mist.inputs["density"] == case.losses.chamber_density == 5.0
+    assert air.inputs["density"] < 0.9
+    assert 3.5 * air.value < mist.value < 6.0 * air.value
+
+
+def test_the_seal_gap_is_stated_once(case: Case) -> None:
+    """A study of the gap reaches the film: Becker and Kaye with a smaller gap."""
+    name = "shaft_test_pinion_seal_front"
+    narrow = case.with_value("gearboxes.test.seals.pinion.radial_gap", "0.3 mm")
+    assert films(case)[name].inputs["gap"] == pytest.approx(0.6e-3)
+    assert films(narrow)[name].inputs["gap"] == pytest.approx(0.3e-3)
+    with pytest.raises(CaseError, match=r"is not the radial gap of the seals of test_wheel, 0\.6 mm"):
+        case.with_value(f"{BOUNDARY}.shaft_seal.gap", "0.5 mm")
+    with pytest.raises(CaseError, match="is not the height of the housing, 280 mm"):
+        case.with_value(f"{BOUNDARY}.housing_air.height", "400 mm")
+
+
+def test_a_given_film_says_where_the_case_has_it_from(case: Case, tmp_path: Path) -> None:
+    file = tmp_path / "case.toml"
+    file.write_text(
+        f'extends = "{(PROTOTYPE / "case.toml").as_posix()}"\n'
+        f"[{BOUNDARY}.chamber_oil]\n"
+        'heat_transfer_coefficient = { value = "900 W/(m2 K)", measured = "heat flux foil, run 12" }\n'
+        f"[{BOUNDARY}.chamber_sump]\n"
+        'heat_transfer_coefficient = "200 W/(m2 K)"\n'
+    )
+    measured = films(load_case(file))
+    wall = measured["chamber_wall"]
+    assert (wall.formula, wall.source) == ("constant", "measured: heat flux foil, run 12")
+    assert "100 to 600" in wall.warnings[0]
+    assert measured["chamber_floor"].source == "input of the case"
+    printed = films(case)["chamber_wall"]
+    assert printed.source == "P2, Figure 11; assumed: as the main rig"
+    assert printed.warnings == ()
+
+
+def test_seals_heat_their_own_places(case: Case) -> None:
+    """Lip seals: 7.69e-6 d^2 n each; where the shaft leaves, into its own bore and the oil of the bearings."""
+    lips = case.with_value("gearboxes.test.seals.pinion.kind", "radial_lip")
+    conditions, losses = conditions_of(lips)
+    (seal,) = (p for p in losses if p.name == "test.pinion" and p.loss.kind == "seal")
+    heat = {c.surface: c.power for c in conditions if isinstance(c, SurfaceSource) and c.kind == "seal_loss"}
+    own = {name: power for name, power in heat.items() if "pinion" in name}
+    places = ("front", "rear", "front_end", "rear_end")
+    assert set(own) == {
+        f"{s}_{p}" for s in ("shaft_test_pinion_seal", "seal_bore_test_pinion") for p in places
+    }
+    # 25 % of each loss into either body, at 12,000 rpm
+    assert own["seal_bore_test_pinion_front"] == pytest.approx(0.25 * 7.69e-6 * 41.92**2 * 12000, rel=1e-3)
+    assert own["seal_bore_test_pinion_rear_end"] == pytest.approx(0.25 * 7.69e-6 * 40.0**2 * 12000, rel=1e-3)
+    assert sum(own.values()) == pytest.approx(seal.into_body, rel=1e-12)
+    assert seal.into_bearing_oil == pytest.approx(2 * 0.5 * 7.69e-6 * 40.0**2 * 12000, rel=1e-3)
+
+
+def test_end_seals_warm_the_oil_of_the_bearings(case: Case) -> None:
+    rig = build_rig(case.with_value("gearboxes.test.seals.*.kind", "radial_lip"), "quick")
+    _, losses = conditions_of(rig.case)
+    none = {
+        "test.gear_oil": 0.0,
+        "test.bearing_oil": 0.0,
+        "reference.gear_oil": 0.0,
+        "reference.bearing_oil": 0.0,
+    }
+    streams = {s.name: s.heat for s in oil_streams(rig, losses, {}, none)}
+    own = [p for p in losses if p.gearbox == "test"]
+    seals = [p for p in own if p.loss.kind == "seal"]
+    ends = sum(p.end_share * p.into_oil for p in seals)
+    bearings = sum(p.loss.power for p in own if p.loss.kind == "bearing")
+    assert ends > 100.0
+    assert streams["test.bearing_oil"] == pytest.approx(bearings + ends, rel=1e-12)
+    assert sum(streams.values()) == pytest.approx(sum(p.into_oil for p in losses), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "words"),
+    [
+        (f"{BOUNDARY}.shaft_outside.medium", "mist", "the fluid is not its oil"),
+        (f"{BOUNDARY}.shaft_cold.medium", "mist", "the fluid is not its oil"),
+    ],
+)
+def test_the_mist_is_that_of_the_gears(case: Case, path: str, value: str, words: str) -> None:
+    with pytest.raises(CaseError, match=words):
+        case.with_value(path, value)
