@@ -166,7 +166,10 @@ def solve_periodic(
             rest, drive, twist = rest - damp * step[1], drive - damp * step[2], twist - damp * step[3]
             continue
         previous, damp = error, 1.0
-        step = newton.step(reactions, miss, balance, asked)
+        try:
+            step = newton.step(reactions, miss, balance, asked)
+        except np.linalg.LinAlgError:
+            break
         ports[:, 1:] += step[0]
         rest, drive, twist = rest + step[1], drive + step[2], twist + step[3]
     if best.residual < max(tolerance, STALL_LIMIT):

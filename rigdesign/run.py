@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rigdesign.assemble import heat
@@ -20,7 +21,7 @@ from rigdesign.bearing_films import solve_bearings
 from rigdesign.case.model import Case
 from rigdesign.checks import Subject, all_checks
 from rigdesign.coupling import PointResult, governing_point, solve_point
-from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError
+from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError, UsageError
 from rigdesign.loads import mesh_models
 from rigdesign.losses import mesh_losses, rotating_losses
 from rigdesign.ramp_run import held_points, run_ramp, schedule_of
@@ -174,6 +175,21 @@ class _Clock:
         self._last = now
 
 
+def _machine_error(error: OSError | ImportError) -> RigdesignError:
+    """What the machine lacks: gmsh's libraries, another library, or room and rights for files."""
+    missing = missing_gmsh_libraries()
+    if missing or "gmsh" in str(error):
+        return MissingLibraryError(f"{gmsh_remedy(missing)} ({error})")
+    if isinstance(error, ImportError):
+        return MissingLibraryError(
+            f"{error.name or 'a library'} cannot be loaded: {error}; run: rigdesign doctor"
+        )
+    return UsageError(
+        f"the machine refuses a file: {error}; look at free space and rights of the temporary folder and of "
+        "NUMBA_CACHE_DIR"
+    )
+
+
 @contextmanager
 def _solver_errors(case: Case) -> Iterator[None]:
     """Turn what the solvers raise into the tool's errors."""
@@ -182,8 +198,12 @@ def _solver_errors(case: Case) -> Iterator[None]:
     except RigdesignError:
         raise
     except (OSError, ImportError) as error:
-        missing = missing_gmsh_libraries()
-        raise MissingLibraryError(f"{gmsh_remedy(missing)} ({error})") from error
+        raise _machine_error(error) from error
+    except np.linalg.LinAlgError as error:
+        raise NotConvergedError(
+            f"a linear system of the run has no solution ({error}): a stiffness of the case is far out of proportion "
+            "to the others, or a step left the flanks open; correct it or change speed and torque"
+        ) from error
     except ValueError as error:
         raise CaseError(str(error), str(case.path)) from error
     except RuntimeError as error:

@@ -31,6 +31,7 @@ def gearbox_faults(case: "Case") -> Iterator[Fault]:
                 )
             yield from _gear(f"{at}.gears.{gear_name}", gear)
         yield from _bearings(at, box)
+        yield from _stations(at, box)
         shafts = _shafts_of(case, box)
         for kind, parts in (("gears", box.gears), ("bearings", box.bearings), ("seals", box.seals)):
             for part_name, part in parts.items():
@@ -93,6 +94,21 @@ def _too_close(at: str, mesh: "GearMesh", teeth: int) -> Iterator[Fault]:
             f"these gears cannot mesh at or below {show(least, 'length')}, where their base circles touch",
             f"write a centre distance near {show(reference, 'length')}, or change module or tooth numbers",
         )  # fmt: skip
+
+
+def _stations(at: str, box: "Gearbox") -> Iterator[Fault]:
+    """Two bearings on one spot hold no shaft: the lever rule has no lever."""
+    seen: dict[tuple[str, float], str] = {}
+    for name, bearing in box.bearings.items():
+        if bearing.position is None:
+            continue
+        other = seen.setdefault((bearing.shaft, bearing.position), name)
+        if other != name:
+            yield Fault(
+                f"{at}.bearings.{name}.position", show(bearing.position, "length"),
+                f"is also where {other} holds the shaft {bearing.shaft}",
+                "write the distance of the middle of each bearing from the start of the shaft",
+            )  # fmt: skip
 
 
 def _bearings(at: str, box: "Gearbox") -> Iterator[Fault]:

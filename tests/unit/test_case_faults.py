@@ -299,6 +299,13 @@ BAD = [
         "elements of the shafts, limit 500",
         "write at least",
     ),
+    # a shaft on one bearing
+    (
+        'gearboxes.reference.bearings.wheel_rear.position = "48.13 mm"',
+        "gearboxes.reference.bearings.wheel_rear.position",
+        "is also where wheel_front holds the shaft",
+        "distance of the middle",
+    ),
     # a check on a part that is not there
     (
         'limits.bought_parts.torque_flange.part = "drivetrain.couplings.wheel_sid"',

@@ -4,6 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from dynamics import harmonic_balance
 from dynamics.drivetrain import Motor, assemble
 from dynamics.harmonic_balance import HarmonicGrid, Problem, resample, solve_periodic, waveform
 from dynamics.harmonic_walk import HarmonicWalk, highest_mode, mesh_cells, quasi_static_start
@@ -198,3 +199,15 @@ def test_bad_input_is_refused() -> None:
     with pytest.raises(ValueError, match="place it on a shaft station"):
         port_model(on_gear, laws)
     assert isinstance(rig.motor, Motor)
+
+
+def test_a_singular_newton_matrix_is_no_solution(monkeypatch: pytest.MonkeyPatch) -> None:
+    def singular(*_: object) -> None:
+        raise np.linalg.LinAlgError("Singular matrix")
+
+    monkeypatch.setattr(harmonic_balance._Newton, "step", singular)
+    curve = periodic_response(
+        assemble(prototype()), prototype_laws(), [500.0], 180.0, methods=("harmonic_balance",)
+    )
+    assert curve.points == ()
+    assert "harmonic balance at" in curve.failed[0][1]
