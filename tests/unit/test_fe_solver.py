@@ -71,12 +71,12 @@ def test_elastic_multigrid_equals_direct() -> None:
     assert_allclose(solution.values, direct, rtol=0.0, atol=1e-10 * np.abs(direct).max())
 
 
-def test_heat_takes_seven_iterations_at_any_size() -> None:
+def test_heat_takes_eight_iterations_at_any_size() -> None:
     counts = []
     for divisions in (4, 8, 12):
         _, matrix, load, multigrid = heat_problem(divisions)
         counts.append(conjugate_gradient(matrix, load, multigrid, tolerance=1e-8).iterations)
-    assert max(counts) <= 7
+    assert max(counts) <= 8
     assert max(counts) - min(counts) <= 1
 
 

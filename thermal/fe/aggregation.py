@@ -22,6 +22,10 @@ DEPENDENT = 1e-8
 """A mode adds nothing to a group if less than this share of it is left beside the others."""
 
 
+Blocks = sparse.bsr_array
+"""A matrix of blocks, unknowns per node by unknowns per node (or per group)."""
+
+
 @dataclass(frozen=True, eq=False)
 class CoarserLevel:
     """The next level.
@@ -29,48 +33,54 @@ class CoarserLevel:
     prolongation : (n, n_coarse); matrix : (n_coarse, n_coarse); modes : (n_coarse, m)
     """
 
-    prolongation: sparse.csr_array
-    matrix: sparse.csr_array
+    prolongation: Blocks
+    matrix: Blocks
     modes: FloatArray
 
 
-def coarsen(
-    matrix: sparse.csr_array, modes: FloatArray, block: int, scaled_largest: float, level: int
-) -> CoarserLevel:
+def coarsen(matrix: Blocks, modes: FloatArray, scaled_largest: float, level: int) -> CoarserLevel:
     """Make the next level of a symmetric positive (semi-)definite matrix.
 
-    matrix : (n, n) with ``block`` unknowns per node; modes : (n, m) that the next level must hold
+    matrix : (n, n) in square blocks, one per pair of nodes; modes : (n, m) that the next level must hold
     scaled_largest : largest eigenvalue of the matrix scaled by its diagonal; level : 0 for the first
     """
-    nodes = _node_strengths(matrix, block)
-    diagonal = nodes.diagonal()
-    rows = np.repeat(np.arange(len(diagonal)), np.diff(nodes.indptr))
+    sizes = np.linalg.norm(matrix.data, axis=(1, 2))
+    on_diagonal = _diagonal_places(matrix)
+    diagonal = sizes[on_diagonal]
+    rows = _rows(matrix)
     limit = (STRONG * 0.5**level) ** 2
-    strong = nodes.data**2 > limit * np.abs(diagonal[rows] * diagonal[nodes.indices])
-    group = kernels.aggregates(nodes.indptr, nodes.indices, strong)
-    tentative, coarse_modes = _tentative(group, modes, block)
-    inverse = 1.0 / np.where(matrix.diagonal() > 0.0, matrix.diagonal(), 1.0)
-    slope = sparse.csr_array(matrix @ tentative)
-    slope.data *= np.repeat((4.0 / 3.0 / scaled_largest) * inverse, np.diff(slope.indptr))
-    prolongation = sparse.csr_array(tentative - slope)
-    coarse = sparse.csr_array(prolongation.T @ sparse.csr_array(matrix @ prolongation))
-    empty = coarse.diagonal() == 0.0
-    if empty.any():
-        coarse = sparse.csr_array(coarse + sparse.diags_array(empty.astype(np.float64)))
+    strong = sizes**2 > limit * diagonal[rows] * diagonal[matrix.indices]
+    group = kernels.aggregates(matrix.indptr, matrix.indices, strong)
+    tentative, coarse_modes = _tentative(group, modes, matrix.blocksize[0])
+    points = np.einsum("kii->ki", matrix.data[on_diagonal])
+    inverse = (4.0 / 3.0 / scaled_largest) / np.where(points > 0.0, points, 1.0)
+    slope = sparse.bsr_array(matrix @ tentative)
+    slope.data *= inverse[_rows(slope)][:, :, None]
+    prolongation = sparse.bsr_array(tentative - slope)
+    coarse = sparse.bsr_array(prolongation.T @ sparse.bsr_array(matrix @ prolongation))
+    coarse.sort_indices()
+    unused = np.einsum("kii->ki", coarse.data)[_diagonal_places(coarse)] == 0.0
+    places, number = np.nonzero(unused)
+    coarse.data[_diagonal_places(coarse)[places], number, number] = 1.0
     return CoarserLevel(prolongation, coarse, coarse_modes)
 
 
-def _node_strengths(matrix: sparse.csr_array, block: int) -> sparse.csr_array:
-    """(n_nodes, n_nodes) size of the coupling between two nodes."""
-    if block == 1:
-        return matrix
-    blocks = sparse.bsr_array(matrix, blocksize=(block, block))
-    sizes = np.linalg.norm(blocks.data, axis=(1, 2))
-    n = len(blocks.indptr) - 1
-    return sparse.csr_array((sizes, blocks.indices, blocks.indptr), shape=(n, n))
+def as_blocks(matrix: sparse.csr_array | Blocks) -> Blocks:
+    """The matrix in blocks, of size 1 if it has none."""
+    return matrix if isinstance(matrix, sparse.bsr_array) else sparse.bsr_array(matrix, blocksize=(1, 1))
 
 
-def _tentative(group: IndexArray, modes: FloatArray, block: int) -> tuple[sparse.csr_array, FloatArray]:
+def _rows(matrix: Blocks) -> NDArray[np.int64]:
+    """(nnz,) block row of every block."""
+    return np.repeat(np.arange(len(matrix.indptr) - 1), np.diff(matrix.indptr))
+
+
+def _diagonal_places(matrix: Blocks) -> NDArray[np.int64]:
+    """(n_nodes,) place of every diagonal block."""
+    return np.flatnonzero(_rows(matrix) == matrix.indices)
+
+
+def _tentative(group: IndexArray, modes: FloatArray, block: int) -> tuple[Blocks, FloatArray]:
     """Modes made orthonormal on every group: prolongation (n, m n_groups), and modes of the next level."""
     n_groups, m = int(group.max(initial=-1)) + 1, modes.shape[1]
     owner = np.repeat(group, block)
@@ -90,10 +100,9 @@ def _tentative(group: IndexArray, modes: FloatArray, block: int) -> tuple[sparse
         coarse[:, k, k] = np.where(kept, left, 0.0)
         scale = np.divide(1.0, left, out=np.zeros_like(left), where=kept)
         basis[:, k] *= scale[owner]
-    columns = (m * owner[:, None] + np.arange(m)).ravel()
-    shape = (len(modes), m * n_groups)
-    entries = sparse.coo_array((basis.ravel(), (np.repeat(inside, m), columns)), shape=shape)
-    return sparse.csr_array(entries), coarse.reshape(-1, m)
+    start = np.append(0, np.cumsum(group >= 0)).astype(np.int32)
+    blocks = (basis.reshape(-1, block, m), group[group >= 0], start)
+    return sparse.bsr_array(blocks, shape=(len(modes), m * n_groups)), coarse.reshape(-1, m)
 
 
 def _group_sum(owner: NDArray[np.int32], values: FloatArray, n_groups: int) -> FloatArray:

@@ -179,6 +179,17 @@ def diagonal_product(data: Numbers, x: Numbers, y: Numbers) -> None:
 
 
 @njit(cache=True)
+def diagonal_blocks(indptr: Integers, indices: Integers, data: Numbers) -> Numbers:
+    """(n, 3, 3) blocks on the diagonal; data : (nnz, 3, 3)."""
+    blocks = np.zeros((len(indptr) - 1, 3, 3), dtype=data.dtype)
+    for row in range(len(indptr) - 1):
+        for at in range(indptr[row], indptr[row + 1]):
+            if indices[at] == row:
+                blocks[row] = data[at]
+    return blocks
+
+
+@njit(cache=True)
 def aggregates(indptr: Integers, indices: Integers, strong: NDArray[np.bool_]) -> Integers:
     """(n,) number of the aggregate of every node, -1 for a node without strong neighbours.
 

@@ -7,7 +7,9 @@ Sources: Adams, Brezina, Hu, Tuminaro, J. Comput. Phys. 188 (2003) 593 for the s
 Methods for Sparse Linear Systems, 2nd ed., ch. 13 for cycles.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +17,7 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 
 from thermal.fe import kernels
-from thermal.fe.aggregation import coarsen
+from thermal.fe.aggregation import as_blocks, coarsen
 from thermal.fe.shapes import FloatArray
 
 Matrix = sparse.csr_array | sparse.bsr_array
@@ -28,8 +30,11 @@ SMOOTHED_RANGE = 10.0
 DENSE = 600
 """Unknowns that a dense factor takes."""
 
-COARSE_CYCLES = 2
+COARSE_CYCLES = 3
 """Cycles over the linear space for one over the second-order space, which costs ten times as much."""
+
+CYCLE_RANGE = (0.2, 1.05)
+"""Eigenvalues of the linear matrix times one cycle: a symmetric cycle has none above 1."""
 
 LOOSE = 1e-10
 """A mode of the last level costs no energy if its share of the largest diagonal entry is below this."""
@@ -85,32 +90,46 @@ class _WithLowRank:
 class Smoother:
     """Chebyshev iteration on the upper part of the spectrum of the (block) Jacobi-scaled matrix.
 
-    degree : of the polynomial
+    product : of ``matrix`` in single precision; degree : of the polynomial
     """
 
-    def __init__(self, matrix: Matrix, degree: int) -> None:
-        self._inverse = _inverse_diagonal(matrix)
-        self._single = self._inverse.astype(np.float32)
+    def __init__(self, matrix: Matrix, product: Product, degree: int) -> None:
+        self._single = _inverse_diagonal(matrix).astype(np.float32)
         self._degree = degree
-        self.largest = 1.05 * _largest_eigenvalue(Product(matrix), self._inverse)
+        self.largest = 1.05 * _largest_eigenvalue(product, self._single)
 
     def __call__(self, product: Product | _WithLowRank, x: Numbers | None, residual: Numbers) -> Numbers:
         """Improve ``x`` (zero if None), to which ``residual`` belongs."""
-        upper = self.largest
-        lower = upper / SMOOTHED_RANGE
-        centre, half = 0.5 * (upper + lower), 0.5 * (upper - lower)
-        rho = half / centre
-        step = scaled(self._single, residual)
-        step *= np.float32(1.0 / centre)
-        x = step.copy() if x is None else x + step
-        for _ in range(self._degree - 1):
-            residual = residual - product @ step
-            following = 1.0 / (2.0 * centre / half - rho)
-            step *= np.float32(following * rho)
-            step += np.float32(2.0 * following / half) * scaled(self._single, residual)
-            rho = following
-            x += step
-        return x
+        bounds = (self.largest / SMOOTHED_RANGE, self.largest)
+        return _chebyshev(product, partial(scaled, self._single), bounds, self._degree, x, residual)
+
+
+def _chebyshev(
+    product: Product | _WithLowRank,
+    precondition: Callable[[Numbers], Numbers],
+    bounds: tuple[float, float],
+    degree: int,
+    x: Numbers | None,
+    residual: Numbers,
+) -> Numbers:
+    """Improve ``x`` by the polynomial that is smallest for eigenvalues of the preconditioned matrix in bounds.
+
+    Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., algorithm 12.1.
+    """
+    lower, upper = bounds
+    centre, half = 0.5 * (upper + lower), 0.5 * (upper - lower)
+    rho = half / centre
+    step = precondition(residual)
+    step *= np.float32(1.0 / centre)
+    x = step.copy() if x is None else x + step
+    for _ in range(degree - 1):
+        residual = residual - product @ step
+        following = 1.0 / (2.0 * centre / half - rho)
+        step *= np.float32(following * rho)
+        step += np.float32(2.0 * following / half) * precondition(residual)
+        rho = following
+        x += step
+    return x
 
 
 @dataclass(eq=False)
@@ -128,37 +147,39 @@ class AggregationHierarchy:
 
     matrix : symmetric positive definite, or semi-definite with ``modes`` on a piece as its only loose ones
     modes : (n, m) one constant (heat) or six rigid motions (elasticity), zero at held unknowns
-    block : unknowns per node
+    cycles : for one application
     """
 
-    def __init__(self, matrix: Matrix, modes: FloatArray, block: int, cycles: int = COARSE_CYCLES) -> None:
+    def __init__(self, matrix: Matrix, modes: FloatArray, cycles: int = COARSE_CYCLES) -> None:
         self._cycles = cycles
         self._stages: list[_Stage] = []
+        blocks = as_blocks(matrix)
         while matrix.shape[0] > DENSE:
-            smooth = Smoother(matrix, 2)
-            scalar = sparse.csr_array(matrix)
-            point = _largest_eigenvalue(Product(scalar), 1.0 / _positive(scalar.diagonal()))
-            coarser = coarsen(scalar, modes, block, point, len(self._stages))
+            product = Product(matrix, np.float32)
+            smooth = Smoother(matrix, product, 2)
+            by_point = (1.0 / _positive(matrix.diagonal())).astype(np.float32)
+            coarser = coarsen(blocks, modes, _largest_eigenvalue(product, by_point), len(self._stages))
             if not 0 < coarser.matrix.shape[0] < 0.7 * matrix.shape[0]:
                 break
-            up = coarser.prolongation
+            up = sparse.csr_array(coarser.prolongation)
             self._stages.append(
                 _Stage(
-                    Product(matrix, np.float32), smooth,
-                    Product(up, np.float32), Product(sparse.csr_array(up.T), np.float32),
+                    product,
+                    smooth,
+                    Product(up, np.float32),
+                    Product(sparse.csr_array(up.T), np.float32),
                 )
-            )  # fmt: skip
-            matrix, modes, block = coarser.matrix, coarser.modes, modes.shape[1]
+            )
+            blocks, modes = coarser.matrix, coarser.modes
+            matrix = sparse.csr_array(blocks)
         self._last = _dense_factor(matrix, modes)
 
     def __call__(self, residual: Numbers) -> Numbers:
         """Approximate solution (n,) for a right-hand side (n,)."""
+        cycle = partial(self._cycle, level=0)
         if not self._stages:
-            return self._cycle(residual, 0)
-        x = self._cycle(residual, 0)
-        for _ in range(self._cycles - 1):
-            x += self._cycle(residual - self._stages[0].product @ x, 0)
-        return x
+            return cycle(residual)
+        return _chebyshev(self._stages[0].product, cycle, CYCLE_RANGE, self._cycles, None, residual)
 
     def _cycle(self, residual: Numbers, level: int) -> Numbers:
         if level == len(self._stages):
@@ -201,35 +222,37 @@ def _inverse_diagonal(matrix: Matrix) -> FloatArray:
     """Inverse of the diagonal (n,), or of the 3x3 diagonal blocks (n, 3, 3)."""
     if not (isinstance(matrix, sparse.bsr_array) and matrix.blocksize == (3, 3)):
         return 1.0 / _positive(matrix.diagonal())
-    n = len(matrix.indptr) - 1
-    rows = np.repeat(np.arange(n), np.diff(matrix.indptr))
-    return np.asarray(np.linalg.inv(matrix.data[rows == matrix.indices]))
+    return np.asarray(np.linalg.inv(kernels.diagonal_blocks(matrix.indptr, matrix.indices, matrix.data)))
 
 
-def _largest_eigenvalue(matrix: Product, inverse: FloatArray, steps: int = 12) -> float:
-    """Largest eigenvalue of inverse @ matrix from a short Lanczos run with a fixed start."""
+def _largest_eigenvalue(matrix: Product, inverse: Numbers, steps: int = 10) -> float:
+    """Largest eigenvalue of inverse @ matrix, single precision, from a short Lanczos run with a fixed start."""
     n = inverse.shape[0] * (1 if inverse.ndim == 1 else 3)
-    v = np.cos(1.0 + np.arange(n) * 2.399963)
+    v: Numbers = np.cos(1.0 + np.arange(n) * 2.399963).astype(np.float32)
     w = scaled(inverse, v)
-    beta = float(np.sqrt(float(v @ w)))
+    beta = _root_of_dot(v, w)
     v, w = v / beta, w / beta
-    last = np.zeros(n)
+    last = np.zeros_like(v)
     alphas: list[float] = []
     betas: list[float] = []
     for _ in range(min(steps, n)):
-        u = matrix @ w - (betas[-1] * last if betas else 0.0)
-        alpha = float(u @ w)
-        u -= alpha * v
+        u = matrix @ w - (betas[-1] * last if betas else np.float32(0.0))
+        alpha = float(np.dot(u, w))
+        u -= np.float32(alpha) * v
         z = scaled(inverse, u)
         alphas.append(alpha)
-        beta = float(np.sqrt(max(float(u @ z), 0.0)))
-        if beta < 1e-10 * alpha:
+        beta = _root_of_dot(u, z)
+        if beta < 1e-5 * alpha:
             break
-        betas.append(beta)
+        betas.append(float(beta))
         last, v, w = v, u / beta, z / beta
     k = len(alphas)
     small = np.diag(alphas) + np.diag(betas[: k - 1], 1) + np.diag(betas[: k - 1], -1)
     return float(np.linalg.eigvalsh(small)[-1])
+
+
+def _root_of_dot(a: Numbers, b: Numbers) -> np.float32:
+    return np.float32(np.sqrt(max(float(np.dot(a, b)), 0.0)))
 
 
 class TwoLevelMultigrid:
@@ -257,7 +280,7 @@ class TwoLevelMultigrid:
         degree: int = 3,
     ) -> None:
         self._fine = Product(fine, np.float32)
-        self._smooth = Smoother(fine, degree)
+        self._smooth = Smoother(fine, self._fine, degree)
         self._down = sparse.csr_array(prolongation.T).astype(np.float32)
         self._up = prolongation.astype(np.float32)
         self._block = fine.shape[0] // prolongation.shape[0]
@@ -265,7 +288,7 @@ class TwoLevelMultigrid:
         self._free_coarse = (~fixed_coarse).astype(np.float32)
         if modes is None:
             modes = np.tile(np.eye(self._block), (prolongation.shape[1], 1))
-        self._coarse = AggregationHierarchy(coarse, modes * ~fixed_coarse[:, None], self._block)
+        self._coarse = AggregationHierarchy(coarse, modes * ~fixed_coarse[:, None])
         self._low_rank: LowRank | None = None
         self._correction: tuple[FloatArray, FloatArray] | None = None
 
