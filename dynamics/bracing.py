@@ -15,10 +15,13 @@ from numpy.typing import NDArray
 
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
-from dynamics.static_loop import NotConverged, StaticState, port_model, solve_static
+from dynamics.static_loop import NotConverged, StaticState, loaded_share, port_model, solve_static
 
 Array = NDArray[np.float64]
 Mode = Literal["twist_held", "shift_held", "torque_controlled"]
+
+OPEN_SHARE = 0.02
+"""Share of the asked torque below which a setting counts as lost in the play: crowned flanks touch one by one."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +79,7 @@ class BracingState:
 
     torque : (n_meshes,) mean torque at every pinion [N m]; twist [rad]; shift [m] of the gear, 0 without one
     rotation : of the loop that stands for the shift [rad]
-    actuator_force, friction_force : on the moved half [N]
+    actuator_force, friction_force : on the moved half [N]; 0 where nothing is moved
     loop_stiffness : torque of the control mesh per twist (or per rotation by the shift) at this state [N
     m/rad]
     """
@@ -117,15 +120,17 @@ def brace(
     mesh's law
         is the unknown
 
-    Raises ValueError if a mode with a shift has no gear, NotConverged if no setting makes the torque.
+    gear : the one that is shifted; a controlled torque without one is made by the twist
+
+    Raises ValueError if a held shift has no gear, NotConverged if no setting makes the torque.
     """
-    if mode == "twist_held":
-        state = solve_static(port_model(system, laws), torque=torque, control_mesh=control_mesh)
-        return _state(system, laws, mode, gear, state, 0.0, control_mesh)
-    if gear is None:
+    if gear is None and mode == "shift_held":
         raise ValueError(
             f"bracing mode {mode!r}: needs the shifted helical gear; give it or use 'twist_held'"
         )
+    if gear is None or mode == "twist_held":
+        state = solve_static(port_model(system, laws), torque=torque, control_mesh=control_mesh)
+        return _state(system, laws, mode, None, state, 0.0, control_mesh)
     shift, state = _solve_shift(system, laws, torque, gear, twist, control_mesh)
     return _state(system, _shifted(laws, gear, shift), mode, gear, state, shift, control_mesh)
 
@@ -156,8 +161,10 @@ def drift(
     try:
         state = solve_static(port_model(system, laws), twist=cold.twist)
     except NotConverged:
+        if loaded_share(port_model(system, laws), torque, cold.twist, control_mesh) > OPEN_SHARE:
+            raise
         state = _open_loop(cold.static)
-    hot = _state(system, laws, mode, gear, state, cold.shift, control_mesh)
+    hot = _state(system, laws, mode, None if mode == "twist_held" else gear, state, cold.shift, control_mesh)
     change = float(hot.torque[control_mesh] - cold.torque[control_mesh])
     return BracingDrift(cold=cold, hot=hot, torque_change=change)
 

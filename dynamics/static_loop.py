@@ -313,3 +313,9 @@ def _bilateral(
             ]
         )
     return u, phi
+
+
+def loaded_share(model: PortModel, torque: float, twist: float, control_mesh: int = 0) -> float:
+    """Share of a torque [N m] that a twist [rad] makes with springs for meshes; below 0 the flanks stand apart."""
+    touching, loaded = (_bilateral(model, share * torque, None, control_mesh)[1] for share in (1e-6, 1.0))
+    return (twist - touching) / (loaded - touching)

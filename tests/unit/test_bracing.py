@@ -2,6 +2,7 @@ import math
 
 import pytest
 
+from dynamics import bracing
 from dynamics.bracing import ShiftedGear, brace, drift
 from dynamics.drivetrain import assemble
 from dynamics.static_loop import NotConverged
@@ -99,6 +100,38 @@ def test_setting_inside_the_backlash_carries_nothing() -> None:
     found = drift(system, laws, hot, 10.0, "twist_held")
     assert not found.hot.torque.any()
     assert found.torque_change == pytest.approx(-10.0)
+
+
+def test_a_twist_moves_no_gear() -> None:
+    """The case may name the gear of its load unit and brace by twist all the same: nothing pushes then."""
+    system, laws = assemble(prototype()), prototype_laws()
+    found = drift(system, laws, laws, 180.0, "twist_held", gear=shifted())
+    for state in (found.cold, found.hot):
+        assert (state.actuator_force, state.friction_force, state.shift, state.rotation) == (0.0,) * 4
+
+
+def test_controlled_torque_without_a_gear_is_made_by_the_twist() -> None:
+    system, laws = assemble(prototype()), prototype_laws()
+    state = brace(system, laws, 180.0, "torque_controlled")
+    assert state.mode == "torque_controlled"
+    assert state.twist == brace(system, laws, 180.0, "twist_held").twist
+    assert state.actuator_force == 0.0
+
+
+def test_a_stalled_solve_is_not_reported_as_open_flanks(monkeypatch: pytest.MonkeyPatch) -> None:
+    system, laws = assemble(prototype()), prototype_laws()
+    solve = bracing.solve_static
+
+    def stalling(*args: object, **options: object) -> object:
+        if "twist" in options:
+            raise NotConverged("static loop: residual 1")
+        return solve(*args, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(bracing, "solve_static", stalling)
+    with pytest.raises(NotConverged, match="residual 1"):
+        drift(system, laws, laws, 180.0, "twist_held")
+    loose = (laws[0], laws[1]._replace(backlash=laws[1].backlash + 1e-3))
+    assert not drift(system, laws, loose, 10.0, "twist_held").hot.torque.any()
 
 
 def test_what_cannot_be_braced() -> None:
