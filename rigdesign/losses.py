@@ -57,17 +57,24 @@ def rotating_losses(
     models: Sequence[MeshModel],
     bearings: Mapping[str, BearingState],
 ) -> list[PlacedLoss]:
-    """Every loss that brakes a shaft from outside the teeth: bearings, windage, oil, seals, squeezing."""
+    """Every loss that brakes a shaft from outside the teeth: bearings, windage, oil, seals, squeezing.
+
+    Where the bearings have the constant drag of the case nothing else brakes, so nothing else loses: heat that no
+    motor gives must not reach the housing.
+    """
     pairs = {model.name: model.pair for model in models}
     losses: list[PlacedLoss] = []
     for name, state in bearings.items():
         box_name, part = name.split(".")
         losses.append(_bearing_loss(rig, box_name, part, point, state))
-    for box_name, box in rig.case.gearboxes.items():
+    alone = rig.drivetrain is not None and rig.case.losses.bearing_drag == "constant"
+    computed = {} if alone else rig.case.gearboxes
+    for box_name, box in computed.items():
         losses += _windage(rig, box_name, box, point, feedback, pairs)
         losses += _oil_jets(rig, box_name, box, point, pairs)
         losses += _seals(rig, box_name, box, point, feedback)
-    losses += _squeezing(rig, point, models)
+    if computed:
+        losses += _squeezing(rig, point, models)
     return [taken for loss in losses for taken in _taken(rig, point, loss)]
 
 

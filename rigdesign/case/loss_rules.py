@@ -52,6 +52,12 @@ def loss_faults(case: "Case") -> Iterator[Fault]:
             yield unknown(
                 f"{at}.part", loss.part, parts, f"part with {loss.kind} loss in gearbox {loss.gearbox}"
             )
+        if losses.bearing_drag == "constant" and case.drivetrain is not None and loss.kind != "mesh":
+            yield Fault(
+                f"{at}.kind", f'"{loss.kind}"', "would heat without braking: losses.bearing_drag is constant, so that "
+                "the torsional damping of the bearings is all that brakes beside the teeth",
+                'write bearing_drag = "film" or remove the given loss',
+            )  # fmt: skip
         for stage in loss.stages:
             if stage not in stages:
                 yield unknown(f"{at}.stages", stage, stages, "stage")

@@ -60,4 +60,4 @@ class Losses(Part):
     """Squeezing of oil out of the mesh, as a share of the mesh loss."""
     bearing_drag: Literal["film", "constant"] = "film"
     """film: from the bearing solution; constant: ``torsional_damping`` of each bearing, and
-    nothing else brakes the shafts (P2's simulation)."""
+    nothing else brakes the shafts or loses power, teeth aside (P2's simulation)."""

@@ -299,6 +299,14 @@ BAD = [
         "elements of the shafts, limit 500",
         "write at least",
     ),
+    # heat that no motor gives
+    (
+        'losses = { bearing_drag = "constant", '
+        'given.x = { gearbox = "test", kind = "windage", part = "pinion", power = "3 W" } }',
+        "losses.given.x.kind",
+        "heat without braking",
+        "remove the given loss",
+    ),
     # a shaft on one bearing
     (
         'gearboxes.reference.bearings.wheel_rear.position = "48.13 mm"',

@@ -11,8 +11,8 @@ from rigdesign.case import load_case
 from rigdesign.cold import cold_feedback
 from rigdesign.drags import drag_shafts, drag_torques
 from rigdesign.given_losses import given_power
-from rigdesign.loads import mesh_models
-from rigdesign.losses import PlacedLoss, rotating_losses
+from rigdesign.loads import brace_cold, mesh_models, respond
+from rigdesign.losses import PlacedLoss, mesh_losses, rotating_losses
 from rigdesign.ramp_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 
@@ -81,6 +81,20 @@ def test_constant_drag_heats_its_film(tmp_path: Path) -> None:
     """0.0007 N m s/rad at 12,000 rpm: 1105 W."""
     rig = variant(tmp_path, '[losses]\nbearing_drag = "constant"\n')
     assert film_rise(rig, "test.pinion_front") == pytest.approx(by_hand(rig, 1105.4), rel=1e-4)
+
+
+def test_the_motor_pays_for_all_heat_where_the_drag_is_constant(tmp_path: Path) -> None:
+    """Windage, jets and seals brake nothing then, so they may not heat either."""
+    rig = variant(tmp_path, '[losses]\nbearing_drag = "constant"\n')
+    turning = losses_at(rig)
+    assert {placed.loss.kind for placed in turning} == {"bearing"}
+    point = held_points(rig)[-1]
+    cold = cold_feedback(rig, point)
+    models = mesh_models(rig, point, cold)
+    response = respond(rig, point, models, {}, brace_cold(rig, point, cold))
+    lost = sum(p.loss.power for p in (*turning, *mesh_losses(rig, point, models, response)))
+    paid = response.drive_torque * rig.drive_speed(point.speed)
+    assert lost == pytest.approx(paid, rel=1e-4)
 
 
 def test_loss_keeps_what_the_film_would_have_made(tmp_path: Path) -> None:
