@@ -266,17 +266,17 @@ def _balance(film_excess: Callable[[float], float], inlet: float) -> float:
     start = film_excess(inlet)
     if start == 0.0:
         return inlet
+    limit = MAXIMUM_FILM_RISE if start > 0.0 else -MAXIMUM_FILM_DROP
     step = math.copysign(10.0, start)
     other = inlet + step
     while film_excess(other) * start > 0.0:
-        step *= 2.0
-        other = inlet + step
-        if not -MAXIMUM_FILM_DROP <= step <= MAXIMUM_FILM_RISE:
-            limit = MAXIMUM_FILM_RISE if step > 0.0 else -MAXIMUM_FILM_DROP
+        if step == limit:
             raise BearingNotConvergedError(
                 f"journal bearing: film temperature leaves the inlet {inlet:.0f} K by more than "
                 f"{limit:+.0f} K; feed more oil or correct the heat from the bodies"
             )
+        step = math.copysign(min(2.0 * abs(step), abs(limit)), limit)
+        other = inlet + step
     low, high = min(inlet, other), max(inlet, other)
     root: float = brentq(film_excess, low, high, xtol=1e-9, rtol=1e-13)
     return root

@@ -241,6 +241,20 @@ def test_no_balance_is_said(heat: float) -> None:
         solve(heat_from_bodies=heat)
 
 
+@pytest.mark.parametrize("rise", [-58.0, -45.0, 330.0, 395.0])
+def test_films_are_found_up_to_the_stated_limits(rise: float) -> None:
+    """-60 K and +400 K; the oil leaves twice as far from the inlet as the film is."""
+    flow = 2.0 / 6e4
+    state = solve(friction_heat=0.0, heat_from_bodies=2.0 * rise * DENSITY * HEAT_CAPACITY * flow)
+    assert state.film_temperature - INLET == pytest.approx(rise, rel=1e-6)
+
+
+@pytest.mark.parametrize("rise", [-61.0, 401.0])
+def test_films_beyond_the_limits_are_not(rise: float) -> None:
+    with pytest.raises(BearingNotConvergedError, match=r"-60 K|\+400 K"):
+        solve(friction_heat=0.0, heat_from_bodies=2.0 * rise * DENSITY * HEAT_CAPACITY * 2.0 / 6e4)
+
+
 FACTOR = st.floats(min_value=0.1, max_value=10.0)
 
 
