@@ -1,12 +1,13 @@
 """Where the coupling loop starts: the cold rig at its oil inlet temperatures."""
 
+from rigdesign.growth import uniform_growth
 from rigdesign.loads import first_torques
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 
 
 def cold_feedback(rig: Rig, point: OperatingPoint) -> Feedback:
-    """No growth, no heat from bodies, oil as fed; mesh torques without losses."""
+    """All of the rig at room temperature, no heat from bodies, oil as fed; mesh torques without losses."""
     case = rig.case
     gears = (f"{box}.{gear}" for box, entry in case.gearboxes.items() for gear in entry.gears)
     streams = {}
@@ -15,7 +16,11 @@ def cold_feedback(rig: Rig, point: OperatingPoint) -> Feedback:
         streams[f"{name}.bearing_oil"] = box.bearing_oil.inlet_temperature
     return Feedback(
         gear_temperature=dict.fromkeys(gears, case.ambient.temperature),
-        centre_distance={name: pair.centre_distance for name, pair in rig.pairs.items()},
+        centre_distance={
+            mesh: distance
+            for box in case.gearboxes
+            for mesh, distance in uniform_growth(rig, box, case.ambient.temperature).items()
+        },
         bearing_clearance={name: entry.diametral_clearance for name, _, entry in rig.bearings()},
         bearing_heat={name: 0.0 for name, _, _ in rig.bearings()},
         wall_heat=dict.fromkeys(streams, 0.0),

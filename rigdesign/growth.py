@@ -28,7 +28,7 @@ class HousingGrowth:
 
 
 def expand_housing(rig: Rig, field: HousingField, start: HousingGrowth | None = None) -> HousingGrowth:
-    """Expand one housing from ambient temperature; ``start`` is the growth of an earlier pass.
+    """Expand one housing from the temperature its drawing holds at; ``start`` is the growth of an earlier pass.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def expand_housing(rig: Rig, field: HousingField, start: HousingGrowth | None = 
     shape = expand(
         rig.models[name],
         field.temperature,
-        rig.case.ambient.temperature,
+        rig.case.ambient.reference_temperature,
         setup.elastic.elastic,
         reuse=setup,
         tolerance=TOLERANCE,
@@ -109,7 +109,7 @@ def spin_growth(rig: Rig, entry: JournalBearing, speed: float) -> float:
 def uniform_growth(rig: Rig, name: str, temperature: float) -> dict[str, float]:
     """Hot centre distances of a gearbox without a housing: all of it at one temperature [K]."""
     steel = rig.materials["structural_steel"]
-    strain = steel.expansion_coefficient * (temperature - rig.case.ambient.temperature)
+    strain = steel.expansion_coefficient * (temperature - rig.case.ambient.reference_temperature)
     return {
         f"{name}.{mesh_name}": mesh.centre_distance * (1.0 + strain)
         for mesh_name, mesh in rig.case.gearboxes[name].meshes.items()

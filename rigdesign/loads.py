@@ -64,7 +64,7 @@ def warm_pair(rig: Rig, name: str, speed: float, feedback: Feedback) -> GearPair
         feedback.gear_temperature[pinion],
         feedback.gear_temperature[wheel],
         feedback.centre_distance[name],
-        reference_temperature=rig.case.ambient.temperature,
+        reference_temperature=rig.case.ambient.reference_temperature,
         expansion_coefficients=(first, second),
         speed=rig.shaft_speed(gears[0].shaft, speed),
     )

@@ -24,6 +24,8 @@ class Ambient(Part):
     temperature: Temperature
     surroundings_temperature: Temperature | None = None
     """Walls that the rig radiates to; the air temperature when left out."""
+    reference_temperature: Temperature = 293.15
+    """At which drawings and measures of the case hold; 20 degC by ISO 1."""
 
 
 class CustomOil(Part):
