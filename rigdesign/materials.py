@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Literal
 
 Confidence = Literal["high", "medium", "low"]
+Treatment = Literal["case_hardened", "nitrided", "through_hardened"]
 ZERO_CELSIUS = 273.15
 
 
@@ -25,6 +26,7 @@ class Material:
     [Pa], poisson_ratio [-], density [kg/m3], heat_capacity [J/(kg K)]
     root_strength : sigma_FE = sigma_Flim Y_ST of ISO 6336-5 [Pa]; None if not for gears
     flank_strength : sigma_Hlim of ISO 6336-5 [Pa]; None if not for gears
+    treatment : of the flanks of gears, how they run in by ISO 6336-1
     tempering_temperature : bulk temperature above which hardness is lost [K]; None if it has none
     """
 
@@ -37,6 +39,7 @@ class Material:
     heat_capacity: float = 470.0
     root_strength: float | None = None
     flank_strength: float | None = None
+    treatment: Treatment = "case_hardened"
     tempering_temperature: float | None = None
     source: str = "input of the case"
     confidence: Confidence = "medium"

@@ -25,7 +25,7 @@ from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, 
 from rigdesign.loads import mesh_models
 from rigdesign.losses import mesh_losses, rotating_losses
 from rigdesign.ramp_run import held_points, run_ramp, schedule_of
-from rigdesign.results import AssumptionRecord, Check, Fidelity, LossRow, RunResult
+from rigdesign.results import AssumptionRecord, Check, Fidelity, Finding, LossRow, RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rules import overall
 from rigdesign.state import OperatingPoint
@@ -93,7 +93,7 @@ def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
     checks = all_checks(subject)
     clock.lap("checks")
     return RunResult(
-        case={"name": case.name, "title": case.title, "path": case.path.name, "hash": case.hash},
+        case=_case_record(case),
         fidelity=rig.fidelity,
         verdict=overall(checks),
         checks=checks,
@@ -108,10 +108,26 @@ def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),
         not_modelled=not_modelled(subject),
-        warnings=warnings_of(subject),
+        warnings=[*_doubts(case), *warnings_of(subject)],
         timings_s=clock.laps,
         fields=[field for p in points for field in heat.fields_of(rig, p)],
     )
+
+
+def _case_record(case: Case) -> dict[str, str]:
+    """What the result says of its case; that of a schedule no rig can run says so."""
+    record = {"name": case.name, "title": case.title, "path": case.path.name, "hash": case.hash}
+    reason = case.schedule.simulation_only
+    return record if reason is None else record | {"simulation_only": reason}
+
+
+def _doubts(case: Case) -> list[Finding]:
+    """What the case says against itself."""
+    reason = case.schedule.simulation_only
+    if reason is None:
+        return []
+    text = f"the schedule is for simulation only: {reason}; the verdict does not release the rig for it"
+    return [Finding(id="simulation_only", text=text)]
 
 
 def _dynamic_run(rig: Rig, points: tuple[PointResult, ...], say: Progress, lap: Progress) -> DynamicRun:

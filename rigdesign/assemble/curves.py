@@ -16,6 +16,9 @@ from rigdesign.rig.model import Rig
 
 QUICK_SPEEDS = 24
 """Speeds of the curve at quick fidelity."""
+HARDNESS = ("case_hardened", "nitrided", "through_hardened")
+"""Treatments of flanks from hard to soft: the softer gear of a mesh runs in."""
+DEFAULT = RatingOptions()
 VARIANT = "weber_banaschek_0.8"
 """The other reading of the mesh stiffness, shown beside the shipped one."""
 
@@ -57,9 +60,14 @@ def rating_options(rig: Rig, name: str) -> RatingOptions:
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
     relief = min(gear.flank.tip_relief or gear.flank.profile_crowning for gear in gears)
+    solid = [rig.materials[gear.material] for gear in gears]
+    first, second = (material.flank_strength or DEFAULT.sigma_hlim[0] for material in solid)
+    softest = max((material.treatment for material in solid), key=HARDNESS.index)
     return RatingOptions(
         grade=max(gear.quality_grade for gear in gears),
         tip_relief=relief if relief > 0.0 else None,
+        sigma_hlim=(first, second),
+        run_in=softest,
         application_factor=entry.application_factor,
         low_load_factor=entry.low_load_factor,
     )

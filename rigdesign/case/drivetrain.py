@@ -6,13 +6,11 @@ from typing import Literal
 from pydantic import Field
 
 from rigdesign.case.fields import (
-    Force,
     Gap,
     Inertia,
     Length,
     Name,
     Part,
-    Power,
     Text,
     Torque,
     TorsionalDamping,
@@ -62,7 +60,7 @@ class Motor(Part):
     shaft: Name
     end: End
     torque_limit: Torque
-    power_limit: Power | None = None
+    """At every speed; hold the power against a limit of its own under ``limits.bought_parts``."""
     inertia: Inertia
 
 
@@ -78,7 +76,6 @@ class Bracing(Part):
     """The partner of the shifted half floats axially and takes half of the shift."""
     spline_friction_coefficient: float = Field(default=0.0, ge=0.0, le=1.0)
     spline_pitch_radius: Length | None = None
-    actuator_force_limit: Force | None = None
 
 
 class Drivetrain(Part):

@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from rigdesign.case.fields import Count, Name, Part, Positive, Share, Speed, Time, Torque, fault
+from rigdesign.case.fields import Count, Name, Part, Share, Speed, Time, Torque, fault
 
 StageKind = Literal["load", "unload", "run_up", "run_down", "dwell"]
 
@@ -92,8 +92,7 @@ class Schedule(Part):
 class TestPlan(Part):
     """What the test is to reach."""
 
-    load_cycles: Positive
-    """Cycles wanted per tooth at test speed and torque."""
     time: Time
-    """Time planned at test speed and torque."""
+    """Time planned at test speed and torque; the cycles wanted are ``limits.specimen.load_cycles_minimum``."""
     specimens: Count = 1
+    """How many test gears one gear of the rig has to outlive."""

@@ -1,6 +1,6 @@
 """Room, oils and materials."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -61,4 +61,17 @@ class CustomMaterial(Part):
     density: Density
     root_strength: Stress | None = None
     """sigma_FE of ISO 6336-5 for gears."""
+    flank_strength: Stress | None = None
+    """sigma_Hlim of ISO 6336-5 for gears: how their flanks run in."""
+    treatment: Literal["case_hardened", "nitrided", "through_hardened"] = "case_hardened"
+    """Of gears: how their flanks run in (ISO 6336-1)."""
     tempering_temperature: Temperature | None = None
+
+    @model_validator(mode="after")
+    def _runs_in(self) -> "CustomMaterial":
+        if self.treatment == "through_hardened" and self.flank_strength is None:
+            raise fault(
+                "through-hardened flanks run in by their strength, flank_strength is missing",
+                'add it, e.g. flank_strength = "700 MPa"',
+            )
+        return self

@@ -261,5 +261,7 @@ def _custom_material(case: Case, name: str) -> Material:
         poisson_ratio=entry.poisson_ratio,
         density=entry.density,
         root_strength=entry.root_strength,
+        flank_strength=entry.flank_strength,
+        treatment=entry.treatment,
         tempering_temperature=entry.tempering_temperature,
     )

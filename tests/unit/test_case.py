@@ -154,16 +154,14 @@ def test_shipped_variants_load(name: str) -> None:
 
 
 def test_hash_counts_content_not_spelling(variant: Variant, prototype: Case) -> None:
-    same = load_case(
-        variant('test_plan.time = { value = "2.52e6 s", assumed = "5e8 cycles at 12,000 rpm take 694 h" }')
-    )
-    assert same.hash == prototype.hash
-    other = load_case(
-        variant('test_plan.time = { value = "701 h", assumed = "5e8 cycles at 12,000 rpm take 694 h" }')
-    )
-    assert other.hash != prototype.hash
-    reason = load_case(variant('test_plan.time = { value = "700 h", assumed = "because" }'))
-    assert reason.hash != prototype.hash
+    key = "gearboxes.test.gears.pinion.face_width"
+
+    def hash_of(value: str, source: str) -> str:
+        return load_case(variant(f'{key} = {{ value = "{value}", source = "{source}" }}')).hash
+
+    assert hash_of("0.7 cm", "P2, Figure 7") == prototype.hash
+    assert hash_of("8 mm", "P2, Figure 7") != prototype.hash
+    assert hash_of("7 mm", "a drawing") != prototype.hash
 
 
 def test_case_survives_pickling(prototype: Case) -> None:
@@ -221,7 +219,7 @@ def test_with_value_keeps_the_reason_of_an_assumption(prototype: Case) -> None:
             "3 um",
             lambda case: case.gearboxes["test"].gears["wheel"].flank.tip_relief == pytest.approx(3e-6),
         ),
-        ("drivetrain.motor.power_limit", "20 kW", lambda case: case.drivetrain.motor.power_limit == 20e3),
+        ("limits.oil.room_heat_maximum", "2 kW", lambda case: case.limits.oil.room_heat_maximum == 2e3),
     ],
 )
 def test_with_value_reads_texts_as_the_place_wants(

@@ -289,7 +289,19 @@ BAD = [
         "finite",
         "a number",
     ),
-    ("test_plan.load_cycles = inf", "test_plan.load_cycles", "finite", "a number"),
+    (
+        "limits.specimen.load_cycles_minimum = inf",
+        "limits.specimen.load_cycles_minimum",
+        "finite",
+        "a number",
+    ),
+    (
+        'materials.soft = { title = "42CrMo4", conductivity = "42 W/(m K)", expansion_coefficient = "11.5e-6 1/K", '
+        'elastic_modulus = "206 GPa", poisson_ratio = 0.3, density = "7830 kg/m3", treatment = "through_hardened" }',
+        "materials.soft",
+        "flank_strength is missing",
+        '"700 MPa"',
+    ),
     ('losses.friction.law = "doleschel"', "losses.friction.doleschel", "constants of the oil", "schlenk"),
     ('losses.friction.law = "constant"', "losses.friction.coefficient", "needs its coefficient", "0.04"),
     # a computation without end
