@@ -127,6 +127,23 @@ def dynamic_factor(
     )
 
 
+def transverse_load_factor(
+    pair: GearPair, factor: DynamicFactor, *, dynamic: float = 1.0, face_load: float = 1.0
+) -> float:
+    """K_Falpha of ISO 6336-1:2006, 8.3.2, from the stiffness and the run-in pitch deviation of ``factor``.
+
+    ``dynamic`` is K_V and ``face_load`` K_Hbeta in the determinant load F_tH; K_Fbeta in its place is on the
+    safe side, a smaller load shares worse.
+    """
+    return iso6336_3_2006.K_Falpha(
+        pair.transverse_contact_ratio,
+        pair.total_contact_ratio,
+        factor.stiffness.c_gamma_alpha,
+        factor.f_pb_eff,
+        factor.specific_load * dynamic * face_load,
+    )
+
+
 def _exact_reduced_mass(pair: GearPair) -> float:
     """Reduced mass per face width [kg/mm] of the bodies as they are, width beyond the common one included."""
     (inertia_1, inertia_2), (r_1, r_2) = pair.inertias, pair.base_radii
@@ -157,9 +174,28 @@ def tooth_root(pair: GearPair, index: int) -> ToothRoot:
     )
 
 
+def permissible_factors(pair: GearPair, index: int, cycles: float) -> dict[str, float]:
+    """Factors that turn sigma_FE into the strength of gear ``index`` after ``cycles``, by printed symbol.
+
+    Steel gears; the surface factor Y_RrelT is left at 1, the root roughness of the test gears behind sigma_FE.
+    """
+    root = tooth_root(pair, index)
+    return {
+        "Y_NT": iso6336_3_2006.Y_NT(cycles),
+        "Y_deltarelT": iso6336_3_2006.Y_deltarelT(iso6336_3_2006.root_section(root)),
+        "Y_X": iso6336_3_2006.Y_X(root.m_n),
+    }
+
+
 def root_width(pair: GearPair, index: int) -> float:
     """Face width b [m] of ISO 6336-3:2006, 5.2: one module a side beyond the common width at most."""
     return min(pair.face_widths[index], pair.face_width + 2.0 * pair.normal_module)
+
+
+def _rim(pair: GearPair, index: int) -> float:
+    """Rim between bore and root circle [m]; inf for a solid gear."""
+    bore = 0.5 * pair.bore_diameters[index]
+    return pair.root_radii[index] - bore if bore else inf
 
 
 def root_stress(
@@ -168,7 +204,7 @@ def root_stress(
     index: int,
     *,
     grade: int = 5,
-    rim_thickness: float = inf,
+    rim_thickness: float | None = None,
     application_factor: float = 1.0,
     dynamic: float = 1.0,
     face_load: float = 1.0,
@@ -176,8 +212,10 @@ def root_stress(
 ) -> RootStress:
     """Root stress of gear ``index`` by ISO 6336-3:2006 method B at the pinion ``torque`` [N m].
 
-    ``dynamic`` is K_V, ``face_load`` K_Fbeta, ``transverse_load`` K_Falpha; ``rim_thickness`` [m].
+    ``dynamic`` is K_V, ``face_load`` K_Fbeta, ``transverse_load`` K_Falpha; ``rim_thickness`` [m], what the bore
+    leaves under the root when left out.
     """
+    rim = _rim(pair, index) if rim_thickness is None else rim_thickness
     return iso6336_3_2006.root_stress(
         tooth_root(pair, index),
         F_t=tangential_force(pair, torque),
@@ -185,7 +223,7 @@ def root_stress(
         epsilon_alpha=pair.transverse_contact_ratio,
         epsilon_beta=pair.overlap_ratio,
         grade=grade,
-        s_R=rim_thickness * MM,
+        s_R=rim * MM,
         K_A=application_factor,
         K_V=dynamic,
         K_Fbeta=face_load,

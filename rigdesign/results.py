@@ -55,9 +55,10 @@ class DynamicFactorPoint:
 
 @dataclass(frozen=True, kw_only=True)
 class RootStressHistory:
-    """Root stress of one gear over its rolling angle at the loaded held stage."""
+    """Root stress of one gear over its rolling angle at the held stage that stresses it most."""
 
     gear: str
+    stage: str
     rolling_angle_deg: list[float]
     dynamic_MPa: list[float]  # noqa: N815
     quasi_static_MPa: list[float]  # noqa: N815
@@ -65,19 +66,30 @@ class RootStressHistory:
 
 @dataclass(frozen=True, kw_only=True)
 class GearboxDynamics:
-    """Dynamic results of one gearbox."""
+    """Dynamic results of one mesh; speeds are those of its pinion."""
 
     role: Role
+    torque: str
+    """Torque of ``dynamic_factor`` where the case counts it, in words: ``180 N m``."""
     dynamic_factor: list[DynamicFactorPoint]
+    dynamic_factor_at: dict[str, list[DynamicFactorPoint]]
+    """The same at the other torques at which the schedule holds or changes the speed (``90 N m``)."""
     dynamic_factor_variants: dict[str, list[DynamicFactorPoint]]
-    """The same curve under a named variant of the mesh law (e.g. ``unscaled_weber_banaschek_x0.8``)."""
+    """The curve of ``dynamic_factor`` under a named variant of the mesh law (``weber_banaschek_0.8``)."""
+    stage_loads: list[dict[str, Any]]
+    """Time run, per stage that turns under torque: {stage, dynamic_factor, speed_rpm, mean_Nm, peak_Nm, least_Nm,
+    least_share, least_share_at_rpm}."""
     dynamic_torque_peak_Nm: float  # noqa: N815
+    """Highest of the time run and the periodic responses of the held stages."""
     iso_factors: dict[str, float | str]
     """Every factor of ISO 6336-1 method B at the test speed, by its printed symbol."""
     lift_off: list[dict[str, Any]]
     """{stage, start_s, end_s, share} intervals without tooth contact."""
     resonances: list[dict[str, Any]]
-    """{mode, frequency_Hz, harmonic, speed_rpm, amplification, dangerous}."""
+    """{torque, mode, frequency_Hz, harmonic, speed_rpm, dynamic_factor, force_share, amplification, at_end,
+    dangerous}; at_end: the torque still rises at the highest speed computed."""
+    unsolved: list[dict[str, Any]]
+    """{curve, speed_rpm, reason}: speeds at which a curve has no point because no periodic response was found."""
     root_stress: list[RootStressHistory]
     root_stress_factor: list[dict[str, float]]
     """{speed_rpm, pinion, wheel}: max sigma_F dynamic / quasi-static beside K_V(n)."""
@@ -103,6 +115,7 @@ class DynamicsResult:
     """Everything the drivetrain says."""
 
     gearboxes: dict[str, GearboxDynamics]
+    """By gearbox; by ``gearbox.mesh`` where a gearbox has several meshes."""
     natural_frequencies: list[dict[str, Any]]
     """{frequency_Hz, damping_ratio, shape}: named mode shapes of the assembled loop."""
     shaft_frequencies: dict[str, list[float]]
@@ -175,7 +188,7 @@ class ThermalResult:
     """body -> {mean_degC, max_degC, min_degC}."""
     room_heat_W: float  # noqa: N815
     alternatives: dict[str, float]
-    """max_temperature_degC under another reading (radiation_included true / false)."""
+    """Highest temperature under either reading of radiation, heat to the room under the one not taken."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -185,7 +198,7 @@ class GrowthResult:
     gearbox: str
     stage: str
     seal_gaps: list[dict[str, Any]]
-    """{seal, cold_mm, hot_min_mm, hot_mean_mm, angle_of_min_deg, hot_mm: [...], angle_deg: [...]}"""
+    """{seal, shaft, cold_mm, hot_min_mm, hot_mean_mm, angle_of_min_deg, hot_mm: [...], angle_deg: [...]}"""
     shafts: list[dict[str, Any]]
     """{shaft, growth_mm, axial_play_cold_mm, axial_play_hot_mm, free_expansion_mm}"""
     gears: list[dict[str, Any]]

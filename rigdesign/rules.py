@@ -1,8 +1,9 @@
 """Design rules: a value held against a limit gives a Check with margin, utilisation and verdict.
 
 Margins are in the unit of the value and positive when the rule holds. Utilisation is the used share of the
-limit, 1 at the limit: value/limit below an upper limit, limit/value above a lower one, the larger of both in
-a window. A value beyond a lower limit of zero or below zero is counted as 1 plus the shortfall in limits.
+limit, 1 at the limit: value/limit below an upper limit, limit/value above a lower one, the larger of both in a
+window; value and limit of an upper limit count from the datum of the rule, a temperature from the ambient. A
+value beyond a lower limit of zero or below zero is counted as 1 plus the shortfall in limits.
 """
 
 from collections.abc import Sequence
@@ -28,13 +29,13 @@ class Rule:
     limit: float | None = None
     upper_limit: float | None = None
     comparison: Literal["<=", ">=", "within"] = "<="
+    datum: float = 0.0
+    """From where the utilisation of an upper limit counts, for a scale whose zero means nothing (degC)."""
     warn_only: bool = False
     """A broken rule warns instead of failing (a rule of good practice, not a limit)."""
 
 
-def hold(
-    rule: Rule, value: float, reason: str = "", assumptions: Sequence[str] = (), doubt: str = ""
-) -> Check:
+def hold(rule: Rule, value: float, reason: str = "", *, doubt: str = "") -> Check:
     """Hold ``value`` against ``rule``.
 
     ``doubt`` names why a held rule is still only a warning (a formula outside its range, say).
@@ -58,7 +59,6 @@ def hold(
         role=rule.role,
         reason="; ".join(part for part in (reason, doubt) if part),
         group=rule.group,
-        assumptions=tuple(assumptions),
     )
 
 
@@ -103,7 +103,7 @@ def _margin(rule: Rule, value: float) -> float:
 def _utilisation(rule: Rule, value: float) -> float:
     assert rule.limit is not None
     if rule.comparison == "<=":
-        return _upper_share(value, rule.limit)
+        return _upper_share(value - rule.datum, rule.limit - rule.datum)
     if rule.comparison == ">=":
         return _lower_share(value, rule.limit)
     assert rule.upper_limit is not None

@@ -188,6 +188,7 @@ def gearbox(role, excitation, resonances):
     histories = [
         r.RootStressHistory(
             gear=gear,
+            stage="dwell",
             rolling_angle_deg=phi.tolist(),
             dynamic_MPa=(static * (1 + 0.16 * np.sin(11 * phi))).tolist(),
             quasi_static_MPa=static.tolist(),
@@ -196,12 +197,27 @@ def gearbox(role, excitation, resonances):
     ]
     return r.GearboxDynamics(
         role=role,
+        torque="180 N m",
         dynamic_factor=curve(1.0),
+        dynamic_factor_at={"90 N m": curve(1.2)},
         dynamic_factor_variants={"unscaled_weber_banaschek_x0.8": curve(0.8)},
+        stage_loads=[
+            {
+                "stage": "run_up",
+                "dynamic_factor": 1.4,
+                "speed_rpm": 1796.0,
+                "mean_Nm": 90.0,
+                "peak_Nm": 126.0,
+                "least_Nm": 54.0,
+                "least_share": 0.6,
+                "least_share_at_rpm": 1796.0,
+            }
+        ],
         dynamic_torque_peak_Nm=331.0,
         iso_factors={"K_V": 0.872, "N": 4.06, "c_gamma_alpha": 13.9, "range": "supercritical"},
         lift_off=[{"stage": "run_up", "start_s": 2.31, "end_s": 2.42, "share": 0.02}],
         resonances=resonances,
+        unsolved=[{"curve": "90 N m", "speed_rpm": 1800.0, "reason": "not settled"}],
         root_stress=histories if role == "specimen" else [],
         root_stress_factor=[
             {"speed_rpm": float(n), "pinion": float(k * 0.97), "wheel": float(k * 0.95)}
@@ -265,6 +281,7 @@ def dynamics():
     ]
     resonances = [
         {
+            "torque": "180 N m",
             "mode": "pinion against wheel, test",
             "frequency_Hz": 4022.7,
             "harmonic": 2,
@@ -273,6 +290,7 @@ def dynamics():
             "dangerous": True,
         },
         {
+            "torque": "180 N m",
             "mode": "wheel shaft, test",
             "frequency_Hz": 5926.7,
             "harmonic": 2,
@@ -300,6 +318,7 @@ def dynamics():
         bracing=[
             {
                 "stage": "dwell",
+                "torque": "180 N m",
                 "mode": "torque_controlled",
                 "torque_Nm": 180.0,
                 "twist_deg": 1.31,

@@ -176,6 +176,24 @@ def Y_DT(epsilon_an: float, grade: int) -> float:
     return 0.7 if epsilon_an > 2.5 else 2.366 - 0.666 * epsilon_an
 
 
+def Y_NT(N_L: float) -> float:
+    """Life factor of steel (clause 12) beyond the knee at 3e6 load cycles: 1 down to 0.85 at 1e10.
+
+    1 below the knee, where the clause would allow more by material.
+    """
+    return float((3e6 / min(max(N_L, 3e6), 1e10)) ** 0.02)
+
+
+def Y_deltarelT(section: RootSection) -> float:
+    """Relative notch sensitivity factor (clause 13, method C): sharper notches than the test gears' count as them."""
+    return 1.0 if section.s_Fn / (2.0 * section.rho_F) >= 1.5 else 0.95
+
+
+def Y_X(m_n: float) -> float:
+    """Size factor (clause 15) of case-hardened and nitrided gears, the lowest of the steels; m_n [mm]."""
+    return min(max(1.05 - 0.01 * m_n, 0.8), 1.0)
+
+
 def K_Fbeta(K_Hbeta: float, b_over_h: float) -> float:
     """Face load factor for root stress from that for contact (ISO 6336-1:2006, 7.3); b/h at least 3."""
     r = max(b_over_h, 3.0)

@@ -3,19 +3,28 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from dynamics.iso_rating import RatingOptions, dynamic_factor
-from dynamics.response_curve import ResponseCurve, periodic_response
+from dynamics.mesh_law import MeshLaw
+from dynamics.response_curve import ResponseCurve, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
-from rigdesign.loads import MeshModel, laws_of, mesh_models, signed_torque
+from rigdesign.loads import laws_of, mesh_models, signed_torque
 from rigdesign.passes import PassResult
+from rigdesign.ramp_run import held_points
 from rigdesign.results import DynamicFactorPoint
 from rigdesign.rig.model import Rig
 
 QUICK_SPEEDS = 24
-"""Speeds of the curve at quick fidelity."""
+"""Speeds of a curve at quick fidelity, or where every speed is solved over a whole revolution."""
+ROUNDS = 2
+"""Halvings of the speed step beside a peak."""
+SLOWEST = 0.05
+"""Share of a held speed below which no resonance is looked for."""
+BEYOND = 1.25
+"""How far past the least distance of a resonance the curve goes on, as a share of that distance."""
 HARDNESS = ("case_hardened", "nitrided", "through_hardened")
 """Treatments of flanks from hard to soft: the softer gear of a mesh runs in."""
 DEFAULT = RatingOptions()
@@ -25,33 +34,109 @@ VARIANT = "weber_banaschek_0.8"
 
 @dataclass(frozen=True)
 class Curves:
-    """Response over speed at the test torque, warm."""
+    """Response over speed of the warm rig."""
 
-    speeds: tuple[float, ...]
-    """Of the first pinion [rad/s]."""
     response: ResponseCurve
+    """At the torque of the governing held point, past the highest held speed."""
+    others: Mapping[float, ResponseCurve]
+    """At every other torque [N m, at the control mesh] at which the schedule holds or changes the speed."""
     variants: Mapping[str, ResponseCurve]
+    """At the torque of ``response`` with another reading of the mesh stiffness."""
+    torque: float
+    """Of ``response`` [N m]."""
+
+    @property
+    def named(self) -> Mapping[str, tuple[float, ResponseCurve]]:
+        """Every curve of the shipped mesh laws with its torque, by its name in the results."""
+        found = {self.torque: self.response, **self.others}
+        return {f"{abs(torque):g} N m": (torque, curve) for torque, curve in found.items()}
 
 
 def solve_curves(rig: Rig, warm: PassResult) -> Curves:
-    """Periodic response from the first to the last speed of the case, warm gears of ``warm``."""
+    """Periodic response over speed at every torque of the schedule, warm gears of ``warm``."""
     numerics = rig.case.numerics
-    count = QUICK_SPEEDS if rig.fidelity == "quick" else numerics.curve_speeds
-    first, last = rig.pinion_speed(numerics.curve_speed_start), rig.pinion_speed(numerics.curve_speed_end)
-    speeds = tuple(float(speed) for speed in np.linspace(first, last, count))
-    own = rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else ""
-    other = "iso_6336_scaled" if own == VARIANT else VARIANT
+    governing = _key(signed_torque(rig, warm.point))
+    ranges = speed_ranges(rig)
+    solve = partial(_curve, rig, warm, laws_of(warm.models))
+    others = {
+        torque: solve(torque, grid(rig, *limits)) for torque, limits in ranges.items() if torque != governing
+    }
+    shipped = rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else ""
+    other = "iso_6336_scaled" if shipped == VARIANT else VARIANT
     variants = {}
     if rig.fidelity != "quick":
-        variants[other] = _curve(rig, warm, mesh_models(rig, warm.point, warm.feedback, other), speeds)
-    return Curves(speeds, _curve(rig, warm, warm.models, speeds), variants)
-
-
-def _curve(rig: Rig, warm: PassResult, models: Sequence[MeshModel], speeds: Sequence[float]) -> ResponseCurve:
-    assert rig.system is not None
-    return periodic_response(
-        rig.system, laws_of(models), speeds, signed_torque(rig, warm.point), drag_torques=warm.drags
+        models = mesh_models(rig, warm.point, warm.feedback, other)
+        own = grid(rig, numerics.curve_speed_start, numerics.curve_speed_end)
+        variants[other] = _curve(rig, warm, laws_of(models), governing, own, refined=False)
+    return Curves(
+        response=solve(governing, grid(rig, *ranges[governing])),
+        others=others,
+        variants=variants,
+        torque=governing,
     )
+
+
+def speed_ranges(rig: Rig) -> dict[float, tuple[float, float]]:
+    """Torque at the control mesh [N m] -> stated speeds [rad/s] between which its response is wanted.
+
+    Held torques: the range of the case, widened until a resonance too near to any held speed lies within it.
+    Torques under which the speed changes: what the stage runs through of the range of the case. Stages at the
+    start torque are left to the time run: they are short, and flanks may part there without harm.
+    """
+    numerics = rig.case.numerics
+    first, last = numerics.curve_speed_start, numerics.curve_speed_end
+    away = BEYOND * (rig.case.limits.dynamics.resonance_distance_minimum or 0.0)
+    light = rig.case.limits.bearing.start_torque_limit or 0.0
+    held = held_points(rig)
+    low = max(1.0 - away, SLOWEST) * min(point.speed for point in held)
+    high = (1.0 + away) * max(point.speed for point in held)
+    ranges = {_key(signed_torque(rig, point)): (min(first, low), max(last, high)) for point in held}
+    for stage in rig.case.schedule.resolved():
+        torque = _key(rig.torque_ratio * stage.torque_end)
+        low, high = sorted((stage.speed_start, stage.speed_end))
+        low, high = max(low, first), min(high, last)
+        if stage.kind in ("run_up", "run_down") and abs(stage.torque_end) > light and low < high:
+            before = ranges.get(torque, (low, high))
+            ranges[torque] = (min(low, before[0]), max(high, before[1]))
+    return ranges
+
+
+def _key(torque: float) -> float:
+    """Torques that differ by round-off are one."""
+    return round(torque, 6)
+
+
+def grid(rig: Rig, low: float, high: float) -> list[float]:
+    """Speeds of the first pinion [rad/s] as dense as the case asks; few where a whole revolution is solved."""
+    numerics = rig.case.numerics
+    count = numerics.curve_speeds if resolved(rig) else QUICK_SPEEDS
+    step = (numerics.curve_speed_end - numerics.curve_speed_start) / (count - 1)
+    if step <= 0.0:
+        return [rig.pinion_speed(speed) for speed in dict.fromkeys((low, high))]
+    pieces = max(1, math.ceil((high - low) / step - 1e-9))
+    return [rig.pinion_speed(float(speed)) for speed in np.linspace(low, high, pieces + 1)]
+
+
+def resolved(rig: Rig) -> bool:
+    """Whether the curves are dense enough to show every resonance."""
+    return rig.fidelity != "quick" and rig.case.numerics.response_period == "mesh"
+
+
+def _curve(
+    rig: Rig,
+    warm: PassResult,
+    laws: Sequence[MeshLaw],
+    torque: float,
+    speeds: Sequence[float],
+    *,
+    refined: bool = True,
+) -> ResponseCurve:
+    assert rig.system is not None
+    solve = partial(
+        periodic_response, rig.system, laws, torque=torque, drag_torques=warm.drags,
+        period=rig.case.numerics.response_period,
+    )  # fmt: skip
+    return refined_response(solve, speeds, rounds=ROUNDS) if refined and resolved(rig) else solve(speeds)
 
 
 def rating_options(rig: Rig, name: str) -> RatingOptions:
@@ -78,11 +163,16 @@ def iso_factor(rig: Rig, name: str, torque: float, speed: float) -> DynamicFacto
     return dynamic_factor(rig.pairs[name], abs(torque), speed, rating_options(rig, name))
 
 
+def own_ratio(rig: Rig, mesh: int) -> float:
+    """Speed of the pinion of a mesh per speed of the first pinion."""
+    box, own = rig.mesh(rig.mesh_names[mesh])
+    return rig.shaft_speed(box.gears[box.meshes[own].pinion].shaft, 1.0) / rig.pinion_speed(1.0)
+
+
 def factor_points(rig: Rig, mesh: int, curve: ResponseCurve) -> list[DynamicFactorPoint]:
     """The K_V(n) curve of one mesh with ISO beside it, over the speed of its own pinion."""
     name = rig.mesh_names[mesh]
-    box, own = rig.mesh(name)
-    ratio = rig.speed_ratios[box.gears[box.meshes[own].pinion].shaft] / rig.pinion_speed(1.0)
+    ratio = own_ratio(rig, mesh)
     points = []
     for point in curve.points:
         speed = point.speed * ratio

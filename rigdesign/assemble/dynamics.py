@@ -5,11 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import numpy as np
-
 from dynamics.bracing import BracingDrift, drift
-from dynamics.dynamic_factor import DynamicFactorCurve
-from dynamics.dynamic_factor import resonances as find_resonances
 from dynamics.modes import (
     LoopMode,
     damping_audit,
@@ -18,27 +14,25 @@ from dynamics.modes import (
     sampling_audit,
     shaft_frequencies,
 )
+from dynamics.propagator import DEFAULT_CUTOFF
 from dynamics.response import TimeResponse
 from dynamics.static_loop import port_model, solve_static
 from rigdesign.assemble import root
-from rigdesign.assemble.curves import Curves, factor_points, iso_factor
+from rigdesign.assemble.curves import Curves, factor_points, iso_factor, own_ratio
+from rigdesign.assemble.resonances import HARMONICS, resonance_rows
+from rigdesign.assemble.time_run import lift_off, ramp_history, stage_loads, torque_peak
 from rigdesign.cold import cold_feedback
 from rigdesign.coupling import PointResult, governing_point
 from rigdesign.loads import laws_of, mesh_models, shifted_gear, signed_torque
-from rigdesign.ramp_run import SLOT, schedule_of, stage_names
 from rigdesign.results import (
     DynamicsResult,
     GearboxDynamics,
-    RampHistory,
     RootStressHistory,
 )
 from rigdesign.rig.model import Rig
 
 HIGHEST_MODE = 25e3
 """Natural frequencies are listed up to here [Hz]: the mesh frequency at 12,000 rpm and a quarter more."""
-CROSSING_HARMONICS = 4
-LEAST_PROMINENCE = 0.01
-"""Prominence of a peak of the dynamic torque, as a share of the mean, from which it counts as a resonance."""
 RPM = 30.0 / math.pi
 
 
@@ -62,32 +56,33 @@ def dynamics_result(rig: Rig, run: DynamicRun) -> DynamicsResult:
     assert drivetrain is not None and system is not None
     models = run.test.last.models
     laws = laws_of(models)
-    modes = loop_modes(drivetrain, laws, HIGHEST_MODE)
+    modes = loop_modes(drivetrain, laws, DEFAULT_CUTOFF)
     frequencies = shaft_frequencies(drivetrain)
-    top = max(run.curves.speeds)
+    top = max(run.curves.response.speeds) * max(own_ratio(rig, m) for m in range(len(laws)))
     sampling = sampling_audit(
         drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
     )[0]
     return DynamicsResult(
         gearboxes={
-            box: gearbox_dynamics(rig, run, box, modes)
-            for box in dict.fromkeys(n.split(".")[0] for n in rig.mesh_names)
+            rig.mesh_labels[name]: gearbox_dynamics(rig, run, mesh, modes)
+            for mesh, name in enumerate(rig.mesh_names)
         },
         natural_frequencies=[
             {"frequency_Hz": mode.frequency, "damping_ratio": mode.damping_ratio, "shape": mode.name}
             for mode in modes
+            if mode.frequency <= HIGHEST_MODE
         ],
         shaft_frequencies={name: [float(f) for f in values] for name, values in frequencies.items()},
         crossings=[
             {
-                "gearbox": crossing.mesh.split(".")[0],
+                "gearbox": rig.mesh_labels[crossing.mesh],
                 "shaft": crossing.shaft,
                 "mode": crossing.mode,
                 "frequency_Hz": crossing.frequency,
                 "harmonic": crossing.harmonic,
                 "speed_rpm": crossing.speed * RPM,
             }
-            for crossing in order_crossings(drivetrain, frequencies, top, CROSSING_HARMONICS)
+            for crossing in order_crossings(drivetrain, frequencies, top, HARMONICS)
         ],
         damping_audit=[
             {
@@ -114,27 +109,36 @@ def dynamics_result(rig: Rig, run: DynamicRun) -> DynamicsResult:
     )
 
 
-def gearbox_dynamics(rig: Rig, run: DynamicRun, box: str, modes: Sequence[LoopMode]) -> GearboxDynamics:
-    """Loads of one gearbox: its first mesh speaks for it."""
-    mesh = next(i for i, name in enumerate(rig.mesh_names) if name.split(".")[0] == box)
+def gearbox_dynamics(rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopMode]) -> GearboxDynamics:
+    """Loads of one mesh."""
     name = rig.mesh_names[mesh]
     response = run.test.last.response
     assert response is not None
     speed = rig.shaft_speed(rig.mesh(name)[0].gears[_pinion(rig, name)].shaft, run.test.point.speed)
     iso = iso_factor(rig, name, float(response.mean[mesh]), speed)
     histories, factors = root_stresses(rig, run, mesh)
+    main = next(iter(run.curves.named))
     return GearboxDynamics(
-        role=rig.case.gearboxes[box].role,
+        role=rig.mesh(name)[0].role,
+        torque=main,
         dynamic_factor=factor_points(rig, mesh, run.curves.response),
         dynamic_factor_variants={
             kind: factor_points(rig, mesh, curve) for kind, curve in run.curves.variants.items()
         },
-        dynamic_torque_peak_Nm=float(
-            max(response.maximum[mesh], np.abs(run.ramp.slots.greatest[mesh]).max())
+        dynamic_factor_at={
+            other: factor_points(rig, mesh, curve)
+            for other, (_, curve) in run.curves.named.items()
+            if other != main
+        },
+        stage_loads=stage_loads(rig, run.ramp, mesh),
+        dynamic_torque_peak_Nm=max(
+            torque_peak(run.ramp.slots, mesh),
+            *(float(p.last.response.maximum[mesh]) for p in run.points if p.last.response is not None),
         ),
         iso_factors=_flat(asdict(iso)),
-        lift_off=lift_off(rig, run, mesh),
-        resonances=resonances(rig, run, mesh, modes),
+        lift_off=lift_off(rig, run.ramp, mesh),
+        resonances=resonance_rows(rig, run.curves, mesh, modes),
+        unsolved=unsolved(rig, run, mesh),
         root_stress=histories,
         root_stress_factor=factors,
         geometry=geometry(rig, run.test, mesh),
@@ -160,86 +164,47 @@ def _flat(record: Mapping[str, Any]) -> dict[str, float | str]:
 def root_stresses(
     rig: Rig, run: DynamicRun, mesh: int
 ) -> tuple[list[RootStressHistory], list[dict[str, float]]]:
-    """Histories of pinion and wheel at the test point, and dynamic over quasi-static peaks over speed."""
-    system = rig.system
-    assert system is not None
-    last = run.test.last
-    model = last.models[mesh]
-    assert last.response is not None
-    ports = port_model(system, laws_of(last.models))
-    state = solve_static(ports, torque=signed_torque(rig, run.test.point))
-    static = root.static_stress(model, state, ports, mesh)
-    dynamic = root.dynamic_stress(model, last.response, mesh)
+    """Histories of pinion and wheel at the held stage that stresses them most, and the ratio over speed.
+
+    The ratio of the highest dynamic to the highest quasi-static stress belongs to the governing held stage.
+    """
+    model = run.test.last.models[mesh]
+    of_point = {point.point.stage: _stresses(rig, point, mesh) for point in run.points}
     names = rig.mesh_gears(rig.mesh_names[mesh])
-    histories = [
-        root.history(names[gear].split(".")[1], model.pair.base_radii[gear], dynamic[gear], static[gear])
-        for gear in (0, 1)
-    ]
+    histories = []
+    for gear in (0, 1):
+        stage = max(of_point, key=lambda held: root.peak(of_point[held][0][gear]))
+        dynamic, static = of_point[stage]
+        own = names[gear].split(".")[1]
+        histories.append(root.history(own, stage, model.pair.base_radii[gear], dynamic[gear], static[gear]))
+    static = of_point[run.test.point.stage][1]
     factors = []
-    for point in run.curves.response.points:
-        stresses = root.dynamic_stress(model, point, mesh)
-        row = {"speed_rpm": point.speed * RPM}
+    points = run.curves.response.points
+    for response, stresses in zip(points, root.dynamic_stresses(model, points, mesh)):
+        row = {"speed_rpm": own_ratio(rig, mesh) * response.speed * RPM}
         row |= {key: root.peak(stresses[i]) / root.peak(static[i]) for i, key in enumerate(root.GEARS)}
         factors.append(row)
     return histories, factors
 
 
-def resonances(rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopMode]) -> list[dict[str, Any]]:
-    """Peaks of the dynamic torque over speed, named by the mode and order that meet there.
-
-    amplification is the peak over the level it stands on; dangerous means above a limit of the case.
-    """
-    points = run.curves.response.points
-    if len(points) < 3:
-        return []
-    limits = rig.case.limits.dynamics
-    curve = DynamicFactorCurve(
-        speed=run.curves.response.speeds,
-        factor=np.array([[p.dynamic_factor[mesh] for p in points]]),
-        half_peak_to_peak=np.array([[p.dynamic_factor_half_peak_to_peak[mesh] for p in points]]),
-        mean_torque=np.array([[p.mean[mesh] for p in points]]),
-        amplitude=np.array([[0.5 * (p.maximum[mesh] - p.minimum[mesh]) for p in points]]),
-        lift_off_share=np.array([[p.lift_off_share[mesh] for p in points]]),
+def _stresses(rig: Rig, point: PointResult, mesh: int) -> tuple[root.Pair, root.Pair]:
+    """Dynamic and quasi-static root stress of pinion and wheel at a held point."""
+    assert rig.system is not None and point.last.response is not None
+    ports = port_model(rig.system, laws_of(point.last.models))
+    state = solve_static(ports, torque=signed_torque(rig, point.point))
+    model = point.last.models[mesh]
+    return root.dynamic_stress(model, point.last.response, mesh), root.static_stress(
+        model, state, ports, mesh
     )
-    teeth = rig.pairs[rig.mesh_names[mesh]].teeth[0]
-    rows = []
-    for peak in find_resonances(curve, least_prominence=LEAST_PROMINENCE):
-        mode, harmonic = _nearest_mode(modes, peak.speed * teeth / (2.0 * math.pi))
-        rows.append(
-            {
-                "mode": mode.name,
-                "frequency_Hz": mode.frequency,
-                "harmonic": harmonic,
-                "speed_rpm": peak.speed * RPM,
-                "force_share": peak.force_share,
-                "amplification": peak.amplification,
-                "dangerous": peak.amplification > limits.dangerous_amplification
-                or peak.force_share > limits.dangerous_force_share,
-            }
-        )
-    return rows
 
 
-def _nearest_mode(modes: Sequence[LoopMode], mesh_frequency: float) -> tuple[LoopMode, int]:
-    """The mode and mesh order whose frequencies lie closest."""
-    moving = [mode for mode in modes if mode.frequency > 0.0]
-    pairs = [(mode, harmonic) for mode in moving for harmonic in range(1, CROSSING_HARMONICS + 1)]
-    return min(pairs, key=lambda pair: abs(math.log(pair[1] * mesh_frequency / pair[0].frequency)))
-
-
-def lift_off(rig: Rig, run: DynamicRun, mesh: int) -> list[dict[str, Any]]:
-    """Intervals of the run without tooth contact, by stage."""
-    schedule = schedule_of(rig)
+def unsolved(rig: Rig, run: DynamicRun, mesh: int) -> list[dict[str, Any]]:
+    """Speeds at which a curve has no point, each with what the solvers said."""
+    curves = {name: curve for name, (_, curve) in run.curves.named.items()} | dict(run.curves.variants)
     return [
-        {
-            "stage": stage_names(schedule, np.array([interval.start]))[0],
-            "start_s": interval.start,
-            "end_s": interval.end,
-            "share": interval.out_of_contact,
-            "longest_gap_ms": 1e3 * interval.longest_gap,
-        }
-        for interval in run.ramp.lift_off
-        if interval.mesh == mesh
+        {"curve": name, "speed_rpm": own_ratio(rig, mesh) * speed * RPM, "reason": reason}
+        for name, curve in curves.items()
+        for speed, reason in curve.failed
     ]
 
 
@@ -291,35 +256,6 @@ def bracing_drift(rig: Rig, point: PointResult) -> BracingDrift:
     if mode == "torque_controlled" and gear is None:
         mode = "twist_held"
     return drift(system, cold, laws_of(point.last.models), signed_torque(rig, point.point), mode, gear=gear)
-
-
-def ramp_history(rig: Rig, ramp: TimeResponse) -> RampHistory:
-    """Envelopes of the time run in slots."""
-    schedule = schedule_of(rig)
-    slots = ramp.slots
-    middle = slots.time - 0.5 * SLOT
-    command = schedule.at(middle)
-    drive = np.interp(slots.time, ramp.time, ramp.drive_torque)
-    signs = np.sign(slots.mean.sum(axis=1, keepdims=True))
-    low, high = (
-        np.minimum(signs * slots.least, signs * slots.greatest),
-        np.maximum(signs * slots.least, signs * slots.greatest),
-    )
-    return RampHistory(
-        time_s=[float(t) for t in slots.time],
-        speed_rpm=[float(s) * RPM for s in slots.speed],
-        stage=stage_names(schedule, middle),
-        target_torque_Nm=[float(t) for t in command.torque],
-        drive_torque_Nm=[float(t) for t in drive],
-        torque={
-            name.split(".")[0]: {
-                "mean": [float(v) for v in signs[i, 0] * slots.mean[i]],
-                "maximum": [float(v) for v in high[i]],
-                "minimum": [float(v) for v in low[i]],
-            }
-            for i, name in enumerate(rig.mesh_names)
-        },
-    )
 
 
 def torque_balance(rig: Rig, point: PointResult) -> dict[str, Any]:

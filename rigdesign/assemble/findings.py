@@ -1,15 +1,23 @@
 """Warnings of the run: what left its range, what an audit says, each once."""
 
+import math
 from collections.abc import Iterable, Iterator
 
+import numpy as np
+
 from dynamics.modes import sampling_audit
-from rigdesign.assemble.curves import iso_factor
+from dynamics.response_curve import CurvePoint
+from rigdesign.assemble.curves import iso_factor, resolved
 from rigdesign.checks.subject import Subject
 from rigdesign.results import Finding
 from rigdesign.rig.boundary import printed_films, printed_law
 from rigdesign.temperatures import HousingField
 from thermal.audit import assumed_difference, audit_conditions, radiation_too_small
 from thermal.boundary import Film, Radiation
+
+SETTLED = 1e-4
+"""Relative residual of a harmonic balance from which the point is named."""
+RPM = 30.0 / math.pi
 
 
 def warnings_of(subject: Subject) -> list[Finding]:
@@ -18,6 +26,8 @@ def warnings_of(subject: Subject) -> list[Finding]:
         *(Finding(id="gear", text=text) for text in _gears(subject)),
         *(Finding(id="iso_6336_1", text=text) for text in _iso(subject)),
         *(Finding(id="shaft", text=t.finding) for t in subject.rig.shaft_torsions if t.finding),
+        *(Finding(id="response", text=text) for text in _response(subject)),
+        *(Finding(id="time_run", text=text) for text in _time_run(subject)),
         *(Finding(id="loss", text=text) for text in _losses(subject)),
         *(Finding(id="oil", text=text) for text in _oils(subject)),
         *(Finding(id="damping", text=text) for text in _damping(subject)),
@@ -29,22 +39,66 @@ def warnings_of(subject: Subject) -> list[Finding]:
 
 
 def _gears(subject: Subject) -> Iterator[str]:
-    for model in subject.test.last.models:
-        for text in subject.rig.pairs[model.name].warnings:
-            yield f"{model.name}, cold: {text}"
-        for text in model.pair.warnings:
-            yield f"{model.name}, hot: {text}"
-        for text in model.stiffness.warnings:
-            yield f"{model.name}: {text}"
+    for point in subject.points:
+        for model in point.last.models:
+            for text in subject.rig.pairs[model.name].warnings:
+                yield f"{model.name}, cold: {text}"
+            for text in model.pair.warnings:
+                yield f"{model.name}, hot, stage {point.point.stage}: {text}"
+            for text in model.stiffness.warnings:
+                yield f"{model.name}: {text}"
 
 
 def _iso(subject: Subject) -> Iterator[str]:
-    for model in subject.test.last.models:
-        box, mesh = subject.rig.mesh(model.name)
-        speed = subject.rig.shaft_speed(box.gears[box.meshes[mesh].pinion].shaft, subject.test.point.speed)
-        torque = subject.test.last.feedback.mesh_torque[model.name]
-        for text in iso_factor(subject.rig, model.name, torque, speed).warnings:
-            yield f"{model.name}: {text}"
+    for point in subject.points:
+        for model in point.last.models:
+            box, mesh = subject.rig.mesh(model.name)
+            speed = subject.rig.shaft_speed(box.gears[box.meshes[mesh].pinion].shaft, point.point.speed)
+            torque = point.last.feedback.mesh_torque[model.name]
+            for text in iso_factor(subject.rig, model.name, torque, speed).warnings:
+                yield f"{model.name}: {text}"
+
+
+def _response(subject: Subject) -> Iterator[str]:
+    """Speeds without a periodic response, states that settled loosely, curves too coarse for resonances."""
+    if subject.run is None or subject.dynamics is None:
+        return
+    for row in next(iter(subject.dynamics.gearboxes.values())).unsolved:
+        yield (
+            f"curve {row['curve']}: no periodic response at {row['speed_rpm']:.0f} rpm ({row['reason']}): a "
+            "resonance or loss of contact there is not seen; look at the time run at this speed"
+        )
+    for where, points in _states(subject).items():
+        loose = [p for p in points if p.method == "harmonic_balance" and p.residual > SETTLED]
+        if loose:
+            worst = max(loose, key=lambda point: point.residual)
+            yield (
+                f"{where}: {len(loose)} of {len(points)} periodic states settled to more than {SETTLED:.0e}, the "
+                f"worst to {worst.residual:.1e} at {worst.speed * RPM:.0f} rpm: compare with the time run there"
+            )
+    if not resolved(subject.rig):
+        speeds = subject.run.curves.response.speeds
+        yield (
+            f"K_V over speed: {len(speeds)} speeds, {np.diff(speeds).max() * RPM:.0f} rpm apart, do not resolve "
+            "narrow resonances; use standard fidelity and response_period = mesh before a verdict rests on them"
+        )
+
+
+def _states(subject: Subject) -> dict[str, list[CurvePoint]]:
+    """Periodic states by where they belong: a curve or a held stage."""
+    assert subject.run is not None
+    curves = subject.run.curves
+    found = {f"curve {name}": list(curve.points) for name, (_, curve) in curves.named.items()}
+    found |= {f"curve {name}": list(curve.points) for name, curve in curves.variants.items()}
+    for point in subject.points:
+        if point.last.response is not None:
+            found[f"stage {point.point.stage}"] = [point.last.response]
+    return found
+
+
+def _time_run(subject: Subject) -> Iterator[str]:
+    if subject.run is not None:
+        yield from subject.run.ramp.warnings
 
 
 def _losses(subject: Subject) -> Iterator[str]:

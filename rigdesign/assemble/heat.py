@@ -114,10 +114,11 @@ def thermal_result(rig: Rig, result: PointResult, field: HousingField) -> Therma
         bodies=bodies,
         room_heat_W=heat_to_room(field),
         alternatives={
-            f"radiation_included_{str(key).lower()}": float(readings[key].temperature.max()) - ZERO
+            f"highest_radiation_included_{str(key).lower()}_degC": float(readings[key].temperature.max())
+            - ZERO
             for key in (False, True)
         }
-        | {"room_heat_with_the_other_reading_W": heat_to_room(other)},
+        | {"heat_to_the_room_under_the_other_reading_W": heat_to_room(other)},
     )
 
 
@@ -156,17 +157,19 @@ def growth_result(rig: Rig, result: PointResult, name: str) -> GrowthResult:
     return GrowthResult(
         gearbox=name,
         stage=result.point.stage,
-        seal_gaps=_seal_gaps(shape),
+        seal_gaps=_seal_gaps(rig, name, shape),
         shafts=_shafts(rig, name, shape),
         gears=_gears(rig, result, name, shape),
         bearings=_bearings(rig, result, name, shape),
     )
 
 
-def _seal_gaps(shape: Expansion) -> list[dict[str, Any]]:
+def _seal_gaps(rig: Rig, name: str, shape: Expansion) -> list[dict[str, Any]]:
+    shafts = {station.name: station.shaft for station in rig.models[name].seals}
     return [
         {
             "seal": seal.name,
+            "shaft": shafts[seal.name],
             "cold_mm": MM * seal.cold_gap,
             "hot_min_mm": MM * seal.minimum,
             "hot_mean_mm": MM * seal.mean,

@@ -1,6 +1,7 @@
 """Root stress of the teeth over the path of contact, dynamic and quasi-static."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,34 +16,49 @@ from rigdesign.results import RootStressHistory
 Array = NDArray[np.float64]
 Stress = tuple[Array, Array]
 """Path positions (n,) [m], rising, and root stress (n,) [Pa] of one tooth through its contact."""
+Pair = tuple[Stress, Stress]
+"""Of pinion and wheel."""
 GEARS = ("pinion", "wheel")
 PATH_POINTS = 161
 """Points of a stress history over the path of contact."""
 
 
-def dynamic_stress(model: MeshModel, point: CurvePoint, mesh: int) -> tuple[Stress, Stress]:
+def dynamic_stress(model: MeshModel, point: CurvePoint, mesh: int) -> Pair:
     """Root stress of one tooth of pinion and wheel at a periodic point.
 
     One mesh period holds every tooth at another place: put together by path they are one tooth's whole contact.
     """
-    wave = point.wave
-    forces = tooth_forces(
-        model.law, wave.angle[mesh], wave.approach[mesh], wave.omega_1[mesh], wave.omega_2[mesh]
+    return dynamic_stresses(model, [point], mesh)[0]
+
+
+def dynamic_stresses(model: MeshModel, points: Sequence[CurvePoint], mesh: int) -> list[Pair]:
+    """The same at many periodic points; all of them together, as the tables of the law are made once."""
+    states = np.concatenate(
+        [
+            (p.wave.angle[mesh], p.wave.approach[mesh], p.wave.omega_1[mesh], p.wave.omega_2[mesh])
+            for p in points
+        ],
+        axis=1,
     )
-    return _stress(model, forces, bool(point.flank[mesh] > 0))
+    forces = tooth_forces(model.law, *states)
+    ends = np.cumsum([0, *(point.wave.angle[mesh].size for point in points)])
+    return [
+        _stress(model, forces, slice(a, b), bool(point.flank[mesh] > 0))
+        for point, a, b in zip(points, ends[:-1], ends[1:])
+    ]
 
 
-def static_stress(model: MeshModel, state: StaticState, ports: PortModel, mesh: int) -> tuple[Stress, Stress]:
+def static_stress(model: MeshModel, state: StaticState, ports: PortModel, mesh: int) -> Pair:
     """The same for the quasi-static state of the loop."""
     pinion = ports.pinions[mesh]
     angle = ports.ratios[pinion] * state.angles + state.ports[:, pinion]
     forces = tooth_forces(model.law, angle, state.approach[:, mesh])
-    return _stress(model, forces, bool(state.mean_torque[mesh] > 0.0))
+    return _stress(model, forces, slice(None), bool(state.mean_torque[mesh] > 0.0))
 
 
-def _stress(model: MeshModel, forces: ToothForces, front: bool) -> tuple[Stress, Stress]:
-    path = (forces.path if front else forces.back_path).ravel()
-    slices = (forces.front if front else forces.back).reshape(path.size, -1)
+def _stress(model: MeshModel, forces: ToothForces, states: slice, front: bool) -> Pair:
+    path = (forces.path if front else forces.back_path)[states].ravel()
+    slices = (forces.front if front else forces.back)[states].reshape(path.size, -1)
     touching = slices.sum(axis=1) > 0.0
     path, slices = path[touching], slices[touching]
     order = np.argsort(path, kind="stable")
@@ -61,7 +77,7 @@ def peak(stress: Stress) -> float:
     return float(stress[1].max(initial=0.0))
 
 
-def history(gear: str, base_radius: float, dynamic: Stress, static: Stress) -> RootStressHistory:
+def history(gear: str, stage: str, base_radius: float, dynamic: Stress, static: Stress) -> RootStressHistory:
     """Both curves on one grid of the rolling angle of the gear, zero at the pitch point."""
     low = min(dynamic[0].min(), static[0].min())
     high = max(dynamic[0].max(), static[0].max())
@@ -73,6 +89,7 @@ def history(gear: str, base_radius: float, dynamic: Stress, static: Stress) -> R
 
     return RootStressHistory(
         gear=gear,
+        stage=stage,
         rolling_angle_deg=[math.degrees(float(s) / base_radius) for s in path],
         dynamic_MPa=on_grid(dynamic),
         quasi_static_MPa=on_grid(static),

@@ -79,6 +79,8 @@ class DynamicsLimits(Part):
     """… or above this dynamic mesh force as a share of the mean one."""
     lift_off_share_maximum: Share | None = None
     """Share of time without tooth contact in a loaded stage."""
+    contact_margin_minimum: Share | None = None
+    """Least torque in a loaded stage as a share of the mean: what is left for errors the teeth of the model lack."""
 
 
 class StrengthLimits(Part):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from rigdesign.assemble.dynamics import DynamicRun
 from rigdesign.case.model import Case
 from rigdesign.coupling import PointResult, governing_point
-from rigdesign.results import DynamicsResult, GrowthResult, ThermalResult
+from rigdesign.results import DynamicsResult, GrowthResult, Role, ThermalResult
 from rigdesign.rig.model import Rig
 
 
@@ -34,13 +34,13 @@ class Subject:
         """The held point that speaks for the rig."""
         return governing_point(self.points)
 
-    def assumed(self, *prefixes: str) -> tuple[str, ...]:
-        """Paths of the assumptions under any of these parts of the case."""
-        return tuple(
-            record.path
-            for record in self.case.assumptions
-            if any(record.path == prefix or record.path.startswith(f"{prefix}.") for prefix in prefixes)
-        )
+    def label(self, mesh: int) -> str:
+        """Name of a mesh in ids and results."""
+        return self.rig.mesh_labels[self.rig.mesh_names[mesh]]
+
+    def role(self, mesh: int) -> Role:
+        """Role of the gearbox of a mesh."""
+        return self.rig.mesh(self.rig.mesh_names[mesh])[0].role
 
 
 NO_LOADS = "losses are given (losses.basis = input): there are no dynamic loads"

@@ -33,15 +33,15 @@ def _held(
     unit: str,
     limit: float | None,
     values: Values,
-    resting: tuple[str, ...],
     *,
     source: str,
     at_least: bool = False,
+    datum: float = 0.0,
 ) -> Check:
     """Hold the governing one of some values (value, where), or say why there is none; all in ``unit``."""
     rule = Rule(
         id=id, title=title, unit=unit, source=source, group=GROUPS[id.partition(".")[0]], limit=limit,
-        comparison=">=" if at_least else "<=",
+        comparison=">=" if at_least else "<=", datum=datum,
     )  # fmt: skip
     if limit is None:
         return not_applicable(rule, NO_LIMIT)
@@ -49,7 +49,7 @@ def _held(
     if not listed:
         return not_applicable(rule, NO_HOUSING)
     value, where = worst(listed, smallest=at_least)
-    return hold(rule, value, where, resting)
+    return hold(rule, value, where)
 
 
 def _degrees(limit: float | None) -> float | None:
@@ -61,35 +61,35 @@ def _scaled(limit: float | None, scale: float) -> float | None:
 
 
 def _temperatures(subject: Subject) -> Iterator[Check]:
+    """Temperatures are used up from the ambient on: that is where a rig starts that gets no heat."""
     limits = subject.case.limits.temperatures
-    housed = [row.gearbox for row in subject.thermal]
-    resting = subject.assumed(
-        *(f"gearboxes.{name}.{part}" for name in housed for part in ("housing", "heat_split", "oil")),
-        "losses",
+    films = ((state.film_temperature - ZERO, where) for where, state in _films(subject))
+    outlets = (
+        (stream.outlet - ZERO, f"{stream.name}, stage {point.point.stage}")
+        for point in subject.points
+        for stream in point.last.streams
     )
-    yield _held(
-        "temperature.housing", "hottest place of the housing", "degC", _degrees(limits.housing_maximum),
-        ((row.bodies["housing"]["max_degC"], f"{row.gearbox}, stage {row.stage}") for row in subject.thermal),
-        resting, source="limits.temperatures.housing_maximum",
-    )  # fmt: skip
-    yield _held(
-        "temperature.bearing_film", "hottest bearing film", "degC", _degrees(limits.bearing_film_maximum),
-        ((state.film_temperature - ZERO, where) for where, state in _films(subject)),
-        subject.assumed(*(f"gearboxes.{name}.bearings" for name in subject.case.gearboxes)),
-        source="limits.temperatures.bearing_film_maximum; ISO 7902-1 heat balance",
-    )  # fmt: skip
-    yield _held(
-        "temperature.oil_outlet", "hottest oil outlet", "degC", _degrees(limits.oil_outlet_maximum),
+    housings = (
+        (row.bodies["housing"]["max_degC"], f"{row.gearbox}, stage {row.stage}") for row in subject.thermal
+    )
+    for key, title, limit, values, basis in (
+        ("housing", "hottest place of the housing", limits.housing_maximum, housings, ""),
         (
-            (stream.outlet - ZERO, f"{stream.name}, stage {point.point.stage}")
-            for point in subject.points
-            for stream in point.last.streams
+            "bearing_film",
+            "hottest bearing film",
+            limits.bearing_film_maximum,
+            films,
+            "; ISO 7902-1 heat balance",
         ),
-        resting, source="limits.temperatures.oil_outlet_maximum",
-    )  # fmt: skip
+        ("oil_outlet", "hottest oil outlet", limits.oil_outlet_maximum, outlets, ""),
+    ):
+        yield _held(
+            f"temperature.{key}", title, "degC", _degrees(limit), values,
+            source=f"limits.temperatures.{key}_maximum{basis}", datum=subject.case.ambient.temperature - ZERO,
+        )  # fmt: skip
     yield _held(
         "temperature.gear_bulk", "gear bulk temperature below tempering temperature", "K",
-        limits.tempering_distance_minimum, _tempering_distances(subject), resting,
+        limits.tempering_distance_minimum, _tempering_distances(subject),
         source="limits.temperatures.tempering_distance_minimum", at_least=True,
     )  # fmt: skip
 
@@ -116,7 +116,6 @@ def _films(subject: Subject) -> list[tuple[str, BearingState]]:
 
 def _clearances(subject: Subject) -> Iterator[Check]:
     limits = subject.case.limits.clearances
-    resting = subject.assumed(*(f"gearboxes.{row.gearbox}.housing" for row in subject.growth))
     gears = [gear for row in subject.growth for gear in row.gears]
     seals = [seal for row in subject.growth for seal in row.seal_gaps]
     shafts = [shaft for row in subject.growth for shaft in row.shafts]
@@ -149,54 +148,47 @@ def _clearances(subject: Subject) -> Iterator[Check]:
     )  # fmt: skip
     for key, title, limit, scale, unit, values in rows:
         yield _held(
-            f"clearance.{key}", title, unit, _scaled(limit, scale), values, resting,
+            f"clearance.{key}", title, unit, _scaled(limit, scale), values,
             source=f"limits.clearances.{key}_minimum", at_least=True,
         )  # fmt: skip
-    yield from _seal_travel(subject, resting)
+    yield from _seal_travel(subject)
 
 
-def _seal_travel(subject: Subject, resting: tuple[str, ...]) -> Iterator[Check]:
-    """Axial movement of the shaft in its seals against what they take."""
-    for row in subject.growth:
-        for name, seals in subject.case.gearboxes[row.gearbox].seals.items():
+def _seal_travel(subject: Subject) -> Iterator[Check]:
+    """Axial movement of every shaft in its seals against what they take, the worst of the held stages."""
+    for box in dict.fromkeys(row.gearbox for row in subject.growth):
+        for name, seals in subject.case.gearboxes[box].seals.items():
             values = (
-                (abs(seal["axial_shift_mm"]), seal["seal"])
+                (abs(seal["axial_shift_mm"]), f"{seal['seal']}, stage {row.stage}")
+                for row in subject.growth
+                if row.gearbox == box
                 for seal in row.seal_gaps
-                if seal["seal"].startswith(seals.shaft)
+                if seal["shaft"] == seals.shaft
             )
             yield _held(
-                f"clearance.seal_travel.{row.gearbox}.{name}",
-                f"axial movement of the {name} shaft in its seals ({row.gearbox})", "mm",
-                MM * seals.axial_travel, values, resting,
-                source=f"gearboxes.{row.gearbox}.seals.{name}.axial_travel",
+                f"clearance.seal_travel.{box}.{name}", f"axial movement of the {name} shaft in its seals ({box})",
+                "mm", MM * seals.axial_travel, values, source=f"gearboxes.{box}.seals.{name}.axial_travel",
             )  # fmt: skip
 
 
 def _bearings(subject: Subject) -> Iterator[Check]:
     limits = subject.case.limits.bearing
-    resting = subject.assumed(
-        *(f"gearboxes.{name}.bearings" for name in subject.case.gearboxes), "limits.bearing"
-    )
     yield _held(
         "bearing.minimum_film", "smallest film of a journal bearing", "um",
         _scaled(limits.film_thickness_minimum, UM),
-        ((UM * state.minimum_film, where) for where, state in _films(subject)), resting,
+        ((UM * state.minimum_film, where) for where, state in _films(subject)),
         source="limits.bearing.film_thickness_minimum; film after ISO 7902-1", at_least=True,
     )  # fmt: skip
     yield _held(
         "bearing.specific_load", "largest specific load of a journal bearing", "MPa",
         _scaled(limits.specific_load_maximum, 1e-6),
-        ((1e-6 * state.specific_load, where) for where, state in _films(subject)), resting,
+        ((1e-6 * state.specific_load, where) for where, state in _films(subject)),
         source="limits.bearing.specific_load_maximum",
     )  # fmt: skip
 
 
 def _oil(subject: Subject) -> Iterator[Check]:
     limits = subject.case.limits.oil
-    streams = [
-        f"gearboxes.{name}.{part}" for name in subject.case.gearboxes for part in ("oil", "bearing_oil")
-    ]
-    resting = subject.assumed("losses", *streams)
     rows = (
         ("flow", "oil flow of the rig", "l/min", "flow_maximum", 6e4, "flow_l_min", 1.0),
         ("cooler", "power the cooler carries", "kW", "cooler_power_maximum", 1e-3, "cooler_W", 1e-3),
@@ -206,7 +198,7 @@ def _oil(subject: Subject) -> Iterator[Check]:
     for key, title, unit, name, limit_scale, entry, scale in rows:
         values = ((scale * float(row[entry]), f"stage {row['stage']}") for row in subject.cooler)
         yield _held(
-            f"oil.{key}", title, unit, _scaled(getattr(limits, name), limit_scale), values, resting,
+            f"oil.{key}", title, unit, _scaled(getattr(limits, name), limit_scale), values,
             source=f"limits.oil.{name}",
         )  # fmt: skip
 

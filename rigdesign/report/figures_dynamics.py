@@ -1,5 +1,6 @@
 """Figures of the drivetrain: K_V(n), order crossings, root stress over the mesh."""
 
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -45,20 +46,35 @@ def dynamic_factor_figure(dynamics: DynamicsResult) -> "Figure":
 def _dynamic_factor(axes: "Axes", gearbox: GearboxDynamics) -> None:
     points = gearbox.dynamic_factor
     speed = [point.speed_rpm for point in points]
-    axes.plot(speed, [p.simulated for p in points], color=SERIES[0], label="simulated, max / mean", zorder=4)
+    main = _with_gaps(gearbox, gearbox.torque, points)
     axes.plot(
-        speed,
-        [p.simulated_half_peak_to_peak for p in points],
+        [p.speed_rpm for p in main],
+        [p.simulated for p in main],
+        color=SERIES[0],
+        label=f"simulated at {gearbox.torque}, max / mean",
+        zorder=4,
+    )
+    axes.plot(
+        [p.speed_rpm for p in main],
+        [p.simulated_half_peak_to_peak for p in main],
         color=SERIES[0],
         linewidth=0.8,
         linestyle=(0, (3, 2)),
         label="simulated, 1 + half peak-to-peak / mean",
     )
-    for colour, (name, variant) in zip(SERIES[1:], gearbox.dynamic_factor_variants.items(), strict=False):
-        x = [point.speed_rpm for point in variant]
-        label = f"variant {plain(name.replace('_', ' '))}, max / mean"
+    others = {f"simulated at {key}": (key, curve) for key, curve in gearbox.dynamic_factor_at.items()}
+    others |= {
+        f"variant {plain(key.replace('_', ' '))} at {gearbox.torque}": (key, curve)
+        for key, curve in gearbox.dynamic_factor_variants.items()
+    }
+    for colour, (label, (key, curve)) in zip(cycle(SERIES[1:]), others.items(), strict=False):
+        shown = _with_gaps(gearbox, key, curve)
         axes.plot(
-            x, [point.simulated for point in variant], color=colour, linewidth=0.9, label=_wrapped(label)
+            [point.speed_rpm for point in shown],
+            [point.simulated for point in shown],
+            color=colour,
+            linewidth=0.9,
+            label=_wrapped(f"{label}, max / mean"),
         )
     axes.plot(
         speed,
@@ -67,7 +83,11 @@ def _dynamic_factor(axes: "Axes", gearbox: GearboxDynamics) -> None:
         linewidth=1.5,
         label="ISO 6336-1:2006 method B",
     )
-    dangerous = [item["speed_rpm"] for item in gearbox.resonances if item.get("dangerous")]
+    dangerous = [
+        item["speed_rpm"]
+        for item in gearbox.resonances
+        if item.get("dangerous") and item["torque"] == gearbox.torque
+    ]
     if dangerous and points:
         heights = np.interp(dangerous, speed, [p.simulated for p in points])
         axes.plot(
@@ -80,6 +100,24 @@ def _dynamic_factor(axes: "Axes", gearbox: GearboxDynamics) -> None:
             zorder=5,
         )
     axes.set_xlim(left=0)
+
+
+def _with_gaps(
+    gearbox: GearboxDynamics, curve: str, points: list[DynamicFactorPoint]
+) -> list[DynamicFactorPoint]:
+    """The points with one without value at every speed that has no solution, so that no line is drawn over it."""
+    nothing = float("nan")
+    holes = [
+        DynamicFactorPoint(
+            speed_rpm=row["speed_rpm"],
+            simulated=nothing,
+            simulated_half_peak_to_peak=nothing,
+            iso_6336_1_method_b=nothing,
+        )
+        for row in gearbox.unsolved
+        if row["curve"] == curve
+    ]
+    return sorted([*points, *holes], key=lambda point: point.speed_rpm)
 
 
 def campbell_figure(dynamics: DynamicsResult) -> "Figure":
@@ -147,7 +185,9 @@ def _crossing_marks(
         label="crossing",
     )
     dangerous = [
-        item for item in gearbox.resonances if item.get("dangerous") and item["speed_rpm"] <= top_speed
+        item
+        for item in gearbox.resonances
+        if item.get("dangerous") and item["torque"] == gearbox.torque and item["speed_rpm"] <= top_speed
     ]
     if dangerous:
         axes.plot(
@@ -171,7 +211,8 @@ def root_stress_figure(gearbox: GearboxDynamics) -> "Figure":
         axes.plot(angle, history.quasi_static_MPa, color=INK, linewidth=1.0, label="quasi-static")
         axes.plot(angle, history.dynamic_MPa, color=SERIES[1], label="dynamic")
         axes.set_ylim(bottom=0)
-        finish(axes, "rolling angle φ [°]", f"root stress {SIGMA_F}(φ) [N/mm²]", plain(history.gear))
+        title = f"{plain(history.gear)}, stage {plain(history.stage)}"
+        finish(axes, "rolling angle φ [°]", f"root stress {SIGMA_F}(φ) [N/mm²]", title)
         axes.legend(loc="best")
     if gearbox.root_stress_factor:
         _stress_ratio(axes_list[-1], gearbox.root_stress_factor, gearbox.dynamic_factor)

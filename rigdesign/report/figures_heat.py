@@ -14,7 +14,7 @@ WARM, COLD = "#b3452c", "#2b6ca3"
 
 
 def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
-    """Power loss of every stage [W], stacked by kind."""
+    """Power loss at the end of every stage [W], stacked by kind."""
     stages = list(dict.fromkeys(row.stage for row in losses))
     kinds = list(dict.fromkeys(row.kind for row in losses))
     height = 0.75 + 0.34 * len(stages)
@@ -35,7 +35,7 @@ def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.margins(x=0.1)
-    finish(axes, "power loss, mean over the stage [W]")
+    finish(axes, "power loss at the end of the stage [W]")
     legend_right(axes)
     figure.subplots_adjust(left=0.16, right=0.8, top=1 - 0.1 / height, bottom=0.47 / height)
     return figure
@@ -60,7 +60,7 @@ def losses_by_place_figure(losses: list[LossRow], stage: str) -> "Figure":
     axes.set_yticks(places, [plain(_words(row.place)) for row in rows])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
-    finish(axes, f"power loss at stage {plain(stage)}, mean [W]")
+    finish(axes, f"power loss at stage {plain(stage)} [W]")
     axes.legend(loc="lower right")
     figure.subplots_adjust(left=0.26, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
     return figure

@@ -7,7 +7,14 @@ from typing import Any
 
 from rigdesign.report.fields import file_stem
 from rigdesign.report.results_json import SIGNIFICANT_DIGITS
-from rigdesign.results import DynamicsResult, GearboxDynamics, HeatRow, RampHistory, RunResult
+from rigdesign.results import (
+    DynamicFactorPoint,
+    DynamicsResult,
+    GearboxDynamics,
+    HeatRow,
+    RampHistory,
+    RunResult,
+)
 
 Row = Sequence[Any]
 
@@ -131,22 +138,37 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, str]]:
 
 
 def _dynamic_factor(gearbox: GearboxDynamics) -> str:
-    """K_V(n): the shipped curve and its variants below each other, told apart by the last column."""
+    """K_V(n): the curves of all torques and variants below each other, told apart by the last two columns."""
     header = (
         "speed [rpm]",
         "max/mean [1]",
         "half peak-to-peak [1]",
         "ISO 6336-1 method B [1]",
         "method",
+        "torque",
         "variant",
     )
-    curves = {"": gearbox.dynamic_factor, **gearbox.dynamic_factor_variants}
+    main = gearbox.torque
+    curves = [
+        (main, "", gearbox.dynamic_factor),
+        *((torque, "", points) for torque, points in gearbox.dynamic_factor_at.items()),
+        *((main, variant, points) for variant, points in gearbox.dynamic_factor_variants.items()),
+    ]
     rows = (
-        (p.speed_rpm, p.simulated, p.simulated_half_peak_to_peak, p.iso_6336_1_method_b, p.method, variant)
-        for variant, points in curves.items()
-        for p in points
+        (*_factors(point), point.method, torque, variant)
+        for torque, variant, points in curves
+        for point in points
     )
     return csv_text(header, rows)
+
+
+def _factors(point: DynamicFactorPoint) -> tuple[float, ...]:
+    return (
+        point.speed_rpm,
+        point.simulated,
+        point.simulated_half_peak_to_peak,
+        point.iso_6336_1_method_b,
+    )
 
 
 def _ramp(ramp: RampHistory) -> str:

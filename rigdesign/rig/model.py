@@ -9,6 +9,7 @@ from dynamics.drivetrain import Drivetrain, assemble
 from dynamics.gear import GearPair
 from dynamics.linear_system import LinearSystem
 from rigdesign.case.gearbox import Gearbox, JournalBearing
+from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.model import Case
 from rigdesign.materials import MATERIALS, Material
@@ -128,6 +129,12 @@ class Rig:
         return tuple(self.pairs)
 
     @property
+    def mesh_labels(self) -> Mapping[str, str]:
+        """Name of each mesh in results and checks: its gearbox, or ``gearbox.mesh`` where that has several."""
+        boxes = [name.split(".")[0] for name in self.mesh_names]
+        return {name: name if boxes.count(box) > 1 else box for name, box in zip(self.mesh_names, boxes)}
+
+    @property
     def control_mesh(self) -> str:
         """The mesh whose torque the case states: the first of all."""
         return next(iter(self.pairs))
@@ -147,6 +154,14 @@ class Rig:
         """Gearbox and own name of the mesh ``gearbox.mesh``."""
         box, mesh = name.split(".")
         return self.case.gearboxes[box], mesh
+
+    def mesh_gear_name(self, mesh: int, index: int) -> str:
+        """Own name of pinion (0) or wheel (1) of a mesh by its number."""
+        return self.mesh_gears(self.mesh_names[mesh])[index].split(".")[1]
+
+    def mesh_gear(self, mesh: int, index: int) -> Gear:
+        """Pinion (0) or wheel (1) of a mesh by its number."""
+        return self.mesh(self.mesh_names[mesh])[0].gears[self.mesh_gear_name(mesh, index)]
 
     def mesh_gears(self, name: str) -> tuple[str, str]:
         """Names ``gearbox.gear`` of pinion and wheel of a mesh."""

@@ -112,7 +112,7 @@ def test_reading_with_radiation_included_drops_what_the_print_holds(published: R
     field = -sum(
         row.power_W for row in thermal.heat if row.kind == "radiation" and row.surface.startswith("field")
     )
-    less = thermal.room_heat_W - thermal.alternatives["room_heat_with_the_other_reading_W"]
+    less = thermal.room_heat_W - thermal.alternatives["heat_to_the_room_under_the_other_reading_W"]
     assert 0.3 * box < less < box
     assert field > 0.1 * box
 

@@ -12,6 +12,7 @@ import pytest
 from rigdesign import results as r
 from rigdesign.report import numbers, views
 from rigdesign.report.drawing import drawing_style, inline_svg, new_figure
+from rigdesign.report.figures_dynamics import dynamic_factor_figure
 from rigdesign.report.figures_ramp import stage_spans
 from rigdesign.report.html import report_html, signs, symbol
 from tests.report_example import checks, gearbox_field, make_check, make_result
@@ -104,7 +105,7 @@ def test_sections_stand_in_the_order_of_reading(page):
         "radial gap, local [mm]",
         "temperature, steady [°C]",
         "heat, positive into the solid [W]",
-        "simulated, max / mean",
+        "simulated at 180 N m, max / mean",
         "simulated, 1 + half peak-to-peak / mean",
         "0 to peak",
         "pass [–]",
@@ -196,6 +197,9 @@ def test_gearbox_without_curves_still_has_its_page():
         base.gearboxes["test"],
         dynamic_factor=[],
         dynamic_factor_variants={},
+        dynamic_factor_at={},
+        stage_loads=[],
+        unsolved=[],
         root_stress=[],
         root_stress_factor=[],
         resonances=[],
@@ -204,8 +208,20 @@ def test_gearbox_without_curves_still_has_its_page():
     )
     dynamics = replace(base, gearboxes={"test": bare}, crossings=[], ramp=None)
     page = report_html(make_result(dynamics=dynamics, fields=[]))
-    assert "no interval without tooth contact in any stage" in page
+    assert "no interval without tooth contact for longer than 5 % of a mesh period" in page
+    assert "no stage turns under torque" in page
     assert "No time run over the schedule" in page
+
+
+def test_no_line_is_drawn_over_a_speed_without_solution():
+    """The curve at 90 N m has a hole at 1800 rpm: its line breaks there, that of the test torque does not."""
+    figure = dynamic_factor_figure(make_result().dynamics)
+    lines = {line.get_label(): line for line in figure.axes[0].get_lines()}
+    broken = next(line for label, line in lines.items() if label.startswith("simulated at 90 N m"))
+    whole = lines["simulated at 180 N m, max / mean"]
+    hole = np.isnan(np.asarray(broken.get_ydata(), dtype=float))
+    assert np.asarray(broken.get_xdata())[hole].tolist() == [1800.0]
+    assert not np.isnan(np.asarray(whole.get_ydata(), dtype=float)).any()
 
 
 def test_checks_are_ordered_failing_first_then_by_utilisation():

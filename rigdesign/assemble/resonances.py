@@ -1,0 +1,107 @@
+"""Peaks of the dynamic torque over speed, named by what vibrates."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from dynamics.dynamic_factor import DynamicFactorCurve, Resonance
+from dynamics.dynamic_factor import resonances as find_resonances
+from dynamics.modes import LoopMode
+from dynamics.response_curve import CurvePoint, ResponseCurve
+from rigdesign.assemble.curves import Curves, own_ratio
+from rigdesign.rig.model import Rig
+
+HARMONICS = 4
+"""Mesh orders that may excite a mode."""
+LEAST_PROMINENCE = 0.01
+"""Prominence of a peak of the dynamic torque, as a share of the mean, from which it counts as a resonance."""
+LEAST_GAIN = 0.1
+"""Gain of a mode below which its mesh hardly excites it (`LoopMode.mesh_gain`)."""
+LEAST_ORDER = 0.1
+"""Amplitude of an order, over that of the strongest one, from which it may name a resonance."""
+RPM = 30.0 / math.pi
+
+
+def resonance_rows(rig: Rig, curves: Curves, mesh: int, modes: Sequence[LoopMode]) -> list[dict[str, Any]]:
+    """Resonances of one mesh at every torque of the curves, over the speed of its own pinion.
+
+    amplification is the peak over the level it stands on; dangerous means above a limit of the case.
+    """
+    limits = rig.case.limits.dynamics
+    ratio = own_ratio(rig, mesh)
+    teeth = ratio * rig.pairs[rig.mesh_names[mesh]].teeth[0]
+    rows = []
+    for name, (_, curve) in curves.named.items():
+        if len(curve.points) < 3:
+            continue
+        for peak in find_resonances(_of_mesh(curve, mesh), least_prominence=LEAST_PROMINENCE):
+            mode, frequency, harmonic = name_of(peak, curve, mesh, teeth, modes)
+            rows.append(
+                {
+                    "torque": name,
+                    "mode": mode,
+                    "frequency_Hz": frequency,
+                    "harmonic": harmonic,
+                    "speed_rpm": ratio * peak.speed * RPM,
+                    "dynamic_factor": peak.factor,
+                    "force_share": peak.force_share,
+                    "amplification": peak.amplification,
+                    "at_end": peak.at_end,
+                    "dangerous": peak.amplification > limits.dangerous_amplification
+                    or peak.force_share > limits.dangerous_force_share,
+                }
+            )
+    return rows
+
+
+def _of_mesh(curve: ResponseCurve, mesh: int) -> DynamicFactorCurve:
+    points = curve.points
+    return DynamicFactorCurve(
+        speed=curve.speeds,
+        factor=np.array([[p.dynamic_factor[mesh] for p in points]]),
+        half_peak_to_peak=np.array([[p.dynamic_factor_half_peak_to_peak[mesh] for p in points]]),
+        mean_torque=np.array([[p.mean[mesh] for p in points]]),
+        amplitude=np.array([[0.5 * (p.maximum[mesh] - p.minimum[mesh]) for p in points]]),
+        lift_off_share=np.array([[p.lift_off_share[mesh] for p in points]]),
+    )
+
+
+def name_of(
+    peak: Resonance, curve: ResponseCurve, mesh: int, teeth: float, modes: Sequence[LoopMode]
+) -> tuple[str, float, int]:
+    """Mode, frequency [Hz] and order that make a peak.
+
+    A mode counts if an order of the mesh meets it within half its line width or the step of the speeds, if the
+    mesh excites it and the order is there; of several the one with most gain times amplitude. With none the
+    strongest order stands alone: the peak has several parents, or one above the modes that are listed.
+
+    teeth : mesh frequency over the turning frequency of the first pinion
+    """
+    at = int(np.argmin(np.abs(curve.speeds - peak.speed)))
+    amplitude = _amplitudes(curve.points[at], mesh)
+    base = peak.speed * teeth / (2.0 * math.pi)
+    near = curve.speeds[max(at - 1, 0) : at + 2]
+    step = 0.5 * float(np.ptp(near)) * teeth / (2.0 * math.pi) / max(len(near) - 1, 1)
+    strongest = int(np.argmax(amplitude)) + 1
+    best, found = 0.0, ("no single mode", strongest * base, strongest)
+    for harmonic, height in enumerate(amplitude, start=1):
+        if height < LEAST_ORDER * amplitude.max():
+            continue
+        for mode in modes:
+            reach = max(mode.damping_ratio * mode.frequency, harmonic * step)
+            gain = float(mode.mesh_gain[mesh])
+            if abs(harmonic * base - mode.frequency) > reach or gain < LEAST_GAIN:
+                continue
+            if gain * height > best:
+                best, found = gain * float(height), (mode.name, mode.frequency, harmonic)
+    return found
+
+
+def _amplitudes(point: CurvePoint, mesh: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Amplitudes of the orders 1 to `HARMONICS` of the dynamic torque [N m], zero where none was computed."""
+    amplitude = np.zeros(HARMONICS)
+    own = point.harmonics[mesh, 1 : HARMONICS + 1]
+    amplitude[: own.size] = own
+    return amplitude
