@@ -12,6 +12,9 @@ FILLET_OVERLAP_LIMIT = 0.02
 """Overlap of a mating flank with the fillet, in normal modules, above which the pair is refused."""
 FILLET_OVERLAP_NOTED = 1e-4
 """Overlap in normal modules that is worth a warning."""
+THIN_RIM, NO_RIM = 1.2, 0.5
+"""Rim under the root, in tooth heights: below the first it adds to the root stress, at the second it carries no
+tooth (ISO 6336-3:2006, clause 9)."""
 THIN_TIP = 0.2
 """Tip thickness in normal modules below which a hardened tip is likely to break."""
 
@@ -40,6 +43,12 @@ def require_sizes(pair: "GearPair") -> None:
                 f"tip_diameters[{i}] = {1e3 * pair.tip_diameters[i]:.3f} mm must exceed the form diameter "
                 f"{2e3 * pair.gears[i].form_radius:.3f} mm; no involute is left: "
                 "increase tip diameter or shift"
+            )
+        if pair.bore_diameters[i] and rim_in_tooth_heights(pair, i) <= NO_RIM:
+            raise GearGeometryError(
+                f"bore_diameters[{i}] = {1e3 * pair.bore_diameters[i]:.3f} mm leaves a rim of "
+                f"{rim_in_tooth_heights(pair, i):.3f} tooth heights under the root, must exceed {NO_RIM}; reduce "
+                "the bore"
             )
     if not sum(pair.base_radii) < pair.centre_distance:
         raise GearGeometryError(
@@ -80,6 +89,12 @@ def require_meshing(pair: "GearPair") -> None:
         )
 
 
+def rim_in_tooth_heights(pair: "GearPair", index: int) -> float:
+    """Rim between bore and root circle of a gear, per height of its teeth [-]."""
+    rim = pair.root_radii[index] - 0.5 * pair.bore_diameters[index]
+    return rim / (pair.tip_radii[index] - pair.root_radii[index])
+
+
 def unusual(pair: "GearPair") -> tuple[str, ...]:
     """Warnings about a pair that can run: name, value, limit, remedy."""
     found: list[str] = []
@@ -98,6 +113,13 @@ def unusual(pair: "GearPair") -> tuple[str, ...]:
             found.append(
                 f"{name}: tip thickness {1e3 * gear.tip_thickness:.3f} mm below 0.2 m_n; "
                 "reduce shift or addendum"
+            )
+    for i, name in enumerate(NAMES):
+        rim = rim_in_tooth_heights(pair, i)
+        if pair.bore_diameters[i] and rim < THIN_RIM:
+            found.append(
+                f"{name}: rim under the root {rim:.2f} tooth heights (limit {THIN_RIM}): it adds to the root stress; "
+                "reduce the bore"
             )
     if pair.transverse_backlash < -1e-9:
         found.append(

@@ -1,11 +1,12 @@
 from dataclasses import replace
-from math import acos, cos, degrees, pi, radians, sin, sqrt, tan
+from math import acos, cos, degrees, log, pi, radians, sin, sqrt, tan
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from dynamics import iso_rating
 from dynamics.cylindrical_gear import CylindricalGear, involute
 from dynamics.gear import GearGeometryError, GearPair, Rack
 
@@ -56,6 +57,21 @@ def test_tip_cut_that_gives_the_contact_ratio_of_the_tips(shift, cut):
     pair = make(UHCF, **choice, contact_ratio=None, tip_shortening=(0.0, cut * 1e-3))
     assert pair.tip_contact_ratio == pytest.approx(1.26, abs=1e-3)
     assert pair.transverse_contact_ratio <= pair.tip_contact_ratio
+
+
+def test_a_thin_rim_warns_and_adds_to_the_root_stress():
+    """Y_B = 1.6 ln(2.242 h_t / s_R) below 1.2 tooth heights (ISO 6336-3, clause 9), 1 above."""
+    solid, thick, thin = (make(SPUR_50, bore_diameters=(bore, 0.0)) for bore in (0.0, 0.12, 0.13))
+    height = 2.25 * 3e-3
+    rim = 75e-3 - 1.25 * 3e-3 - 65e-3
+    assert thick.warnings == ()
+    assert f"{rim / height:.2f} tooth heights" in thin.warnings[0]
+    stress = [iso_rating.root_stress(pair, 100.0, 0).sigma_F0 for pair in (solid, thick, thin)]
+    assert stress[1] == stress[0]
+    assert stress[2] / stress[0] == pytest.approx(1.6 * log(2.242 * height / rim), rel=1e-9)
+    assert iso_rating.root_stress(thin, 100.0, 1).sigma_F0 == iso_rating.root_stress(solid, 100.0, 1).sigma_F0
+    with pytest.raises(GearGeometryError, match=r"rim of 0\.\d+ tooth heights under the root.*reduce"):
+        make(SPUR_50, bore_diameters=(0.137, 0.0))
 
 
 def test_reference_gear_contact_ratios():
