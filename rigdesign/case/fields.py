@@ -89,7 +89,7 @@ Small = Annotated[float, Quantity("length", at_least="0 um", at_most="1 mm")]
 """A flank modification, a roughness."""
 Angle = Annotated[float, Quantity("angle", at_least="-360 deg", at_most="360 deg")]
 PressureAngle = Annotated[float, Quantity("angle", at_least="10 deg", at_most="35 deg")]
-HelixAngle = Annotated[float, Quantity("angle", above="-60 deg", below="60 deg")]
+HelixAngle = Annotated[float, Quantity("angle", at_least="0 deg", at_most="45 deg")]
 Temperature = Annotated[float, Quantity("temperature", at_least="-60 degC", at_most="600 degC")]
 TemperatureDifference = Annotated[float, Quantity("temperature_difference", above="0 K", at_most="500 K")]
 Torque = Annotated[float, Quantity("torque", at_least="0 N m", at_most="1000 kN m")]

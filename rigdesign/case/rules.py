@@ -103,6 +103,12 @@ def _numerics(case: "Case") -> Iterator[Fault]:
             f"is not below curve_speed_end = {show(numbers.curve_speed_end, 'speed')}",
             "exchange or correct them",
         )  # fmt: skip
+    if numbers.curve_speed_start <= 0.0:
+        yield Fault(
+            "numerics.curve_speed_start", show(numbers.curve_speed_start, "speed"),
+            "is not above 0 rpm: a rig at rest has no periodic response",
+            "write e.g. 500 rpm",
+        )  # fmt: skip
     length = sum(s.length for shaft in _shafts(case) for s in shaft.sections)
     if length > MOST_SHAFT_ELEMENTS * numbers.shaft_element_length:
         yield Fault(

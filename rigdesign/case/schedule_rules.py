@@ -55,6 +55,15 @@ def schedule_faults(case: "Case") -> Iterator[Fault]:
             yield Fault(
                 f"{at}.held", "true", "only a dwell can be held at steady temperatures", "make it a dwell"
             )
+        if stage.held and min(abs(stage.speed_end), abs(stage.torque_end)) <= 0.0:
+            quantity, value = (
+                ("speed", stage.speed_end) if not stage.speed_end else ("torque", stage.torque_end)
+            )
+            yield Fault(
+                f"{at}.held", "true", f"its {quantity} is {show(value, quantity)}: loads, losses and temperatures of a "
+                "held stage need a turning, loaded rig",
+                "hold a dwell under speed and torque",
+            )  # fmt: skip
     if not any(stage.held for stage in case.schedule.stages):
         yield Fault(
             "schedule.stages",

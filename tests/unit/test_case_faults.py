@@ -319,6 +319,25 @@ BAD = [
         "heat without braking",
         "remove the given loss",
     ),
+    # nothing to compute
+    (
+        'numerics.curve_speed_start = "0 rpm"',
+        "numerics.curve_speed_start",
+        "a rig at rest has no periodic response",
+        "500 rpm",
+    ),
+    (
+        'gearboxes.reference.meshes.main.helix_angle = "-18 deg"',
+        "gearboxes.reference.meshes.main.helix_angle",
+        "is below 0 deg",
+        "at least 0 deg",
+    ),
+    (
+        'gearboxes.reference.meshes.main.helix_angle = "50 deg"',
+        "gearboxes.reference.meshes.main.helix_angle",
+        "is above 45 deg",
+        "at most 45 deg",
+    ),
     # a shaft on one bearing
     (
         'gearboxes.reference.bearings.wheel_rear.position = "48.13 mm"',
@@ -487,3 +506,19 @@ def test_constant_drag_needs_its_value_at_every_bearing(tmp_path: Path) -> None:
     assert [fault.path for fault in faults(tmp_path, text)] == [
         "gearboxes.test.bearings.pinion_front.torsional_damping"
     ]
+
+
+@pytest.mark.parametrize(
+    ("stage", "words"),
+    [
+        ('{ name = "rest", kind = "dwell", duration = "1 s", held = true }', "its speed is 0 rpm"),
+        (
+            '{ name = "up", kind = "run_up", speed = "500 rpm", duration = "1 s" }, '
+            '{ name = "idle", kind = "dwell", duration = "1 s", held = true }',
+            "its torque is 0 N m",
+        ),
+    ],
+)
+def test_a_held_stage_turns_under_load(tmp_path: Path, stage: str, words: str) -> None:
+    found = faults(tmp_path, f"[schedule]\nremove = ['stages']\nstages = [{stage}]\n")
+    assert any(fault.path.endswith(".held") and words in fault.problem for fault in found)
