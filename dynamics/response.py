@@ -6,8 +6,9 @@ steps. The motor follows the speed command through a controller with a torque li
 twist or a torque.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from math import pi
 
 import numpy as np
@@ -146,7 +147,7 @@ def run_schedule(
     laws: Sequence[MeshLaw],
     command: Command,
     *,
-    torque_limit: float,
+    torque_limit: float | Array,
     drags: Mapping[str, DragCurve] | None = None,
     speed_control: SpeedControl | None = None,
     sample_rate: float = 40e3,
@@ -162,7 +163,8 @@ def run_schedule(
 
     Parameters
     ----------
-    torque_limit : of the motor [N m]
+    torque_limit : of the motor [N m], or one for every time of the command, each from its time on; changes count
+        from the nearest slot end
     drags : drag torque over speed for names of ``system.drag_loads``
     speed_control : of the motor; default ``default_speed_control``
     sample_rate : of controller and kept channels [Hz]; substeps : internal steps per sample, 8 or more
@@ -204,8 +206,8 @@ def run_schedule(
         drive_torque=drive, drag_torques=tuple(drag_now.values()), record_all=False, accounts=keep_accounts,
         model=modal_model(system, laws, slow_loads(system, names), cutoff=cutoff),
     )  # fmt: skip
-    control = speed_control or default_speed_control(system, laws, torque_limit)
-    control = replace(control, torque_limit=torque_limit)
+    limits = np.broadcast_to(np.asarray(torque_limit, float), command.time.shape)
+    control = speed_control or default_speed_control(system, laws, float(limits[0]))
     march.preset_speed_integral(drive)
     bracing = None if command.torque is None else TorqueControl(stiffness=stiffness)
     feed_forward = (
@@ -223,9 +225,10 @@ def run_schedule(
     columns: list[tuple[Array, Array, Array]] = []
     torques: list[Array] = []
     radius = np.array([law.base_radius_1 for law in laws])[:, None]
-    chunk = per_slot * max(1, 8192 // per_slot)
-    for first in range(0, n_samples, chunk):
-        count = min(chunk, n_samples - first)
+    limit_at = np.empty(n_samples)
+    for first, count, limit in _chunks(command.time, limits, n_samples, sample_rate, per_slot):
+        limit_at[first : first + count] = limit
+        control = replace(control, torque_limit=limit)
         at = command.time[0] + np.arange(first, first + count + 1) / sample_rate
         target = np.interp(at, command.time, command.speed) * drive_ratio
         given = np.zeros((count, 4))
@@ -254,7 +257,7 @@ def run_schedule(
     command_speed = np.concatenate([c[2] for c in columns])
     accounts = march.accounts()
     speed = slow_speed[:, 0] / drive_ratio
-    limited = np.abs(slow[:, 0]) >= torque_limit * (1.0 - 1e-9)
+    limited = np.abs(slow[:, 0]) >= limit_at * (1.0 - 1e-9)
     warnings = []
     if march.unsettled:
         warnings.append(f"{march.unsettled} contact iterations ended early, limit 0; use more internal steps")
@@ -285,6 +288,21 @@ def run_schedule(
         unsettled_steps=march.unsettled,
         warnings=tuple(warnings),
     )
+
+
+def _chunks(
+    time: Array, limits: Array, n_samples: int, sample_rate: float, per_slot: int
+) -> Iterator[tuple[int, int, float]]:
+    """(first sample, count, torque limit) of blocks that begin at a slot, each with one torque limit."""
+    changes = np.flatnonzero(np.diff(limits)) + 1
+    slots = np.rint((time[changes] - time[0]) * sample_rate / per_slot).astype(int)
+    borders = np.unique(np.concatenate([[0], slots * per_slot, [n_samples]]).clip(0, n_samples))
+    chunk = per_slot * max(1, 8192 // per_slot)
+    for start, end in pairwise(borders.tolist()):
+        middle = time[0] + 0.5 * (start + end) / sample_rate
+        limit = float(limits[np.searchsorted(time, middle, side="right") - 1])
+        for first in range(start, end, chunk):
+            yield first, min(chunk, end - first), limit
 
 
 class LowPass:

@@ -86,7 +86,7 @@ def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -
             torque=np.maximum(command.torque, LEAST_TORQUE) if controlled else None,
             twist=None if controlled else np.full_like(command.time, setting.twist),
         ),
-        torque_limit=_torque_limit(rig),
+        torque_limit=torque_limits(rig)[command.stage],
         drags=drag_curves(rig, warm, feedback),
         sample_rate=numerics.sample_rate,
         substeps=numerics.internal_steps,
@@ -99,12 +99,16 @@ def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -
     return response
 
 
-def _torque_limit(rig: Rig) -> float:
-    """Largest torque of the motor [N m]: its own limit, or the least constant torque that a stage asks for."""
+def torque_limits(rig: Rig) -> NDArray[np.float64]:
+    """Largest torque of the motor in every stage [N m]: its own limit, or the constant torque the stage asks for."""
     assert rig.case.drivetrain is not None
-    stages = rig.case.schedule.resolved()
-    asked = [stage.drive_torque for stage in stages if stage.drive_torque is not None]
-    return min([rig.case.drivetrain.motor.torque_limit, *asked])
+    own = rig.case.drivetrain.motor.torque_limit
+    return np.array(
+        [
+            own if stage.drive_torque is None else min(own, stage.drive_torque)
+            for stage in rig.case.schedule.resolved()
+        ]
+    )
 
 
 def _speed_command(rig: Rig, schedule: Schedule, command: Command) -> NDArray[np.float64]:
@@ -149,26 +153,26 @@ def drags_at(rig: Rig, warm: PassResult, feedback: Feedback, speed: float) -> di
 
 
 def require_speeds(rig: Rig, schedule: Schedule, response: TimeResponse) -> None:
-    """Every run-up and run-down must end at its speed before the next stage begins.
+    """Every stage must end at its speed before the next begins, a dwell at the speed it holds.
 
     Raises NotConvergedError with the torque balance at the end of the first stage that does not.
     """
     limit = SPEED_TOLERANCE * max(max(stage.speed) for stage in schedule.stages)
-    for stage, end in zip(schedule.stages, schedule.starts[1:]):
-        if stage.kind != "speed":
-            continue
+    for stage, end, most in zip(schedule.stages, schedule.starts[1:], torque_limits(rig)):
         at = min(int(np.searchsorted(response.time, end)), len(response.time) - 1)
         excess = float(response.speed[at]) - stage.speed[1]
         if abs(excess) > limit:
             raise NotConvergedError(
                 f"stage {stage.name!r} {_missed(stage, excess)}: {response.speed[at] / RPM:.0f} rpm against "
                 f"{stage.speed[1] / RPM:.0f} rpm at {end:.2f} s, limit {limit / RPM:.0f} rpm. "
-                f"{_balance(rig, response, at)}; {_remedy(rig, float(response.drive_torque[at]))}"
+                f"{_balance(rig, response, at)}; {_remedy(float(response.drive_torque[at]), float(most))}"
             )
 
 
 def _missed(stage: Stage, excess: float) -> str:
     """What went wrong at the end of a stage that is ``excess`` too fast [rad/s]."""
+    if stage.kind != "speed":
+        return f"does not hold its speed, {abs(excess) / RPM:.0f} rpm {'too slow' if excess < 0.0 else 'too fast'}"
     if stage.actual_direction == "rising":
         return (
             "does not reach its speed" if excess < 0.0 else f"overshoots its speed by {excess / RPM:.0f} rpm"
@@ -188,8 +192,8 @@ def _balance(rig: Rig, response: TimeResponse, at: int) -> str:
     )
 
 
-def _remedy(rig: Rig, drive_torque: float) -> str:
-    if abs(drive_torque) >= 0.999 * _torque_limit(rig):
+def _remedy(drive_torque: float, limit: float) -> str:
+    if abs(drive_torque) >= 0.999 * limit:
         return "raise the limit or give the stage more time"
     return (
         "the motor is within its limit, so its speed control is still settling: give the stage more time, or "

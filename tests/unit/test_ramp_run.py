@@ -11,7 +11,7 @@ import pytest
 from dynamics.response import TimeResponse
 from rigdesign.case import load_case
 from rigdesign.errors import NotConvergedError
-from rigdesign.ramp_run import require_speeds, schedule_of
+from rigdesign.ramp_run import require_speeds, schedule_of, torque_limits
 from rigdesign.rig.model import Rig, build_rig
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
@@ -53,6 +53,8 @@ def complaint(stage: str, excess_rpm: float, drive: float = 20.0) -> str:
         ("run_up", 200.0, ("'run_up' overshoots its speed by 200 rpm: 12200 rpm against 12000 rpm",)),
         ("run_down", 500.0, ("does not come down to its speed, 500 rpm are left: 1250 rpm against 750 rpm",)),
         ("run_down", -400.0, ("'run_down' falls through its speed by 400 rpm: 350 rpm against 750 rpm",)),
+        ("test", -130.0, ("'test' does not hold its speed, 130 rpm too slow: 11870 rpm against 12000 rpm",)),
+        ("half_torque", 150.0, ("'half_torque' does not hold its speed, 150 rpm too fast",)),
         ("to_standstill", -150.0, ("falls through its speed by 150 rpm: -150 rpm against 0 rpm",)),
     ],
 )
@@ -66,6 +68,16 @@ def test_remedy_follows_the_motor() -> None:
     assert complaint("run_up", -300.0, 20.0).endswith("raise the limit or give the stage more time")
     assert complaint("run_down", 300.0, -20.0).endswith("raise the limit or give the stage more time")
     assert "stiffen the shaft between motor and gears" in complaint("run_down", -300.0, 5.0)
+
+
+def test_a_constant_drive_torque_limits_its_own_stage_only() -> None:
+    paper = build_rig(
+        load_case(PROTOTYPE / "run_up_simulation.toml").with_value("drivetrain.motor.torque_limit", "15 N m")
+    )
+    names = [stage.name for stage in schedule_of(paper).stages]
+    assert dict(zip(names, torque_limits(paper))) == pytest.approx(
+        {"bracing": 15.0, "run_up": 9.0, "test": 15.0}
+    )
 
 
 @pytest.mark.parametrize("excess", [-100.0, 100.0])

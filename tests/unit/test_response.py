@@ -116,6 +116,20 @@ def test_lowpass_keeps_the_band_and_stops_the_rest() -> None:
         np.testing.assert_allclose(middle, expected, atol=2e-3)
 
 
+def test_each_time_has_its_own_torque_limit() -> None:
+    """A motor asked for more than it may gives 5 N m, from 0.03 s on 12 N m."""
+    time = np.linspace(0.0, 0.06, 61)
+    command = Command(time=time, speed=np.full(61, 200.0) + 4000.0 * time, torque=np.full(61, 60.0))
+    response = run_schedule(
+        assemble(prototype()), prototype_laws(), command, torque_limit=np.where(time < 0.03, 5.0, 12.0),
+        keep_channels=False, keep_accounts=False,
+    )  # fmt: skip
+    early, late = response.time < 0.0299, response.time > 0.0301
+    assert np.abs(response.drive_torque[early]).max() == pytest.approx(5.0)
+    assert np.abs(response.drive_torque[late]).max() == pytest.approx(12.0)
+    assert response.drive_limited_share > 0.9
+
+
 def test_slots_carry_gaps_over_their_borders() -> None:
     law = spur_law()
     torque = np.full((1, 400), 50.0)
