@@ -59,13 +59,24 @@ class CurvePoint:
 
     @property
     def dynamic_factor(self) -> Array:
-        """K_V = max / mean of every mesh (n_meshes,) [-] (P2, Formula 1)."""
-        return np.asarray(self.maximum / self.mean)
+        """K_V = max / mean of every mesh (n_meshes,) [-] (P2, Formula 1).
+
+        Raises ValueError for a mesh that carries no mean torque.
+        """
+        return np.asarray(self.maximum / self._loaded_mean())
 
     @property
     def dynamic_factor_half_peak_to_peak(self) -> Array:
         """K_V from half the peak-to-peak value, 1 + (max - min) / (2 mean) (n_meshes,) [-]."""
-        return np.asarray(1.0 + 0.5 * (self.maximum - self.minimum) / self.mean)
+        return np.asarray(1.0 + 0.5 * (self.maximum - self.minimum) / self._loaded_mean())
+
+    def _loaded_mean(self) -> Array:
+        if not np.all(self.mean > 0.0):
+            raise ValueError(
+                f"mesh {int(np.argmin(self.mean))} carries no mean torque ({self.mean.min():.3g} N m) at "
+                f"{self.speed:.4g} rad/s: K_V does not exist; brace the loop with more torque"
+            )
+        return self.mean
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -28,8 +28,6 @@ class PointResult:
     """The settled state of one operating point."""
 
     point: OperatingPoint
-    cold: PassResult
-    """The first pass: nothing warm yet."""
     last: PassResult
     setting: Setting | None
     residuals: tuple[Residual, ...]
@@ -67,12 +65,10 @@ def solve_point(
     setting = None if rig.case.drivetrain is None else brace_cold(rig, point, cold)
     feedback = cold if start is None else start.hold(hold, cold)
     residuals: list[Residual] = []
-    first: PassResult | None = None
     done: PassResult | None = None
     for _ in range(numerics.coupling_passes):
         fresh = not residuals or residuals[-1].temperature < GROWTH_FROM
         done = one_pass(rig, point, feedback, setting, done, fresh_growth=fresh)
-        first = first or done
         after = feedback_of(rig, done).hold(hold, cold)
         heat = 0.0 if {"bearing_heat", "wall_heat"} & hold else heat_residual(rig, done)
         residuals.append(
@@ -84,9 +80,7 @@ def solve_point(
         )
         feedback = after
         if fresh and _settled(residuals[-1], rig):
-            return PointResult(
-                point=point, cold=first, last=done, setting=setting, residuals=tuple(residuals)
-            )
+            return PointResult(point=point, last=done, setting=setting, residuals=tuple(residuals))
     raise NotConvergedError(_history(point, residuals, rig))
 
 

@@ -5,6 +5,7 @@
     ├── UsageError              2   a wrong call
     │   └── OutputError         2   an output folder that cannot be written
     ├── NotConvergedError       3   an iteration did not settle, a speed was not reached
+    │   └── NonFiniteResultError 3  a result is NaN or infinite
     ├── MissingLibraryError     4   a system library is missing
     └── MeasurementError        5   measured data cannot be used
 
@@ -84,6 +85,10 @@ class NotConvergedError(RigdesignError):
     """An iteration that did not settle within its limit; the message carries the residuals."""
 
     exit_code = 3
+
+
+class NonFiniteResultError(NotConvergedError):
+    """A result that is NaN or infinite: JSON cannot carry it and no check may rest on it."""
 
 
 class MissingLibraryError(RigdesignError):

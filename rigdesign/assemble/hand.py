@@ -54,7 +54,14 @@ def _losses(subject: Subject) -> list[dict[str, Any]]:
                 float(details[key])
                 for key in ("transmitted_power", "friction_coefficient", "tooth_loss_factor")
             )
-            rows.append(_row(f"sliding loss, {placed.name}", placed.loss.power, by_hand, "W", "P mu H_V"))
+            rows.append(
+                _row(
+                    f"sliding loss, {placed.name}", placed.loss.power, by_hand, "W",
+                    "P mu H_V of rigid teeth; deflected ones share the load beyond the ends of the path. The gear bulk "
+                    "temperature hangs on the difference",
+                )
+            )  # fmt: skip
+
     for row in subject.cooler:
         given, taken = (
             math.fsum(float(row[key]) for key in keys)

@@ -4,9 +4,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from rigdesign.errors import OutputError
+from rigdesign.errors import NonFiniteResultError, OutputError
 from rigdesign.report.output import prepare_output, remove_published, staged, write_whole
-from rigdesign.report.results_json import NonFiniteResultError, results_document, to_text
+from rigdesign.report.results_json import results_document, to_text
 from rigdesign.results import RunResult
 
 __all__ = [

@@ -9,15 +9,12 @@ from typing import Any
 import numpy as np
 
 from rigdesign import __version__
+from rigdesign.errors import NonFiniteResultError
 from rigdesign.results import CouplingHistory, RunResult
 
 SCHEMA_VERSION = "1"
 SIGNIFICANT_DIGITS = 10
 """Digits kept of every number: far beyond any model's accuracy, short of the last bits of round-off."""
-
-
-class NonFiniteResultError(ValueError):
-    """A result holds NaN or infinity, which JSON cannot carry and no check may rest on."""
 
 
 def results_document(result: RunResult) -> dict[str, Any]:
