@@ -1,0 +1,186 @@
+"""Checks on made-up results of the shipped rig: which value governs, where it stands, what does not apply."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rigdesign.case import load_case
+from rigdesign.checks import dynamics, ramp, strength, thermal
+from rigdesign.checks.subject import Subject
+from rigdesign.results import Check, GearboxDynamics
+from rigdesign.rig.model import Rig, build_rig
+from tests.report_example import gearbox
+
+CASES = Path(__file__).parents[2] / "cases"
+RPM = np.pi / 30.0
+
+
+@cache
+def rig() -> Rig:
+    return build_rig(load_case(CASES / "uhcf_prototype"), "quick")
+
+
+def held(stage: str, factors: tuple[float, float], rpm: float = 12000.0, **last: Any) -> Any:
+    """A held point at 180 N m with the K_V of both meshes."""
+    response = SimpleNamespace(dynamic_factor=np.array(factors), mean=np.array([180.0, 186.9]))
+    return SimpleNamespace(
+        point=SimpleNamespace(stage=stage, speed=rpm * RPM, torque=180.0),
+        last=SimpleNamespace(response=response, **last),
+    )
+
+
+def resonance(
+    rpm: float, *, dangerous: bool = True, torque: str = "180 N m", at_end: bool = False
+) -> dict[str, Any]:
+    return {"torque": torque, "mode": "shaft", "speed_rpm": rpm, "at_end": at_end, "dangerous": dangerous}
+
+
+def load(stage: str, least: float, peak: float) -> dict[str, Any]:
+    return {
+        "stage": stage, "dynamic_factor": peak / 90.0, "speed_rpm": 2175.0, "mean_Nm": 90.0, "peak_Nm": peak,
+        "least_Nm": least, "least_share": least / 90.0, "least_share_at_rpm": 2175.0,
+    }  # fmt: skip
+
+
+def subject(points: Any = None, **changes: Any) -> Subject:
+    """Both gearboxes with the same made-up loads; ``changes`` of the records of one mesh."""
+    empty: dict[str, Any] = {"resonances": [], "unsolved": [], "lift_off": [], "stage_loads": []}
+    box: GearboxDynamics = replace(gearbox("rig", 0.1, []), **(empty | changes))
+    run: Any = SimpleNamespace(
+        curves=SimpleNamespace(named={"180 N m": (180.0, None), "90 N m": (90.0, None)})
+    )
+    results: Any = SimpleNamespace(gearboxes={"test": box, "reference": box})
+    held_points = points or [held("test", (1.1, 1.2))]
+    return Subject(rig=rig(), points=held_points, run=run, dynamics=results, thermal=[], growth=[], cooler=[])
+
+
+def named(checks: Any, identity: str) -> Check:
+    (found,) = [check for check in checks if check.id == identity]
+    assert isinstance(found, Check)
+    return found
+
+
+def test_the_slower_wheel_has_to_get_its_cycles_too() -> None:
+    """720 h at 12,000 rpm of the pinion are 5.184e8 turns, 99/102 of them of the wheel."""
+    check = named(
+        strength.checks(subject(root_stress=gearbox("specimen", 0.1, []).root_stress)), "specimen.load_cycles"
+    )
+    assert check.value == pytest.approx(720.0 * 60.0 * 12000.0 * 99.0 / 102.0)
+    assert "test.wheel at 11647 rpm" in check.reason
+
+
+def test_the_worst_held_stage_governs_the_dynamic_factor() -> None:
+    both = subject([held("first", (1.1, 1.4)), held("second", (1.3, 1.2))])
+    values = {check.id: (check.value, check.reason) for check in dynamics.checks(both)}
+    assert values["dynamics.dynamic_factor.test"] == (1.3, "stage second")
+    assert values["dynamics.dynamic_factor.reference"] == (1.4, "stage first")
+
+
+def test_without_a_dangerous_resonance_the_distance_is_that_of_the_end_of_the_search() -> None:
+    check = named(
+        dynamics.checks(subject(resonances=[resonance(12100.0, dangerous=False)])),
+        "dynamics.resonance_distance.test",
+    )
+    assert check.value == pytest.approx(0.125)
+    assert "500 to 13500 rpm" in check.reason and "at least" in check.reason
+
+
+@pytest.mark.parametrize(("rpm", "verdict"), [(11400.0, "fail"), (12600.0, "fail"), (10500.0, "pass")])
+def test_a_resonance_above_the_held_speed_counts_as_one_below(rpm: float, verdict: str) -> None:
+    check = named(dynamics.checks(subject(resonances=[resonance(rpm)])), "dynamics.resonance_distance.test")
+    assert check.verdict == verdict
+    assert check.value == pytest.approx(abs(rpm - 12000.0) / 12000.0)
+
+
+def test_resonances_at_another_torque_do_not_count_and_holes_are_said() -> None:
+    hole = {"curve": "180 N m", "speed_rpm": 12100.0, "reason": "not settled"}
+    rows = [resonance(12100.0, torque="90 N m")]
+    check = named(
+        dynamics.checks(subject(resonances=rows, unsolved=[hole])), "dynamics.resonance_distance.test"
+    )
+    assert check.value == pytest.approx(0.125)
+    assert check.reason.endswith("1 speeds without solution")
+
+
+def test_contact_and_peak_of_the_loaded_ramp() -> None:
+    """The start at 10 N m may lose contact; the run-up at half torque may not, and its peak is held too."""
+    loads = [load("to_transition_speed", 0.0, 400.0), load("run_up", 8.0, 205.0), load("test", 150.0, 210.0)]
+    lost = [
+        {"stage": "to_transition_speed", "start_s": 1.1, "share": 0.4},
+        {"stage": "run_up", "start_s": 2.6, "share": 0.02},
+    ]
+    checks = dynamics.checks(subject(stage_loads=loads, lift_off=lost))
+    margin = named(checks, "dynamics.contact_margin.test")
+    assert (margin.value, margin.verdict) == (pytest.approx(8.0 / 90.0), "fail")
+    assert "stage run_up, near 2175 rpm" in margin.reason
+    assert named(checks, "dynamics.ramp_peak.test").value == pytest.approx(210.0 / 180.0)
+    off = named(checks, "dynamics.lift_off.test")
+    assert (off.value, off.verdict) == (0.02, "fail")
+
+
+def without(path: tuple[str, str]) -> Subject:
+    """The shipped case with one limit left out."""
+    case = rig().case
+    group, key = path
+    part = getattr(case.limits, group).model_copy(update={key: None})
+    limits = case.limits.model_copy(update={group: part})
+    return replace(subject(), rig=replace(rig(), case=case.model_copy(update={"limits": limits})))
+
+
+@pytest.mark.parametrize(
+    ("left_out", "missing"),
+    [
+        (("ramp", "standstill_torque"), {"ramp.standstill_torque"}),
+        (("ramp", "run_up_torque_share_maximum"), {"ramp.run_up_torque"}),
+        (("ramp", "transition_speed"), {"ramp.start_torque", "ramp.run_up_torque"}),
+        (("bearing", "start_torque_limit"), {"ramp.start_torque"}),
+    ],
+)
+def test_a_ramp_rule_without_its_limit_does_not_apply(left_out: tuple[str, str], missing: set[str]) -> None:
+    found = list(ramp._ramp(without(left_out)))
+    assert {check.id for check in found if check.verdict == "not applicable"} == missing
+    assert all(check.limit is None for check in found if check.id in missing)
+    assert len(found) == 4
+
+
+def growth(stage: str, shifts: dict[str, tuple[str, float]]) -> Any:
+    seals = [
+        {"seal": seal, "shaft": shaft, "axial_shift_mm": shift} for seal, (shaft, shift) in shifts.items()
+    ]
+    return SimpleNamespace(gearbox="test", stage=stage, seal_gaps=seals)
+
+
+def test_one_check_of_the_seal_travel_for_every_shaft_over_all_held_stages() -> None:
+    """A shaft whose name begins like another's keeps to its own seals."""
+    two = replace(
+        subject(),
+        growth=[
+            growth(
+                "first", {"a": ("test_pinion", -0.2), "b": ("test_wheel", 0.1), "c": ("test_pinion_2", 0.9)}
+            ),
+            growth(
+                "second", {"a": ("test_pinion", 0.1), "b": ("test_wheel", 0.3), "c": ("test_pinion_2", 0.9)}
+            ),
+        ],
+    )
+    found = {check.id: (check.value, check.reason) for check in thermal._seal_travel(two)}
+    assert found == {
+        "clearance.seal_travel.test.pinion": (0.2, "a, stage first"),
+        "clearance.seal_travel.test.wheel": (0.3, "b, stage second"),
+    }
+
+
+def test_cooler_heater_and_room_are_those_of_their_own_worst_stage() -> None:
+    def row(stage: str, cooler: float, heater: float, room: float) -> dict[str, float | str]:
+        return {"stage": stage, "flow_l_min": 26.0, "cooler_W": cooler, "heater_W": heater, "room_W": room}
+
+    both = replace(subject(), cooler=[row("hot", 9e3, 0.5e3, 2e3), row("fast", 12e3, 1.5e3, 1e3)])
+    found = {check.id: (check.value, check.reason) for check in thermal._oil(both)}
+    assert found["oil.cooler"] == (pytest.approx(12.0), "stage fast")
+    assert found["oil.heater"] == (pytest.approx(1.5), "stage fast")
+    assert found["oil.room"] == (pytest.approx(2.0), "stage hot")
