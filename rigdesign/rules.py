@@ -7,7 +7,7 @@ value beyond a lower limit of zero or below zero is counted as 1 plus the shortf
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from rigdesign.results import Check, Role, Verdict
@@ -128,3 +128,10 @@ def _verdict(rule: Rule, margin: float, utilisation: float, doubt: str) -> Verdi
     if margin < 0:
         return "warn" if rule.warn_only else "fail"
     return "warn" if doubt or utilisation > WARN_UTILISATION else "pass"
+
+
+def exact(check: Check) -> Check:
+    """A commanded or stated number is not predicted: met to the digit it is met, not near its limit."""
+    if check.verdict == "warn" and check.margin is not None and check.margin >= 0.0:
+        return replace(check, verdict="pass")
+    return check

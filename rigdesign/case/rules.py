@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
+from rigdesign.case.bought_parts import PLACES, has_result
 from rigdesign.case.drivetrain_rules import drivetrain_faults
 from rigdesign.case.faults import unknown, written
 from rigdesign.case.gear_rules import gearbox_faults
@@ -79,6 +80,12 @@ def _limits(case: "Case") -> Iterator[Fault]:
             yield Fault(
                 f"limits.bought_parts.{name}.part", written(bought.part), "no such part in this case",
                 "did you mean " + " or ".join(meant) + "?" if meant else "write the case path of the part",
+            )  # fmt: skip
+        elif bought.given is None and not has_result(bought.part, bought.quantity):
+            yield Fault(
+                f"limits.bought_parts.{name}.quantity", written(bought.quantity),
+                f"the run finds none at {bought.part}",
+                f"name a part that has one ({', '.join(PLACES[bought.quantity])}) or write the value as given",
             )  # fmt: skip
 
 

@@ -2,19 +2,14 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
-
-import numpy as np
 
 from dynamics.ramp import RampLimits, ramp_rules
-from rigdesign.case.limits import BoughtPart
-from rigdesign.checks.subject import NO_HOUSING, NO_LIMIT, NO_LOADS, Subject, worst
+from rigdesign.checks.bought_parts import bought_parts
+from rigdesign.checks.subject import NO_LIMIT, Subject
 from rigdesign.checks.thermal import transition_speed_rpm
-from rigdesign.kinds import KINDS
 from rigdesign.ramp_run import schedule_of
 from rigdesign.results import Check
-from rigdesign.rules import Rule, hold, not_applicable
-from rigdesign.units import display
+from rigdesign.rules import Rule, exact, hold, not_applicable
 
 RPM = 30.0 / math.pi
 SOURCES = {
@@ -30,7 +25,7 @@ def checks(subject: Subject) -> list[Check]:
     return [
         *_ramp(subject),
         _transition(subject),
-        *(_bought(subject, name, part) for name, part in subject.case.limits.bought_parts.items()),
+        *bought_parts(subject),
     ]
 
 
@@ -67,31 +62,7 @@ def _ramp(subject: Subject) -> Iterator[Check]:
         elif not entry.stage:
             yield not_applicable(rule, "no stage of the schedule runs there")
         else:
-            yield _exact(hold(rule, entry.value, f"stage {entry.stage} at {entry.time:.2f} s"))
-
-
-def _exact(check: Check) -> Check:
-    """A ramp is commanded, not predicted: a rule met to the digit is met, not near its limit."""
-    if check.verdict == "warn" and check.margin is not None and check.margin >= 0.0:
-        return replace(check, verdict="pass")
-    return check
-
-
-def _saturated(subject: Subject) -> str:
-    """Why the torque found may be less than what was asked: the run stood at the limit of the motor."""
-    run, power = subject.run, subject.case.drivetrain
-    if run is None or power is None:
-        return ""
-    controlled = np.array([stage.drive_torque is None for stage in subject.case.schedule.resolved()])
-    stage = schedule_of(subject.rig).at(run.ramp.time).stage
-    full = np.abs(run.ramp.drive_torque) >= (1.0 - 1e-9) * power.motor.torque_limit
-    share = float(np.mean(full & controlled[stage]))
-    if not share:
-        return ""
-    return (
-        f"the motor stands at drivetrain.motor.torque_limit for {100.0 * share:.1f} % of the run: the speed control "
-        "asked for more; raise the limit to see how much"
-    )
+            yield exact(hold(rule, entry.value, f"stage {entry.stage} at {entry.time:.2f} s"))
 
 
 def _transition(subject: Subject) -> Check:
@@ -107,63 +78,3 @@ def _transition(subject: Subject) -> Check:
         return not_applicable(rule, NO_LIMIT)
     value, where = transition_speed_rpm(subject, start)
     return hold(rule, value, f"{where}, load of the start torque")
-
-
-def _bought(subject: Subject, name: str, part: BoughtPart) -> Check:
-    unit = KINDS[part.kind].display_unit
-    rule = Rule(
-        id=f"bought_part.{name}", title=f"{part.title} ({part.part})", unit=unit, source=part.source,
-        group="bought parts", limit=display(part.limit_si, part.kind),
-    )  # fmt: skip
-    value: float | None
-    value, reason = part.given_si, "given in the case"
-    if value is None:
-        value, reason = _result(subject, part.quantity)
-    if value is None:
-        return not_applicable(rule, reason)
-    shown = display(value, part.kind)
-    check = hold(rule, shown, reason, doubt=_saturated(subject) if part.quantity == "drive_torque" else "")
-    return _exact(check) if part.quantity in ("speed", "torque_mean", "oil_flow") else check
-
-
-def _result(subject: Subject, quantity: str) -> tuple[float | None, str]:
-    """A result of the run [SI] and where it occurs; None with the reason where there is none."""
-    case, schedule = subject.case, subject.case.schedule
-    simple: dict[str, tuple[float, str]] = {
-        "speed": (max(stage.speed_end for stage in schedule.resolved()), "schedule"),
-        "torque_mean": (max(abs(stage.torque_end) for stage in schedule.resolved()), "schedule"),
-        "circulating_power": worst(
-            (abs(stage.torque_end) * stage.speed_end, f"stage {stage.name}") for stage in schedule.resolved()
-        ),
-        "oil_flow": worst((float(row["flow_l_min"]) / 6e4, "all circuits") for row in subject.cooler),
-    }
-    if quantity in simple:
-        return simple[quantity]
-    if quantity in ("shaft_growth", "temperature_maximum", "seal_surface_velocity") and not subject.growth:
-        return None, NO_HOUSING
-    if quantity == "shaft_growth":
-        return worst((1e-3 * s["growth_mm"], s["shaft"]) for r in subject.growth for s in r.shafts)
-    if quantity == "temperature_maximum":
-        return worst((r.max_temperature_degC + 273.15, r.max_temperature_body) for r in subject.thermal)
-    if quantity == "seal_surface_velocity":
-        return worst(
-            (
-                0.5 * shaft.seal_diameter * subject.rig.shaft_speed(shaft.name, case.schedule.test_speed),
-                shaft.name,
-            )
-            for geometry in subject.rig.geometries.values()
-            for shaft in geometry.shafts
-        )
-    if subject.run is None or subject.dynamics is None:
-        return None, NO_LOADS
-    ramp = subject.run.ramp
-    if quantity == "torque_peak":
-        return worst((box.dynamic_torque_peak_Nm, name) for name, box in subject.dynamics.gearboxes.items())
-    if quantity == "drive_torque":
-        return float(abs(ramp.drive_torque).max()), "time run over the schedule"
-    if quantity == "drive_power":
-        return float(abs(ramp.drive_torque * ramp.speed).max()), "time run over the schedule"
-    return worst(
-        (row["actuator_force_N"] + row["spline_friction_N"], f"stage {row['stage']}")
-        for row in subject.dynamics.bracing
-    )

@@ -1,0 +1,109 @@
+"""Bought parts are held against what they see themselves, not against what the reference gear sees."""
+
+import math
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rigdesign import load_case
+from rigdesign.case import Case
+from rigdesign.checks.bought_parts import bought_parts
+from rigdesign.checks.subject import Subject
+from rigdesign.errors import CaseError
+from rigdesign.results import Check
+from rigdesign.rig.model import build_rig
+from tests.idler_case import idler_case
+
+PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
+RPM = math.pi / 30.0
+PEAKS = {"test": 212.0, "reference": 218.7}
+"""Highest dynamic torque of each mesh at its pinion [N m]."""
+
+
+def subject_of(case: Case) -> Subject:
+    """A rig whose run is made up: 15 N m at the motor at 12,000 rpm of the first pinion."""
+    rig = build_rig(case, "quick")
+    boxes: dict[str, Any] = {
+        label: SimpleNamespace(dynamic_torque_peak_Nm=PEAKS[label.split(".")[0]])
+        for label in rig.mesh_labels.values()
+    }
+    bracing = [{"stage": "test", "actuator_force_N": 600.0, "spline_friction_N": 300.0}]
+    ramp = SimpleNamespace(
+        drive_torque=np.array([15.0]), speed=np.array([12000.0 * RPM]), time=np.array([10.0])
+    )
+    return Subject(
+        rig=rig, points=(), run=SimpleNamespace(ramp=ramp), thermal=(), growth=(), cooler=(),
+        dynamics=SimpleNamespace(gearboxes=boxes, bracing=bracing),
+    )  # type: ignore[arg-type]  # fmt: skip
+
+
+def held(part: str, quantity: str, base: Case | None = None) -> Check:
+    case = base or load_case(PROTOTYPE)
+    entry = {
+        "title": "x", "part": part, "quantity": quantity, "source": "data sheet",
+        "limit": {"speed": "20000 rpm", "drive_power": "30 kW", "oil_flow": "90 l/min", "actuator_force": "2 kN",
+                  "seal_surface_velocity": "90 m/s", "shaft_growth": "1 mm"}.get(quantity, "400 N m"),
+    }  # fmt: skip
+    changed = case.with_value("limits.bought_parts", {"x": entry})
+    (check,) = bought_parts(subject_of(changed))
+    return check
+
+
+@pytest.mark.parametrize(
+    ("part", "quantity", "value"),
+    [
+        ("drivetrain.motor", "speed", 12000.0 * 99 / 102),
+        ("drivetrain.couplings.pinion_side", "speed", 12000.0),
+        ("gearboxes.test.bearings.wheel_rear", "speed", 12000.0 * 99 / 102),
+        ("gearboxes.test", "speed", 12000.0),
+        ("drivetrain.motor", "drive_power", 15.0 * 12000.0 * RPM * 99 / 102),
+        ("gearboxes.test", "torque_mean", 180.0),
+        ("drivetrain.couplings.wheel_side", "torque_mean", 180.0 * 102 / 99),
+        ("gearboxes.test.gears.wheel", "torque_mean", 180.0 * 102 / 99),
+        ("gearboxes.test", "torque_peak", 212.0),
+        ("gearboxes.test.meshes.main", "torque_peak", 212.0),
+        ("gearboxes.test.gears.wheel", "torque_peak", 212.0 * 102 / 99),
+        ("drivetrain.couplings.pinion_side", "torque_peak", 218.7),
+        ("drivetrain.couplings.wheel_side", "torque_peak", 218.7 * 102 / 99),
+        ("drivetrain.shafts.test_wheel", "torque_peak", 218.7 * 102 / 99),
+        ("gearboxes.test", "oil_flow", 5.0 + 4 * 2.0),
+        ("gearboxes.test.oil", "oil_flow", 5.0),
+        ("gearboxes.reference.bearing_oil", "oil_flow", 8.0),
+        ("drivetrain.bracing", "actuator_force", 900.0),
+        ("gearboxes.test.seals.wheel", "seal_surface_velocity", 0.5 * 0.05754 * 12000.0 * RPM * 99 / 102),
+        ("gearboxes.test", "seal_surface_velocity", 0.5 * 0.05754 * 12000.0 * RPM * 99 / 102),
+    ],
+)
+def test_a_part_sees_its_own(part: str, quantity: str, value: float) -> None:
+    assert held(part, quantity).value == pytest.approx(value, rel=1e-9)
+
+
+def test_load_unit_of_a_loop_braced_by_twist_is_not_asked() -> None:
+    case = load_case(PROTOTYPE).with_value("drivetrain.bracing.mode", "twist_held")
+    check = held("drivetrain.bracing", "actuator_force", case)
+    assert (check.verdict, check.value) == ("not applicable", None)
+    assert "braced by a twist" in check.reason
+
+
+def test_idler_loop(tmp_path: Path) -> None:
+    case = load_case(idler_case(tmp_path, housing=False))
+    left = held("drivetrain.couplings.left", "torque_mean", case)
+    assert left.value == pytest.approx(180.0 * 102 / 99, rel=1e-9)
+    assert held("gearboxes.test.meshes.right", "torque_peak", case).value == pytest.approx(212.0)
+
+
+@pytest.mark.parametrize(
+    ("part", "quantity"),
+    [
+        ("drivetrain.motor", "torque_peak"),
+        ("drivetrain.couplings.wheel_side", "drive_power"),
+        ("gearboxes.test", "actuator_force"),
+        ("drivetrain.motor", "oil_flow"),
+    ],
+)
+def test_a_part_without_such_a_result_is_refused(part: str, quantity: str) -> None:
+    with pytest.raises(CaseError, match="the run finds none at"):
+        held(part, quantity)
