@@ -13,6 +13,7 @@ from dynamics.seal_loss import gap_seal_loss, lip_seal_loss
 from dynamics.windage import GearRotor, Mist, gear_windage
 from rigdesign.bearing_films import constant_drag
 from rigdesign.case.gearbox import Gearbox, HeatSplit
+from rigdesign.flank_heat import MeshSplit, mesh_split
 from rigdesign.given_losses import given_power
 from rigdesign.loads import MeshModel, first_torques
 from rigdesign.rig.model import Rig
@@ -30,6 +31,8 @@ class PlacedLoss:
     loss: Loss
     into_body: float
     """Power that enters solid bodies [W]; the rest goes into the oil at once."""
+    split: MeshSplit | None = None
+    """Of a mesh loss, the way into its two gears."""
     given: bool = False
     end_share: float = 0.0
     """Of a seal loss, the share that arises where the shaft leaves the housing: beside the bearings, in their oil."""
@@ -79,12 +82,17 @@ def rotating_losses(
 
 
 def mesh_losses(
-    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], response: CurvePoint | None = None
+    rig: Rig,
+    point: OperatingPoint,
+    models: Sequence[MeshModel],
+    response: CurvePoint | None = None,
+    feedback: Feedback | None = None,
 ) -> list[PlacedLoss]:
     """Sliding and damping of every mesh.
 
     response : gives mu F_N v_g of the dynamic tooth forces and the damping work; without it the sliding is
         integrated over the path of contact at the mean load
+    feedback : bulk temperatures of the gears under the oil films on their flanks; oil temperature when left out
     """
     losses = []
     for index, model in enumerate(models):
@@ -97,8 +105,9 @@ def mesh_losses(
                 details=loss.details | {"static_power": loss.power, "source": source},
             )
         box_name, mesh = model.name.split(".")
-        share = body_split(rig, box_name).mesh_into_gears
-        placed = PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=share * loss.power)
+        split = mesh_split(rig, model.name, point, feedback)
+        into_body = math.fsum(split.into_rims) * loss.power
+        placed = PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=into_body, split=split)
         losses += _taken(rig, point, placed)
         if response is not None:
             damping = Loss(
@@ -270,9 +279,10 @@ def _taken(rig: Rig, point: OperatingPoint, placed: PlacedLoss) -> list[PlacedLo
 
 
 def _split(rig: Rig, placed: PlacedLoss) -> float:
+    if placed.split is not None:
+        return math.fsum(placed.split.into_rims)
     split = body_split(rig, placed.gearbox)
     return {
-        "mesh": split.mesh_into_gears,
         "windage": split.windage_into_gears,
         "seal": split.seal_into_shaft + split.seal_into_housing,
     }.get(placed.loss.kind, 0.0)

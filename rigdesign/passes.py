@@ -56,7 +56,7 @@ def one_pass(
     turning = rotating_losses(rig, point, feedback, models, bearings)
     drags = drag_torques(turning, rig, point.speed)
     response = None if setting is None else respond(rig, point, models, drags, setting)
-    losses = (*turning, *mesh_losses(rig, point, models, response))
+    losses = (*turning, *mesh_losses(rig, point, models, response, feedback))
     fields = {
         name: solve_housing(
             rig, name, point, feedback, bearings, losses, None if before is None else before.fields[name]

@@ -167,7 +167,7 @@ def _stage_losses(rig: Rig, point: OperatingPoint, test: PointResult) -> list[Lo
     )
     models = mesh_models(rig, point, feedback)
     turning = rotating_losses(rig, point, feedback, models, solve_bearings(rig, point, feedback))
-    return heat.loss_rows(point.stage, [*turning, *mesh_losses(rig, point, models)])
+    return heat.loss_rows(point.stage, [*turning, *mesh_losses(rig, point, models, feedback=feedback)])
 
 
 def _assumptions(case: Case, checks: list[Check]) -> list[AssumptionRecord]:

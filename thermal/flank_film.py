@@ -49,8 +49,11 @@ between the points over sqrt(tau)."""
 SOURCE = (
     "DeWinter and Blok, J. Eng. Ind. 96 (1974) 60, as quoted since; number computed from the energy equation"
 )
-_KNOTS, _WEIGHTS = np.polynomial.legendre.leggauss(8)
-_HEIGHTS = 0.5 * (_KNOTS + 1.0)
+_PLACES = tuple(
+    (0.5 * (float(knot) + 1.0), 0.5 * float(weight))
+    for knot, weight in zip(*np.polynomial.legendre.leggauss(8))
+)
+"""(share of the height, weight) of a mean over the wetted part."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -164,7 +167,7 @@ def fling_off(ring: ToothRing, wetting: Wetting, oil: FilmOil, factor: float = 1
             slowest = math.sqrt(viscosity * height / (diffusivity * radius)) / wetting.speed
             depth = math.sqrt(diffusivity * slowest)
             heat = 0.0
-            for place, weight in zip(_HEIGHTS, 0.5 * _WEIGHTS):
+            for place, weight in _PLACES:
                 time = slowest * math.sqrt(place)
                 flung = heat_flung_off(1.0 / (frequency * time))
                 supply = laid / math.sqrt(diffusivity * time)

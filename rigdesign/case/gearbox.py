@@ -9,6 +9,7 @@ from rigdesign.case.fields import (
     Flow,
     Force,
     Gap,
+    HeatTransferCoefficient,
     Length,
     LinearDamping,
     LinearStiffness,
@@ -70,6 +71,8 @@ class JournalBearing(Part):
     """Load at the held stages; from the tooth forces when left out."""
     feed_share: Share = 1.0
     """Share of the oil fed that cools the film; 1 as ISO 7902 assumes, less where oil passes by."""
+    shell_conductance: HeatTransferCoefficient | None = None
+    """Between shell and housing, on the area of the bore, in series with its film; perfect when left out."""
     torsional_damping: TorsionalDamping | None = None
     """Drag torque over speed, used where ``losses.bearing_drag`` is constant."""
     radial_stiffness: LinearStiffness | None = None
@@ -91,12 +94,30 @@ class Seals(Part):
 class HeatSplit(Part):
     """Share of each loss that enters solid bodies; the rest goes into the oil at once."""
 
-    mesh_into_gears: Share
-    mesh_pinion_share: Share = 0.5
-    """Of the mesh heat entering the gears, the part that enters the pinion."""
+    mesh: Literal["assumed", "flank_film"] = "assumed"
+    """assumed: ``mesh_into_gears`` of the friction heat enters the gears; flank_film: all of it enters the flanks,
+    and the films on the rims (law ``flank_film``) decide what the oil takes."""
+    mesh_into_gears: Share | None = None
+    """For ``assumed``."""
+    mesh_pinion_share: Share | None = None
+    """Of the friction heat, the part that enters the pinion; by the thermal contact of the flanks when left out."""
     windage_into_gears: Share
     seal_into_shaft: Share
     seal_into_housing: Share
+
+    @model_validator(mode="after")
+    def _share_given(self) -> "HeatSplit":
+        if self.mesh == "assumed" and self.mesh_into_gears is None:
+            raise fault(
+                "mesh_into_gears is missing: the split of the mesh heat is assumed",
+                'write a share, or mesh = "flank_film" and law = "flank_film" at the rims of the gears',
+            )
+        if self.mesh == "flank_film" and self.mesh_into_gears is not None:
+            raise fault(
+                f"mesh_into_gears = {self.mesh_into_gears:g} is not used: the film on the flanks decides",
+                'remove it, or write mesh = "assumed"',
+            )
+        return self
 
     @model_validator(mode="after")
     def _seal_heat_fits(self) -> "HeatSplit":

@@ -16,6 +16,7 @@ from rigdesign.case.fields import (
     TemperatureDifference,
     Text,
 )
+from rigdesign.case.joint import FootContact
 from thermal.audit import RADIATION_INCLUDED
 
 Fluid = Literal[
@@ -113,6 +114,21 @@ class ConstantFilm(_Condition):
     """Overrides the temperature of the fluid."""
 
 
+class FlankFilm(_Condition):
+    """Rim of a gear that stands for its teeth: the oil the jets lay on the flanks, tooth as a fin."""
+
+    law: Literal["flank_film"]
+    correlation: Literal["fling_off", "jet_renewal", "constant"] = "fling_off"
+    """fling_off: laid by every jet and flung off; jet_renewal: stays until the next jet, an upper bound; constant:
+    ``heat_transfer_coefficient`` on the flanks."""
+    wetted_share: float = Field(default=1.0, gt=0.0, le=1.0)
+    """Outer share of the tooth height that the oil reaches."""
+    film_factor: float = Field(default=1.0, gt=0.0, le=10.0)
+    """Multiplies the film."""
+    heat_transfer_coefficient: HeatTransferCoefficient | None = None
+    """Mean over all flanks, for ``constant``."""
+
+
 class RotatingCylinder(_Condition):
     """Rotating shaft in air or oil mist; diameter and speed from the shaft."""
 
@@ -188,6 +204,7 @@ Condition = Annotated[
     | RecknagelPlate
     | IsoTr14179
     | ConstantFilm
+    | FlankFilm
     | RotatingCylinder
     | RotatingDisc
     | BearingFilm
@@ -232,6 +249,8 @@ class Housing(Part):
     """Height of the shaft axes above the clamping field."""
     material: Name
     field: ClampingField
+    foot_contact: FootContact | None = None
+    """Joint between foot and field; perfect contact when left out."""
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
     boundary: Mapping[Name, Condition] = Field(min_length=1)
     radiation_included: bool

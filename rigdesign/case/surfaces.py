@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from rigdesign.case.faults import written
+from rigdesign.case.flank_rules import flank_faults
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry, matched, partner_of
 from rigdesign.case.housing import (
@@ -41,6 +42,7 @@ def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
         *_boundary(at, housing, names),
         *_printed_films(at, housing),
         *_said_twice(at, gearbox, housing, names),
+        *flank_faults(name, gearbox, housing, names),
     ]
 
 

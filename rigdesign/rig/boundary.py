@@ -7,6 +7,7 @@ from dynamics.journal_bearing import BearingState
 from rigdesign.case import housing as laws
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, partner_of
+from rigdesign.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.losses import PlacedLoss
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
@@ -165,6 +166,9 @@ def _condition(
         )
     if isinstance(condition, laws.BearingFilm):
         return _bearing_film(context, surface)
+    if isinstance(condition, laws.FlankFilm):
+        gear = next(gear for gear, rim in rim_surfaces(context.box).items() if rim == surface)
+        return gear_flanks(context.rig, context.name, gear, context.point, condition).film(surface, GEAR_OIL)
     kind, temperature = _fluid_of(context, condition)
     return Film(
         surface=surface, kind=kind, fluid_temperature=temperature, law=_film_law(context, condition, surface)
@@ -256,16 +260,15 @@ def _sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCo
 
 def _mesh_sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
     """Into the rim of every gear its share of the heat of all meshes it is in."""
-    pinion_share = context.box.heat_split.mesh_pinion_share
     into_rim: dict[str, float] = {}
     for placed in losses:
-        if placed.gearbox == context.name and placed.loss.kind == "mesh" and placed.into_body:
+        if placed.gearbox == context.name and placed.split is not None and placed.into_body:
             mesh = context.box.meshes[placed.part]
-            for gear, share in ((mesh.pinion, pinion_share), (mesh.wheel, 1.0 - pinion_share)):
-                into_rim[gear] = into_rim.get(gear, 0.0) + share * placed.into_body
+            for gear, share in zip((mesh.pinion, mesh.wheel), placed.split.into_rims):
+                into_rim[gear] = into_rim.get(gear, 0.0) + share * placed.loss.power
+    rims = rim_surfaces(context.box)
     return [
-        SurfaceSource(surface=f"gear_{context.box.gears[gear].shaft}_rim", power=power, kind="mesh_loss")
-        for gear, power in into_rim.items()
+        SurfaceSource(surface=rims[gear], power=power, kind="mesh_loss") for gear, power in into_rim.items()
     ]
 
 
