@@ -1,37 +1,50 @@
-"""Seconds for heat and expansion of a gearbox, beside CalculiX on one mesh; printed, never fails by time.
+"""Seconds and memory of heat and expansion beside CalculiX on one mesh; printed, never fails by time.
 
-Heat: constant films and radiation outside, oil inside, no exchange, so both codes solve the same problem.
-CalculiX runs with its iterative solver, its best (``SOLVER=ITERATIVE CHOLESKY``), as a whole process that
-reads and writes its files; ours is the time of setup plus solve. Run it with
+Processes against processes: each reads its mesh, solves and writes its nodal values; ours also solves a second
+time with the oil 5 K warmer, which is taken out of its time. CalculiX runs with its default solver (SPOOLES)
+and with SOLVER=ITERATIVE CHOLESKY. Both codes get the same number of threads. Run it with
 
     python -m pytest tests/performance/test_fe_speed.py -m performance -s
+
+and OMP_NUM_THREADS, NUMBA_NUM_THREADS for the threads. FE_SPEED_DEFAULT=1 adds the default solver for
+expansion beyond 200,000 nodes, which takes 16 GB.
 """
 
+import json
 import os
 import shutil
-import subprocess
-import time
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from thermal.boundary import Adiabatic, BoundaryCondition, Film, FilmCoefficient, Radiation
-from thermal.conduction import ConductionSetup, solve_steady
-from thermal.expansion import ExpansionSetup, expand
-from thermal.fe.mesh import CELL_FACETS, NamedMesh, facet_keys
-from thermal.housing import ClampingField, Fidelity, GearDisc, HousingGeometry, ShaftGeometry, build_gearbox
-from thermal.stations import GearboxModel
+from tests import calculix
+from tests.performance import fe_process
+from thermal.boundary import BoundaryCondition
+from thermal.elastic import three_two_one
+from thermal.fe.elements import FiniteElements
+from thermal.fe.mesh import NamedMesh, box_mesh, facet_table
+from thermal.housing import (
+    ClampingField,
+    GearDisc,
+    HousingGeometry,
+    MeshSizes,
+    ShaftGeometry,
+    build_gearbox,
+    mesh_sizes,
+)
 
 STEEL = (210e9, 0.3, 11.5e-6)
 CONDUCTIVITY = 45.0
 COLD = 293.15
-CALCULIX_FACES = (3, 2, 0, 1)
-"""Corner that faces 1 to 4 of C3D10 do not have."""
+THREADS = int(os.environ.get("NUMBA_NUM_THREADS", os.cpu_count() or 1))
 
 
-def gearbox(fidelity: Fidelity) -> GearboxModel:
+def gearbox(factor: float) -> NamedMesh:
+    """Housing with field, two shafts and gears; cells ``factor`` times those of `reference`."""
     shafts = tuple(
         ShaftGeometry(
             name=name, y=y, journal_diameter=0.04, seal_diameter=0.042, seat_diameter=0.044,
@@ -46,144 +59,147 @@ def gearbox(fidelity: Fidelity) -> GearboxModel:
         end_wall_thickness=0.036, shaft_height=0.14, shafts=shafts,
         field=ClampingField(length=0.8, width=1.2, thickness=0.15),
     )  # fmt: skip
-    return build_gearbox(geometry, fidelity)
+    usual = mesh_sizes(geometry, "reference")
+    sizes = MeshSizes(
+        wall=factor * usual.wall, field=factor * usual.field, shaft=factor * usual.shaft,
+        circle=max(6, round(usual.circle / factor / 2.0) * 2),
+    )  # fmt: skip
+    return build_gearbox(geometry, sizes).mesh
 
 
-def film(surface: str, value: float, fluid: float) -> Film:
-    record = FilmCoefficient(value=value, formula="given", inputs={}, valid_range="any", source="benchmark")
-    return Film(surface=surface, kind="film", fluid_temperature=fluid, law=lambda wall, fluid: record)
+def hollow_box(divisions: int, wall: int) -> NamedMesh:
+    """A box of 0.4 m with walls ``wall`` hexahedra thick."""
+    solid = box_mesh((0.4, 0.4, 0.4), (divisions,) * 3, cell="hexahedron20")
+    centres = solid.points[solid.cells[:, :8]].mean(axis=1) / 0.4 * divisions
+    cells = solid.cells[np.any((centres < wall) | (centres > divisions - wall), axis=1)]
+    used, packed = np.unique(cells, return_inverse=True)
+    cells = packed.reshape(cells.shape).astype(np.int32)
+    points = solid.points[used]
+    table = facet_table(cells, len(points))
+    sides = table.nodes_at(np.flatnonzero(table.on_boundary))
+    middle = points[sides].mean(axis=1)
+    on_outside = np.any((middle < 1e-9) | (middle > 0.4 - 1e-9), axis=1)
+    foot = middle[:, 2] < 1e-9
+    surfaces = {
+        "outer": sides[on_outside & ~foot], "foot": sides[foot], "chamber": sides[~on_outside],
+    }  # fmt: skip
+    return NamedMesh(points, cells, {"box": np.arange(len(cells), dtype=np.int32)}, surfaces)
 
 
-def conditions(mesh: NamedMesh) -> list[BoundaryCondition]:
+def given_of(mesh: NamedMesh) -> dict[str, object]:
     """Films and radiation by the name of the surface."""
-    found: list[BoundaryCondition] = []
+    films: dict[str, tuple[float, float]] = {}
+    radiating: dict[str, tuple[float, float]] = {}
     for name in mesh.surfaces:
-        if name == "field_bottom":
-            found.append(Adiabatic(surface=name))
-        elif name.startswith(("outer", "field")):
-            found.append(film(name, 10.0, COLD))
-            found.append(Radiation(surface=name, emissivity=0.6, surroundings_temperature=COLD))
+        if name in ("field_bottom", "foot"):
+            continue
+        if name.startswith(("outer", "field")):
+            films[name], radiating[name] = (10.0, COLD), (0.6, COLD)
         elif name.startswith(("chamber", "partition_warm", "gear")) or "warm" in name:
-            found.append(film(name, 300.0, 433.15))
+            films[name] = (300.0, 433.15)
         else:
-            found.append(film(name, 300.0, 318.15))
-    return found
+            films[name] = (300.0, 318.15)
+    return {
+        "films": films, "radiating": radiating, "conductivity": CONDUCTIVITY, "elastic": STEEL, "cold": COLD,
+    }  # fmt: skip
 
 
-def calculix_heat(mesh: NamedMesh, given: list[BoundaryCondition], folder: Path) -> tuple[float, float]:
-    """Seconds of the whole run and its highest temperature [K]."""
-    lines = [
-        *_geometry_lines(mesh),
-        f"*CONDUCTIVITY\n{CONDUCTIVITY}",
-        "*SOLID SECTION, ELSET=ALL, MATERIAL=M",
-    ]
-    lines += ["*PHYSICAL CONSTANTS, ABSOLUTE ZERO=0, STEFAN BOLTZMANN=5.670374419E-8"]
-    lines += [f"*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, {COLD}", "*STEP"]
-    lines += ["*HEAT TRANSFER, STEADY STATE, SOLVER=ITERATIVE CHOLESKY\n1., 1."]
-    for condition in given:
-        if isinstance(condition, Film):
-            value = condition.law(0.0, 0.0).value
-            faces = _faces(mesh, condition.surface)
-            lines += ["*FILM", *(f"{e}, F{f}, {condition.fluid_temperature}, {value}" for e, f in faces)]
-        elif isinstance(condition, Radiation):
-            faces = _faces(mesh, condition.surface)
-            lines += ["*RADIATE", *(f"{e}, R{f}, {COLD}, {condition.emissivity}" for e, f in faces)]
-    lines += ["*NODE FILE\nNT", "*END STEP"]
-    return _run_calculix(lines, folder, "NDTEMP", 1)
+def supports(mesh: NamedMesh) -> np.ndarray:
+    """(n_nodes, 3) three, two and one held directions on every piece."""
+    elements = FiniteElements(mesh)
+    held = np.zeros((len(mesh.points), 3), dtype=bool)
+    corner_piece = elements.piece_of_node[elements.corners]
+    for piece in range(int(corner_piece.max()) + 1):
+        nodes = elements.corners[corner_piece == piece].astype(np.int32)
+        for node, directions in three_two_one(mesh.points, nodes):
+            held[node, list(directions)] = True
+    return held
 
 
-def calculix_expansion(
-    model: GearboxModel, setup: ExpansionSetup, field: np.ndarray, folder: Path
-) -> tuple[float, float]:
-    """Seconds of the whole run and its largest displacement component [m], same supports."""
-    lines = [
-        *_geometry_lines(model.mesh),
-        f"*ELASTIC\n{STEEL[0]}, {STEEL[1]}",
-        f"*EXPANSION, ZERO={COLD}\n{STEEL[2]}",
-    ]
-    lines += ["*SOLID SECTION, ELSET=ALL, MATERIAL=M", f"*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, {COLD}"]
-    held = np.argwhere(setup.elastic.fixed)
-    lines += ["*BOUNDARY", *(f"{node + 1}, {axis + 1}, {axis + 1}" for node, axis in held)]
-    lines += ["*STEP", "*STATIC, SOLVER=ITERATIVE CHOLESKY", "*TEMPERATURE"]
-    lines += [f"{node}, {value:.12g}" for node, value in enumerate(field, start=1)]
-    lines += ["*NODE FILE\nU", "*END STEP"]
-    return _run_calculix(lines, folder, "DISP", 3)
+MESHES: dict[str, Callable[[], NamedMesh]] = {
+    "tet 100k": lambda: gearbox(1.4),
+    "tet 355k": lambda: gearbox(0.85),
+    "tet 1M": lambda: gearbox(0.54),
+    "hex 330k": lambda: hollow_box(58, 5),
+}
 
 
-def _geometry_lines(mesh: NamedMesh) -> Iterator[str]:
-    yield "*NODE, NSET=NALL"
-    for number, (x, y, z) in enumerate(mesh.points, start=1):
-        yield f"{number}, {x:.12g}, {y:.12g}, {z:.12g}"
-    yield "*ELEMENT, TYPE=C3D10, ELSET=ALL"
-    for number, nodes in enumerate(mesh.cells + 1, start=1):
-        yield f"{number}, " + ", ".join(map(str, nodes))
-    yield "*MATERIAL, NAME=M"
+@dataclass(frozen=True)
+class Ours:
+    values: np.ndarray
+    wall: float
+    processor: float
+    peak: float
+    times: dict[str, object]
 
 
-def _faces(mesh: NamedMesh, surface: str) -> list[tuple[int, int]]:
-    """CalculiX element and face number of every facet."""
-    corners = mesh.cells[:, CELL_FACETS[:, :3]]
-    keys = facet_keys(corners.reshape(-1, 3), len(mesh.points))
-    order = np.argsort(keys)
-    at = order[np.searchsorted(keys[order], facet_keys(mesh.surfaces[surface][:, :3], len(mesh.points)))]
-    missing = np.array([6 - face[:3].sum() for face in CELL_FACETS])
-    return [(int(k // 4) + 1, CALCULIX_FACES.index(int(missing[k % 4])) + 1) for k in at]
+def ours(what: str, folder: Path) -> Ours:
+    """Our process without its second solve."""
+    command = [sys.executable, fe_process.__file__, what, str(folder)]
+    path = os.pathsep.join([str(Path.cwd()), os.environ.get("PYTHONPATH", "")])
+    wall, processor, peak = calculix.measure(command, folder, {"PYTHONPATH": path})
+    times = json.loads((folder / "times.json").read_text())
+    share = 1.0 - times["again"] / processor
+    return Ours(np.load(folder / "values.npy"), share * wall, share * processor, peak, times)
 
 
-def _run_calculix(lines: list[str], folder: Path, block: str, columns: int) -> tuple[float, float]:
-    (folder / "job.inp").write_text("\n".join(lines) + "\n")
-    start = time.perf_counter()
-    subprocess.run(
-        ["ccx", "-i", "job"],
-        cwd=folder,
-        check=True,
-        capture_output=True,
-        env={**os.environ, "OMP_NUM_THREADS": "1"},
-    )
-    seconds = time.perf_counter() - start
-    largest, inside = 0.0, False
-    for line in (folder / "job.frd").read_text().splitlines():
-        if line.startswith(" -4"):
-            inside = block in line
-        elif inside and line.startswith(" -1"):
-            values = [abs(float(line[13 + 12 * k : 25 + 12 * k])) for k in range(columns)]
-            largest = max(largest, *values)
-    return seconds, largest
+def shown(name: str, run: Ours | calculix.Run, beside: Ours | None = None, difference: float = 0.0) -> None:
+    ratio = "" if beside is None else (
+        f"{run.wall / beside.wall:8.1f} x wall{run.processor / beside.processor:8.1f} x processor"
+        f"   differs by {difference:.1e}"
+    )  # fmt: skip
+    print(f"  {name:34s}{run.wall:9.1f} s{run.processor:9.1f} s{run.peak:7.2f} GB{ratio}", flush=True)
 
 
 @pytest.mark.performance
-@pytest.mark.parametrize("fidelity", ["quick", "standard", "reference"])
-def test_heat_and_expansion_beside_calculix(fidelity: Fidelity, tmp_path: Path) -> None:
-    model = gearbox(fidelity)
-    mesh = model.mesh
-    conductivity, elastic = dict.fromkeys(mesh.bodies, CONDUCTIVITY), dict.fromkeys(mesh.bodies, STEEL)
-    given = conditions(mesh)
-    marks = [time.perf_counter()]
-    heat_setup = ConductionSetup(mesh, conductivity)
-    marks.append(time.perf_counter())
-    heat = solve_steady(mesh, conductivity, given, reuse=heat_setup)
-    marks.append(time.perf_counter())
-    expansion_setup = ExpansionSetup(model, elastic, heat_setup.elements)
-    marks.append(time.perf_counter())
-    shape = expand(model, heat.temperature, COLD, elastic, reuse=expansion_setup)
-    marks.append(time.perf_counter())
-    solve_steady(mesh, conductivity, given, heat.temperature + 1.0, reuse=heat_setup)
-    marks.append(time.perf_counter())
-    setup, solve, stiff, swell, again = np.diff(marks)
-    print(f"\n{fidelity}: {len(mesh.points)} nodes, {len(mesh.cells)} cells")
-    print(f"  heat       setup {setup:.2f} s, solve {solve:.2f} s, 1 K warm start {again:.2f} s,")
-    hottest = heat.temperature.max() - 273.15
-    print(f"             linear iterations {heat.linear_iterations}, T_max {hottest:.3f} degC")
-    print(f"  expansion  setup {stiff:.2f} s, solve {swell:.2f} s, {shape.iterations} iterations")
-    if shutil.which("ccx") is None:
-        pytest.skip("CalculiX (ccx) is not installed: no comparison")
-    (tmp_path / "heat").mkdir()
-    (tmp_path / "expansion").mkdir()
-    seconds, hottest = calculix_heat(mesh, given, tmp_path / "heat")
-    ratio = seconds / (setup + solve)
-    print(f"  CalculiX   heat {seconds:.2f} s = {ratio:.1f} x ours, T_max {hottest - 273.15:.3f} degC")
-    raw = expansion_setup.elastic.solve(heat.temperature, COLD)
-    seconds, largest = calculix_expansion(model, expansion_setup, heat.temperature, tmp_path / "expansion")
-    ratio = seconds / (stiff + swell)
-    print(f"  CalculiX   expansion {seconds:.2f} s = {ratio:.1f} x ours,", end=" ")
-    print(f"largest component {largest * 1e3:.5f} mm, ours {np.abs(raw.values).max() * 1e3:.5f} mm")
+@pytest.mark.parametrize("name", MESHES)
+def test_heat_and_expansion_beside_calculix(name: str, tmp_path: Path) -> None:
+    mesh = MESHES[name]()
+    n = len(mesh.points)
+    given = given_of(mesh)
+    (tmp_path / "given.json").write_text(json.dumps(given))
+    fe_process.save_mesh(tmp_path, mesh)
+    print(f"\n{name}: {n} nodes, {len(mesh.cells)} cells, {THREADS} threads; wall, processor, peak memory")
+    heat = ours("heat", tmp_path)
+    shown("heat", heat)
+    print(f"    processor {_words(heat.times)}")
+    conditions = fe_process.conditions(mesh, given["films"], given["radiating"])  # type: ignore[arg-type]
+    _calculix_heat(mesh, conditions, heat, tmp_path)
+    held = supports(mesh)
+    field = heat.values.copy()
+    if mesh.shape.n_corners == 8:  # CalculiX takes the corners' temperatures for the strain of C3D20
+        field[mesh.cells] = field[mesh.cells[:, :8]] @ mesh.shape.corner_values(mesh.shape.nodes).T
+    fe_process.save_mesh(tmp_path, mesh, held=held, temperature=field)
+    expansion = ours("expansion", tmp_path)
+    shown("expansion", expansion)
+    print(f"    processor {_words(expansion.times)}")
+    _calculix_expansion(mesh, held, field, expansion, tmp_path)
+
+
+def _words(times: dict[str, object]) -> str:
+    return ", ".join(f"{k} {v:.2f} s" if isinstance(v, float) else f"{k} {v}" for k, v in times.items())
+
+
+def _calculix_heat(mesh: NamedMesh, given: list[BoundaryCondition], beside: Ours, folder: Path) -> None:
+    if shutil.which("ccx") is None or len(mesh.points) > 600_000:
+        return
+    for solver in ("ITERATIVE CHOLESKY", ""):
+        line = f", SOLVER={solver}" if solver else ""
+        lines = calculix.heat_lines(mesh, given, CONDUCTIVITY, COLD, line)
+        run = calculix.run(lines, folder / "heat", "NDTEMP", 1, len(mesh.points), THREADS)
+        difference = float(np.abs(run.values[:, 0] - beside.values).max() / np.ptp(beside.values))
+        shown(f"CalculiX {solver or 'default'}", run, beside, difference)
+
+
+def _calculix_expansion(
+    mesh: NamedMesh, held: np.ndarray, field: np.ndarray, beside: Ours, folder: Path
+) -> None:
+    if shutil.which("ccx") is None or len(mesh.points) > 600_000:
+        return
+    small = len(mesh.points) < 200_000 or os.environ.get("FE_SPEED_DEFAULT")
+    for solver in ("ITERATIVE CHOLESKY", "") if small else ("ITERATIVE CHOLESKY",):
+        line = f", SOLVER={solver}" if solver else ""
+        lines = calculix.expansion_lines(mesh, STEEL, held, field, COLD, line)
+        run = calculix.run(lines, folder / "expansion", "DISP", 3, len(mesh.points), THREADS)
+        difference = float(np.abs(run.values - beside.values).max() / np.abs(beside.values).max())
+        shown(f"CalculiX {solver or 'default'}", run, beside, difference)

@@ -22,7 +22,7 @@ CHUNK = 4096
 """Rows or cells that one thread takes at a time."""
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def _jacobian(points: Floats, nodes: Integers, slopes: Floats, inverse: Floats) -> float:
     """Fill the 3x3 ``inverse`` of dx/dxi at one point and return the determinant; slopes : (n_local, 3)."""
     xr, xs, xt, yr, ys, yt, zr, zs, zt = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -76,7 +76,7 @@ def cell_volumes(points: Floats, cells: Integers, slopes: Floats, weights: Float
     return volumes
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def _gradients(inverse: Floats, slopes: Floats, out: Floats) -> None:
     """Fill ``out`` (3, n_local) [1/m] from reference gradients ``slopes`` (3, n_local)."""
     for i in range(3):
@@ -85,7 +85,7 @@ def _gradients(inverse: Floats, slopes: Floats, out: Floats) -> None:
             out[i, b] = c0 * slopes[0, b] + c1 * slopes[1, b] + c2 * slopes[2, b]
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def _conduction_rows(
     first: int,
     last: int,
@@ -168,7 +168,7 @@ def conduction_rows(
     return data
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def _elasticity_rows(
     first: int,
     last: int,

@@ -1,7 +1,8 @@
 """Compiled work on sparse matrices: their pattern, their products, the grouping of nodes for the multigrid.
 
-Products take any float type. Rows are independent, so results do not depend on the number of threads; small
-products stay on one, because waking the others costs more than it saves.
+Products take any float type; places of entries are unsigned, because numba tests a signed one for each entry.
+Rows are independent, so results do not depend on the number of threads; small products stay on one, because
+waking the others costs more than it saves.
 """
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 Numbers = NDArray[np.floating]
 Integers = NDArray[np.int32]
 Offsets = NDArray[np.uint16]
+Places = NDArray[np.uint32]
 
 THREADED = 65_536
 """Rows from which on the work is spread over NUMBA_NUM_THREADS threads."""
@@ -107,9 +109,9 @@ def pattern(cells: Integers, start: Integers, around: Integers) -> tuple[Integer
     return indptr, indices, offsets
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract", "reassoc"})
 def scalar_rows(
-    first: int, last: int, indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers
+    first: int, last: int, indptr: Places, indices: Places, data: Numbers, x: Numbers, y: Numbers
 ) -> None:
     """Rows of y = A x for scalar entries; data : (nnz,)."""
     for row in range(first, last):
@@ -119,9 +121,9 @@ def scalar_rows(
         y[row] = total
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract", "reassoc"})
 def block_rows(
-    first: int, last: int, indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers
+    first: int, last: int, indptr: Places, indices: Places, data: Numbers, x: Numbers, y: Numbers
 ) -> None:
     """Rows of y = A x for 3x3 blocks; data : (nnz, 3, 3), x, y : (n, 3)."""
     for row in range(first, last):
@@ -137,7 +139,7 @@ def block_rows(
 
 
 @njit(cache=True, parallel=True)
-def scalar_threads(indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers) -> None:
+def scalar_threads(indptr: Places, indices: Places, data: Numbers, x: Numbers, y: Numbers) -> None:
     """`scalar_rows` for all rows, in parallel."""
     n = len(indptr) - 1
     for chunk in prange((n + CHUNK - 1) // CHUNK):
@@ -145,14 +147,14 @@ def scalar_threads(indptr: Integers, indices: Integers, data: Numbers, x: Number
 
 
 @njit(cache=True, parallel=True)
-def block_threads(indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers) -> None:
+def block_threads(indptr: Places, indices: Places, data: Numbers, x: Numbers, y: Numbers) -> None:
     """`block_rows` for all rows, in parallel."""
     n = len(indptr) - 1
     for chunk in prange((n + CHUNK - 1) // CHUNK):
         block_rows(chunk * CHUNK, min(n, (chunk + 1) * CHUNK), indptr, indices, data, x, y)
 
 
-def scalar_product(indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers) -> None:
+def scalar_product(indptr: Places, indices: Places, data: Numbers, x: Numbers, y: Numbers) -> None:
     """y = A x for scalar entries; data : (nnz,)."""
     if len(y) < THREADED:
         scalar_rows(0, len(y), indptr, indices, data, x, y)
@@ -160,7 +162,7 @@ def scalar_product(indptr: Integers, indices: Integers, data: Numbers, x: Number
         scalar_threads(indptr, indices, data, x, y)
 
 
-def block_product(indptr: Integers, indices: Integers, data: Numbers, x: Numbers, y: Numbers) -> None:
+def block_product(indptr: Places, indices: Places, data: Numbers, x: Numbers, y: Numbers) -> None:
     """y = A x for 3x3 blocks; data : (nnz, 3, 3), x, y : (n, 3)."""
     if len(y) < THREADED:
         block_rows(0, len(y), indptr, indices, data, x, y)
@@ -168,7 +170,7 @@ def block_product(indptr: Integers, indices: Integers, data: Numbers, x: Numbers
         block_threads(indptr, indices, data, x, y)
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract", "reassoc"})
 def diagonal_product(data: Numbers, x: Numbers, y: Numbers) -> None:
     """y = D x for 3x3 blocks on the diagonal; data : (n, 3, 3), x, y : (n, 3)."""
     for row in range(len(x)):

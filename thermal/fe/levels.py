@@ -89,7 +89,7 @@ class Level:
         conductivity : (n_cells,) or, at the quadrature points, (n_cells, n_q) [W/(m K)]
         """
         at_points = conductivity if conductivity.ndim == 2 else conductivity[:, None]
-        at_points = np.ascontiguousarray(np.broadcast_to(at_points, self.volumes.shape))
+        at_points = np.array(np.broadcast_to(at_points, self.volumes.shape))
         return assembly.conduction_rows(
             self.indptr, self.start, self.around, self.offsets,
             self.slopes, self.inverse, self.volumes, at_points,

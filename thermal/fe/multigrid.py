@@ -52,13 +52,15 @@ class Product:
         if not self._blocks:
             self._matrix = sparse.csr_array(matrix)
         self._data = self._matrix.data.astype(kind, copy=False)
+        self._indptr = self._matrix.indptr.astype(np.uint32, copy=False)
+        self._indices = self._matrix.indices.astype(np.int32, copy=False).view(np.uint32)
         self.kind = kind
 
     def __matmul__(self, x: Numbers) -> Numbers:
         if x.ndim == 2:
             return np.stack([self @ np.ascontiguousarray(column) for column in x.T], axis=1)
         y = np.empty(self._matrix.shape[0], dtype=self.kind)
-        indptr, indices = self._matrix.indptr, self._matrix.indices
+        indptr, indices = self._indptr, self._indices
         if self._blocks:
             kernels.block_product(indptr, indices, self._data, x.reshape(-1, 3), y.reshape(-1, 3))
         else:
