@@ -78,14 +78,9 @@ def rated(rig: Rig, meshes: int) -> Subject:
 def test_safety_of_a_rig_gear_takes_sharing_and_cycles(prototype: Rig) -> None:
     found = {check.id: check for check in strength.checks(rated(prototype, 2))}
     check = found["strength.root_safety_iso.reference.pinion"]
-    words = (
-        dict(zip(*[iter(check.reason.replace(",", "").replace(";", "").split())] * 2))
-        if False
-        else check.reason
-    )
     life = permissible_factors(prototype.pairs["reference.main"], 0, 720.0 * 3600.0 * 200.0)["Y_NT"]
-    nominal = float(words.split("nominal ")[1].split(" MPa")[0])
-    shared = float(words.split("K_Falpha ")[1].split(",")[0])
+    nominal = float(check.reason.split("nominal ")[1].split(" MPa")[0])
+    shared = float(check.reason.split("K_Falpha ")[1].split(",")[0])
     assert shared > 1.2 and life == pytest.approx((3e6 / 5.184e8) ** 0.02)
     assert check.value == pytest.approx(920.0 * life / (nominal * 1.1 * 1.1 * shared), rel=5e-3)
 
