@@ -12,7 +12,7 @@ from rigdesign.losses import PlacedLoss
 from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
-from thermal.boundary import BoundaryCondition
+from thermal.condition_checks import Condition
 from thermal.conduction import TemperatureSolution, solve_steady
 
 
@@ -21,7 +21,7 @@ class HousingField:
     """Temperatures of one housing with the conditions they answer to."""
 
     gearbox: str
-    conditions: tuple[BoundaryCondition, ...]
+    conditions: tuple[Condition, ...]
     solution: TemperatureSolution
 
     @property

@@ -6,7 +6,8 @@ judge solved fields and published numbers alike (thermal sheet, seed thermal cas
 
 from collections.abc import Iterable
 
-from thermal.boundary import STEFAN_BOLTZMANN, BoundaryCondition, Film, FilmLaw, Radiation
+from thermal.boundary import STEFAN_BOLTZMANN, Film, FilmLaw, Radiation
+from thermal.condition_checks import Condition
 from thermal.film_inputs import not_negative, positive
 
 RADIATION_INCLUDED = ("niemann_winter",)
@@ -98,7 +99,7 @@ def radiation_counted_twice(surface: str, formula: str, radiating: bool) -> str 
     )
 
 
-def audit_conditions(conditions: Iterable[BoundaryCondition], wall_excess: float = 50.0) -> tuple[str, ...]:
+def audit_conditions(conditions: Iterable[Condition], wall_excess: float = 50.0) -> tuple[str, ...]:
     """Double counting in a list of boundary conditions, one sentence a surface, in order of the films.
 
     wall_excess : wall above fluid [K] at which the film laws are asked for the name of their formula

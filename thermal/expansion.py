@@ -1,7 +1,8 @@
 """Thermal expansion of a gearbox: displacement field, rigid placement of the shafts, clearances.
 
 Pieces that share no nodes are solved together but supported each for itself: the housing on its foot, every
-shaft at its locating bearing. The housing is then placed so that its foot does not shift or turn on average,
+shaft at its locating bearing. The housing is then placed so that its foot does not shift or turn on average
+(in a foot joint the field is, and the foot follows its seat on average and slides on it without friction),
 and every shaft as a rigid body so that its axis passes through the displaced centres of its bearing bores and
 its locating journal sits axially in its bore. Bearing clearance and film position are not part of this: the
 axis runs through the middle of the bores.

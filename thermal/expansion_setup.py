@@ -30,7 +30,9 @@ class ExpansionSetup:
         self.elements = FiniteElements(model.mesh) if elements is None else elements
         self.locating = {s.name: _locating(model, s) for s in model.shafts}
         self.housing = self._piece_of(model.fixed_body)
-        """Number of the housing's piece."""
+        """Number of the piece that stands on the floor: the housing's, or that of a field under a foot joint."""
+        self.standing = None if model.joint is None else self._piece_of(model.joint.body)
+        """Number of the piece that stands on it in a foot joint."""
         self.piece = self._pieces()
         """Shaft name -> number of its piece."""
         self.elastic = ElasticSetup(self.elements, elastic, self._supports())
@@ -42,11 +44,14 @@ class ExpansionSetup:
         return int(found[0])
 
     def _pieces(self) -> dict[str, int]:
-        """Shaft name -> piece; every piece must be the housing's or one shaft's."""
+        """Shaft name -> piece; every piece must be the housing's, what stands on it, or one shaft's."""
         pieces = {shaft.name: self._piece_of(shaft.body) for shaft in self.model.shafts}
-        owners = [self.housing, *pieces.values()]
+        owners = [self.housing, *([] if self.standing is None else [self.standing]), *pieces.values()]
         if len(set(owners)) < len(owners):
-            raise ElasticError("a shaft shares nodes with another shaft or the housing; mesh them separately")
+            raise ElasticError(
+                "a shaft shares nodes with another shaft or the housing, or the two sides of a foot joint with each "
+                "other; mesh them separately"
+            )
         for body in self.model.mesh.bodies:
             if self._piece_of(body) not in owners:
                 raise ElasticError(
@@ -55,7 +60,9 @@ class ExpansionSetup:
         return pieces
 
     def _supports(self) -> BoolArray:
+        joint = self.model.joint
         surfaces = [self.model.foot_surface, *(b.journal_surface for b in self.locating.values())]
+        surfaces += [] if joint is None else [joint.foot_surface]
         fixed = np.zeros((len(self.model.mesh.points), 3), dtype=np.bool_)
         for name in surfaces:
             nodes = np.intersect1d(self.elements.surfaces[name].nodes, self.elements.corners)
@@ -81,6 +88,11 @@ def _check_stations(model: GearboxModel) -> None:
     surfaces, bodies = model.mesh.surfaces, model.mesh.bodies
     shafts = {shaft.name for shaft in model.shafts}
     wanted = [("surface", model.foot_surface, surfaces), ("body", model.fixed_body, bodies)]
+    if model.joint is not None:
+        wanted += [("body", model.joint.body, bodies)]
+        wanted += [
+            ("surface", name, surfaces) for name in (model.joint.foot_surface, model.joint.seat_surface)
+        ]
     for s in model.shafts:
         wanted += [("body", s.body, bodies)]
         wanted += [("surface", name, surfaces) for name in (s.start_surface, s.end_surface)]

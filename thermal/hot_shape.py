@@ -47,12 +47,21 @@ class HotShape:
         return cylinder_motion(self.surfaces[surface], self.points, self.displacement, self.strain, centre)
 
     def _place_housing(self) -> None:
-        """Take out the mean shift and rotation of the foot."""
-        foot = self.surfaces[self.model.foot_surface]
-        at = foot.at_points(self.points).reshape(-1, 3)
-        moved = foot.at_points(self.displacement).reshape(-1, 3)
-        centre, shift, rotation = rigid_motion(at, moved, foot.weights.ravel())
+        """Take out the mean shift and rotation of the foot; what stands in a foot joint follows its seat."""
+        centre, shift, rotation = self._rigid(self.model.foot_surface)
         self._move(self.setup.housing, centre, -shift, -rotation)
+        joint, standing = self.model.joint, self.setup.standing
+        if joint is not None and standing is not None:
+            _, shift, rotation = self._rigid(joint.foot_surface)
+            centre, to, turn = self._rigid(joint.seat_surface)
+            self._move(standing, centre, to - shift, turn - rotation)
+
+    def _rigid(self, surface: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Centre, mean shift [m] and rotation [rad] of a surface."""
+        face = self.surfaces[surface]
+        at = face.at_points(self.points).reshape(-1, 3)
+        moved = face.at_points(self.displacement).reshape(-1, 3)
+        return rigid_motion(at, moved, face.weights.ravel())
 
     def _move(self, piece: int, centre: FloatArray, shift: FloatArray, rotation: FloatArray) -> None:
         """Add a small rigid motion about ``centre`` to one piece."""

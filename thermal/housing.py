@@ -19,8 +19,10 @@ Surfaces, with ``<s>`` the name of a shaft and ``<side>`` front or rear (low or 
     gear_<s>_rim, gear_<s>_side_<side>
 
 Surfaces of parts that are not there (no overhang, no bore, no gear) do not exist. Bodies: ``housing``,
-``field`` (shares nodes with the foot), ``shaft_<s>``, ``gear_<s>`` (shares nodes with its seat). Housing and
-shafts share no nodes: lubricant films and seal gaps are not meshed, nor is the air in the chambers.
+``field``
+(shares nodes with the foot; with a foot joint ``housing_foot`` touches its ``field_seat``), ``shaft_<s>``,
+``gear_<s>`` (shares nodes with its seat). Housing and shafts share no nodes: lubricant films and seal gaps are
+not meshed, nor is the air in the chambers.
 """
 
 import math
@@ -30,17 +32,28 @@ from typing import Literal
 from thermal.fe.mesh import MeshError, disjoint_union
 from thermal.housing_geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
 from thermal.housing_mesh import gmsh_session, mesh_component
-from thermal.housing_solids import MeshSizes, bend_axes, draw_housing, draw_shaft, housing_size, shaft_size
+from thermal.housing_solids import (
+    MeshSizes,
+    bend_axes,
+    draw_field,
+    draw_housing,
+    draw_shaft,
+    housing_size,
+    shaft_size,
+)
 from thermal.housing_stations import bearing_stations, gear_stations, seal_stations, shaft_stations
 from thermal.housing_surfaces import (
+    FOOT,
+    SEAT,
     body_names,
     exact_areas,
     exact_volumes,
+    field_faces,
     housing_faces,
     shaft_faces,
     surface_names,
 )
-from thermal.stations import GearboxModel
+from thermal.stations import FootJoint, GearboxModel
 
 __all__ = [
     "ClampingField",
@@ -107,6 +120,13 @@ def _build(geometry: HousingGeometry, sizes: MeshSizes) -> GearboxModel:
             ),
             *(
                 mesh_component(
+                    gmsh, "field", partial(draw_field, geometry), field_faces(geometry),
+                    housing_size(geometry, sizes), sizes.circle, [],
+                )
+                for _ in range(geometry.foot_joint)
+            ),
+            *(
+                mesh_component(
                     gmsh, f"shaft {shaft.name}", partial(draw_shaft, geometry, shaft),
                     shaft_faces(geometry, shaft), shaft_size(geometry, shaft, sizes), sizes.circle,
                     [(shaft.y, geometry.shaft_height, math.inf)],
@@ -121,5 +141,8 @@ def _build(geometry: HousingGeometry, sizes: MeshSizes) -> GearboxModel:
         seals=seal_stations(geometry),
         gears=gear_stations(geometry),
         fixed_body="housing" if geometry.field is None else "field",
-        foot_surface="housing_foot" if geometry.field is None else "field_bottom",
+        foot_surface=FOOT if geometry.field is None else "field_bottom",
+        joint=FootJoint(body="housing", foot_surface=FOOT, seat_surface=SEAT)
+        if geometry.foot_joint
+        else None,
     )

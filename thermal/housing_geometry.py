@@ -128,7 +128,7 @@ class ShaftGeometry:
 
 @dataclass(frozen=True, kw_only=True)
 class ClampingField:
-    """Plate under the housing, centred on it; foot and plate share their nodes (perfect contact)."""
+    """Plate under the housing, centred on it."""
 
     length: float
     """Along the shafts (x) [m]."""
@@ -171,9 +171,13 @@ class HousingGeometry:
     boss_wall: float = 12e-3
     """Radial wall of the boss around a bearing that protrudes into the cold section."""
     field: ClampingField | None = None
+    foot_joint: bool = False
+    """True: foot and field are bodies of their own that touch. False: they share their nodes (perfect contact)."""
 
     def __post_init__(self) -> None:
-        optional = {"shafts", "field"}
+        if self.foot_joint and self.field is None:
+            raise GeometryError("foot_joint = True without a field; give the field the housing stands on")
+        optional = {"shafts", "field", "foot_joint"}
         _require_positive(self, *(f.name for f in fields(self) if f.name not in optional))
         self._check_walls()
         if not self.shafts:

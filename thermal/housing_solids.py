@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from thermal.housing_curving import BendAxis
-from thermal.housing_geometry import SIDES, GeometryError, HousingGeometry, ShaftGeometry
+from thermal.housing_geometry import SIDES, ClampingField, GeometryError, HousingGeometry, ShaftGeometry
 from thermal.housing_mesh import SizeLaw
 from thermal.housing_surfaces import shaft_zones
 
@@ -33,7 +33,7 @@ class MeshSizes:
 
 
 def draw_housing(g: HousingGeometry, occ: Any) -> dict[str, list[int]]:
-    """Box on its field, chambers and bores cut out, warm/cold lines imprinted on the outside."""
+    """Box on a field that shares its nodes, chambers and bores cut out, warm/cold lines imprinted outside."""
     half, wide = g.width / 2.0, 2.0 * g.inner_half_width
     solid = [(3, occ.addBox(0.0, -half, 0.0, g.length, g.width, g.height))]
     chambers = [
@@ -65,17 +65,26 @@ def draw_housing(g: HousingGeometry, occ: Any) -> dict[str, list[int]]:
     if bosses:
         solid, _ = occ.fuse(solid, bosses)
     solid, _ = occ.cut(solid, bores)
-    tools = []
-    if g.field is not None:
-        f = g.field
-        corner = (g.length / 2.0 - f.length / 2.0, -f.width / 2.0, -f.thickness)
-        tools.append((3, occ.addBox(*corner, f.length, f.width, f.thickness)))
+    tools = [] if g.field is None or g.foot_joint else [_plate(g, g.field, occ)]
     lines = [(1, line) for x in g.warm_limits for line in _portal(occ, x, half, g.height)]
     _, origin = occ.fragment(solid, tools + lines)
     bodies = {"housing": [tag for _, tag in origin[0]]}
     if tools:
         bodies["field"] = [tag for _, tag in origin[1]]
     return bodies
+
+
+def draw_field(g: HousingGeometry, occ: Any) -> dict[str, list[int]]:
+    """The field as a body of its own, the seat of the foot imprinted on its top."""
+    assert g.field is not None
+    seat = occ.addRectangle(0.0, -g.width / 2.0, 0.0, g.length, g.width)
+    _, origin = occ.fragment([_plate(g, g.field, occ)], [(2, seat)])
+    return {"field": [tag for _, tag in origin[0]]}
+
+
+def _plate(g: HousingGeometry, field: ClampingField, occ: Any) -> tuple[int, int]:
+    corner = (g.length / 2.0 - field.length / 2.0, -field.width / 2.0, -field.thickness)
+    return 3, occ.addBox(*corner, field.length, field.width, field.thickness)
 
 
 def draw_shaft(g: HousingGeometry, shaft: ShaftGeometry, occ: Any) -> dict[str, list[int]]:

@@ -55,7 +55,25 @@ class AxialPatch:
         )
 
 
-Patch = BoxPatch | AxialPatch
+@dataclass(frozen=True)
+class FramePatch:
+    """All points of a box patch that are not inside a rectangle of x and y."""
+
+    box: BoxPatch
+    x: Range
+    y: Range
+
+    def holds(self, points: FloatArray, tolerance: float) -> bool:
+        """Whether all ``points`` (n, 3) lie in the patch."""
+        inside = (points[:, 0] > self.x[0] + tolerance) & (points[:, 0] < self.x[1] - tolerance)
+        inside &= (points[:, 1] > self.y[0] + tolerance) & (points[:, 1] < self.y[1] - tolerance)
+        return self.box.holds(points, tolerance) and not bool(inside.any())
+
+
+Patch = BoxPatch | AxialPatch | FramePatch
+
+FOOT, SEAT = "housing_foot", "field_seat"
+"""The two sides of the joint between a housing and its field."""
 
 
 @dataclass(frozen=True)
@@ -83,11 +101,12 @@ class ShaftZone:
 
 
 def surface_names(geometry: HousingGeometry) -> tuple[str, ...]:
-    """Names of all surfaces `build_gearbox` makes of ``geometry``, without meshing (gmsh is not imported)."""
-    faces = housing_faces(geometry)
-    for shaft in geometry.shafts:
-        faces += shaft_faces(geometry, shaft)
-    return tuple(face.name for face in faces)
+    """Names of all surfaces `build_gearbox` makes of ``geometry``, without meshing (gmsh is not imported).
+
+    The two sides of a foot joint are left out: they have each other.
+    """
+    joined = (FOOT, SEAT) if geometry.foot_joint else ()
+    return tuple(name for name in exact_areas(geometry) if name not in joined)
 
 
 def body_names(geometry: HousingGeometry) -> tuple[str, ...]:
@@ -98,6 +117,8 @@ def body_names(geometry: HousingGeometry) -> tuple[str, ...]:
 def exact_areas(geometry: HousingGeometry) -> dict[str, float]:
     """Closed-form area of every named surface [m2]."""
     faces = housing_faces(geometry)
+    if geometry.foot_joint:
+        faces += field_faces(geometry)
     for shaft in geometry.shafts:
         faces += shaft_faces(geometry, shaft)
     return {face.name: face.area for face in faces}
@@ -187,12 +208,14 @@ def shaft_faces(geometry: HousingGeometry, shaft: ShaftGeometry) -> list[NamedFa
 
 
 def housing_faces(geometry: HousingGeometry) -> list[NamedFace]:
-    """The named surfaces of housing and clamping field."""
+    """The named surfaces of the housing, and of the field that shares its nodes."""
     faces = _outer_faces(geometry) + _chamber_faces(geometry)
     for side in SIDES:
         faces += _cold_faces(geometry, side)
         faces += [face for shaft in geometry.shafts for face in _bore_faces(geometry, shaft, side)]
-    return faces + _field_faces(geometry)
+    if geometry.field is None or geometry.foot_joint:
+        return [*faces, NamedFace(FOOT, (_foot(geometry),), geometry.length * geometry.width)]
+    return faces + field_faces(geometry)
 
 
 def _outer_faces(g: HousingGeometry) -> list[NamedFace]:
@@ -302,12 +325,14 @@ def _bore_faces(g: HousingGeometry, shaft: ShaftGeometry, side: Side) -> list[Na
     ]
 
 
-def _field_faces(g: HousingGeometry) -> list[NamedFace]:
-    """Top, sides and bottom of the field; without a field, the foot of the housing."""
-    foot = g.length * g.width
-    if g.field is None:
-        patch = BoxPatch((0.0, g.length), (-g.width / 2.0, g.width / 2.0), (0.0, 0.0))
-        return [NamedFace("housing_foot", (patch,), foot)]
+def _foot(g: HousingGeometry) -> BoxPatch:
+    return BoxPatch((0.0, g.length), (-g.width / 2.0, g.width / 2.0), (0.0, 0.0))
+
+
+def field_faces(g: HousingGeometry) -> list[NamedFace]:
+    """Top, sides and bottom of the field, and its seat where the foot shares no nodes with it."""
+    assert g.field is not None
+    foot, under = g.length * g.width, _foot(g)
     length, width, thickness = g.field.length, g.field.width, g.field.thickness
     x = (g.length / 2.0 - length / 2.0, g.length / 2.0 + length / 2.0)
     y, z = (-width / 2.0, width / 2.0), (-thickness, 0.0)
@@ -315,10 +340,12 @@ def _field_faces(g: HousingGeometry) -> list[NamedFace]:
         *(BoxPatch((value, value), y, z) for value in x),
         *(BoxPatch(x, (value, value), z) for value in y),
     )
+    top = FramePatch(BoxPatch(x, y, (0.0, 0.0)), under.x, under.y)
     return [
-        NamedFace("field_top", (BoxPatch(x, y, (0.0, 0.0)),), length * width - foot),
+        NamedFace("field_top", (top,), length * width - foot),
         NamedFace("field_sides", sides, 2.0 * (length + width) * thickness),
         NamedFace("field_bottom", (BoxPatch(x, y, (-thickness, -thickness)),), length * width),
+        *([NamedFace(SEAT, (under,), foot)] if g.foot_joint else []),
     ]
 
 

@@ -67,6 +67,16 @@ class GearStation:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FootJoint:
+    """A body that stands on the fixed body without sharing nodes: it follows the seat and slides on it."""
+
+    body: str
+    foot_surface: str
+    seat_surface: str
+    """Surface of the fixed body under the foot."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class GearboxModel:
     """A meshed gearbox with its stations."""
 
@@ -79,3 +89,5 @@ class GearboxModel:
     """Body that stands on the floor (clamping field or foot): carries the statically determinate support."""
     foot_surface: str
     """Surface of ``fixed_body`` on which it stands."""
+    joint: FootJoint | None = None
+    """What stands on the fixed body; None where they share their nodes or are one."""

@@ -51,6 +51,7 @@ def housing_geometry(gearbox: Gearbox, gear_diameters: Mapping[str, float] | Non
         shaft_height=housing.shaft_height,
         shafts=shafts,
         end_seal_width=housing.end_seal_width,
+        foot_joint=housing.foot_contact is not None,
         field=ClampingField(
             length=housing.field.length, width=housing.field.width, thickness=housing.field.thickness
         ),

@@ -1,7 +1,7 @@
 """Boundary conditions of a housing: the case's laws with this pass's fluids, films, speeds and losses."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from dynamics.journal_bearing import BearingState
 from rigdesign.case import housing as laws
@@ -9,6 +9,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, partner_of
 from rigdesign.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.losses import PlacedLoss
+from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 from thermal import convection
@@ -23,6 +24,7 @@ from thermal.boundary import (
     Radiation,
     SurfaceSource,
 )
+from thermal.condition_checks import Condition
 from thermal.housing_geometry import SIDES, HousingGeometry, ShaftGeometry
 from thermal.housing_surfaces import surface_names
 
@@ -105,8 +107,8 @@ def boundary_conditions(
     losses: Sequence[PlacedLoss],
     *,
     radiation_included: bool,
-) -> list[BoundaryCondition]:
-    """Every condition of the housing of gearbox ``name``: films, radiation, exchanges and sources.
+) -> list[Condition]:
+    """Every condition of the housing of gearbox ``name``: films, radiation, exchanges, joints and sources.
 
     radiation_included : leave out explicit radiation where the film to room air contains it already
     """
@@ -115,13 +117,16 @@ def boundary_conditions(
     assert housing is not None
     rows = conditions_of(housing, surface_names(context.geometry))
     covered = {surface for entry, surface, _ in rows if laws.holds_radiation(housing.boundary[entry])}
-    conditions: list[BoundaryCondition] = []
+    conditions: list[Condition] = [*foot_joint(rig, name)]
     for entry, surface, stood_for in rows:
         condition = housing.boundary[entry]
         if radiation_included and isinstance(condition, laws.ThermalRadiation) and surface in covered:
             continue
-        conditions.append(_condition(context, condition, surface, stood_for))
-    return conditions + _sources(context, losses)
+        found = _condition(context, condition, surface, stood_for)
+        if isinstance(found, Film):
+            found = replace(found, law=behind_shell(rig, name, surface, found.law))
+        conditions.append(found)
+    return [*conditions, *_sources(context, losses)]
 
 
 def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, laws.TakenFrom]]:

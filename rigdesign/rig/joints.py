@@ -1,0 +1,64 @@
+"""Joints of a housing that pass heat from metal to metal: the foot on its field, bearing shells in their bores."""
+
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.joint import PressedJoint
+from rigdesign.rig.model import Rig
+from thermal import convection
+from thermal.air import air
+from thermal.boundary import ExchangeLaw, FilmLaw
+from thermal.contact import Contact
+from thermal.housing_surfaces import FOOT, SEAT
+from thermal.joint_conductance import pressed_joint
+
+FOOT_CONTACT = "foot_contact"
+"""Kind of the rows of the foot joint in the heat balance."""
+
+AIR_JUMP = 0.37e-6
+"""Temperature jump length of air at one atmosphere [m] (Yovanovich 2005)."""
+
+
+def foot_joint(rig: Rig, name: str) -> list[Contact]:
+    """The contact of foot and field of gearbox ``name``; none where they share their nodes."""
+    housing = rig.case.gearboxes[name].housing
+    if housing is None or housing.foot_contact is None:
+        return []
+    entry = housing.foot_contact
+    if entry.conductance is not None:
+        path = f"gearboxes.{name}.housing.foot_contact.conductance"
+        law = convection.constant(entry.conductance, rig.case.provenance(path))
+    else:
+        assert entry.joint is not None
+        law = _pressed(rig, entry.joint, (housing.material, housing.field.material))
+    return [Contact(surface_a=FOOT, surface_b=SEAT, kind=FOOT_CONTACT, law=law)]
+
+
+def _pressed(rig: Rig, joint: PressedJoint, materials: tuple[str, str]) -> ExchangeLaw:
+    first, second = (rig.materials[material].conductivity for material in materials)
+    dry = joint.filling_conductivity is None
+    return pressed_joint(
+        pressure=joint.pressure,
+        hardness=joint.hardness,
+        conductivity_a=first,
+        conductivity_b=second,
+        roughness=joint.roughness,
+        slope=joint.slope,
+        gap_conductivity=joint.filling_conductivity or air(rig.case.ambient.temperature).conductivity,
+        gas_parameter=AIR_JUMP if dry else 0.0,
+    )
+
+
+def behind_shell(rig: Rig, name: str, surface: str, law: FilmLaw) -> FilmLaw:
+    """Film of a surface; on a bearing bore in series with the joint of its shell."""
+    part = _bearing_of_bore(rig.case.gearboxes[name], surface)
+    if part is None:
+        return law
+    conductance = rig.case.gearboxes[name].bearings[part].shell_conductance
+    if conductance is None:
+        return law
+    path = f"gearboxes.{name}.bearings.{part}.shell_conductance"
+    return convection.series(law, convection.constant(conductance, rig.case.provenance(path)))
+
+
+def _bearing_of_bore(box: Gearbox, surface: str) -> str | None:
+    bores = {f"bearing_bore_{b.shaft}_{b.side}": name for name, b in box.bearings.items()}
+    return bores.get(surface)
