@@ -159,6 +159,21 @@ def flank_modification(pair: GearPair, gear: Microgeometry, index: int, path: Ar
     return np.asarray(removed[None, :] + across + gear.profile_twist * lead * profile[None, :])
 
 
+def reach_beyond(law: MeshLaw, approach: Array) -> str:
+    """What to say of an approach (n,) [m] beyond the tables of a mesh law; empty within them.
+
+    Past the ends of the grid tooth pairs carry nothing: what the tips of deflected teeth would carry there is lost.
+    """
+    limit = float(np.minimum(law.gap[:, 0], law.gap[:, -1]).min())
+    deepest = max(float(np.max(approach)), float(np.max(-approach)) - law.backlash)
+    if deepest <= limit:
+        return ""
+    return (
+        f"approach of the teeth = {1e6 * deepest:.0f} um, limit {1e6 * limit:.0f} um of the tables: early contact of "
+        "further teeth is lost, the mesh is stiffer than computed; lower the torque or widen the reach of the law"
+    )
+
+
 def _grid_ends(pair: GearPair, reach: float, engagement: Engagement) -> tuple[float, float]:
     if engagement == "corner":
         return path_reach(pair, reach)

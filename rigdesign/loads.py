@@ -94,8 +94,26 @@ def _mesh_model(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, 
         friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
         offset=feedback.tooth_growth[name] * math.tan(pair.base_helix_angle)
         + flank_growth(rig.pairs[name], pair),
+        phase=mesh_phase(rig, name),
     )
     return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law)
+
+
+def mesh_phase(rig: Rig, name: str) -> float:
+    """Path position of tooth pair 0 at zero angle [m]: as the case states, and by the teeth an idler turns on.
+
+    Between two wheels on opposite sides a pinion shows its second mesh the teeth of half a turn later.
+    """
+    box, own = rig.mesh(name)
+    mesh, pair = box.meshes[own], rig.pairs[name]
+    stated = mesh.phase * pair.base_pitch
+    first = next(entry for entry in box.meshes.values() if mesh.pinion in (entry.pinion, entry.wheel))
+    if first is mesh or first.pinion != mesh.pinion or box.housing is None:
+        return stated
+    shafts = box.housing.shafts
+    here = shafts[box.gears[mesh.pinion].shaft].lateral_position
+    sides = [shafts[box.gears[entry.wheel].shaft].lateral_position > here for entry in (first, mesh)]
+    return stated - (math.pi * pair.base_radii[0] if sides[0] != sides[1] else 0.0)
 
 
 def _slices(rig: Rig, pair: GearPair) -> int:

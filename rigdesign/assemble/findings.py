@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from dynamics.flank import reach_beyond
 from dynamics.modes import sampling_audit
 from dynamics.response_curve import CurvePoint
 from rigdesign.assemble.curves import iso_factor, resolved
@@ -47,6 +48,10 @@ def _gears(subject: Subject) -> Iterator[str]:
                 yield f"{model.name}, hot, stage {point.point.stage}: {text}"
             for text in model.stiffness.warnings:
                 yield f"{model.name}: {text}"
+        if point.last.response is not None:
+            for model, approach in zip(point.last.models, point.last.response.wave.approach):
+                if text := reach_beyond(model.law, approach):
+                    yield f"{model.name}, stage {point.point.stage}: {text}"
 
 
 def _iso(subject: Subject) -> Iterator[str]:
@@ -207,9 +212,17 @@ def not_modelled(subject: Subject) -> list[str]:
         )
     if subject.run is None:
         items.append("dynamic loads: the losses are given")
+    elif len(subject.rig.pairs) > 1:
+        items.append(
+            "angle at which the gears are put on their shafts: the meshes start in the phase that "
+            "gearboxes.*.meshes.*.phase states; K_V near resonances in which both gearboxes take part hangs on it"
+        )
     for name, box in subject.case.gearboxes.items():
         if any(mesh.double_helical for mesh in box.meshes.values()):
             items.append(
                 f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2"
             )
+        single = [name for name, mesh in box.meshes.items() if mesh.helix_angle and not mesh.double_helical]
+        if single:
+            items.append(f"{name}: axial force of {', '.join(single)} and its tilting moment on the bearings")
     return items

@@ -17,6 +17,7 @@ from rigdesign.case.fields import (
     Part,
     Positive,
     PressureAngle,
+    Share,
     Small,
     TorsionalDamping,
     TorsionalStiffness,
@@ -122,6 +123,10 @@ class GearMesh(Part):
     """K_A of ISO 6336."""
     face_load_factor: float = Field(default=1.0, ge=1.0, le=10.0)
     """K_Fbeta of ISO 6336-3."""
+    phase: Share = 0.0
+    """Where the pinion's teeth stand when all shafts stand at zero, as a share of a pitch; how the gears are put on
+    their shafts decides it. A pinion in a second mesh of its gearbox counts from there on, by the place of its axes
+    in the housing."""
     low_load_factor: bool = True
     """Reduce the tooth stiffness below 100 N/mm line load (ISO 6336-1)."""
 

@@ -27,6 +27,9 @@ def checks(subject: Subject) -> list[Check]:
     ]
 
 
+NO_PLAY = "no shaft states an axial play between stops at both of its bearings"
+
+
 def _held(
     id: str,  # noqa: A002 - the name in the contract of the results
     title: str,
@@ -37,6 +40,7 @@ def _held(
     source: str,
     at_least: bool = False,
     datum: float = 0.0,
+    absent: str = NO_HOUSING,
 ) -> Check:
     """Hold the governing one of some values (value, where), or say why there is none; all in ``unit``."""
     rule = Rule(
@@ -47,7 +51,7 @@ def _held(
         return not_applicable(rule, NO_LIMIT)
     listed = list(values)
     if not listed:
-        return not_applicable(rule, NO_HOUSING)
+        return not_applicable(rule, absent)
     value, where = worst(listed, smallest=at_least)
     return hold(rule, value, where)
 
@@ -131,7 +135,7 @@ def _clearances(subject: Subject) -> Iterator[Check]:
         ),
         (
             "axial_play", "smallest hot axial play of a shaft", limits.axial_play_minimum, MM, "mm",
-            ((shaft["axial_play_hot_mm"], shaft["shaft"]) for shaft in shafts),
+            ((s["axial_play_hot_mm"], s["shaft"]) for s in shafts if s["axial_play_cold_mm"] > 0.0),
         ),
         (
             "backlash", "smallest hot backlash", limits.backlash_minimum, MM, "mm",
@@ -150,6 +154,7 @@ def _clearances(subject: Subject) -> Iterator[Check]:
         yield _held(
             f"clearance.{key}", title, unit, _scaled(limit, scale), values,
             source=f"limits.clearances.{key}_minimum", at_least=True,
+            absent=NO_PLAY if key == "axial_play" and shafts else NO_HOUSING,
         )  # fmt: skip
     yield from _seal_travel(subject)
 
