@@ -36,6 +36,7 @@ class Course:
     speed : (n,) of the test pinion [rpm]
     factor, half : (n, 2) K_V as max/mean (P2, Formula 1) and as 1 + half the peak-to-peak value / mean [-]
     mean : (n, 2) torque at the pinion [N m]; drive : (n,) motor torque [N m]
+    missing : speeds at which no periodic response was found [rpm]
     """
 
     speed: Array
@@ -43,6 +44,14 @@ class Course:
     half: Array
     mean: Array
     drive: Array
+    missing: tuple[float, ...] = ()
+
+    def left_out(self, limits: tuple[float, float]) -> str:
+        """What a highest value within these speeds does not know of; empty if every speed has its response."""
+        inside = [f"{speed:.0f}" for speed in self.missing if limits[0] <= speed <= limits[1]]
+        return (
+            f" ({len(inside)} speeds without a periodic response: {', '.join(inside)} rpm)" if inside else ""
+        )
 
     def highest(self, mesh: int, limits: tuple[float, float]) -> tuple[float, float]:
         """(K_V, speed [rpm]) of the highest K_V of a mesh within a range of speeds."""
@@ -94,6 +103,7 @@ def course(
         half=np.array([p.dynamic_factor_half_peak_to_peak for p in points]),
         mean=np.array([p.mean for p in points]),
         drive=np.array([p.drive_torque for p in points]),
+        missing=tuple(speed / RPM for speed, _ in curve.failed),
     )
 
 

@@ -47,7 +47,6 @@ def ramp_rows(prototype: Prototype) -> Iterator[ValidationRow]:
         id="P2-ramp-rules", quantity=f"ramp rules of P2 that the schedule keeps, of {len(rules)}",
         source=SOURCE,
         published="the order of the five steps", computed=float(held), unit="1", basis="input",
-        window=(float(len(rules)), float(len(rules))),
         assumptions="; ".join(f"{rule.text} {rule.value:g} {rule.comparison} {rule.limit:g} N "
         f"m" for rule in rules),
     )  # fmt: skip

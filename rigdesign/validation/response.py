@@ -120,21 +120,25 @@ def _simulated_factors(
         value, speed = main.highest(mesh, limits)
         other, _ = unscaled.highest(mesh, limits)
         at = main.speed == speed
-        hangs = ", ".join(f"{name} {curve.highest(mesh, limits)[0]:.3f}" for name, curve in variants.items())
+        hangs = ", ".join(
+            f"{name} {curve.highest(mesh, limits)[0]:.3f}{curve.left_out(limits)}"
+            for name, curve in variants.items()
+        )
         half = float(main.half[at, mesh][0])
         bound: Bound | None = "at least" if identity == "TG-sub" else None
         yield compare(
             id=f"P2-KVsim-{identity}", quantity=f"simulated K_V (max/mean), {text}", source=FIGURE_8,
             published=published, published_text=printed, computed=value, unit="1", basis="predicted",
             goal=GOAL, bound=bound,
-            assumptions=f"{MODEL}; at {speed:.0f} rpm, half peak-to-peak {half:.3f}. Hangs on: {hangs}"
-            + (f"; {why}" if why else ""),
+            assumptions=f"{MODEL}; at {speed:.0f} rpm{main.left_out(limits)}, half peak-to-peak {half:.3f}. "
+            f"Hangs on: {hangs}" + (f"; {why}" if why else ""),
         )  # fmt: skip
         yield compare(
             id=f"P2-KVsim-{identity}-unscaled", quantity=f"the same, unscaled stiffness x 0.8, {text}",
             source=FIGURE_8, published=published, published_text=printed, computed=other, unit="1",
             basis="predicted", bound=bound,
-            assumptions="Weber/Banaschek shape x 0.8 instead of scaling to ISO c_gamma_alpha; no goal",
+            assumptions="Weber/Banaschek shape x 0.8 instead of scaling to ISO c_gamma_alpha; no goal"
+            f"{unscaled.left_out(limits)}",
         )  # fmt: skip
 
 
@@ -189,7 +193,7 @@ def _late_resonances(main: Course) -> Iterator[ValidationRow]:
         yield stated(
             id=f"P2-free-{name}", quantity=f"highest K_V above 4000 rpm, {name} gear", source="P2, text",
             published="no further significant resonance", computed=value, unit="1", basis="predicted",
-            assumptions=f"at {speed:.0f} rpm; peaks at "
+            assumptions=f"at {speed:.0f} rpm{main.left_out(ABOVE_4000)}; peaks at "
             f"{', '.join(f'{peak:.0f}' for peak in late) or 'no speed'} rpm. Table 2 puts the second mode of "
             "the reference pinion at 4705 rpm",
         )  # fmt: skip
