@@ -173,6 +173,34 @@ class HeatRow:
 
 
 @dataclass(frozen=True, kw_only=True)
+class HeatSplitRow:
+    """Where the friction heat of one gear goes; friction = at once into the oil + into the rim."""
+
+    gear: str
+    rule: Literal["assumed", "flank_film"]
+    friction_W: float  # noqa: N815
+    """Of all its meshes, into its flanks."""
+    at_once_W: float  # noqa: N815
+    """Leaves with the oil before it reaches the rim."""
+    film_W: float  # noqa: N815
+    """From the rim into the gear oil; other heat of the gear leaves this way too."""
+    share_into_oil: float
+    """(at once + film) / friction; above 1 where other heat of the gear leaves through its teeth."""
+    share_into_bodies: float
+    bulk_degC: float  # noqa: N815
+    """Mean of the gear body."""
+    tooth_degC: float | None  # noqa: N815
+    """Mean of the teeth; None without a flank film."""
+    flank_film_W_m2K: float | None  # noqa: N815
+    """Mean over all flanks."""
+    fin_efficiency: float | None
+    weak_film: dict[str, float | None] | None = None
+    """share_into_oil, bulk_degC, tooth_degC, flank_film_W_m2K at the low ends of the ranges of the film."""
+    strong_film: dict[str, float | None] | None = None
+    """The same at the high ends."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class ThermalResult:
     """Steady temperatures of one gearbox at one held stage."""
 
@@ -189,6 +217,8 @@ class ThermalResult:
     room_heat_W: float  # noqa: N815
     alternatives: dict[str, float]
     """Highest temperature under either reading of radiation, heat to the room under the one not taken."""
+    heat_split: list[HeatSplitRow] = field(default_factory=list)
+    """Of the friction heat of every gear."""
 
 
 @dataclass(frozen=True, kw_only=True)

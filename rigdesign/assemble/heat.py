@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rigdesign.assemble.heat_split import heat_split_rows
 from rigdesign.coupling import PointResult
 from rigdesign.growth import axes_of, bearing_growth
 from rigdesign.losses import PlacedLoss
@@ -119,6 +120,7 @@ def thermal_result(rig: Rig, result: PointResult, field: HousingField) -> Therma
             for key in (False, True)
         }
         | {"heat_to_the_room_under_the_other_reading_W": heat_to_room(other)},
+        heat_split=heat_split_rows(rig, result, field),
     )
 
 
