@@ -11,12 +11,16 @@ from dynamics.dynamic_factor import resonances as find_resonances
 from dynamics.modes import LoopMode
 from dynamics.response_curve import CurvePoint, ResponseCurve
 from rigdesign.assemble.curves import Curves, own_ratio
+from rigdesign.ramp_run import held_points
 from rigdesign.rig.model import Rig
 
 HARMONICS = 4
 """Mesh orders that may excite a mode."""
 LEAST_PROMINENCE = 0.01
 """Prominence of a peak of the dynamic torque, as a share of the mean, from which it counts as a resonance."""
+NEAR = 0.2
+"""Distance of a mode, as a share of its frequency, within which it may still be called near: loaded teeth are stiffer
+or softer than the mean stiffness of the modes."""
 LEAST_GAIN = 0.1
 """Gain of a mode below which its mesh hardly excites it (`LoopMode.mesh_gain`)."""
 LEAST_ORDER = 0.1
@@ -33,10 +37,14 @@ def resonance_rows(rig: Rig, curves: Curves, mesh: int, modes: Sequence[LoopMode
     ratio = own_ratio(rig, mesh)
     teeth = ratio * rig.pairs[rig.mesh_names[mesh]].teeth[0]
     rows = []
+    fastest = rig.pinion_speed(max(point.speed for point in held_points(rig)))
     for name, (_, curve) in curves.named.items():
         if len(curve.points) < 3:
             continue
+        searched = curve.speeds[-1] > fastest  # a ramp stage ends where the next one takes over
         for peak in find_resonances(_of_mesh(curve, mesh), least_prominence=LEAST_PROMINENCE):
+            if peak.at_end and not searched:
+                continue
             mode, frequency, harmonic = name_of(peak, curve, mesh, teeth, modes)
             rows.append(
                 {
@@ -74,29 +82,30 @@ def name_of(
     """Mode, frequency [Hz] and order that make a peak.
 
     A mode counts if an order of the mesh meets it within half its line width or the step of the speeds, if the
-    mesh excites it and the order is there; of several the one with most gain times amplitude. With none the
-    strongest order stands alone: the peak has several parents, or one above the modes that are listed.
+    mesh excites it and the order is there; of several the one with most gain times amplitude. With none it is
+    looked for more widely and called ``near``; failing that the strongest order stands alone: the peak has
+    several parents, or one above the modes that are listed.
 
     teeth : mesh frequency over the turning frequency of the first pinion
     """
     at = int(np.argmin(np.abs(curve.speeds - peak.speed)))
     amplitude = _amplitudes(curve.points[at], mesh)
     base = peak.speed * teeth / (2.0 * math.pi)
-    near = curve.speeds[max(at - 1, 0) : at + 2]
-    step = 0.5 * float(np.ptp(near)) * teeth / (2.0 * math.pi) / max(len(near) - 1, 1)
+    beside = curve.speeds[max(at - 1, 0) : at + 2]
+    step = 0.5 * float(np.ptp(beside)) * teeth / (2.0 * math.pi) / max(len(beside) - 1, 1)
     strongest = int(np.argmax(amplitude)) + 1
-    best, found = 0.0, ("no single mode", strongest * base, strongest)
-    for harmonic, height in enumerate(amplitude, start=1):
-        if height < LEAST_ORDER * amplitude.max():
-            continue
-        for mode in modes:
-            reach = max(mode.damping_ratio * mode.frequency, harmonic * step)
-            gain = float(mode.mesh_gain[mesh])
-            if abs(harmonic * base - mode.frequency) > reach or gain < LEAST_GAIN:
-                continue
-            if gain * height > best:
-                best, found = gain * float(height), (mode.name, mode.frequency, harmonic)
-    return found
+    candidates = [
+        (harmonic, height, mode, abs(harmonic * base - mode.frequency))
+        for harmonic, height in enumerate(amplitude.tolist(), start=1)
+        for mode in modes
+        if height >= LEAST_ORDER * amplitude.max() and mode.mesh_gain[mesh] >= LEAST_GAIN
+    ]
+    meeting = [c for c in candidates if c[3] <= max(c[2].damping_ratio * c[2].frequency, c[0] * step)]
+    near = [c for c in candidates if c[3] <= NEAR * c[2].frequency]
+    if not near and not meeting:
+        return "no single mode", strongest * base, strongest
+    harmonic, _, mode, _ = max(meeting or near, key=lambda c: float(c[1] * c[2].mesh_gain[mesh]))
+    return (mode.name if meeting else f"near {mode.name}"), mode.frequency, harmonic
 
 
 def _amplitudes(point: CurvePoint, mesh: int) -> np.ndarray[Any, np.dtype[np.float64]]:

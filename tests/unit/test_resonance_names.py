@@ -57,11 +57,12 @@ def test_a_mode_the_mesh_does_not_excite_gives_none() -> None:
 
 
 def test_a_mode_far_beyond_its_line_width_gives_none() -> None:
-    assert named([mode("elsewhere", 4300.0, 2.0)])[0] == "no single mode"
+    assert named([mode("elsewhere", 5000.0, 2.0)])[0] == "no single mode"
+    assert named([mode("beside", 4300.0, 2.0)])[0] == "near beside"
     assert named([mode("broad", 4300.0, 2.0, damping_ratio=0.1)])[0] == "broad"
 
 
 def test_an_order_that_is_not_there_names_nothing() -> None:
     """Order 4 meets a mode, but hardly any of the torque is of that order."""
-    assert named([mode("fourth", 4 * 3960.0, 2.0)])[0] == "no single mode"
+    assert named([mode("fourth", 4 * 3960.0, 2.0)], orders=(60.0, 20.0, 5.0, 1.0))[0] == "no single mode"
     assert named([mode("fourth", 4 * 3960.0, 2.0)], orders=(10.0, 5.0, 5.0, 9.0)) == ("fourth", 4 * 3960.0, 4)

@@ -1,0 +1,104 @@
+"""Which assumed inputs a check of the shipped case rests on, by the table of the checks."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from rigdesign.case import Case, load_case
+from rigdesign.checks.assumptions import is_under, with_assumptions
+from rigdesign.results import Check, Verdict
+
+PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
+EXPECTED = json.loads((PROTOTYPE / "expected.json").read_text(encoding="utf-8"))
+
+NOTHING = (
+    r"gearboxes\.reference\.seals\..*",  # contactless and without a housing: no clearance, no heat to split
+    r"gearboxes\.reference\.heat_split\..*",
+    r"gearboxes\.reference\.bearings\..*\.(locating|axial_play)",
+)
+"""Assumed inputs of the shipped case that no check rests on."""
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    return load_case(PROTOTYPE)
+
+
+def check(identity: str, source: str = "", verdict: Verdict = "pass") -> Check:
+    return Check(
+        id=identity, title="", value=1.0, limit=2.0, unit="-", comparison="<=", margin=1.0, utilisation=0.5,
+        verdict=verdict, source=source, role="rig",
+    )  # fmt: skip
+
+
+def limit_of(identity: str) -> str:
+    """The limit that the checks name as their source."""
+    parts = identity.split(".")
+    return {
+        "dynamics": f"limits.dynamics.{parts[1]}_minimum; limits.dynamics.{parts[1]}_maximum",
+        "temperature": f"limits.temperatures.{parts[1]}_maximum; limits.temperatures.tempering_distance_minimum",
+        "clearance": f"limits.clearances.{parts[1]}_minimum; gearboxes.test.seals.{parts[-1]}.axial_travel",
+        "bearing": "limits.bearing.film_thickness_minimum; limits.bearing.specific_load_maximum",
+        "oil": f"limits.oil.{parts[1]}_maximum; limits.oil.{parts[1]}_power_maximum; limits.oil.room_heat_maximum",
+    }.get(parts[0], "")
+
+
+def test_every_assumed_input_decides_a_check_or_is_known_to_decide_none(case: Case) -> None:
+    checks = [check(identity, limit_of(identity)) for identity in EXPECTED["checks"]]
+    behind = {path for one in checks for path in with_assumptions(case, one).assumptions}
+    idle = [record.path for record in case.assumptions if record.path not in behind]
+    assert all(any(re.fullmatch(one, path) for path in idle) for one in NOTHING)
+    assert [path for path in idle if not any(re.fullmatch(one, path) for one in NOTHING)] == []
+
+
+@pytest.mark.parametrize(
+    ("identity", "path"),
+    [
+        ("clearance.backlash", "gearboxes.test.gears.pinion.tooth_thinning"),
+        ("clearance.seal_gap", "gearboxes.test.seals.wheel.radial_gap"),
+        ("clearance.bearing_clearance", "gearboxes.test.bearings.pinion_front.diametral_clearance"),
+        ("bearing.minimum_film", "gearboxes.reference.bearing_oil.flow"),
+        ("dynamics.lift_off.test", "gearboxes.test.gears.pinion.profile_shift"),
+        ("specimen.load_cycles", "test_plan.time"),
+        ("strength.root_safety_iso.reference.wheel", "limits.strength.root_safety_minimum"),
+        ("temperature.gear_bulk", "gearboxes.test.housing.boundary.gear_rims.heat_transfer_coefficient"),
+        ("bought_part.motor", "limits.bought_parts.motor.limit"),
+    ],
+)
+def test_what_makes_a_value_is_listed_with_it(case: Case, identity: str, path: str) -> None:
+    assert path in with_assumptions(case, check(identity)).assumptions
+
+
+@pytest.mark.parametrize(
+    ("identity", "path"),
+    [
+        ("dynamics.dynamic_factor.test", "drivetrain.motor.torque_limit"),
+        ("dynamics.dynamic_factor.test", "drivetrain.bracing.spline_friction_coefficient"),
+        ("dynamics.dynamic_factor.test", "gearboxes.test.gears.pinion.quality_grade"),
+        ("specimen.root_stress_iso.test.pinion", "gearboxes.reference.gears.pinion.quality_grade"),
+        ("oil.flow", "losses.chamber_density"),
+    ],
+)
+def test_what_does_not_is_not(case: Case, identity: str, path: str) -> None:
+    assert any(record.path == path for record in case.assumptions)
+    assert path not in with_assumptions(case, check(identity)).assumptions
+
+
+def test_the_limit_in_the_source_belongs_to_the_check(case: Case) -> None:
+    source = "limits.bearing.film_thickness_minimum; film after ISO 7902-1"
+    assert (
+        "limits.bearing.film_thickness_minimum"
+        in with_assumptions(case, check("bearing.x", source)).assumptions
+    )
+
+
+def test_a_rule_that_does_not_apply_rests_on_nothing(case: Case) -> None:
+    assert with_assumptions(case, check("clearance.backlash", verdict="not applicable")).assumptions == ()
+
+
+def test_a_star_stands_for_one_name() -> None:
+    assert is_under("gearboxes.test.gears.pinion.flank.tip_relief", "gearboxes.*.gears.*.flank")
+    assert not is_under("gearboxes.test.housing.gears", "gearboxes.*.gears")
+    assert not is_under("losses", "losses.friction")
