@@ -13,10 +13,10 @@ import numpy as np
 from thermal.balance import HeatBalance, heat_balance
 from thermal.condition_checks import Condition, ConditionError, check_conditions
 from thermal.conduction_setup import ConductionSetup as ConductionSetup
-from thermal.conduction_terms import ConductionProblem
+from thermal.conduction_terms import ConductionProblem, Preconditioner
 from thermal.conductivity import Conductivity
 from thermal.fe.mesh import FloatArray, NamedMesh
-from thermal.fe.solver import NotConverged, TwoLevelMultigrid, gmres
+from thermal.fe.solver import NotConverged, gmres
 
 CLOSURE = 1e-8
 """Greatest allowed gap of the heat balance relative to the heat turned over."""
@@ -49,7 +49,7 @@ class NewtonResult:
     field: FloatArray
     residuals: tuple[float, ...]
     linear_iterations: tuple[int, ...]
-    multigrid: TwoLevelMultigrid | None
+    preconditioner: Preconditioner | None
 
 
 def solve_steady(
@@ -108,11 +108,11 @@ def newton(
     field: FloatArray,
     tolerance: float,
     max_steps: int = 30,
-    multigrid: TwoLevelMultigrid | None = None,
+    preconditioner: Preconditioner | None = None,
 ) -> NewtonResult:
     """Iterate on nodes and volumes from ``field`` (n_nodes + m,) until the residual is within tolerance.
 
-    multigrid : of a problem nearby, taken as it is; made from the first Jacobian if None
+    preconditioner : of a problem nearby, taken as it is; made from the first Jacobian if None
 
     Raises NotConverged with its history and the hottest place.
     """
@@ -125,7 +125,7 @@ def newton(
         limit = max(tolerance * turned, problem.roundoff(field))
         history.append(size / turned if turned > 0.0 else 0.0)
         if size <= limit:
-            return NewtonResult(field, tuple(history), tuple(iterations), multigrid)
+            return NewtonResult(field, tuple(history), tuple(iterations), preconditioner)
         if len(iterations) == max_steps:
             raise NotConverged(
                 f"Newton: residual {history[-1]:.3g} of the heat after {max_steps} steps is above "
@@ -134,11 +134,12 @@ def newton(
                 tuple(history),
             )
         linear = problem.linearise(field)
-        if multigrid is None:
-            multigrid = problem.multigrid(linear, field)
-        multigrid.set_low_rank(linear.low_rank)
+        if preconditioner is None:
+            preconditioner = problem.preconditioner(linear, field)
+        elif problem.storage is None:
+            preconditioner.set_low_rank(linear.low_rank)
         load = linear.load(residual)
-        step = gmres(linear, load, multigrid, tolerance=_forcing(history, limit / size))
+        step = gmres(linear, load, preconditioner, tolerance=_forcing(history, limit / size))
         iterations.append(step.iterations)
         whole = linear.whole(residual, step.values)
         field, residual, turned = _line_search(problem, field, whole, residual)

@@ -16,6 +16,7 @@ import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from scipy import sparse
@@ -26,6 +27,7 @@ from thermal.condition_checks import Condition, ConditionError, check_heat_paths
 from thermal.conduction_setup import ConductionSetup
 from thermal.contact import Contact
 from thermal.contact_terms import ContactTerms
+from thermal.direct_factor import MOST_NODES, DirectFactor
 from thermal.enclosure import Enclosure, EnclosureTerms
 from thermal.fe.mesh import FloatArray
 from thermal.fe.solver import BoolArray, LowRank, Operator, TwoLevelMultigrid, constrain
@@ -75,6 +77,18 @@ class Linearisation:
         if self.elimination is None:
             return step
         return np.append(step, self.elimination.volume_step(residual[len(step) :], step))
+
+
+class Preconditioner(Protocol):
+    """An approximate inverse that knows the small-rank part of the Jacobian."""
+
+    def __call__(self, residual: FloatArray) -> FloatArray:
+        """Apply it to (n_nodes,)."""
+        ...
+
+    def set_low_rank(self, low_rank: LowRank | None) -> None:
+        """Replace the small-rank part."""
+        ...
 
 
 class ConductionProblem:
@@ -284,6 +298,16 @@ class ConductionProblem:
             if value > 0.0:
                 links.append((film.surface, film.volume))
         check_heat_paths(self.elements, grounded, links, list(self.volumes.index))
+
+    def preconditioner(self, linear: Linearisation, field: FloatArray) -> "Preconditioner":
+        """For the system of a Newton step and those near it; factors for time steps on a small mesh."""
+        made: Preconditioner
+        if self.storage is not None and self.n_nodes <= MOST_NODES:
+            made = DirectFactor(linear.matrix)
+        else:
+            made = self.multigrid(linear, field)
+        made.set_low_rank(linear.low_rank)
+        return made
 
     def multigrid(self, linear: Linearisation, field: FloatArray) -> TwoLevelMultigrid:
         """Preconditioner around one linearisation."""

@@ -98,7 +98,10 @@ def network_rows(
         conductance = math.fsum(laws[f].value * s.area for f, s in surfaces.items())
         fluid = _film_temperature(network, volume.name, places, conductance)
         for film, surface in surfaces.items():
-            power = laws[film].value * surface.integral(fluid - surface.at_points(temperature))
+            felt = fluid
+            if film.supply is not None:
+                felt = film.supply_share * places[film.supply] + (1.0 - film.supply_share) * fluid
+            power = laws[film].value * surface.integral(felt - surface.at_points(temperature))
             rows.append(surface_row(surface, film.surface, film.kind, power, temperature, laws[film]))
             book(volume.name, film.kind, -power)
         if volume.power != 0.0:

@@ -69,6 +69,13 @@ class VolumeTerms:
         """What supplies give through links [W]."""
         for network in networks:
             self._add_flows(network)
+        supplied = {s.name: s.temperature for network in networks for s in network.supplies}
+        self.supply_share = np.array([film.supply_share for film in self.films])
+        """(s,) share of a supply in the temperature each film feels [-]."""
+        self.supplied = np.array(
+            [f.supply_share * supplied[f.supply] if f.supply else 0.0 for f in self.films]
+        )
+        """(s,) what it adds to that temperature [K]."""
         self.given = [supply.temperature for network in networks for supply in network.supplies]
 
     def _add_flows(self, network: StreamNetwork) -> None:
@@ -122,6 +129,7 @@ class VolumeTerms:
         units = np.where(self.plug, transfer / np.where(self.plug, self.rate, 1.0), 0.0)
         share = np.array([inlet_share(n) if p else 0.0 for n, p in zip(units, self.plug, strict=True)])
         film = (share * inlet + (1.0 - share) * volumes)[self.of_film]
+        film = (1.0 - self.supply_share) * film + self.supplied
         return FilmState(value, film, inlet, share, units)
 
     def heat_out(self, temperature: FloatArray, volumes: FloatArray) -> tuple[FloatArray, FloatArray, float]:
@@ -153,11 +161,12 @@ class VolumeTerms:
         per_unit = slope * (state.inlet - volumes) / np.where(self.plug, self.rate, 1.0)
         heated = per_unit[:, None] * (self.member * self.area)
         local = state.share[:, None] * self.inlet_matrix + np.diag(1.0 - state.share)
+        own = (1.0 - self.supply_share)[:, None]
         return Slopes(
             by_mean,
             by_volume,
-            (heated @ by_mean)[self.of_film],
-            (heated @ by_volume + local)[self.of_film],
+            own * (heated @ by_mean)[self.of_film],
+            own * (heated @ by_volume + local)[self.of_film],
         )
 
     def volume_block(

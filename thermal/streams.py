@@ -56,6 +56,10 @@ class VolumeFilm:
     """Row name in the heat balance."""
     law: FilmLaw
     """Coefficient from the mean wall temperature and the temperature V of the volume [K]."""
+    supply: str | None = None
+    """Supply whose temperature the film feels in part: oil half warmed up, or still as it was injected."""
+    supply_share: float = 0.0
+    """Its share w: the film feels w T_supply + (1 - w) T_film."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,7 +150,14 @@ def _check_ends(network: StreamNetwork) -> None:
             raise ConditionError(f"{what}: unknown place {name!r}; known: {', '.join(sorted(among))}")
 
     for film in network.films:
-        known(f"film {film.kind!r} on {film.surface}", film.volume, volumes)
+        label = f"film {film.kind!r} on {film.surface}"
+        known(label, film.volume, volumes)
+        if film.supply is not None:
+            known(label, film.supply, places - volumes)
+        if not 0.0 <= film.supply_share <= (0.0 if film.supply is None else 1.0):
+            raise ConditionError(
+                f"{label}: supply_share = {film.supply_share:g} must lie within 0 and 1, and be 0 without a supply"
+            )
     for stream in network.streams:
         label = f"{stream.kind} from {stream.source} to {stream.target}"
         known(label, stream.source, places)

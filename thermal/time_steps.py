@@ -19,9 +19,8 @@ import numpy as np
 from thermal.balance import HeatBalance, heat_balance
 from thermal.capacity import HeatCapacity, Storage
 from thermal.conduction import newton
-from thermal.conduction_terms import ConductionProblem
+from thermal.conduction_terms import ConductionProblem, Preconditioner
 from thermal.fe.mesh import FloatArray
-from thermal.fe.solver import TwoLevelMultigrid
 
 GAMMA = 1.0 - math.sqrt(0.5)
 
@@ -40,6 +39,9 @@ KEPT = (0.9, 1.3)
 
 NEAR = 2.0
 """Ratio of step lengths up to which a preconditioner serves."""
+
+STALE = 25
+"""Linear iterations of a Newton step from which the next one gets a preconditioner of its own."""
 
 NEWTON_STEPS = 12
 """Newton steps of a stage before the time step is shortened."""
@@ -72,12 +74,12 @@ class Stepper:
     def __init__(self, capacity: HeatCapacity, tolerance: float) -> None:
         self.capacity = capacity
         self._tolerance = tolerance
-        self._multigrid: TwoLevelMultigrid | None = None
+        self._preconditioner: Preconditioner | None = None
         self._rate = 0.0
 
     def forget(self) -> None:
         """Drop the preconditioner: the conditions have changed."""
-        self._multigrid = None
+        self._preconditioner = None
 
     def step(
         self, problem_at: ProblemAt, time: float, dt: float, field: FloatArray, slope: FloatArray | None
@@ -109,14 +111,15 @@ class Stepper:
         """Solve one stage; return the unknowns, the linear iterations and the heat of its terms."""
         rate = 1.0 / (GAMMA * dt)
         if not self._rate / NEAR < rate < self._rate * NEAR:
-            self._multigrid, self._rate = None, rate
+            self._preconditioner, self._rate = None, rate
         storing = problem.storing(Storage(self.capacity, problem.volumes.capacity, rate, base))
         start = guess if guess.min() > 0.0 else base
         start = start if start.min() > 0.0 else np.full_like(base, float(np.abs(base).mean()))
         result = newton(
-            storing, storing.start(start), self._tolerance, NEWTON_STEPS, multigrid=self._multigrid
+            storing, storing.start(start), self._tolerance, NEWTON_STEPS, preconditioner=self._preconditioner
         )
-        self._multigrid = result.multigrid
+        stale = max(result.linear_iterations, default=0) > STALE
+        self._preconditioner = None if stale else result.preconditioner
         n = problem.n_nodes
         balance = heat_balance(
             problem.setup,

@@ -28,7 +28,7 @@ FIRST_STEP = 1e-2
 LARGEST_STEP = 0.1
 """Greatest step as a share of the stage, where none is given."""
 
-SMALLEST_STEP = 1e-7
+SMALLEST_STEP = 1e-10
 """Step as a share of the stage at which the run gives up."""
 
 ConditionsAt = Callable[[float], Sequence[Condition]]
@@ -84,6 +84,7 @@ def solve_transient(
     observer: Observer | None = None,
     initial_volumes: Mapping[str, float] | None = None,
     tolerance: float = 0.05,
+    first_step: float | None = None,
     largest_step: float | None = None,
     newton_tolerance: float = 1e-9,
     reuse: ConductionSetup | None = None,
@@ -97,6 +98,7 @@ def solve_transient(
     observe_at, observer : times [s] that are met exactly, and what is then called with the full field
     initial_volumes : volume -> temperature [K]; others start 1 K below the mean of the field they meet
     tolerance : local error of a step [K], root mean square over any body
+    first_step : of every stage [s]; a hundredth of it if None
     largest_step : [s]; a tenth of each stage if None
     reuse : setup of the same mesh and conductivities
 
@@ -108,13 +110,13 @@ def solve_transient(
         raise ConditionError(
             "the setup to reuse belongs to another mesh or other conductivities; make a new one"
         )
-    _check(stages, observe_at, tolerance, largest_step)
+    _check(stages, observe_at, tolerance=tolerance, first_step=first_step, largest_step=largest_step)
     run = _Run(
         setup, HeatCapacity(setup.elements, capacity), initial, initial_volumes or {}, newton_tolerance
     )
     run.watch(probes, observe_at, observer)
     for number, stage in enumerate(stages):
-        run.stage(number, stage, tolerance, largest_step)
+        run.stage(number, stage, tolerance, first_step, largest_step)
     return run.solution()
 
 
@@ -134,15 +136,13 @@ def settling_time(times: FloatArray, values: FloatArray, final: float, band: flo
     return float(times[last] + min(share, 1.0) * (times[last + 1] - times[last]))
 
 
-def _check(
-    stages: Sequence[ThermalStage], observe_at: Sequence[float], tolerance: float, largest_step: float | None
-) -> None:
+def _check(stages: Sequence[ThermalStage], observe_at: Sequence[float], **positive: float | None) -> None:
     if not stages:
         raise ConditionError("schedule without a stage; give at least one")
     for stage in stages:
         if not (math.isfinite(stage.duration) and stage.duration > 0.0):
             raise ConditionError(f"stage {stage.name!r}: duration = {stage.duration} s must be above 0 s")
-    for name, value in (("tolerance", tolerance), ("largest_step", largest_step)):
+    for name, value in positive.items():
         if value is not None and not value > 0.0:
             raise ConditionError(f"{name} = {value} must be above 0")
     end = math.fsum(stage.duration for stage in stages)
@@ -191,7 +191,9 @@ class _Run:
         self._due = sorted(set(at)) if observer is not None else []
         self._observer = observer
 
-    def stage(self, number: int, stage: ThermalStage, tolerance: float, largest: float | None) -> None:
+    def stage(
+        self, number: int, stage: ThermalStage, tolerance: float, first: float | None, largest: float | None
+    ) -> None:
         """Run through one stage."""
         problems = _Problems(self._setup, stage, self._begin)
         problem = problems(self._begin)
@@ -202,7 +204,7 @@ class _Run:
         self._stepper.forget()
         end = self._begin + stage.duration
         longest = LARGEST_STEP * stage.duration if largest is None else largest
-        dt = min(FIRST_STEP * stage.duration, longest)
+        dt = min(FIRST_STEP * stage.duration if first is None else first, longest)
         slope: FloatArray | None = None
         while self._time < end:
             goal = min([end, *(due for due in self._due if due > self._time)])

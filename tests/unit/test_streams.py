@@ -212,3 +212,34 @@ def test_a_volume_may_not_have_the_name_of_a_body(slab: NamedMesh) -> None:
     named = StreamNetwork(specific_heat=1.0, volumes=(Volume(name="box"),))
     with pytest.raises(ConditionError, match="'box' has the name of a surface or body"):
         solve_steady(slab, {"box": 40.0}, [*oiled(passage(plug=True)), named])
+
+
+def test_a_film_may_feel_its_supply_in_part() -> None:
+    """Oil half warmed up at the wall: Q = h A (T_wall - (T_in + T_out)/2) = m c (T_out - T_in), by hand."""
+    mesh = box_mesh((0.1, 0.1, 0.1), (1, 1, 1))
+    network = StreamNetwork(
+        specific_heat=2000.0,
+        volumes=(Volume(name="oil"),),
+        supplies=(Supply(name="feed", temperature=300.0),),
+        streams=(
+            Stream(source="feed", target="oil", mass_flow=0.001),
+            Stream(source="oil", target=None, mass_flow=0.001),
+        ),
+        films=(
+            VolumeFilm(surface="x_max", volume="oil", kind="oil", law=law(400.0), supply="feed", supply_share=0.5),
+        ),
+    )  # fmt: skip
+    conditions = [
+        PrescribedTemperature(surface="x_min", temperature=400.0),
+        *(Adiabatic(surface=name) for name in ("y_min", "y_max", "z_min", "z_max")),
+        network,
+    ]
+    solution = solve_steady(mesh, {"box": 50.0}, conditions)
+    conductance = 1.0 / (1.0 / 5.0 + 1.0 / 4.0)
+    power = 100.0 / (1.0 / conductance + 0.5 / 2.0)
+    assert solution.volumes["oil"] == pytest.approx(300.0 + power / 2.0, abs=1e-6)
+    assert solution.balance.closure < 1e-9
+    with pytest.raises(ConditionError, match=r"supply_share = 0\.5 must lie"):
+        check_networks([replace(network, films=(replace(network.films[0], supply=None),))])
+    with pytest.raises(ConditionError, match="unknown place 'oil'"):
+        check_networks([replace(network, films=(replace(network.films[0], supply="oil"),))])
