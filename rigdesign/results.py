@@ -70,10 +70,10 @@ class GearboxDynamics:
 
     role: Role
     torque: str
-    """Torque of ``dynamic_factor`` where the case counts it, in words: ``180 N m``."""
+    """Torque of ``dynamic_factor`` where the case counts it, in words: ``180 Nm``."""
     dynamic_factor: list[DynamicFactorPoint]
     dynamic_factor_at: dict[str, list[DynamicFactorPoint]]
-    """The same at the other torques at which the schedule holds or changes the speed (``90 N m``)."""
+    """The same at the other torques at which the schedule holds or changes the speed (``90 Nm``)."""
     dynamic_factor_variants: dict[str, list[DynamicFactorPoint]]
     """The curve of ``dynamic_factor`` under a named variant of the mesh law (``weber_banaschek_0.8``)."""
     stage_loads: list[dict[str, Any]]

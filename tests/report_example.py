@@ -197,9 +197,9 @@ def gearbox(role, excitation, resonances):
     ]
     return r.GearboxDynamics(
         role=role,
-        torque="180 N m",
+        torque="180 Nm",
         dynamic_factor=curve(1.0),
-        dynamic_factor_at={"90 N m": curve(1.2)},
+        dynamic_factor_at={"90 Nm": curve(1.2)},
         dynamic_factor_variants={"unscaled_weber_banaschek_x0.8": curve(0.8)},
         stage_loads=[
             {
@@ -217,7 +217,7 @@ def gearbox(role, excitation, resonances):
         iso_factors={"K_V": 0.872, "N": 4.06, "c_gamma_alpha": 13.9, "range": "supercritical"},
         lift_off=[{"stage": "run_up", "start_s": 2.31, "end_s": 2.42, "share": 0.02}],
         resonances=resonances,
-        unsolved=[{"curve": "90 N m", "speed_rpm": 1800.0, "reason": "not settled"}],
+        unsolved=[{"curve": "90 Nm", "speed_rpm": 1800.0, "reason": "not settled"}],
         root_stress=histories if role == "specimen" else [],
         root_stress_factor=[
             {"speed_rpm": float(n), "pinion": float(k * 0.97), "wheel": float(k * 0.95)}
@@ -281,7 +281,7 @@ def dynamics():
     ]
     resonances = [
         {
-            "torque": "180 N m",
+            "torque": "180 Nm",
             "mode": "pinion against wheel, test",
             "frequency_Hz": 4022.7,
             "harmonic": 2,
@@ -290,7 +290,7 @@ def dynamics():
             "dangerous": True,
         },
         {
-            "torque": "180 N m",
+            "torque": "180 Nm",
             "mode": "wheel shaft, test",
             "frequency_Hz": 5926.7,
             "harmonic": 2,
@@ -318,7 +318,7 @@ def dynamics():
         bracing=[
             {
                 "stage": "dwell",
-                "torque": "180 N m",
+                "torque": "180 Nm",
                 "mode": "torque_controlled",
                 "torque_Nm": 180.0,
                 "twist_deg": 1.31,

@@ -49,7 +49,7 @@ class Curves:
     def named(self) -> Mapping[str, tuple[float, ResponseCurve]]:
         """Every curve of the shipped mesh laws with its torque, by its name in the results."""
         found = {self.torque: self.response, **self.others}
-        return {f"{abs(torque):g} N m": (torque, curve) for torque, curve in found.items()}
+        return {f"{abs(torque):g} Nm": (torque, curve) for torque, curve in found.items()}
 
 
 def solve_curves(rig: Rig, warm: PassResult) -> Curves:

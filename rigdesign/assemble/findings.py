@@ -204,6 +204,8 @@ def not_modelled(subject: Subject) -> list[str]:
         "gear body and web flexibility beyond the tooth, coupling of neighbouring tooth slices",
         "temperature over time: steady states at the held stages only",
         "oil flow distribution, aeration and sump level: films are given by surface",
+        "roughness of the tooth roots: Y_RrelT is 1, as for the test gears behind sigma_FE; flank strength (pitting, "
+        "scuffing) and its safety",
     ]
     without = [name for name, box in subject.case.gearboxes.items() if box.housing is None]
     if without:

@@ -36,16 +36,16 @@ def stage_loads(rig: Rig, ramp: TimeResponse, mesh: int) -> list[dict[str, Any]]
     """
     low, mean, high = bounds(ramp.slots, mesh)
     speed = own_ratio(rig, mesh) * ramp.slots.speed * RPM
-    stages = _slot_stages(rig, ramp)
+    stages = np.array(_slot_stages(rig, ramp))
     rows = []
-    for name in dict.fromkeys(stages):
-        own = np.flatnonzero((np.array(stages) == name) & (mean > LEAST_TORQUE) & (speed > 0.0))
-        if own.size == 0:
+    for stage in schedule_of(rig).stages:
+        own = np.flatnonzero((stages == stage.name) & (mean > LEAST_TORQUE) & (speed > 0.0))
+        if own.size == 0 or max(stage.speed) <= 0.0:
             continue
         worst, loosest = own[np.argmax(high[own] / mean[own])], own[np.argmin(low[own] / mean[own])]
         rows.append(
             {
-                "stage": name,
+                "stage": stage.name,
                 "dynamic_factor": float(high[worst] / mean[worst]),
                 "speed_rpm": float(speed[worst]),
                 "mean_Nm": float(mean[worst]),

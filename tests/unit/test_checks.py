@@ -35,7 +35,7 @@ def held(stage: str, factors: tuple[float, float], rpm: float = 12000.0, **last:
 
 
 def resonance(
-    rpm: float, *, dangerous: bool = True, torque: str = "180 N m", at_end: bool = False
+    rpm: float, *, dangerous: bool = True, torque: str = "180 Nm", at_end: bool = False
 ) -> dict[str, Any]:
     return {"torque": torque, "mode": "shaft", "speed_rpm": rpm, "at_end": at_end, "dangerous": dangerous}
 
@@ -51,9 +51,7 @@ def subject(points: Any = None, **changes: Any) -> Subject:
     """Both gearboxes with the same made-up loads; ``changes`` of the records of one mesh."""
     empty: dict[str, Any] = {"resonances": [], "unsolved": [], "lift_off": [], "stage_loads": []}
     box: GearboxDynamics = replace(gearbox("rig", 0.1, []), **(empty | changes))
-    run: Any = SimpleNamespace(
-        curves=SimpleNamespace(named={"180 N m": (180.0, None), "90 N m": (90.0, None)})
-    )
+    run: Any = SimpleNamespace(curves=SimpleNamespace(named={"180 Nm": (180.0, None), "90 Nm": (90.0, None)}))
     results: Any = SimpleNamespace(gearboxes={"test": box, "reference": box})
     held_points = points or [held("test", (1.1, 1.2))]
     return Subject(rig=rig(), points=held_points, run=run, dynamics=results, thermal=[], growth=[], cooler=[])
@@ -98,8 +96,8 @@ def test_a_resonance_above_the_held_speed_counts_as_one_below(rpm: float, verdic
 
 
 def test_resonances_at_another_torque_do_not_count_and_holes_are_said() -> None:
-    hole = {"curve": "180 N m", "speed_rpm": 12100.0, "reason": "not settled"}
-    rows = [resonance(12100.0, torque="90 N m")]
+    hole = {"curve": "180 Nm", "speed_rpm": 12100.0, "reason": "not settled"}
+    rows = [resonance(12100.0, torque="90 Nm")]
     check = named(
         dynamics.checks(subject(resonances=rows, unsolved=[hole])), "dynamics.resonance_distance.test"
     )
