@@ -14,9 +14,17 @@ from typing import NamedTuple
 import numpy as np
 
 from thermal.fe.aggregation import rigid_modes
+from thermal.fe.direct import solve_direct
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray, IndexArray
-from thermal.fe.solver import BoolArray, TwoLevelMultigrid, conjugate_gradient, constrain
+from thermal.fe.solver import (
+    BoolArray,
+    LinearSolution,
+    NotConverged,
+    TwoLevelMultigrid,
+    conjugate_gradient,
+    constrain,
+)
 from thermal.supports import ElasticError, FreePieces, check_held, three_two_one
 
 __all__ = [
@@ -28,6 +36,9 @@ __all__ = [
     "rigid_motion",
     "three_two_one",
 ]
+
+DIRECT = 100_000
+"""Unknowns up to which a direct solution steps in where conjugate gradients stall."""
 
 
 class Elastic(NamedTuple):
@@ -114,7 +125,7 @@ class ElasticSetup:
         load = self.load(temperature, reference)
         right = np.where(self._held, 0.0, load.ravel())
         first = None if start is None else np.where(self._held, 0.0, start.ravel())
-        solution = conjugate_gradient(self.matrix, right, self.multigrid, start=first, tolerance=tolerance)
+        solution = self._solved(right, first, tolerance)
         values = self.free.onto_supports(solution.values.reshape(-1, 3))
         rows, columns, blocks = self._held_rows
         forces = np.zeros_like(values)
@@ -122,6 +133,19 @@ class ElasticSetup:
         reactions = np.where(self._held.reshape(-1, 3), forces - load, 0.0)
         reactions += self.free.reactions(load)
         return Displacement(values, reactions, solution.residuals)
+
+    def _solved(self, load: FloatArray, start: FloatArray | None, tolerance: float) -> LinearSolution:
+        """Conjugate gradients; where they stall on a small mesh, of very flat cells say, a direct solution."""
+        try:
+            return conjugate_gradient(self.matrix, load, self.multigrid, start=start, tolerance=tolerance)
+        except NotConverged as stalled:
+            if len(load) > DIRECT:
+                raise
+            held = self._held | self.free.pins.ravel()
+            right = np.where(held, 0.0, load)
+            values = solve_direct(constrain(self.matrix, held), right)
+            left = float(np.linalg.norm(load - self.matrix @ values) / np.linalg.norm(load))
+            return LinearSolution(values, (*stalled.residuals, left))
 
 
 def check_elastic(

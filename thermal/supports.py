@@ -85,6 +85,11 @@ class FreePieces:
             result[nodes] = True
         return result
 
+    @property
+    def pins(self) -> BoolArray:
+        """(n_nodes, 3) the supports of these pieces."""
+        return np.asarray(self.fixed & self.nodes[:, None])
+
     def onto_supports(self, displacement: FloatArray) -> FloatArray:
         """Displacement (n_nodes, 3) [m] with every piece moved rigidly so that its supports stand still."""
         moved = displacement.copy()
@@ -92,7 +97,7 @@ class FreePieces:
             modes, held = _motions(self.points[nodes]), self.fixed[nodes].ravel()
             shares = np.linalg.solve(modes[held], displacement[nodes].ravel()[held])
             moved[nodes] -= (modes @ shares).reshape(-1, 3)
-        return np.where(self.fixed & self.nodes[:, None], 0.0, moved)
+        return np.where(self.pins, 0.0, moved)
 
     def reactions(self, load: FloatArray) -> FloatArray:
         """Forces (n_nodes, 3) [N] with which six supports balance what ``load`` lacks to equilibrium."""

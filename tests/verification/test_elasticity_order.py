@@ -156,3 +156,12 @@ def test_support_needs_more_than_a_line() -> None:
     points = np.column_stack([np.arange(5.0), np.zeros(5), np.zeros(5)])
     with pytest.raises(ElasticError, match="lie on one line"):
         three_two_one(points, np.arange(5, dtype=np.int32))
+
+
+def test_very_flat_cells_are_solved_directly_where_the_iteration_stalls() -> None:
+    mesh = box_mesh((1.0, 1.0, 2e-4), (4, 4, 1), cell="hexahedron20")
+    setup = supported(mesh)
+    solution = setup.solve(np.full(len(mesh.points), 303.15), 293.15)
+    assert solution.iterations > 200
+    assert solution.residuals[-1] < 1e-6
+    assert np.ptp(solution.values[:, 0]) == pytest.approx(1.15e-4, rel=1e-4)

@@ -59,9 +59,10 @@ def coarsen(matrix: Blocks, modes: FloatArray, scaled_largest: float, level: int
     prolongation = sparse.bsr_array(tentative - slope)
     coarse = sparse.bsr_array(prolongation.T @ sparse.bsr_array(matrix @ prolongation))
     coarse.sort_indices()
-    unused = np.einsum("kii->ki", coarse.data)[_diagonal_places(coarse)] == 0.0
-    places, number = np.nonzero(unused)
-    coarse.data[_diagonal_places(coarse)[places], number, number] = 1.0
+    on_diagonal = _diagonal_places(coarse)
+    diagonal = np.einsum("kii->ki", coarse.data)[on_diagonal]
+    places, number = np.nonzero(diagonal == 0.0)
+    coarse.data[on_diagonal[places], number, number] = diagonal.max(initial=1.0)
     return CoarserLevel(prolongation, coarse, coarse_modes)
 
 

@@ -1,4 +1,4 @@
-"""Linear solvers: conjugate gradients and GMRES round the multigrid, supports, and a direct check.
+"""Linear solvers: conjugate gradients and GMRES round the multigrid, and supports.
 
 Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., algorithms 9.1 and 9.6.
 """
@@ -9,8 +9,8 @@ from typing import TypeVar
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
+from thermal.fe.direct import solve_direct
 from thermal.fe.multigrid import BoolArray, LowRank, Matrix, Product, TwoLevelMultigrid
 from thermal.fe.shapes import FloatArray
 
@@ -156,11 +156,6 @@ def gmres(
         basis.append(w / hessenberg[k + 1, k])
     x = scale * sum((c * z for c, z in zip(weights, images, strict=True)), np.zeros_like(load))
     return LinearSolution(x, tuple(residuals))
-
-
-def solve_direct(matrix: Matrix, load: FloatArray) -> FloatArray:
-    """Solve by sparse LU: the check of the iterative solvers, too slow for large meshes."""
-    return np.asarray(splu(sparse.csc_array(matrix)).solve(load))
 
 
 def _stalled(name: str, residuals: list[float], tolerance: float) -> str:
