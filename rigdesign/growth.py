@@ -46,6 +46,11 @@ def expand_housing(rig: Rig, field: HousingField, start: HousingGrowth | None = 
         tolerance=TOLERANCE,
         start=None if start is None else start.expansion,
     )
+    return read_growth(rig, name, shape)
+
+
+def read_growth(rig: Rig, name: str, shape: Expansion) -> HousingGrowth:
+    """A hot shape read by the names of the case."""
     box = rig.case.gearboxes[name]
     distances, travels = {}, {}
     for mesh_name, mesh in box.meshes.items():

@@ -73,15 +73,39 @@ def expand(
     solution = setup.elastic.solve(
         temperature, reference_temperature, tolerance, None if start is None else start.supported
     )
-    shape = HotShape(setup, temperature, reference_temperature, solution.values)
+    return read_expansion(
+        setup,
+        temperature,
+        reference_temperature,
+        solution.values,
+        largest_reaction=float(np.abs(solution.reactions).max()),
+        iterations=solution.iterations,
+    )
+
+
+def read_expansion(
+    setup: ExpansionSetup,
+    temperature: FloatArray,
+    reference_temperature: float,
+    supported: FloatArray,
+    *,
+    largest_reaction: float = 0.0,
+    iterations: int = 0,
+) -> Expansion:
+    """Place the shafts and read every clearance from a displacement on the supports of the solve.
+
+    temperature : (n_nodes,) [K]; supported : (n_nodes, 3) [m], of this temperature
+    """
+    model = setup.model
+    shape = HotShape(setup, temperature, reference_temperature, supported)
     return Expansion(
         displacement=shape.displacement,
-        supported=solution.values,
+        supported=supported,
         bearings={b.name: shape.bearing(b) for b in model.bearings},
         seals={s.name: shape.seal(s) for s in model.seals},
         shafts={s.name: shape.shaft(s) for s in model.shafts},
         gears={g.name: shape.gear(g) for g in model.gears},
         centre_distances=shape.centre_distances(),
-        largest_reaction=float(np.abs(solution.reactions).max()),
-        iterations=solution.iterations,
+        largest_reaction=largest_reaction,
+        iterations=iterations,
     )

@@ -80,7 +80,7 @@ def solve_transient(
     initial: FloatArray | float,
     *,
     probes: Sequence[Probe] = (),
-    observe_at: Sequence[float] = (),
+    observe_at: Sequence[float] | None = (),
     observer: Observer | None = None,
     initial_volumes: Mapping[str, float] | None = None,
     tolerance: float = 0.05,
@@ -95,7 +95,8 @@ def solve_transient(
     capacity : body -> density times specific heat [J/(m3 K)]
     initial : (n_nodes,) field or one value [K]
     probes : where temperatures are kept for every step
-    observe_at, observer : times [s] that are met exactly, and what is then called with the full field
+    observe_at, observer : times [s] that are met exactly, and what is then called with the full field; None
+        calls it at the start and after every step
     initial_volumes : volume -> temperature [K]; others start 1 K below the mean of the field they meet
     tolerance : local error of a step [K], root mean square over any body
     first_step : of every stage [s]; a hundredth of it if None
@@ -110,7 +111,7 @@ def solve_transient(
         raise ConditionError(
             "the setup to reuse belongs to another mesh or other conductivities; make a new one"
         )
-    _check(stages, observe_at, tolerance=tolerance, first_step=first_step, largest_step=largest_step)
+    _check(stages, observe_at or (), tolerance=tolerance, first_step=first_step, largest_step=largest_step)
     run = _Run(
         setup, HeatCapacity(setup.elements, capacity), initial, initial_volumes or {}, newton_tolerance
     )
@@ -175,6 +176,7 @@ class _Run:
         self._readers: dict[str, Reader] = {}
         self._due: list[float] = []
         self._observer: Observer | None = None
+        self._always = False
         self._times: list[float] = []
         self._numbers: list[int] = []
         self._read: dict[str, list[float]] = {}
@@ -182,13 +184,14 @@ class _Run:
         self._rejected = self._iterations = 0
         self._warnings: dict[str, None] = {}
 
-    def watch(self, probes: Sequence[Probe], at: Sequence[float], observer: Observer | None) -> None:
+    def watch(self, probes: Sequence[Probe], at: Sequence[float] | None, observer: Observer | None) -> None:
         """Set what is kept and called."""
         self._readers = {probe.name: reader(self._setup.elements, probe) for probe in probes}
         if len(self._readers) < len(probes):
             raise ConditionError("two probes have the same name; give each its own")
         self._read = {name: [] for name in self._readers}
-        self._due = sorted(set(at)) if observer is not None else []
+        self._due = sorted(set(at or ())) if observer is not None else []
+        self._always = at is None
         self._observer = observer
 
     def stage(
@@ -286,8 +289,10 @@ class _Run:
         self._errors.append(error)
         for name, read in self._readers.items():
             self._read[name].append(read(self._temperature, self._volumes))
-        if self._observer is not None and self._due and self._due[0] <= self._time:
+        due = bool(self._due) and self._due[0] <= self._time
+        if due:
             self._due.pop(0)
+        if self._observer is not None and (due or self._always):
             self._observer(self._time, self._temperature.copy(), dict(self._volumes))
 
     def solution(self) -> TransientSolution:

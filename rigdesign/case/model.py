@@ -18,6 +18,7 @@ from rigdesign.case.marks import Mark
 from rigdesign.case.numerics import Numerics
 from rigdesign.case.schedule import Schedule, TestPlan
 from rigdesign.case.substances import Ambient, CustomMaterial, CustomOil
+from rigdesign.case.transient import Transient
 from rigdesign.results import AssumptionRecord
 
 
@@ -51,6 +52,8 @@ class Case(Part):
     test_plan: TestPlan
     limits: Limits = Limits()
     numerics: Numerics
+    transient: Transient = Transient()
+    """For ``check --transient``."""
 
     _origin: Origin = PrivateAttr()
 

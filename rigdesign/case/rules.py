@@ -11,6 +11,7 @@ from rigdesign.case.loss_rules import loss_faults
 from rigdesign.case.paths import known_paths, nearest_paths
 from rigdesign.case.schedule_rules import schedule_faults
 from rigdesign.case.surfaces import housing_faults
+from rigdesign.case.transient_rules import transient_faults
 from rigdesign.errors import Fault
 from rigdesign.materials import MATERIALS
 from rigdesign.oil import OILS
@@ -41,7 +42,8 @@ def broken_rules(case: "Case") -> list[Fault]:
     faults = [fault for rule in rules for fault in rule(case)]
     if faults:
         return faults
-    return [fault for name, box in case.gearboxes.items() for fault in housing_faults(name, box)]
+    faults = [fault for name, box in case.gearboxes.items() for fault in housing_faults(name, box)]
+    return faults or list(transient_faults(case))
 
 
 def _substances(case: "Case") -> Iterator[Fault]:
