@@ -51,7 +51,6 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
         gears,
         iso_example,
         losses,
-        main_rig,
         mechanics,
         p1,
         ramp,
@@ -67,7 +66,7 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
         ("dynamic factor over speed", partial(response.response_rows, prototype)),
         ("ramp", partial(ramp.ramp_rows, prototype)),
         ("film coefficients and oil", films.film_rows),
-        ("thermal model of the main rig", main_rig.main_rig_rows),
+        ("thermal model of the main rig", partial(_main_rig, with_run)),
         ("tooth-loss factors", partial(losses.loss_rows, prototype)),
         ("ISO/TR 6336-30 example 1", iso_example.iso_example_rows),
         ("conduction benchmarks", benchmarks.benchmark_rows),
@@ -77,6 +76,18 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
     if with_run:
         topics.append(("run of the prototype", partial(_run, prototype, say)))
     return topics
+
+
+def _main_rig(with_run: bool) -> Iterable[ValidationRow]:
+    from rigdesign.case import load_case
+    from rigdesign.run import run_case
+    from rigdesign.validation.main_rig import main_rig_rows, rows_without_run
+    from rigdesign.validation.prototype import case_folder
+
+    if not with_run:
+        return rows_without_run()
+    folder = case_folder("uhcf_main")
+    return main_rig_rows(lambda reading: run_case(load_case(folder / f"{reading}.toml"), fidelity="quick"))
 
 
 def _run(prototype: object, say: Callable[[str], None]) -> Iterable[ValidationRow]:

@@ -2,12 +2,15 @@ import csv
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import cast
 
 import numpy as np
 import pytest
 
 from rigdesign import cli, validation
 from rigdesign.errors import OutputError, UsageError
+from rigdesign.results import HeatRow, RunResult
 from rigdesign.terminal import print_validation
 from rigdesign.validation import (
     benchmarks,
@@ -128,6 +131,30 @@ def test_what_the_case_states_is_no_gate(rows):
         r.id for r in rows if r.basis in ("input", "arithmetic") and r.verdict in ("gate held", "gate missed")
     ]
     assert not set(gates) & {"P2-eps-TG", "P2-alpha-bearing", "P2-ramp-rules"}
+
+
+def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
+    """One row per printed number and reading, from the results of runs made up here."""
+    heat = [
+        HeatRow(surface=surface, kind=kind, power_W=-power, area_m2=1.0, mean_temperature_degC=50.0)
+        for _, _, power, kind, surfaces in main_rig.HEAT
+        for surface in (surfaces[0],)
+    ]
+    thermal = SimpleNamespace(heat=heat, max_temperature_degC=178.59, max_temperature_body="gear")
+    growth = SimpleNamespace(
+        shafts=[{"shaft": shaft, "growth_mm": value} for _, shaft, value in main_rig.GROWTH],
+        seal_gaps=[{"hot_min_mm": 0.7}, {"hot_min_mm": 0.6}],
+    )
+    asked = []
+
+    def run(reading: str) -> RunResult:
+        asked.append(reading)
+        return cast(RunResult, SimpleNamespace(thermal=[thermal], growth=[growth]))
+
+    found = list(main_rig.main_rig_rows(run))
+    assert asked == ["as_published", "fitted"]
+    assert len(found) == 2 * len(list(main_rig.rows_without_run()))
+    assert all(row.deviation == pytest.approx(0.0, abs=1e-12) and row.basis == "fitted" for row in found)
 
 
 def test_speeds_without_a_response_are_told():
@@ -302,7 +329,7 @@ def test_series_stiffness_feels_every_part_of_the_loop(shipped):
 
 
 def test_rows_without_a_model_carry_the_published_text():
-    for r in (*p1.p1_rows(), *main_rig.main_rig_rows()):
+    for r in (*p1.p1_rows(), *main_rig.rows_without_run()):
         assert r.verdict == "not modelled"
         assert r.published_text
         assert r.assumptions
