@@ -46,6 +46,7 @@ def solve_point(
     point: OperatingPoint,
     *,
     start: Feedback | None = None,
+    before: PassResult | None = None,
     hold: frozenset[str] = frozenset(),
 ) -> PointResult:
     """Repeat the pass until temperatures, lengths and torques stay within the tolerances of the case.
@@ -53,6 +54,7 @@ def solve_point(
     Parameters
     ----------
     start : feedback of a neighbouring point; the cold rig when left out
+    before : last pass of a neighbouring point on the same meshes: first guess of fields and growth
     hold : arrows of the loop that are cut, by field of `Feedback`: they keep their cold values
 
     Raises
@@ -65,7 +67,7 @@ def solve_point(
     setting = None if rig.case.drivetrain is None else brace_cold(rig, point, cold)
     feedback = cold if start is None else start.hold(hold, cold)
     residuals: list[Residual] = []
-    done: PassResult | None = None
+    done = before
     for _ in range(numerics.coupling_passes):
         fresh = not residuals or residuals[-1].temperature < GROWTH_FROM
         done = one_pass(rig, point, feedback, setting, done, fresh_growth=fresh)

@@ -54,7 +54,7 @@ def run_case(case: Case, fidelity: Fidelity = "standard", progress: Progress | N
     """
     say = progress or (lambda message: None)
     clock = _Clock()
-    with _solver_errors(case), threadpool_limits(limits=1):
+    with solver_errors(case), threadpool_limits(limits=1):
         return _assemble(solve_case(case, fidelity, say, clock.lap), clock)
 
 
@@ -207,7 +207,7 @@ def _machine_error(error: OSError | ImportError) -> RigdesignError:
 
 
 @contextmanager
-def _solver_errors(case: Case) -> Iterator[None]:
+def solver_errors(case: Case) -> Iterator[None]:
     """Turn what the solvers raise into the tool's errors."""
     try:
         yield

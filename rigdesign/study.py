@@ -1,6 +1,5 @@
 """Parameter studies: the case over a grid of values, resumable, with failed points kept."""
 
-import os
 import traceback
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -8,14 +7,14 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from rigdesign.errors import CaseError, RigdesignError, UsageError
+from rigdesign.errors import CaseError, RigdesignError
 from rigdesign.report.output import prepare_output
 from rigdesign.report.results_json import to_plain
 from rigdesign.report.study_page import write_study
 from rigdesign.results import Fidelity, RunResult
 from rigdesign.study_grid import Variation, grid, parse_variation
 from rigdesign.study_ledger import Ledger, Record, point_key
-from rigdesign.study_pool import compute_all
+from rigdesign.study_pool import compute_all, worker_count
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
@@ -107,7 +106,7 @@ def run_study(
         If ``out`` cannot be written.
     """
     combinations = grid(variations)
-    count = _worker_count(workers)
+    count = worker_count(workers)
     points = [dict(zip((v.path for v in variations), values, strict=True)) for values in combinations]
     tasks, invalid = _tasks(case, points, fidelity)
     prepare_output(out)
@@ -139,14 +138,6 @@ def run_study(
     write_study(case, variations, settled, fidelity, out)
     reused = sum(task is not None for task in tasks) - len(missing)
     return StudyOutcome(points=settled, completed=len(missing), reused=reused)
-
-
-def _worker_count(workers: int | None) -> int:
-    if workers is None:
-        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    if workers < 1:
-        raise UsageError(f"workers = {workers}: at least 1 is needed; leave --workers out for one per core")
-    return workers
 
 
 def _tasks(

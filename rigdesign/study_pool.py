@@ -11,6 +11,8 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection, wait
 from typing import TypeVar
 
+from rigdesign.errors import UsageError
+
 Task = TypeVar("Task")
 Outcome = TypeVar("Outcome")
 
@@ -18,6 +20,21 @@ ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "BLIS_NUM_THREADS"),
     "1",
 )
+
+
+def worker_count(workers: int | None) -> int:
+    """The number of workers asked for, or one for each core this process may use.
+
+    Raises
+    ------
+    UsageError
+        A number below 1.
+    """
+    if workers is None:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if workers < 1:
+        raise UsageError(f"workers = {workers}: at least 1 is needed; leave --workers out for one per core")
+    return workers
 
 
 def compute_all(

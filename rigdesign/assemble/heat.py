@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -93,9 +93,6 @@ def cooler(rig: Rig, last: PassResult) -> dict[str, float | str]:
 def thermal_result(rig: Rig, result: PointResult, field: HousingField) -> ThermalResult:
     """Temperatures and heat of one housing at one held stage, with the other reading of radiation beside it."""
     name, last = field.gearbox, result.last
-    mesh = rig.models[name].mesh
-    bodies = body_temperatures(rig, field)
-    hottest = max(bodies, key=lambda body: bodies[body]["max_degC"])
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
     other = solve_housing(
@@ -103,17 +100,8 @@ def thermal_result(rig: Rig, result: PointResult, field: HousingField) -> Therma
         radiation_included=not housing.radiation_included,
     )  # fmt: skip
     readings = {housing.radiation_included: field, not housing.radiation_included: other}
-    return ThermalResult(
-        gearbox=name,
-        stage=result.point.stage,
-        max_temperature_degC=float(field.temperature.max()) - ZERO,
-        max_temperature_body=hottest,
-        heat=[_heat_row(row) for row in field.solution.balance.rows],
-        closure_relative=field.solution.balance.closure,
-        nodes=len(mesh.points),
-        elements=len(mesh.cells),
-        bodies=bodies,
-        room_heat_W=heat_to_room(field),
+    return replace(
+        solved_temperatures(rig, result, field),
         alternatives={
             f"highest_radiation_included_{str(key).lower()}_degC": float(readings[key].temperature.max())
             - ZERO
@@ -121,6 +109,25 @@ def thermal_result(rig: Rig, result: PointResult, field: HousingField) -> Therma
         }
         | {"heat_to_the_room_under_the_other_reading_W": heat_to_room(other)},
         heat_split=heat_split_rows(rig, result, field),
+    )
+
+
+def solved_temperatures(rig: Rig, result: PointResult, field: HousingField) -> ThermalResult:
+    """Temperatures and heat of one housing at one held stage as the loop left them: nothing is solved again."""
+    mesh = rig.models[field.gearbox].mesh
+    bodies = body_temperatures(rig, field)
+    return ThermalResult(
+        gearbox=field.gearbox,
+        stage=result.point.stage,
+        max_temperature_degC=float(field.temperature.max()) - ZERO,
+        max_temperature_body=max(bodies, key=lambda body: bodies[body]["max_degC"]),
+        heat=[_heat_row(row) for row in field.solution.balance.rows],
+        closure_relative=field.solution.balance.closure,
+        nodes=len(mesh.points),
+        elements=len(mesh.cells),
+        bodies=bodies,
+        room_heat_W=heat_to_room(field),
+        alternatives={},
     )
 
 
