@@ -1,9 +1,21 @@
 """Numbers an engineer can redo on paper beside the key results."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from rigdesign.checks.subject import Subject
+from rigdesign.loads import MeshModel
+from rigdesign.results import GrowthResult
+from thermal.heat_rows import HeatRow
+
+PLATE = (
+    "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)], T_h the mean of the partition; the colder box round the plate "
+    "narrows the bore further"
+)
+RING = "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)], T_h of the bore; a warmer wall round it widens it further"
 
 
 def hand_checks(subject: Subject) -> list[dict[str, Any]]:
@@ -24,7 +36,7 @@ def _loads(subject: Subject) -> list[dict[str, Any]]:
         speed = rig.shaft_speed(shaft, subject.test.point.speed)
         torque = abs(last.feedback.mesh_torque[model.name])
         stiffness, pair = model.law.mean_stiffness, model.pair
-        deflection = torque / pair.base_radii[0] / stiffness
+        deflection = torque / pair.base_radii[0] / stiffness + mean_gap(model)
         rows.append(
             _row(
                 f"mesh frequency, {model.name}", speed * pair.teeth[0] / (2.0 * math.pi),
@@ -33,16 +45,25 @@ def _loads(subject: Subject) -> list[dict[str, Any]]:
         )  # fmt: skip
         if last.response is not None:
             index = rig.mesh_names.index(model.name)
-            approach = abs(last.response.wave.approach[index].mean())
+            approach = abs(float(last.response.wave.approach[index].mean()))
             if last.response.flank[index] < 0:
                 approach -= model.law.backlash
             rows.append(
                 _row(
                     f"mean tooth deflection, {model.name}", 1e6 * approach, 1e6 * deflection, "um",
-                    "T_1 / (r_b1 c_gamma b); crowning and early contact explain the difference",
+                    "T_1 / (r_b1 c_gamma b) + mean gap of the flanks, weighted with their stiffness; early contact and "
+                    "the edges of crowned flanks that do not touch explain the difference",
                 )
             )  # fmt: skip
     return rows
+
+
+def mean_gap(model: MeshModel) -> float:
+    """Gap of the modified flanks over the path of contact and the face, weighted with the stiffness [m]."""
+    law, path = model.law, model.pair.path
+    at = law.path_start + law.path_step * np.arange(law.gap.shape[1])
+    active = (at >= path.start) & (at <= path.end)
+    return float(np.average(law.gap[:, active], weights=law.stiffness[:, active]))
 
 
 def _losses(subject: Subject) -> list[dict[str, Any]]:
@@ -83,11 +104,42 @@ def _growth(subject: Subject) -> list[dict[str, Any]]:
             )
             for shaft in result.shafts
         ]  # fmt: skip
-        rows += [
-            _row(
-                f"mean gap of seal {seal['seal']}", seal["hot_mean_mm"], seal["by_hand_mm"], "mm",
-                "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)]",
-            )
-            for seal in result.seal_gaps
-        ]  # fmt: skip
+        for seal in result.seal_gaps:
+            plate = partition_gap(subject, result, seal["seal"])
+            by_hand, formula = (1e3 * plate, PLATE) if plate is not None else (seal["by_hand_mm"], RING)
+            rows.append(_row(f"mean gap of seal {seal['seal']}", seal["hot_mean_mm"], by_hand, "mm", formula))
     return rows
+
+
+def partition_gap(subject: Subject, result: GrowthResult, seal: str) -> float | None:
+    """Hot gap [m] of a seal in a partition: a free plate widens its bore by its mean strain, however its warmth lies.
+
+    None for the seals at the ends, whose walls have no surfaces of their own. Source: disc with a free bore,
+    Timoshenko and Goodier, Theory of Elasticity, section 150.
+    """
+    shaft, _, side = seal.rpartition("_")
+    housing = subject.case.gearboxes[result.gearbox].housing
+    if housing is None or shaft not in housing.shafts:
+        return None
+    point = next(p for p in subject.points if p.point.stage == result.stage)
+    rows = point.last.fields[result.gearbox].solution.balance.rows
+    plate, journal = (
+        _mean_temperature(rows, names)
+        for names in ((f"partition_warm_{side}", f"partition_cold_{side}"), (f"shaft_{shaft}_seal_{side}",))
+    )
+    entry, materials = housing.shafts[shaft], subject.rig.materials
+    cold = subject.case.ambient.reference_temperature
+    wide = materials[housing.material].expansion_coefficient * (plate - cold)
+    thick = materials[entry.material].expansion_coefficient * (journal - cold)
+    gap = next(
+        s.radial_gap for s in subject.case.gearboxes[result.gearbox].seals.values() if s.shaft == shaft
+    )
+    return gap + 0.5 * entry.seal_diameter * (wide - thick)
+
+
+def _mean_temperature(rows: Sequence[HeatRow], surfaces: tuple[str, ...]) -> float:
+    """Area mean over some surfaces [K]."""
+    found = {row.surface: row for row in rows if row.surface in surfaces}
+    return float(
+        np.average([r.mean_temperature for r in found.values()], weights=[r.area for r in found.values()])
+    )
