@@ -1,11 +1,12 @@
-"""Print every sourced or assumed input of the case as Markdown tables, as they stand in README.md.
+"""Print every sourced or assumed input of a case as Markdown tables, as they stand in its README.md.
 
-    python cases/uhcf_prototype/list_inputs.py
+    python cases/uhcf_prototype/list_inputs.py [CASE]
 
 Parts that share key, value and note share a row: ``gearboxes.test.gears.{pinion,wheel}.teeth``.
 """
 
 import re
+import sys
 from collections.abc import Iterable, Iterator
 from itertools import product, zip_longest
 from pathlib import Path
@@ -28,7 +29,7 @@ def tables(case: Case) -> str:
             "",
             *_table(printed),
             "",
-            "### Assumed, or taken over from the main rig",
+            "### Assumed",
             "",
             *_table(assumed),
             "",
@@ -72,4 +73,4 @@ def _note(mark: Mark) -> str:
 
 
 if __name__ == "__main__":
-    print(tables(load_case(CASE)))
+    print(tables(load_case(sys.argv[1] if len(sys.argv) > 1 else CASE)))

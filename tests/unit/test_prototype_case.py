@@ -149,10 +149,12 @@ def test_every_value_of_the_test_gearbox_is_sourced_or_assumed(case: Case) -> No
     assert not marked & set(bare)
 
 
-def test_readme_lists_every_number_with_its_source(case: Case, list_inputs: ModuleType) -> None:
-    """On failure: python cases/uhcf_prototype/list_inputs.py prints the tables for README.md."""
-    readme = (FOLDER / "README.md").read_text(encoding="utf-8").splitlines()
-    missing = [row for row in list_inputs.tables(case).splitlines() if row not in readme]
+@pytest.mark.parametrize("name", ["uhcf_prototype", "uhcf_main"])
+def test_readme_lists_every_number_with_its_source(name: str, list_inputs: ModuleType) -> None:
+    """On failure: python cases/uhcf_prototype/list_inputs.py CASE prints the tables for README.md."""
+    folder = FOLDER.parent / name
+    readme = (folder / "README.md").read_text(encoding="utf-8").splitlines()
+    missing = [row for row in list_inputs.tables(load_case(folder)).splitlines() if row not in readme]
     assert missing == []
 
 
