@@ -118,6 +118,7 @@ def gear_flanks(rig: Rig, name: str, gear: str, point: OperatingPoint, condition
         density=oil.density,
         heat_capacity=oil.heat_capacity,
         kinematic_viscosity=oil.kinematic_viscosity,
+        highest_temperature=oil.highest_temperature,
     )
     if condition.correlation == "constant":
         assert condition.heat_transfer_coefficient is not None

@@ -38,6 +38,8 @@ from thermal.boundary import FilmCoefficient, FilmLaw
 from thermal.film_inputs import FilmError, not_negative, outside, positive
 
 GRAVITY = 9.81
+LIQUID = (233.15, 673.15)
+"""Film temperatures [K] for which properties are evaluated; the value at the end counts beyond, with a warning."""
 FLUNG_OFF = np.array(
     [
         (0.0, 0.0), (0.25, 0.5716), (0.49, 0.8103), (0.64, 0.9306), (0.81, 1.0406), (1.0, 1.1266), (1.21, 1.1822),
@@ -61,12 +63,28 @@ class FilmOil:
     """Oil on the flank; each property a function of the temperature [K].
 
     conductivity [W/(m K)], density [kg/m3], heat_capacity [J/(kg K)], kinematic_viscosity [m2/s]
+    highest_temperature : mean film temperature [K] above which the oil's data are not trusted
     """
 
     conductivity: Callable[[float], float]
     density: Callable[[float], float]
     heat_capacity: Callable[[float], float]
     kinematic_viscosity: Callable[[float], float]
+    highest_temperature: float = math.inf
+
+    def at(self, film: float) -> tuple[float, float, float]:
+        """Conductivity [W/(m K)], rho c [J/(m3 K)] and viscosity [m2/s] at a film temperature [K], kept in `LIQUID`."""
+        liquid = min(max(film, LIQUID[0]), LIQUID[1])
+        capacity = self.density(liquid) * self.heat_capacity(liquid)
+        return self.conductivity(liquid), capacity, self.kinematic_viscosity(liquid)
+
+    def warnings(self, film: float) -> tuple[str, ...]:
+        """Sentence for a film temperature [K] that the data of the oil do not reach."""
+        low, high = LIQUID
+        return outside(
+            "temperature of the flank film", film, low, min(self.highest_temperature, high),
+            "cool the gear or take an oil made for it", "K",
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,8 +178,8 @@ def fling_off(ring: ToothRing, wetting: Wetting, oil: FilmOil, factor: float = 1
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
         film = 0.5 * (wall + fluid)
-        conductivity, capacity = oil.conductivity(film), oil.density(film) * oil.heat_capacity(film)
-        diffusivity, viscosity = conductivity / capacity, oil.kinematic_viscosity(film)
+        conductivity, capacity, viscosity = oil.at(film)
+        diffusivity = conductivity / capacity
         value = depth = 0.0
         if frequency > 0.0:
             slowest = math.sqrt(viscosity * height / (diffusivity * radius)) / wetting.speed
@@ -184,7 +202,8 @@ def fling_off(ring: ToothRing, wetting: Wetting, oil: FilmOil, factor: float = 1
             },
             valid_range="laminar film, centrifugal acceleration above 100 g",
             source=SOURCE,
-            warnings=outside(
+            warnings=oil.warnings(film)
+            + outside(
                 "centrifugal acceleration of the flank film", gravities, 100.0, math.inf,
                 "the oil drips instead of being flung off; give a measured coefficient", "g",
             ),
@@ -204,7 +223,7 @@ def jet_renewal(ring: ToothRing, wetting: Wetting, oil: FilmOil, factor: float =
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
         film = 0.5 * (wall + fluid)
-        conductivity, capacity = oil.conductivity(film), oil.density(film) * oil.heat_capacity(film)
+        conductivity, capacity, _ = oil.at(film)
         value = 0.0
         if frequency > 0.0:
             soaked = 2.0 * math.sqrt(conductivity * capacity * frequency / math.pi)
@@ -221,7 +240,7 @@ def jet_renewal(ring: ToothRing, wetting: Wetting, oil: FilmOil, factor: float =
             },
             valid_range="upper bound: no oil flung off between two wettings",
             source="penetration theory, Higbie, Trans. AIChE 31 (1935) 365",
-            warnings=slow,
+            warnings=oil.warnings(film) + slow,
         )  # fmt: skip
 
     return law

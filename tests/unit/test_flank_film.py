@@ -104,6 +104,16 @@ def test_slow_gear_warns_and_a_standing_one_has_no_film() -> None:
         assert still.value == 0.0 and still.warnings
 
 
+def test_film_too_hot_for_its_oil_warns_and_stays_a_number() -> None:
+    oil = replace(OIL, conductivity=lambda t: 0.15 * (1.0 - 8e-4 * (t - 313.15)), highest_temperature=470.0)
+    for law in (fling_off, jet_renewal):
+        hot = law(RING, JET, oil)(5000.0, COLD)
+        assert hot.value > 0.0
+        assert "temperature of the flank film = 2708 K is outside 233.15 to 470 K" in hot.warnings[0]
+        assert hot.value == law(RING, JET, oil)(4000.0, COLD).value
+        assert law(RING, JET, oil)(WALL, COLD).warnings == ()
+
+
 def test_heat_flung_off_grows_to_its_end() -> None:
     times = [0.01 * i for i in range(500)]
     heats = [heat_flung_off(time) for time in times]
