@@ -142,7 +142,7 @@ def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
     ]
     thermal = SimpleNamespace(heat=heat, max_temperature_degC=178.59, max_temperature_body="gear")
     growth = SimpleNamespace(
-        shafts=[{"shaft": shaft, "growth_mm": value} for _, shaft, value in main_rig.GROWTH],
+        shafts=[{"shaft": shaft, "growth_mm": value} for _, shaft, value, _ in main_rig.GROWTH],
         seal_gaps=[{"hot_min_mm": 0.7}, {"hot_min_mm": 0.6}],
     )
     asked = []
