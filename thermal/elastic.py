@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from thermal.fe.aggregation import rigid_modes
+from thermal.fe.curved import linear_stiffness
 from thermal.fe.direct import solve_direct
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray, IndexArray
@@ -89,7 +90,6 @@ class ElasticSetup:
         self._alpha[elements.mesh.cells] = alpha[:, None]
         self._factor = alpha * young / (1.0 - 2.0 * poisson)
         fine = elements.elasticity(young, poisson, elements.fine)
-        coarse = elements.elasticity(young, poisson, elements.coarse)
         self.free = FreePieces.of(elements, fixed)
         """Pieces on six determinate supports, solved without them."""
         held = fixed & ~self.free.nodes[:, None]
@@ -97,7 +97,7 @@ class ElasticSetup:
         self._held = held.ravel()
         held_corners = held[elements.corners].ravel()
         self.matrix = constrain(elements.fine.block_matrix(fine), self._held)
-        coarse_matrix = constrain(elements.coarse.block_matrix(coarse), held_corners)
+        coarse_matrix = constrain(linear_stiffness(elements, young, poisson), held_corners)
         modes = rigid_modes(elements.mesh.points[elements.corners])
         self.multigrid = TwoLevelMultigrid(
             self.matrix, coarse_matrix, elements.prolongation, self._held, held_corners, modes

@@ -1,8 +1,9 @@
 """The linear stiffness of a curved mesh: straight cells where they serve, the curved ones themselves elsewhere.
 
-Between the corners of a strongly curved cell (a thin ring beside a coarse arc) the straight-sided cell is flat,
-turned inside out or much too large. Its stiffness then has little to do with that of the mesh and multigrid
-stalls. For such cells alone the linear stiffness is P^T K P with the prolongation P, which is exact.
+Where a thin cell lies beside a coarse arc, its mid-side nodes are farther off their chords than the cell is
+thick. The prolongation then strains it by what the slopes of its neighbours differ, which the stiffness of
+the straight-sided cell does not know, and multigrid stalls. For such cells alone the linear stiffness is
+P^T K P with the prolongation P, which is exact.
 Source: Briggs, Henson, McCormick, A Multigrid Tutorial, 2nd ed., ch. 10 (variational coarse operator).
 """
 
@@ -14,22 +15,29 @@ from thermal.fe.levels import Level
 from thermal.fe.reference import rules_of
 from thermal.fe.shapes import FloatArray, IndexArray
 
-STRETCH = 0.3
-"""A cell is strongly curved where its map differs from that of its straight-sided cell by this share."""
+BENT = 0.5
+"""Distance of a node from the middle of its corners, relative to the thickness of its cell, above which the
+straight-sided cell does not stand for the curved one."""
 
 
-def curved_cells(elements: FiniteElements) -> IndexArray:
-    """Cells (k,) whose corners alone do not tell their shape.
+def bent_cells(elements: FiniteElements) -> IndexArray:
+    """Cells (k,) whose inner nodes are farther than BENT times their thickness from the straight-sided cell.
 
-    The largest entry of J J_0^-1 - I over the points of the stiffness rule exceeds STRETCH; J and J_0 are the
-    derivatives of physical by reference coordinates of the cell and of the straight-sided one, in its middle.
+    The thickness is the smallest distance between two sides on which a reference coordinate is constant, in
+    tetrahedra from a corner to its side, at the points of the stiffness rule.
     """
-    corners = elements.mesh.points[elements.mesh.cells[:, : elements.shape.n_corners]]
-    rule = rules_of(elements.shape).stiffness
-    slopes = elements.shape.corner_gradients(rule.points)
-    straight = np.einsum("qbj,ebi->eqij", slopes, corners, optimize=True)
-    change = np.einsum("eqij,eqjk->eqik", straight, elements.fine.inverse, optimize=True) - np.eye(3)
-    return np.flatnonzero(np.abs(change).max(axis=(1, 2, 3)) > STRETCH).astype(np.int32)
+    points, cells, shape = elements.mesh.points, elements.mesh.cells, elements.shape
+    off = np.zeros(len(cells))
+    for node, corners in enumerate(shape.parents, start=shape.n_corners):
+        middle = points[cells[:, list(corners)]].mean(axis=1)
+        np.maximum(off, np.linalg.norm(points[cells[:, node]] - middle, axis=1), out=off)
+    inverse = elements.fine.inverse
+    slope = np.linalg.norm(inverse, axis=3).max(axis=(1, 2))
+    if shape.n_corners == 4:
+        slope = np.maximum(slope, np.linalg.norm(inverse.sum(axis=2), axis=2).max(axis=1))
+    else:
+        slope *= 0.5
+    return np.flatnonzero(off * slope > BENT).astype(np.int32)
 
 
 def linear_stiffness(elements: FiniteElements, young: FloatArray, poisson: FloatArray) -> sparse.bsr_array:
@@ -37,22 +45,22 @@ def linear_stiffness(elements: FiniteElements, young: FloatArray, poisson: Float
 
     young [Pa], poisson [-] : (n_cells,)
     """
-    curved = curved_cells(elements)
+    bent = bent_cells(elements)
     straight = young.copy()
-    straight[curved] = 0.0
+    straight[bent] = 0.0
     matrix = elements.coarse.block_matrix(elements.coarse.elasticity(straight, poisson))
-    if not len(curved):
+    if not len(bent):
         return matrix
-    nodes, packed = np.unique(elements.mesh.cells[curved], return_inverse=True)
+    nodes, packed = np.unique(elements.mesh.cells[bent], return_inverse=True)
     rule = rules_of(elements.shape).stiffness
     level = Level.of(
         np.ascontiguousarray(elements.mesh.points[nodes]),
-        packed.reshape(len(curved), -1).astype(np.int32),
+        packed.reshape(len(bent), -1).astype(np.int32),
         elements.shape.values(rule.points),
         elements.shape.gradients(rule.points),
         rule,
     )
-    stiffness = level.block_matrix(level.elasticity(young[curved], poisson[curved]))
+    stiffness = level.block_matrix(level.elasticity(young[bent], poisson[bent]))
     way = sparse.kron(sparse.csr_array(elements.prolongation)[nodes], np.eye(3), format="csr")
     own = sparse.bsr_array(way.T @ sparse.csr_array(stiffness) @ way, blocksize=(3, 3))
     whole = sparse.bsr_array(matrix + own)
