@@ -1,5 +1,7 @@
 """Multigrid gives what a direct solver gives, in a number of iterations that does not grow with the mesh."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -9,7 +11,7 @@ from thermal.fe import direct
 from thermal.fe.aggregation import rigid_modes
 from thermal.fe.direct import Backend, DirectError, available_backend
 from thermal.fe.elements import FiniteElements
-from thermal.fe.mesh import box_mesh
+from thermal.fe.mesh import box_mesh, disjoint_union
 from thermal.fe.solver import (
     LowRank,
     NotConverged,
@@ -181,3 +183,28 @@ def test_a_backend_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -
     assert solve_direct(matrix, load).shape == load.shape
     with pytest.raises(DirectError, match="needs the package pypardiso"):
         solve_direct(matrix, load, "pardiso")
+
+
+@pytest.mark.parametrize("small", [1, 2])
+def test_a_small_loose_piece_beside_a_large_one_costs_nothing(small: int) -> None:
+    # it is one aggregate levels before the large one is, and must go down to the last level with it
+    large = box_mesh((1.0, 1.0, 1.0), (9, 9, 9), name="large")
+    piece = box_mesh((0.1, 0.1, 0.1), (small,) * 3, origin=(2.0, 0.0, 0.0), name="small")
+    piece = replace(piece, surfaces={f"small_{name}": nodes for name, nodes in piece.surfaces.items()})
+    mesh = disjoint_union(large, piece)
+    elements = FiniteElements(mesh)
+    n = len(mesh.cells)
+    levels = [
+        level.block_matrix(elements.elasticity(np.full(n, 210e9), np.full(n, 0.3), level))
+        for level in (elements.fine, elements.coarse)
+    ]
+    nothing = [np.zeros(level.shape[0], dtype=bool) for level in levels]
+    modes = rigid_modes(mesh.points[elements.corners])
+    multigrid = TwoLevelMultigrid(*levels, elements.prolongation, *nothing, modes)
+    excess = 100.0 * np.sin(3.0 * mesh.points).sum(axis=1)
+    load = elements.expansion_load(np.full(n, 6e6), excess).ravel()
+    assert conjugate_gradient(levels[0], load, multigrid, tolerance=1e-8).iterations <= 16
+    vector = np.random.default_rng(0).standard_normal(len(load))
+    for _ in range(15):
+        vector = multigrid(levels[0] @ (vector / np.linalg.norm(vector)))
+    assert np.linalg.norm(vector) < 1.05

@@ -21,6 +21,9 @@ it on every further level."""
 DEPENDENT = 1e-8
 """A mode adds nothing to a group if less than this share of it is left beside the others."""
 
+NOTHING = 1e-12
+"""A diagonal entry below this share of the largest is rounding."""
+
 
 Blocks = sparse.bsr_array
 """A matrix of blocks, unknowns per node by unknowns per node (or per group)."""
@@ -51,9 +54,11 @@ def coarsen(matrix: Blocks, modes: FloatArray, scaled_largest: float, level: int
     limit = (STRONG * 0.5**level) ** 2
     strong = sizes**2 > limit * diagonal[rows] * diagonal[matrix.indices]
     group = kernels.aggregates(matrix.indptr, matrix.indices, strong)
+    alone = (group < 0) & np.any(modes.reshape(len(group), -1) != 0.0, axis=1)
+    group[alone] = group.max(initial=-1) + 1 + np.arange(np.count_nonzero(alone), dtype=np.int32)
     tentative, coarse_modes = _tentative(group, modes, matrix.blocksize[0])
     points = np.einsum("kii->ki", matrix.data[on_diagonal])
-    inverse = (4.0 / 3.0 / scaled_largest) / np.where(points > 0.0, points, 1.0)
+    inverse = (4.0 / 3.0 / scaled_largest) * inverse_points(points)
     slope = sparse.bsr_array(matrix @ tentative)
     slope.data *= inverse[_rows(slope)][:, :, None]
     prolongation = sparse.bsr_array(tentative - slope)
@@ -64,6 +69,12 @@ def coarsen(matrix: Blocks, modes: FloatArray, scaled_largest: float, level: int
     places, number = np.nonzero(diagonal == 0.0)
     coarse.data[on_diagonal[places], number, number] = diagonal.max(initial=1.0)
     return CoarserLevel(prolongation, coarse, coarse_modes)
+
+
+def inverse_points(diagonal: FloatArray) -> FloatArray:
+    """Inverse of diagonal entries; zero for those that are zero but for rounding: loose pieces of one group."""
+    sound = diagonal > NOTHING * diagonal.max(initial=0.0)
+    return np.asarray(np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=sound))
 
 
 def as_blocks(matrix: sparse.csr_array | Blocks) -> Blocks:

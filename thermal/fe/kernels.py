@@ -193,7 +193,7 @@ def diagonal_blocks(indptr: Integers, indices: Integers, data: Numbers) -> Numbe
 
 @njit(cache=True)
 def aggregates(indptr: Integers, indices: Integers, strong: NDArray[np.bool_]) -> Integers:
-    """(n,) number of the aggregate of every node, -1 for a node without strong neighbours.
+    """(n,) number of the aggregate of every node, -1 for a node that nothing couples strongly.
 
     strong : (nnz,) which entries couple. First every node whose strong neighbours are all free makes an
     aggregate with them, then the rest join a neighbour's, then what is left makes its own.

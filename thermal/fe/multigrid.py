@@ -17,7 +17,7 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 
 from thermal.fe import kernels
-from thermal.fe.aggregation import as_blocks, coarsen
+from thermal.fe.aggregation import as_blocks, coarsen, inverse_points
 from thermal.fe.shapes import FloatArray
 
 Matrix = sparse.csr_array | sparse.bsr_array
@@ -98,7 +98,7 @@ class Smoother:
     def __init__(self, matrix: Matrix, product: Product, degree: int) -> None:
         self._single = _inverse_diagonal(matrix).astype(np.float32)
         self._degree = degree
-        self.largest = 1.05 * _largest_eigenvalue(product, self._single)
+        self.largest = 1.1 * _largest_eigenvalue(product, self._single)
 
     def __call__(self, product: Product | _WithLowRank, x: Numbers | None, residual: Numbers) -> Numbers:
         """Improve ``x`` (zero if None), to which ``residual`` belongs."""
@@ -159,7 +159,7 @@ class AggregationHierarchy:
         while matrix.shape[0] > DENSE:
             product = Product(matrix, np.float32)
             smooth = Smoother(matrix, product, 2)
-            by_point = (1.0 / _positive(matrix.diagonal())).astype(np.float32)
+            by_point = inverse_points(matrix.diagonal()).astype(np.float32)
             coarser = coarsen(blocks, modes, _largest_eigenvalue(product, by_point), len(self._stages))
             if not 0 < coarser.matrix.shape[0] < 0.7 * matrix.shape[0]:
                 break
@@ -216,18 +216,14 @@ def scaled(inverse: Numbers, residual: Numbers) -> Numbers:
     return y
 
 
-def _positive(diagonal: FloatArray) -> FloatArray:
-    return np.where(diagonal > 0.0, diagonal, 1.0)
-
-
 def _inverse_diagonal(matrix: Matrix) -> FloatArray:
     """Inverse of the diagonal (n,), or of the 3x3 diagonal blocks (n, 3, 3)."""
     if not (isinstance(matrix, sparse.bsr_array) and matrix.blocksize == (3, 3)):
-        return 1.0 / _positive(matrix.diagonal())
+        return inverse_points(matrix.diagonal())
     return np.asarray(np.linalg.inv(kernels.diagonal_blocks(matrix.indptr, matrix.indices, matrix.data)))
 
 
-def _largest_eigenvalue(matrix: Product, inverse: Numbers, steps: int = 10) -> float:
+def _largest_eigenvalue(matrix: Product, inverse: Numbers, steps: int = 12) -> float:
     """Largest eigenvalue of inverse @ matrix, single precision, from a short Lanczos run with a fixed start."""
     n = inverse.shape[0] * (1 if inverse.ndim == 1 else 3)
     v: Numbers = np.cos(1.0 + np.arange(n) * 2.399963).astype(np.float32)
