@@ -13,13 +13,16 @@ import numpy as np
 from thermal.balance import HeatBalance, heat_balance
 from thermal.condition_checks import Condition, ConditionError, check_conditions
 from thermal.conduction_setup import ConductionSetup as ConductionSetup
-from thermal.conduction_terms import ConductionProblem, Preconditioner
+from thermal.conduction_terms import ConductionProblem, Linearisation, Preconditioner
 from thermal.conductivity import Conductivity
 from thermal.fe.mesh import FloatArray, NamedMesh
 from thermal.fe.solver import NotConverged, gmres
 
 CLOSURE = 1e-8
 """Greatest allowed gap of the heat balance relative to the heat turned over."""
+
+CONTRACTION = 0.1
+"""Fall of the residual in a Newton step of a time step below which the Jacobian is made afresh."""
 
 SMALLEST_STEP = 1e-2
 """Share of a Newton step that is taken even if the residual rises."""
@@ -50,6 +53,7 @@ class NewtonResult:
     residuals: tuple[float, ...]
     linear_iterations: tuple[int, ...]
     preconditioner: Preconditioner | None
+    linear: Linearisation | None
 
 
 def solve_steady(
@@ -109,10 +113,13 @@ def newton(
     tolerance: float,
     max_steps: int = 30,
     preconditioner: Preconditioner | None = None,
+    linear: Linearisation | None = None,
 ) -> NewtonResult:
     """Iterate on nodes and volumes from ``field`` (n_nodes + m,) until the residual is within tolerance.
 
     preconditioner : of a problem nearby, taken as it is; made from the first Jacobian if None
+    linear : Jacobian of a time step nearby; a time step keeps its Jacobian as long as the residual falls by
+        ``CONTRACTION`` from step to step
 
     Raises NotConverged with its history and the hottest place.
     """
@@ -125,7 +132,7 @@ def newton(
         limit = max(tolerance * turned, problem.roundoff(field))
         history.append(size / turned if turned > 0.0 else 0.0)
         if size <= limit:
-            return NewtonResult(field, tuple(history), tuple(iterations), preconditioner)
+            return NewtonResult(field, tuple(history), tuple(iterations), preconditioner, linear)
         if len(iterations) == max_steps:
             raise NotConverged(
                 f"Newton: residual {history[-1]:.3g} of the heat after {max_steps} steps is above "
@@ -133,7 +140,9 @@ def newton(
                 "nearer field",
                 tuple(history),
             )
-        linear = problem.linearise(field)
+        slow = len(history) > 1 and history[-1] > CONTRACTION * history[-2]
+        if linear is None or problem.storage is None or slow:
+            linear = problem.linearise(field)
         if preconditioner is None:
             preconditioner = problem.preconditioner(linear, field)
         elif problem.storage is None:

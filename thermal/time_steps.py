@@ -19,7 +19,7 @@ import numpy as np
 from thermal.balance import HeatBalance, heat_balance
 from thermal.capacity import HeatCapacity, Storage
 from thermal.conduction import newton
-from thermal.conduction_terms import ConductionProblem, Preconditioner
+from thermal.conduction_terms import ConductionProblem, Linearisation, Preconditioner
 from thermal.fe.mesh import FloatArray
 
 GAMMA = 1.0 - math.sqrt(0.5)
@@ -37,7 +37,7 @@ GROWTH = (0.2, 2.5)
 KEPT = (0.9, 1.3)
 """Ratios inside of which the step stays as it is, and with it the matrix of the preconditioner."""
 
-NEAR = 2.0
+NEAR = 4.0
 """Ratio of step lengths up to which a preconditioner serves."""
 
 STALE = 25
@@ -75,11 +75,12 @@ class Stepper:
         self.capacity = capacity
         self._tolerance = tolerance
         self._preconditioner: Preconditioner | None = None
-        self._rate = 0.0
+        self._linear: Linearisation | None = None
+        self._rate = self._linear_rate = 0.0
 
     def forget(self) -> None:
-        """Drop the preconditioner: the conditions have changed."""
-        self._preconditioner = None
+        """Drop preconditioner and Jacobian: the conditions have changed."""
+        self._preconditioner = self._linear = None
 
     def step(
         self, problem_at: ProblemAt, time: float, dt: float, field: FloatArray, slope: FloatArray | None
@@ -112,14 +113,22 @@ class Stepper:
         rate = 1.0 / (GAMMA * dt)
         if not self._rate / NEAR < rate < self._rate * NEAR:
             self._preconditioner, self._rate = None, rate
+        if rate != self._linear_rate:
+            self._linear, self._linear_rate = None, rate
         storing = problem.storing(Storage(self.capacity, problem.volumes.capacity, rate, base))
         start = guess if guess.min() > 0.0 else base
         start = start if start.min() > 0.0 else np.full_like(base, float(np.abs(base).mean()))
         result = newton(
-            storing, storing.start(start), self._tolerance, NEWTON_STEPS, preconditioner=self._preconditioner
+            storing,
+            storing.start(start),
+            self._tolerance,
+            NEWTON_STEPS,
+            preconditioner=self._preconditioner,
+            linear=self._linear,
         )
         stale = max(result.linear_iterations, default=0) > STALE
         self._preconditioner = None if stale else result.preconditioner
+        self._linear = result.linear
         n = problem.n_nodes
         balance = heat_balance(
             problem.setup,
