@@ -33,6 +33,7 @@ def check(
     *,
     out: Path | None = None,
     fidelity: Fidelity = "standard",
+    ranges: Annotated[bool, Parameter(negative=())] = False,
     json: bool = False,
     fail_on: Literal["fail", "warn"] = "fail",
 ) -> int:
@@ -46,6 +47,8 @@ def check(
         Folder for results.json, report.html, junit.xml, fields and curves.
     fidelity
         Size of the models: quick, standard or reference.
+    ranges
+        Move every assumed input to both ends of its range, one at a time: a check passes only if it holds there too.
     json
         Print results.json on stdout; everything else goes to stderr.
     fail_on
@@ -61,6 +64,10 @@ def check(
         prepare_output(out)
     with Progress() as progress:
         result = run_case(loaded, fidelity=fidelity, progress=progress)
+        if ranges:
+            from rigdesign.ranges import with_ranges
+
+            result = with_ranges(loaded, result, progress=progress, count=progress.count)
         if out is not None:
             progress("writing report")
             write_results(result, out)

@@ -1,12 +1,15 @@
 """What a run returns: immutable records, named as they stand in results.json."""
 
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermal.fe.mesh import NamedMesh
+
+if TYPE_CHECKING:
+    from rigdesign.ranges_result import RangesResult
 
 Verdict = Literal["pass", "warn", "fail", "not applicable"]
 Role = Literal["specimen", "rig"]
@@ -306,4 +309,6 @@ class RunResult:
     not_modelled: list[str]
     warnings: list[Finding]
     timings_s: dict[str, float]
+    ranges: "RangesResult | None" = None
+    """With `--ranges`: verdicts and margins over the ranges of the assumed inputs."""
     fields: list[TemperatureField] = field(repr=False)

@@ -8,12 +8,14 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
+from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
 from rigdesign.results import Check, RunResult
 
 if TYPE_CHECKING:
+    from rigdesign.ranges_result import RangesResult
     from rigdesign.system import Finding
     from rigdesign.validation import ValidationRow
 
@@ -49,9 +51,21 @@ class Progress:
         if self._status is not None:
             self._status.stop()
 
+    def count(self, done: int, whole: int, last: str) -> None:
+        """Show how many of many are done as a bar; a line for every tenth where the output is no terminal."""
+        if self._status is not None:
+            row = Table.grid(padding=(0, 1))
+            row.add_row(self._elapsed(), ProgressBar(whole, done, width=30), f"{done} of {whole}", Text(last))
+            self._status.update(row)
+        elif done == whole or 10 * done // whole > 10 * (done - 1) // whole:
+            self(f"{done} of {whole}, last {last}")
+
+    def _elapsed(self) -> str:
+        return f"{time.perf_counter() - self._started:6.1f} s"
+
     def __call__(self, message: str) -> None:
         """Show ``message`` with the seconds since the start."""
-        text = f"{time.perf_counter() - self._started:6.1f} s  {message}"
+        text = f"{self._elapsed()}  {message}"
         if self._status is not None:
             self._status.update(text)
         else:
@@ -81,9 +95,26 @@ def print_checks(result: RunResult, out: Path | None) -> None:
             )
     for record in result.warnings:
         console.print(Text(f"note {record.id}: ", "yellow") + Text(record.text))
+    if result.ranges is not None:
+        _print_ranges(console, result.ranges)
     console.print(Text("verdict: ") + Text(result.verdict, STYLES[result.verdict]))
     if out is not None:
         console.print(f"report: {out / 'report.html'}")
+
+
+def _print_ranges(console: Console, ranges: "RangesResult") -> None:
+    """How far the ranges of the assumed inputs reach, and the ends that have no result."""
+    console.print(Text("ranges: ", "bold") + Text(ranges.method))
+    hottest = ranges.max_temperature
+    if hottest is not None:
+        console.print(
+            f"highest temperature over the ranges: {hottest.low_degC:.1f} to {hottest.high_degC:.1f} degC, stated "
+            f"{hottest.stated_degC:.1f} degC"
+        )
+    for entry in ranges.inputs:
+        for value, error in ((entry.low, entry.low_error), (entry.high, entry.high_error)):
+            if error is not None:
+                console.print(Text("no result: ", "yellow") + Text(f"{entry.path} = {value}: {error}"))
 
 
 def _check_cells(check: Check) -> tuple[Text, ...]:

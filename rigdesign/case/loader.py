@@ -35,17 +35,27 @@ def load_case(path: str | Path) -> Case:
 
 def changed(case: Case, path: str, value: object) -> Case:
     """A copy of ``case`` with the value at ``path`` replaced; see ``Case.with_value``."""
+    return changed_together(case, {path: value})
+
+
+def changed_together(case: Case, values: Mapping[str, object]) -> Case:
+    """A copy of ``case`` with several values replaced by path, validated once: they may have to agree.
+
+    Raises
+    ------
+    CaseError
+        A path that does not exist, or faults of the changed case.
+    """
     tree = case.origin.tree
     plain, _, _ = take_off(dict(tree))
-    places = _places(path, plain)
-    if not places:
-        meant = nearest_paths(path, known_paths(Case, plain))
-        remedy = (
-            "did you mean " + " or ".join(meant) + "?" if meant else "see the schema for the paths of a case"
-        )
-        raise CaseError([Fault(path, "", "no such path in this case", remedy)], str(case.path))
-    for place, slot in places.items():
-        tree = _replaced(tree, place.split("."), _coerced(value, slot))
+    for path, value in values.items():
+        places = _places(path, plain)
+        if not places:
+            meant = nearest_paths(path, known_paths(Case, plain))
+            remedy = "did you mean " + " or ".join(meant) + "?" if meant else "see the schema for its paths"
+            raise CaseError([Fault(path, "", "no such path in this case", remedy)], str(case.path))
+        for place, slot in places.items():
+            tree = _replaced(tree, place.split("."), _coerced(value, slot))
     return _build(tree, case.path)
 
 

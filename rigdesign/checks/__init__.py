@@ -5,15 +5,19 @@ from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.subject import Subject
 from rigdesign.results import Check
 
-__all__ = ["Subject", "all_checks"]
+__all__ = ["Subject", "all_checks", "held_checks"]
 
 
 def all_checks(subject: Subject) -> list[Check]:
     """Every check in the order of the report, each with the assumed inputs it rests on."""
-    checks = [
+    return [with_assumptions(subject.case, check) for check in held_checks(subject)]
+
+
+def held_checks(subject: Subject) -> list[Check]:
+    """Every check in the order of the report, its assumed inputs left out."""
+    return [
         *dynamics.checks(subject),
         *strength.checks(subject),
         *thermal.checks(subject),
         *ramp.checks(subject),
     ]
-    return [with_assumptions(subject.case, check) for check in checks]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rigdesign import __version__
 from rigdesign.report import numbers, views
 from rigdesign.report.drawing import drawing_style, inline_svg
+from rigdesign.report.ranges_section import ranges_context
 from rigdesign.results import GearboxDynamics, RunResult
 
 if TYPE_CHECKING:
@@ -55,6 +56,7 @@ def environment() -> "Environment":
         quantity=numbers.quantity_text,
         limit=numbers.limit_text,
         margin=numbers.margin_text,
+        margin_unit=numbers.margin_unit,
         bar=views.bar_width,
         columns=views.columns,
         is_number=views.is_number,
@@ -90,6 +92,7 @@ def _context(result: RunResult, draw: _Figures) -> dict[str, Any]:
         "main_stage": views.main_stage(result),
         **_dynamics_figures(result, draw),
         **_heat_figures(result, draw),
+        **ranges_context(result, draw),
     }
 
 

@@ -48,6 +48,8 @@ def results_document(result: RunResult) -> dict[str, Any]:
         "warnings": result.warnings,
         "timings_s": result.timings_s,
     }
+    if result.ranges is not None:
+        document["ranges"] = result.ranges
     plain: dict[str, Any] = to_plain(document)
     return plain
 
