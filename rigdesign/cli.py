@@ -33,6 +33,7 @@ def check(
     *,
     out: Path | None = None,
     fidelity: Fidelity = "standard",
+    transient: Annotated[bool, Parameter(negative=())] = False,
     ranges: Annotated[bool, Parameter(negative=())] = False,
     json: bool = False,
     fail_on: Literal["fail", "warn"] = "fail",
@@ -47,6 +48,8 @@ def check(
         Folder for results.json, report.html, junit.xml, fields and curves.
     fidelity
         Size of the models: quick, standard or reference.
+    transient
+        Follow temperatures and clearances over warm-up, schedule, stops and soak-back as well.
     ranges
         Move every assumed input to both ends of its range, one at a time: a check passes only if it holds there too.
     json
@@ -63,7 +66,7 @@ def check(
     if out is not None:
         prepare_output(out)
     with Progress() as progress:
-        result = run_case(loaded, fidelity=fidelity, progress=progress)
+        result = run_case(loaded, fidelity=fidelity, progress=progress, transient=transient)
         if ranges:
             from rigdesign.ranges import with_ranges
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.results_transient import TransientResult
 from thermal.fe.mesh import NamedMesh
 
 if TYPE_CHECKING:
@@ -309,6 +310,8 @@ class RunResult:
     not_modelled: list[str]
     warnings: list[Finding]
     timings_s: dict[str, float]
+    transient: TransientResult | None = None
+    """With ``--transient``."""
     ranges: "RangesResult | None" = None
     """With `--ranges`: verdicts and margins over the ranges of the assumed inputs."""
     fields: list[TemperatureField] = field(repr=False)

@@ -17,24 +17,28 @@ from rigdesign.assemble.curves import solve_curves
 from rigdesign.assemble.dynamics import DynamicRun, dynamics_result
 from rigdesign.assemble.findings import not_modelled, warnings_of
 from rigdesign.assemble.hand import hand_checks
-from rigdesign.bearing_films import solve_bearings
 from rigdesign.case.model import Case
 from rigdesign.checks import Subject, all_checks
 from rigdesign.coupling import PointResult, governing_point, solve_point
 from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError, UsageError
-from rigdesign.loads import mesh_models
-from rigdesign.losses import mesh_losses, rotating_losses
 from rigdesign.ramp_run import held_points, run_ramp, schedule_of
 from rigdesign.results import AssumptionRecord, Check, Fidelity, Finding, LossRow, RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rules import overall
+from rigdesign.stage_losses import stage_losses
 from rigdesign.state import OperatingPoint
 from rigdesign.system import gmsh_remedy, missing_gmsh_libraries
 
 Progress = Callable[[str], None]
 
 
-def run_case(case: Case, fidelity: Fidelity = "standard", progress: Progress | None = None) -> RunResult:
+def run_case(
+    case: Case,
+    fidelity: Fidelity = "standard",
+    progress: Progress | None = None,
+    *,
+    transient: bool = False,
+) -> RunResult:
     """Compute a case and hold it against its limits.
 
     Parameters
@@ -42,6 +46,7 @@ def run_case(case: Case, fidelity: Fidelity = "standard", progress: Progress | N
     case : from `load_case`
     fidelity : size of the models
     progress : called with what is being computed
+    transient : follow temperatures and clearances over the schedule and its events as well
 
     Raises
     ------
@@ -55,7 +60,15 @@ def run_case(case: Case, fidelity: Fidelity = "standard", progress: Progress | N
     say = progress or (lambda message: None)
     clock = _Clock()
     with solver_errors(case), threadpool_limits(limits=1):
-        return _assemble(solve_case(case, fidelity, say, clock.lap), clock)
+        subject = solve_case(case, fidelity, say, clock.lap)
+        result = _assemble(subject, clock)
+        if not transient:
+            return result
+        from rigdesign.assemble.transient import with_transient
+
+        result = with_transient(subject, result, say)
+        clock.lap("transient")
+        return result
 
 
 def solve_case(
@@ -159,15 +172,7 @@ def _all_losses(rig: Rig, points: list[PointResult]) -> list[LossRow]:
 
 
 def _stage_losses(rig: Rig, point: OperatingPoint, test: PointResult) -> list[LossRow]:
-    share = point.torque / test.point.torque if test.point.torque else 0.0
-    feedback = replace(
-        test.last.feedback,
-        mesh_torque={name: share * torque for name, torque in test.last.feedback.mesh_torque.items()},
-        bearing_heat=dict.fromkeys(test.last.feedback.bearing_heat, 0.0),
-    )
-    models = mesh_models(rig, point, feedback)
-    turning = rotating_losses(rig, point, feedback, models, solve_bearings(rig, point, feedback))
-    return heat.loss_rows(point.stage, [*turning, *mesh_losses(rig, point, models, feedback=feedback)])
+    return heat.loss_rows(point.stage, stage_losses(rig, point, test).losses)
 
 
 def _assumptions(case: Case, checks: list[Check]) -> list[AssumptionRecord]:

@@ -59,6 +59,7 @@ RESTS = {
     ),
     "clearance.bearing_clearance": HEAT,
     "clearance.seal_travel.*": GROWN,
+    "transient.*": (*GROWN, "transient"),
     "bearing.*": (*BEARINGS, *HEAT, "gearboxes.*.gears.*.position"),
     "oil.flow": ("gearboxes.*.oil.flow", "gearboxes.*.bearing_oil.flow"),
     "oil.*": HEAT,

@@ -10,6 +10,7 @@ from rigdesign import __version__
 from rigdesign.report import numbers, views
 from rigdesign.report.drawing import drawing_style, inline_svg
 from rigdesign.report.ranges_section import ranges_context
+from rigdesign.report.transient_section import transient_figures
 from rigdesign.results import GearboxDynamics, RunResult
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ def _context(result: RunResult, draw: _Figures) -> dict[str, Any]:
         **_dynamics_figures(result, draw),
         **_heat_figures(result, draw),
         **ranges_context(result, draw),
+        "transient_figures": transient_figures(result.transient, draw),
     }
 
 

@@ -50,6 +50,8 @@ def results_document(result: RunResult) -> dict[str, Any]:
     }
     if result.ranges is not None:
         document["ranges"] = result.ranges
+    if result.transient is not None:
+        document["transient"] = result.transient
     plain: dict[str, Any] = to_plain(document)
     return plain
 

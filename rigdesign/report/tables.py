@@ -7,6 +7,7 @@ from typing import Any
 
 from rigdesign.report.fields import file_stem
 from rigdesign.report.results_json import SIGNIFICANT_DIGITS
+from rigdesign.report.transient_section import transient_tables
 from rigdesign.results import (
     DynamicFactorPoint,
     DynamicsResult,
@@ -41,6 +42,7 @@ def curve_tables(result: RunResult) -> dict[str, str]:
         tables["seal_gaps.csv"] = _seal_gaps(result)
     if result.dynamics is not None:
         tables.update(_dynamics(result.dynamics))
+    tables.update(transient_tables(result.transient))
     return tables
 
 

@@ -1,0 +1,52 @@
+"""The thermal course in the report and as curves: figures by course, one table of all steps a course."""
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from rigdesign.report.fields import file_stem
+from rigdesign.results_transient import TransientCurve, TransientResult
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+    from matplotlib.figure import Figure
+
+
+def transient_figures(
+    result: TransientResult | None, draw: Callable[["Figure", str], "Markup"]
+) -> dict[str, Any]:
+    """Figures of every course by its title; none without a thermal course."""
+    if result is None:
+        return {}
+    from rigdesign.report.figures_transient import transient_figure
+
+    return {
+        f"{curve.gearbox}, {curve.branch.replace('_', ' ')}": draw(
+            transient_figure(result, curve),
+            f"Temperatures and clearances of gearbox {curve.gearbox} over the course {curve.branch}",
+        )
+        for curve in result.curves
+    }
+
+
+def transient_tables(result: TransientResult | None) -> Iterator[tuple[str, str]]:
+    """File name and CSV text of every course."""
+    from rigdesign.report.tables import csv_text
+
+    for curve in () if result is None else result.curves:
+        columns = _columns(curve)
+        rows = zip(*columns.values(), strict=True)
+        yield f"{file_stem('transient', curve.gearbox, curve.branch)}.csv", csv_text(list(columns), rows)
+
+
+def _columns(curve: TransientCurve) -> dict[str, list[Any]]:
+    return {
+        "time [s]": curve.time_s,
+        "phase": curve.phase,
+        "speed [rpm]": curve.speed_rpm,
+        **{f"{place} [degC]": values for place, values in curve.temperatures_degC.items()},
+        **{
+            f"{quantity} {place} [mm]": values
+            for quantity, places in curve.clearances_mm.items()
+            for place, values in places.items()
+        },
+    }

@@ -1,0 +1,80 @@
+"""The thermal course of a run, as it stands in results.json under ``transient``."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class TransientCurve:
+    """One course of one gearbox: lists of one length, one entry for every time step."""
+
+    gearbox: str
+    branch: str
+    """``schedule``, or the event that starts from the cold rig (cold_start) or ends the dwell."""
+    time_s: list[float]
+    """Since the start of the schedule, warm-up included."""
+    phase: list[str]
+    speed_rpm: list[float]
+    temperatures_degC: dict[str, list[float]]  # noqa: N815
+    """By place: bodies by their mean, ``housing_max``, oil outlets, bearing films, probes of the case."""
+    clearances_mm: dict[str, dict[str, list[float]]]
+    """Quantity -> place -> clearance."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class WorstMoment:
+    """The least clearance or highest temperature of all courses."""
+
+    quantity: str
+    value: float
+    unit: str
+    time_s: float
+    """Since the start of the schedule, warm-up included."""
+    place: str
+    branch: str
+    phase: str
+    steady: float | None
+    """The worst of the held stages in their steady state."""
+    limit: float | None
+    planned: bool = True
+    """False for the cold start, which the case does not plan: it tells what the warm-up is good for."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settling:
+    """When a quantity stays near its end value in the dwell."""
+
+    gearbox: str
+    stage: str
+    quantity: str
+    settled_after_s: float | None
+    """Since the start of the dwell; None if the dwell is too short."""
+    start: float
+    end: float
+    unit: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Soak:
+    """Warm-up a gearbox needs before it may run up to full torque."""
+
+    gearbox: str
+    stage: str
+    soak_time_s: float | None
+    """Shortest warm-up after which every clearance limit holds up to the end of the dwell; None if none does."""
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class TransientResult:
+    """Temperatures and clearances over the schedule and its events."""
+
+    curves: list[TransientCurve]
+    worst: list[WorstMoment]
+    settling: list[Settling]
+    soak: list[Soak]
+    inputs: dict[str, str]
+    """Durations and assumptions behind it, as the case has them."""
+    energy_closure: float
+    """Largest gap of the energy balance of a course, relative to the heat turned over."""
+    missed_temperature_K: float  # noqa: N815
+    """Largest temperature the shapes of the expansion leave out."""

@@ -1,0 +1,42 @@
+"""Losses at any operating point with the warm rig of a held stage: no coupling, no response."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from dynamics.journal_bearing import BearingState
+from rigdesign.bearing_films import solve_bearings
+from rigdesign.coupling import PointResult
+from rigdesign.loads import mesh_models
+from rigdesign.losses import PlacedLoss, mesh_losses, rotating_losses
+from rigdesign.rig.model import Rig
+from rigdesign.state import Feedback, OperatingPoint
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageLosses:
+    """What heats a rig at an operating point, and the state it follows from."""
+
+    point: OperatingPoint
+    feedback: Feedback
+    bearings: Mapping[str, BearingState]
+    losses: tuple[PlacedLoss, ...]
+
+
+def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult) -> StageLosses:
+    """Losses at ``point`` with the geometry and temperatures of the held stage ``test``.
+
+    Tooth forces follow the torque; the bearing films get no heat from the bodies. Nothing is lost at standstill.
+    """
+    share = point.torque / test.point.torque if test.point.torque else 0.0
+    feedback = replace(
+        test.last.feedback,
+        mesh_torque={name: share * torque for name, torque in test.last.feedback.mesh_torque.items()},
+        bearing_heat=dict.fromkeys(test.last.feedback.bearing_heat, 0.0),
+    )
+    bearings = solve_bearings(rig, point, feedback)
+    if point.speed == 0.0:
+        return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=())
+    models = mesh_models(rig, point, feedback)
+    turning = rotating_losses(rig, point, feedback, models, bearings)
+    losses = (*turning, *mesh_losses(rig, point, models, feedback=feedback))
+    return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=losses)

@@ -1,0 +1,215 @@
+"""Temperatures and clearances of every housing over the schedule and over what may end it."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.coupling import PointResult
+from rigdesign.results_transient import Soak
+from rigdesign.rig.model import Rig
+from rigdesign.transient.clearances import Clearances, clearances
+from rigdesign.transient.heating import Heating
+from rigdesign.transient.phases import SCHEDULE, Phase, event_phases, schedule_phases
+from rigdesign.transient.places import probes_of
+from thermal.expansion_course import ExpansionCourse
+from thermal.transient import TransientSolution, solve_transient
+
+FloatArray = NDArray[np.float64]
+FIRST_STEP = 0.5
+"""First time step of a phase [s]."""
+UNBOUND = 1e12
+"""No limit of the time step [s] but its error."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Branch:
+    """One course of one housing: that of the schedule, or what an event makes of it."""
+
+    gearbox: str
+    name: str
+    """``schedule`` or the event."""
+    phases: tuple[Phase, ...]
+    start: float
+    """Time since the start of the schedule at which it begins [s]."""
+    times: FloatArray
+    """(n,) since the start of the schedule [s]."""
+    phase: NDArray[np.int32]
+    """(n,) number of the phase each time ends."""
+    temperatures: Mapping[str, FloatArray]
+    """Probe -> (n,) [K]."""
+    clearances: tuple[Clearances, ...]
+    """At every time."""
+    energy_closure: float
+    warnings: tuple[str, ...]
+
+    def ends(self, name: str) -> int:
+        """Number of the last time of a phase."""
+        number = [phase.name for phase in self.phases].index(name)
+        return int(np.flatnonzero(self.phase == number)[-1])
+
+
+@dataclass(frozen=True, kw_only=True)
+class TransientRun:
+    """All branches of all housings."""
+
+    branches: tuple[Branch, ...]
+    soak: tuple[Soak, ...]
+    missed: Mapping[str, float]
+    """Gearbox -> temperature that the patterns of its expansion miss at most [K]."""
+
+    def of(self, gearbox: str, name: str) -> Branch | None:
+        """A branch by gearbox and event; None if it was not asked for."""
+        return next((b for b in self.branches if (b.gearbox, b.name) == (gearbox, name)), None)
+
+
+@dataclass(frozen=True)
+class Course:
+    """Temperatures of a branch before its clearances are read."""
+
+    name: str
+    phases: tuple[Phase, ...]
+    start: float
+    solution: TransientSolution
+    fields: list[NDArray[np.float32]]
+    """(n_nodes,) at every time [K]."""
+    ends: dict[int, tuple[FloatArray, dict[str, float]]]
+    """Number of a phase -> field and volumes at its end [K]."""
+
+
+def run_transient(
+    rig: Rig, points: Sequence[PointResult], say: Callable[[str], None] = lambda message: None
+) -> TransientRun:
+    """March every housing through the schedule and its events, from the cold rig.
+
+    Losses and films are those of the coupled run with its warm clearances, interpolated between the operating
+    points of the schedule; the oil leaves with what it has taken up.
+
+    Raises
+    ------
+    ConditionError
+        Conditions that cannot be computed.
+    NotConverged
+        A time step or an expansion that does not settle.
+    """
+    from rigdesign.transient.soak import first_broken, soak_of
+
+    heating = Heating(rig, points)
+    branches: list[Branch] = []
+    soaks: list[Soak] = []
+    missed: dict[str, float] = {}
+    for name in rig.models:
+        courses = _courses(rig, heating, name, say)
+        say(f"expanding {name} over {sum(len(c.fields) for c in courses)} times")
+        own, missed[name] = _read(rig, name, courses)
+        by_name = {branch.name: branch for branch in own}
+
+        def trial(step: int, name: str = name, courses: list[Course] = courses) -> bool:
+            say(f"{name}: warm-up of {courses[0].solution.times[step] / 3600.0:.2f} h")
+            (tried,), _ = _read(rig, name, [_after_warm_up(rig, heating, name, courses[0], step)])
+            return first_broken(rig.case, tried) is None
+
+        soaks.append(soak_of(rig.case, by_name[SCHEDULE], by_name.get("cold_start"), trial))
+        branches += own
+    return TransientRun(branches=tuple(branches), soak=tuple(soaks), missed=missed)
+
+
+def _read(rig: Rig, name: str, courses: Sequence[Course]) -> tuple[list[Branch], float]:
+    """Clearances of courses of one housing, and what the patterns of their expansion miss [K]."""
+    fields = [np.asarray(field, dtype=np.float64) for course in courses for field in course.fields]
+    shapes = ExpansionCourse.of(rig.expansion[name], rig.case.ambient.temperature, fields)
+    return [read_branch(rig, name, course, shapes) for course in courses], shapes.missed
+
+
+def _after_warm_up(rig: Rig, heating: Heating, name: str, planned: Course, step: int) -> Course:
+    """The running phases up to the last dwell, begun at a time step of the warm-up."""
+    phases = planned.phases[1:]
+    last = max(i for i, phase in enumerate(phases) if phase.held)
+    field = np.asarray(planned.fields[step], dtype=np.float64)
+    return march(rig, heating, name, "shorter_warm_up", phases[: last + 1], field)
+
+
+def _courses(rig: Rig, heating: Heating, name: str, say: Callable[[str], None]) -> list[Course]:
+    phases = schedule_phases(rig.case)
+    say(f"{name} over the schedule: {', '.join(phase.name for phase in phases)}")
+    planned = march(rig, heating, name, SCHEDULE, phases)
+    number = max(i for i, phase in enumerate(phases) if phase.held)
+    field, volumes = planned.ends[number]
+    stopped = sum(phase.duration for phase in phases[: number + 1])
+    courses = [planned]
+    for event in rig.case.transient.events:
+        say(f"{name}: {event.replace('_', ' ')}")
+        own = event_phases(rig.case, event, phases[number])
+        if event == "cold_start":
+            courses.append(march(rig, heating, name, event, own))
+        else:
+            courses.append(march(rig, heating, name, event, own, field, volumes, stopped))
+    return courses
+
+
+def march(
+    rig: Rig,
+    heating: Heating,
+    name: str,
+    event: str,
+    phases: tuple[Phase, ...],
+    initial: FloatArray | None = None,
+    volumes: Mapping[str, float] | None = None,
+    start: float = 0.0,
+) -> Course:
+    """Temperatures of one housing over ``phases``.
+
+    initial : field [K] to start from, the cold rig when left out; start : its time in the schedule [s]
+    """
+    setup = rig.conduction[name]
+    materials = rig.body_materials(name)
+    fields: list[NDArray[np.float32]] = []
+    ends: dict[int, tuple[FloatArray, dict[str, float]]] = {}
+    limits = np.cumsum([phase.duration for phase in phases])
+
+    def keep(time: float, field: FloatArray, fluids: Mapping[str, float]) -> None:
+        fields.append(field.astype(np.float32))
+        for number in np.flatnonzero(np.isclose(limits, time, rtol=1e-12, atol=1e-9)).tolist():
+            ends[number] = field, dict(fluids)
+
+    solution = solve_transient(
+        setup.mesh,
+        setup.conductivity,
+        {body: material.density * material.heat_capacity for body, material in materials.items()},
+        [heating.stage(name, phase) for phase in phases],
+        rig.case.ambient.temperature if initial is None else initial,
+        probes=probes_of(rig, name),
+        observe_at=None,
+        observer=keep,
+        initial_volumes=volumes,
+        tolerance=rig.case.transient.tolerance,
+        first_step=FIRST_STEP,
+        largest_step=UNBOUND,
+        reuse=setup,
+    )
+    return Course(event, phases, start, solution, fields, ends)
+
+
+def read_branch(rig: Rig, name: str, course: Course, shapes: ExpansionCourse) -> Branch:
+    """Clearances of a course at every time."""
+    solution = course.solution
+    begins = np.concatenate([[0.0], np.cumsum([phase.duration for phase in course.phases])])
+    read = []
+    for time, number, field in zip(solution.times, solution.stages, course.fields, strict=True):
+        phase = course.phases[number]
+        speed = phase.speed(min(float(time - begins[number]), phase.duration))
+        temperature = np.asarray(field, dtype=np.float64)
+        read.append(clearances(rig, name, temperature, shapes.shape(temperature), speed))
+    return Branch(
+        gearbox=name,
+        name=course.name,
+        phases=course.phases,
+        start=course.start,
+        times=solution.times + course.start,
+        phase=solution.stages,
+        temperatures=solution.probes,
+        clearances=tuple(read),
+        energy_closure=solution.energy.closure,
+        warnings=solution.warnings,
+    )

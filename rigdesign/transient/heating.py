@@ -1,0 +1,53 @@
+"""What heats and cools the housings at any time of a phase: every operating point computed once."""
+
+from collections.abc import Sequence
+
+from rigdesign.coupling import PointResult, governing_point
+from rigdesign.rig.model import Rig
+from rigdesign.stage_losses import StageLosses, stage_losses
+from rigdesign.state import OperatingPoint
+from rigdesign.transient.blend import blended
+from rigdesign.transient.oil import oil_conditions
+from rigdesign.transient.phases import Phase
+from thermal.condition_checks import Condition
+from thermal.transient import ThermalStage
+
+
+class Heating:
+    """Conditions of every housing over the phases; at held points those of the coupled run."""
+
+    def __init__(self, rig: Rig, points: Sequence[PointResult]) -> None:
+        self._rig = rig
+        self._test = governing_point(points)
+        self._states: dict[OperatingPoint, StageLosses] = {
+            held.point: StageLosses(
+                point=held.point,
+                feedback=held.last.feedback,
+                bearings=held.last.bearings,
+                losses=held.last.losses,
+            )
+            for held in points
+        }
+        self._conditions: dict[tuple[str, OperatingPoint, bool], tuple[Condition, ...]] = {}
+
+    def at(self, name: str, point: OperatingPoint, *, oil: bool) -> tuple[Condition, ...]:
+        """Conditions of the housing of gearbox ``name`` at an operating point."""
+        key = name, point, oil
+        if key not in self._conditions:
+            if point not in self._states:
+                self._states[point] = stage_losses(self._rig, point, self._test)
+            self._conditions[key] = oil_conditions(self._rig, name, self._states[point], oil=oil)
+        return self._conditions[key]
+
+    def stage(self, name: str, phase: Phase) -> ThermalStage:
+        """A phase as the heat model of gearbox ``name`` takes it."""
+        if len(phase.knots) == 1:
+            fixed = self.at(name, phase.knots[0].point, oil=phase.oil)
+            return ThermalStage(name=phase.name, duration=phase.duration, conditions=fixed)
+
+        def conditions(time: float) -> Sequence[Condition]:
+            before, after, share = phase.between(time)
+            first, second = (self.at(name, knot.point, oil=phase.oil) for knot in (before, after))
+            return blended(first, second, share)
+
+        return ThermalStage(name=phase.name, duration=phase.duration, conditions=conditions)

@@ -1,0 +1,233 @@
+"""Conditions of a housing with its oil as unknowns, fed or cut off.
+
+The steady conditions know the outlet temperatures of the coupled run. Over time the oil leaves with what it has
+taken up: each oil is a stream with one outlet temperature, each bearing film a stream of its own that ends in the
+oil of the bearings. What a film feels of inlet and outlet is read from the steady conditions by moving the outlet
+by one kelvin. At a held stage the two descriptions have the same steady state.
+
+Without oil the streams stop. Chambers then are volumes of air: while the rig turns, what is left of the oil still
+wets the walls; at standstill their films are those of still air. No oil carries friction heat away any more: that
+of the teeth stays in the gears, that of the bearings in the oil of their films.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.losses import PlacedLoss
+from rigdesign.rig.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
+from rigdesign.rig.model import Rig
+from rigdesign.stage_losses import StageLosses
+from rigdesign.transient.still_air import at_least, still
+from thermal.boundary import Film, FilmCoefficient, FilmLaw
+from thermal.condition_checks import Condition
+from thermal.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
+
+OIL_ONLY = ("oil_acceleration", "squeeze")
+"""Losses that end with the oil."""
+MOVED = 1.0
+"""Step [K] of the outlet by which the share of the inlet in each film is read."""
+FEED = "feed"
+
+
+@dataclass(frozen=True)
+class _Stream:
+    """Films of one volume."""
+
+    volume: str
+    feed: str
+    films: tuple[VolumeFilm, ...]
+    supplies: tuple[Supply, ...]
+
+
+def oil_conditions(rig: Rig, name: str, state: StageLosses, *, oil: bool) -> tuple[Condition, ...]:
+    """Conditions of the housing of gearbox ``name`` at one speed and torque.
+
+    oil : whether the rig is fed
+    """
+    losses = state.losses if oil else tuple(_dry(p) for p in state.losses if p.loss.kind not in OIL_ONLY)
+    given = _steady(rig, name, state, losses)
+    moved = _steady(rig, name, _warmer(state), losses)
+    floor = rig.case.transient.still_film
+    turning = state.point.speed > 0.0
+    bodies: list[Condition] = []
+    wetted: list[tuple[Film, float]] = []
+    for condition, other in zip(given, moved, strict=True):
+        if not isinstance(condition, Film) or not isinstance(other, Film):
+            bodies.append(condition)
+            continue
+        film = _floored(condition, floor)
+        if film.kind == AIR:
+            bodies.append(film)
+            continue
+        if not (oil or turning or film.kind.startswith(BEARING_FILM)) and film is condition:
+            film = replace(film, law=still(floor))
+        wetted.append((film, (other.fluid_temperature - condition.fluid_temperature) / MOVED))
+    return (
+        *bodies,
+        _gear_network(rig, name, state, losses, wetted, oil),
+        _bearing_network(rig, name, state, losses, wetted, oil),
+    )
+
+
+def _steady(rig: Rig, name: str, state: StageLosses, losses: Sequence[PlacedLoss]) -> list[Condition]:
+    housing = rig.case.gearboxes[name].housing
+    assert housing is not None
+    return boundary_conditions(
+        rig, name, state.point, state.feedback, state.bearings, losses,
+        radiation_included=housing.radiation_included,
+    )  # fmt: skip
+
+
+def _warmer(state: StageLosses) -> StageLosses:
+    """The same state with every oil outlet and film one step warmer."""
+    outlets = {stream: value + MOVED for stream, value in state.feedback.oil_outlet.items()}
+    films = {
+        bearing: replace(film, film_temperature=film.film_temperature + 0.5 * MOVED)
+        for bearing, film in state.bearings.items()
+    }
+    return replace(state, feedback=replace(state.feedback, oil_outlet=outlets), bearings=films)
+
+
+def _dry(placed: PlacedLoss) -> PlacedLoss:
+    """A loss no oil carries away: friction of the teeth stays in the gears."""
+    if placed.split is None:
+        return placed
+    return replace(placed, into_body=placed.loss.power, split=replace(placed.split, kept=(1.0, 1.0)))
+
+
+def _floored(film: Film, floor: float) -> Film:
+    """Films of shafts and gears vanish with the speed, free convection stays."""
+    turns = film.surface.startswith(("shaft_", "gear_")) and not film.kind.startswith(BEARING_FILM)
+    return replace(film, law=at_least(film.law, floor)) if turns else film
+
+
+def _gear_network(
+    rig: Rig,
+    name: str,
+    state: StageLosses,
+    losses: Sequence[PlacedLoss],
+    wetted: Sequence[tuple[Film, float]],
+    oil: bool,
+) -> StreamNetwork:
+    box = rig.case.gearboxes[name]
+    lubricant, inlet = rig.oils[box.oil.oil], box.oil.inlet_temperature
+    outlet = state.feedback.oil_outlet[f"{name}.{GEAR_OIL}"]
+    feed = f"{GEAR_OIL} {FEED}"
+    stream = _films(GEAR_OIL, feed, inlet, wetted, oil)
+    own = [placed for placed in losses if placed.gearbox == name]
+    power = math.fsum(placed.into_oil - placed.into_bearing_oil for placed in own)
+    flow = lubricant.density(inlet) * box.oil.flow * len(box.meshes)
+    return StreamNetwork(
+        specific_heat=lubricant.heat_capacity(0.5 * (inlet + outlet)),
+        volumes=(Volume(name=GEAR_OIL, power=power),),
+        films=stream.films,
+        supplies=(Supply(name=feed, temperature=inlet), *stream.supplies),
+        streams=(
+            Stream(source=feed, target=GEAR_OIL, mass_flow=flow),
+            Stream(source=GEAR_OIL, target=None, mass_flow=flow),
+        )
+        if oil
+        else (),
+    )
+
+
+def _bearing_network(
+    rig: Rig,
+    name: str,
+    state: StageLosses,
+    losses: Sequence[PlacedLoss],
+    wetted: Sequence[tuple[Film, float]],
+    oil: bool,
+) -> StreamNetwork:
+    box = rig.case.gearboxes[name]
+    lubricant, inlet = rig.oils[box.bearing_oil.oil], box.bearing_oil.inlet_temperature
+    density, feed = lubricant.density(inlet), f"{BEARING_OIL} {FEED}"
+    own = [placed for placed in losses if placed.gearbox == name]
+    friction = dict.fromkeys(box.bearings, 0.0)
+    for placed in own:
+        if placed.loss.kind == "bearing":
+            friction[placed.part] += placed.loss.power
+    beside = math.fsum(placed.into_bearing_oil for placed in own if placed.loss.kind != "bearing")
+    parts = [
+        _films(BEARING_OIL, feed, inlet, wetted, oil),
+        *(_films(f"{BEARING_FILM}:{part}", feed, inlet, wetted, oil) for part in box.bearings),
+    ]
+    outlet = state.feedback.oil_outlet[f"{name}.{BEARING_OIL}"]
+    specific_heat = lubricant.heat_capacity(0.5 * (inlet + outlet))
+    each = density * box.bearing_oil.flow
+    # a film is balanced with the heat capacity of the oil as fed, the stream with that of its mean temperature
+    as_fed = density * lubricant.heat_capacity(inlet) / specific_heat
+    flows = {part: min(each, as_fed * cooling_flow(box, part, state, name)) for part in box.bearings}
+    return StreamNetwork(
+        specific_heat=specific_heat,
+        volumes=(
+            Volume(name=BEARING_OIL, power=beside),
+            *(Volume(name=f"{BEARING_FILM}:{part}", power=friction[part]) for part in box.bearings),
+        ),
+        films=tuple(film for part in parts for film in part.films),
+        supplies=(
+            Supply(name=feed, temperature=inlet),
+            *(supply for part in parts for supply in part.supplies),
+        ),
+        streams=_bearing_streams(feed, flows, each) if oil else (),
+    )
+
+
+def _bearing_streams(feed: str, flows: dict[str, float], each: float) -> tuple[Stream, ...]:
+    """Every bearing is fed ``each`` [kg/s]; part of it passes the film, all of it ends in the oil of the bearings."""
+    streams: list[Stream] = []
+    for part, flow in flows.items():
+        if flow > 0.0:
+            film = f"{BEARING_FILM}:{part}"
+            streams.append(Stream(source=feed, target=film, mass_flow=flow))
+            streams.append(Stream(source=film, target=BEARING_OIL, mass_flow=flow))
+    past = math.fsum(each - flow for flow in flows.values())
+    if past > 1e-9 * each:
+        streams.append(Stream(source=feed, target=BEARING_OIL, mass_flow=past, kind="past the films"))
+    total = math.fsum(s.mass_flow for s in streams if s.target == BEARING_OIL)
+    return (*streams, Stream(source=BEARING_OIL, target=None, mass_flow=total))
+
+
+def cooling_flow(box: Gearbox, part: str, state: StageLosses, name: str) -> float:
+    """Oil that passes the film of a bearing [m3/s] (see dynamics.journal_bearing.JournalBearing)."""
+    film = state.bearings[f"{name}.{part}"]
+    return min(film.flow, max(box.bearings[part].feed_share * film.flow, film.side_flow))
+
+
+def _films(kind: str, feed: str, inlet: float, wetted: Sequence[tuple[Film, float]], oil: bool) -> _Stream:
+    """Films of one kind on their volume: each feels as much of the inlet as the steady one does."""
+    films, supplies = [], []
+    for film, slope in wetted:
+        if film.kind != kind:
+            continue
+        if not oil:
+            films.append(VolumeFilm(surface=film.surface, volume=kind, kind=kind, law=film.law))
+        elif slope == 0.0:
+            place = f"{film.surface} fluid"
+            supplies.append(Supply(name=place, temperature=film.fluid_temperature))
+            films.append(_fed(film, kind, place, film.fluid_temperature, 1.0))
+        else:
+            films.append(_fed(film, kind, feed, inlet, 1.0 - slope))
+    return _Stream(kind, feed, tuple(films), tuple(supplies))
+
+
+def _fed(film: Film, volume: str, supply: str, temperature: float, share: float) -> VolumeFilm:
+    return VolumeFilm(
+        surface=film.surface,
+        volume=volume,
+        kind=film.kind,
+        law=_felt(film.law, temperature, share),
+        supply=supply,
+        supply_share=share,
+    )
+
+
+def _felt(law: FilmLaw, supply: float, share: float) -> FilmLaw:
+    """The law asked with the temperature the film feels instead of that of its volume."""
+
+    def mixed(wall: float, fluid: float) -> FilmCoefficient:
+        return law(wall, share * supply + (1.0 - share) * fluid)
+
+    return mixed
