@@ -5,7 +5,8 @@ engineering reason. After a change that moves them for a good reason, run
 
     rigdesign check cases/uhcf_prototype --json
 
-and carry verdicts and utilisations over; the reasons stay, or are thought over again.
+and carry verdicts and utilisations over; the reasons stay, or are thought over again. The prototype is held at
+standard fidelity, the main rig at quick.
 """
 
 import json
@@ -20,25 +21,33 @@ from rigdesign.results import RunResult
 
 CASES = Path(__file__).parents[1] / "cases"
 PROTOTYPE = CASES / "uhcf_prototype"
-EXPECTED = json.loads((PROTOTYPE / "expected.json").read_text(encoding="utf-8"))
+NAMES = ("uhcf_prototype", "uhcf_main")
+EXPECTED = {name: json.loads((CASES / name / "expected.json").read_text(encoding="utf-8")) for name in NAMES}
 UTILISATION_TOLERANCE = 0.03
 
 
 @cache
+def shipped(name: str) -> RunResult:
+    return run_case(load_case(CASES / name), fidelity=EXPECTED[name]["fidelity"])
+
+
 def prototype() -> RunResult:
-    return run_case(load_case(PROTOTYPE), fidelity=EXPECTED["fidelity"])
+    return shipped("uhcf_prototype")
 
 
-def test_every_check_of_the_prototype_is_expected() -> None:
-    assert [check.id for check in prototype().checks] == list(EXPECTED["checks"])
-    assert prototype().verdict == EXPECTED["verdict"]
-    assert all(entry["reason"] for entry in EXPECTED["checks"].values())
+@pytest.mark.parametrize("name", NAMES)
+def test_every_check_of_a_shipped_case_is_expected(name: str) -> None:
+    assert [check.id for check in shipped(name).checks] == list(EXPECTED[name]["checks"])
+    assert shipped(name).verdict == EXPECTED[name]["verdict"]
+    assert all(entry["reason"] for entry in EXPECTED[name]["checks"].values())
 
 
-@pytest.mark.parametrize("name", list(EXPECTED["checks"]))
-def test_check_of_the_prototype(name: str) -> None:
-    check = next(check for check in prototype().checks if check.id == name)
-    expected = EXPECTED["checks"][name]
+@pytest.mark.parametrize(
+    ("name", "check_id"), [(name, key) for name in NAMES for key in EXPECTED[name]["checks"]]
+)
+def test_check_of_a_shipped_case(name: str, check_id: str) -> None:
+    check = next(check for check in shipped(name).checks if check.id == check_id)
+    expected = EXPECTED[name]["checks"][check_id]
     assert check.verdict == expected["verdict"]
     if expected["utilisation"] is None:
         assert check.utilisation is None
