@@ -1,5 +1,7 @@
 """Temperatures, seal gap and backlash over the schedule; the worst moment is marked."""
 
+import math
+import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -19,6 +21,10 @@ SHOWN = ("housing", "field", "gear", "shaft", "gear_oil_outlet", "bearing_oil_ou
 """Beginnings of the places whose temperature is drawn, in this order."""
 ROWS = (("seal_gap", "smallest seal gap\n[mm]"), ("bearing_clearance", "smallest bearing\nclearance [mm]"),
         ("backlash", "smallest backlash\n[mm]"))  # fmt: skip
+TITLE_WIDTH = 12
+"""Characters of a line over a column."""
+LEAST_SPAN = 30.0
+"""Least ratio of the last to the first time of a column."""
 EARLIEST = 1.0
 """Time of a phase [s] at which its logarithmic axis begins."""
 
@@ -29,21 +35,24 @@ def transient_figure(result: TransientResult, curve: TransientCurve) -> "Figure"
     phases = list(dict.fromkeys(curve.phase))
     height = 8.4
     figure = new_figure(height)
-    grid = figure.subplots(
-        1 + len(ROWS), len(phases), sharey="row", squeeze=False,
-        gridspec_kw={"height_ratios": [2.0, *[1.0] * len(ROWS)]},
-    )  # fmt: skip
+    ratios = {
+        "height_ratios": [2.0, *[1.0] * len(ROWS)],
+        "width_ratios": [_decades(curve, phase) for phase in phases],
+    }
+    grid = figure.subplots(1 + len(ROWS), len(phases), sharey="row", squeeze=False, gridspec_kw=ratios)
     for column, phase in enumerate(phases):
         at = _of_phase(curve, phase)
         time = _since(curve, at)
         _temperatures(grid[0][column], curve, at, time)
-        grid[0][column].set_title(plain(phase.replace("_", " ")), fontsize=7.5)
+        title = textwrap.fill(plain(phase.replace("_", " ")), TITLE_WIDTH)
+        grid[0][column].set_title(title, fontsize=7.5)
         for row, (quantity, _) in enumerate(ROWS, start=1):
             _clearance(grid[row][column], result.worst, curve, quantity, at, time)
         for axes in grid[:, column]:
             axes.set_xscale("log")
-            axes.set_xlim(EARLIEST, max(float(time[-1]), 10.0 * EARLIEST))
-            _time_ticks(axes)
+            end = max(float(time[-1]), LEAST_SPAN * EARLIEST)
+            _time_ticks(axes, end)
+            axes.set_xlim(EARLIEST, end)
         for axes in grid[:-1, column]:
             axes.tick_params(labelbottom=False)
     grid[0][0].set_ylabel("temperature [°C]")
@@ -51,7 +60,7 @@ def transient_figure(result: TransientResult, curve: TransientCurve) -> "Figure"
         grid[row][0].set_ylabel(label)
     grid[-1][len(phases) // 2].set_xlabel("time since the start of the phase")
     legend_right(grid[0][-1])
-    figure.subplots_adjust(left=0.085, right=0.83, top=0.95, bottom=0.08, hspace=0.12, wspace=0.1)
+    figure.subplots_adjust(left=0.085, right=0.83, top=0.93, bottom=0.08, hspace=0.12, wspace=0.1)
     return figure
 
 
@@ -106,10 +115,16 @@ def _clearance(
         axes.plot([time[least]], [moment.value], "o", mfc="none", mec=SERIES[1], ms=8, mew=1.6)
 
 
-def _time_ticks(axes: "Axes") -> None:
-    from matplotlib.ticker import FixedLocator, NullLocator
+def _decades(curve: TransientCurve, phase: str) -> float:
+    """Width of a column: decades of time, so that equal factors are equally long in all."""
+    last = float(_since(curve, _of_phase(curve, phase))[-1])
+    return math.log10(max(last / EARLIEST, LEAST_SPAN))
+
+
+def _time_ticks(axes: "Axes", end: float) -> None:
+    from matplotlib.ticker import NullLocator
 
     marks = {1.0: "1 s", 60.0: "1 min", 3600.0: "1 h", 86400.0: "1 d", 2592000.0: "30 d"}
-    axes.xaxis.set_major_locator(FixedLocator(list(marks)))
+    shown = {time: text for time, text in marks.items() if time <= 1.01 * end}
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xticks(list(marks), list(marks.values()), fontsize=6.5)
+    axes.set_xticks(list(shown), list(shown.values()), fontsize=6.5)

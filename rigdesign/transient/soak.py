@@ -26,6 +26,17 @@ def soak_of(case: Case, planned: Branch, cold: Branch | None, trial: Trial) -> S
     stage = next(phase.name for phase in planned.phases if phase.held)
     if not clearance_limits(case):
         return _soak(planned, stage, None, "the case states no limit of a clearance")
+    last = planned.ends(next(phase.name for phase in reversed(planned.phases) if phase.held))
+    lasting = [
+        f"{kind.replace('_', ' ')} of {place}" for kind, place, _ in broken(case, planned.clearances[last])
+    ]
+    if lasting:
+        return _soak(
+            planned,
+            stage,
+            None,
+            f"{', '.join(lasting)} stays below its limit at the end of the dwell: no warm-up mends that",
+        )
     text = first_broken(case, planned)
     if text is not None:
         return _soak(
