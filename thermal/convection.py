@@ -6,11 +6,14 @@ This module holds the laws that are a number or a sum of others; correlations li
 `convection_rotating` and are re-exported here.
 """
 
+from dataclasses import replace
+
 from thermal.boundary import FilmCoefficient, FilmLaw
 from thermal.convection_rotating import (
     narrow_gap_jungnickel,
     narrow_gap_taylor,
     rotating_cylinder_becker,
+    rotating_cylinder_dropkin_carmi,
     rotating_cylinder_etemad,
     rotating_cylinder_jungnickel,
     rotating_cylinder_kays_bjorklund,
@@ -20,6 +23,7 @@ from thermal.convection_rotating import (
 from thermal.convection_still import (
     horizontal_cylinder_churchill_chu,
     horizontal_plate_mcadams,
+    horizontal_plate_rohsenow,
     horizontal_plate_vdi,
     iso_tr_14179_2_free,
     iso_tr_14179_2_radiation,
@@ -36,6 +40,7 @@ __all__ = [
     "formula_4",
     "horizontal_cylinder_churchill_chu",
     "horizontal_plate_mcadams",
+    "horizontal_plate_rohsenow",
     "horizontal_plate_vdi",
     "iso_tr_14179_2_free",
     "iso_tr_14179_2_radiation",
@@ -45,11 +50,13 @@ __all__ = [
     "oil_wetted",
     "recknagel_plate",
     "rotating_cylinder_becker",
+    "rotating_cylinder_dropkin_carmi",
     "rotating_cylinder_etemad",
     "rotating_cylinder_jungnickel",
     "rotating_cylinder_kays_bjorklund",
     "rotating_disc",
     "rotating_disc_jungnickel",
+    "scaled",
     "series",
     "vertical_plate_churchill",
 ]
@@ -96,6 +103,19 @@ def oil_wetted(value: float = 300.0) -> FilmLaw:
             warnings=outside("oil film", value, *OIL_RANGE, "check the unit", "W/(m2 K)"),
         )
     )
+
+
+def scaled(law: FilmLaw, factor: float) -> FilmLaw:
+    """``law`` times a factor [-], which stands for its scatter; the factor is among its inputs unless it is 1."""
+    positive("film factor", factor, "")
+    if factor == 1.0:
+        return law
+
+    def multiplied(wall: float, fluid: float) -> FilmCoefficient:
+        film = law(wall, fluid)
+        return replace(film, value=factor * film.value, inputs=film.inputs | {"film_factor": factor})
+
+    return multiplied
 
 
 def series(first: FilmLaw, second: FilmLaw) -> FilmLaw:

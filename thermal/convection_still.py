@@ -5,7 +5,8 @@ coefficient, with air properties at the film temperature, the mean of the two. L
 temperature difference: a wall colder than the air gets the coefficient of one as much warmer.
 """
 
-from typing import Literal
+from dataclasses import replace
+from typing import Literal, Protocol
 
 from thermal.air import Air, air
 from thermal.boundary import STEFAN_BOLTZMANN, FilmCoefficient, FilmLaw
@@ -107,7 +108,7 @@ def recknagel_plate(
 
 
 def vertical_plate_churchill(height: float) -> FilmLaw:
-    """Vertical plate of ``height`` [m] in still air (Churchill and Chu 1975, through ht)."""
+    """Vertical plate of ``height`` [m] in still air (Churchill and Chu 1975, the VDI Heat Atlas too; through ht)."""
     positive("plate height", height, "m")
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
@@ -130,22 +131,26 @@ def horizontal_plate_mcadams(length: float, facing: Facing = "up") -> FilmLaw:
     length : characteristic length [m], area over perimeter
     facing : side of the plate the air is on; a warm plate facing up and a cold one facing down stir the air
     """
-    positive("plate length", length, "m")
-    _check_facing(facing)
+    from ht.conv_free_immersed import Nu_horizontal_plate_McAdams
 
-    def law(wall: float, fluid: float) -> FilmCoefficient:
-        from ht.conv_free_immersed import Nu_horizontal_plate_McAdams
+    return _horizontal_plate(
+        Nu_horizontal_plate_McAdams, length, facing, "horizontal_plate_mcadams", ((1e4, 1e11), (1e5, 1e10)),
+        "McAdams, Heat Transmission, 3rd ed.",
+    )  # fmt: skip
 
-        gas, cubed = _buoyancy(wall, fluid)
-        rayleigh = cubed * length**3
-        stirred = (wall >= fluid) == (facing == "up")
-        nusselt = float(Nu_horizontal_plate_McAdams(gas.prandtl, rayleigh / gas.prandtl, buoyancy=stirred))
-        return _from_nusselt(
-            nusselt, length, gas, rayleigh, "horizontal_plate_mcadams",
-            (1e4, 1e11) if stirred else (1e5, 1e10), "McAdams, Heat Transmission, 3rd ed.",
-        )  # fmt: skip
 
-    return law
+def horizontal_plate_rohsenow(length: float, facing: Facing = "up") -> FilmLaw:
+    """Horizontal plate in still air, laminar and turbulent blended (Rohsenow/Hartnett/Cho, through ht).
+
+    length : characteristic length [m], area over perimeter
+    facing : side of the plate the air is on. Limits assumed.
+    """
+    from ht.conv_free_immersed import Nu_horizontal_plate_Rohsenow
+
+    return _horizontal_plate(
+        Nu_horizontal_plate_Rohsenow, length, facing, "horizontal_plate_rohsenow", ((1.0, 1e12), (1e3, 1e10)),
+        "Rohsenow, Hartnett, Cho, Handbook of Heat Transfer, 3rd ed.",
+    )  # fmt: skip
 
 
 def horizontal_plate_vdi(length: float, facing: Facing = "up") -> FilmLaw:
@@ -179,9 +184,13 @@ def horizontal_plate_vdi(length: float, facing: Facing = "up") -> FilmLaw:
     return law
 
 
-def horizontal_cylinder_churchill_chu(diameter: float) -> FilmLaw:
-    """Horizontal cylinder at rest in still air (Churchill and Chu 1975, through ht): a shaft that stands."""
+def horizontal_cylinder_churchill_chu(diameter: float, speed: float = 0.0) -> FilmLaw:
+    """Horizontal cylinder at rest in still air (Churchill and Chu 1975, through ht): a shaft that stands.
+
+    diameter : [m]; speed : [rad/s], warned of if not zero
+    """
     positive("cylinder diameter", diameter, "m")
+    turning = outside("speed", speed, 0.0, 0.0, "use a law for rotating shafts", "rad/s")
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
         from ht.conv_free_immersed import Nu_horizontal_cylinder_Churchill_Chu
@@ -189,10 +198,11 @@ def horizontal_cylinder_churchill_chu(diameter: float) -> FilmLaw:
         gas, cubed = _buoyancy(wall, fluid)
         rayleigh = cubed * diameter**3
         nusselt = float(Nu_horizontal_cylinder_Churchill_Chu(gas.prandtl, rayleigh / gas.prandtl))
-        return _from_nusselt(
+        film = _from_nusselt(
             nusselt, diameter, gas, rayleigh, "horizontal_cylinder_churchill_chu", (0.0, 1e12),
             "Churchill and Chu, Int. J. Heat Mass Transfer 18 (1975) 1049",
         )  # fmt: skip
+        return replace(film, warnings=film.warnings + turning)
 
     return law
 
@@ -266,6 +276,32 @@ def _from_nusselt(
         source=source,
         warnings=() if still else outside("Rayleigh number", rayleigh, *limits, _OTHER_LAW),
     )
+
+
+class _PlateNusselt(Protocol):
+    def __call__(self, Pr: float, Gr: float, buoyancy: bool = True) -> float: ...  # noqa: N803 - names of ht
+
+
+def _horizontal_plate(
+    number: _PlateNusselt,
+    length: float,
+    facing: Facing,
+    formula: str,
+    limits: tuple[tuple[float, float], tuple[float, float]],
+    source: str,
+) -> FilmLaw:
+    """A plate law Nu(Pr, Gr, stirred); limits of Ra on the stirred and on the calm side."""
+    positive("plate length", length, "m")
+    _check_facing(facing)
+
+    def law(wall: float, fluid: float) -> FilmCoefficient:
+        gas, cubed = _buoyancy(wall, fluid)
+        rayleigh = cubed * length**3
+        stirred = (wall >= fluid) == (facing == "up")
+        nusselt = float(number(gas.prandtl, rayleigh / gas.prandtl, buoyancy=stirred)) if rayleigh else 0.0
+        return _from_nusselt(nusselt, length, gas, rayleigh, formula, limits[0 if stirred else 1], source)
+
+    return law
 
 
 def _check_facing(facing: str) -> None:

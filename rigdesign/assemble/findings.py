@@ -11,7 +11,8 @@ from dynamics.response_curve import CurvePoint
 from rigdesign.assemble.curves import iso_factor, resolved
 from rigdesign.checks.subject import Subject
 from rigdesign.results import Finding
-from rigdesign.rig.boundary import printed_films, printed_law
+from rigdesign.rig.boundary import printed_films
+from rigdesign.rig.films import printed_law
 from rigdesign.temperatures import HousingField
 from thermal.audit import assumed_difference, audit_conditions, radiation_too_small
 from thermal.boundary import Film, Radiation

@@ -65,7 +65,12 @@ class _Condition(Part):
     """Surface names; ``*`` stands for any run of characters."""
 
 
-class NiemannWinter(_Condition):
+class _Correlation(_Condition):
+    film_factor: float = Field(default=1.0, gt=0.0, le=10.0)
+    """Multiplies the film: with a range it stands for the scatter of the correlation."""
+
+
+class NiemannWinter(_Correlation):
     """Housing to room air, alpha = f_k (10 + 0.07 dT) h^-0.15 (Niemann/Winter; P2, Formula 2)."""
 
     law: Literal["niemann_winter"]
@@ -75,7 +80,7 @@ class NiemannWinter(_Condition):
     """h; the height of the housing when left out."""
 
 
-class RecknagelPlate(_Condition):
+class RecknagelPlate(_Correlation):
     """Horizontal plate to still room air."""
 
     law: Literal["recknagel_plate"]
@@ -83,12 +88,31 @@ class RecknagelPlate(_Condition):
     """dimensional: 2.0 dT^(1/4); turbulent: Nu = 0.125 Ra^(1/3)."""
 
 
-class IsoTr14179(_Condition):
+class IsoTr14179(_Correlation):
     """Housing to room air by ISO/TR 14179-2, free convection."""
 
     law: Literal["iso_tr_14179_2"]
     height: Length | None = None
     """The height of the housing when left out."""
+
+
+class VerticalPlate(_Correlation):
+    """Vertical wall to still room air (Churchill and Chu, as the VDI Heat Atlas has it); no radiation in it."""
+
+    law: Literal["vertical_plate"]
+    height: Length | None = None
+    """The height of the housing when left out."""
+
+
+class HorizontalPlate(_Correlation):
+    """Horizontal plate to still room air; no radiation in it."""
+
+    law: Literal["horizontal_plate"]
+    correlation: Literal["mcadams", "vdi", "rohsenow"] = "mcadams"
+    length: Length
+    """Characteristic length: area over perimeter."""
+    facing: Literal["up", "down"] = "up"
+    """Side of the plate the air is on."""
 
 
 class TakenFrom(Part):
@@ -129,17 +153,24 @@ class FlankFilm(_Condition):
     """Mean over all flanks, for ``constant``."""
 
 
-class RotatingCylinder(_Condition):
+class HorizontalCylinder(_Correlation):
+    """Shaft at rest in still room air (Churchill and Chu); diameter from the shaft."""
+
+    law: Literal["horizontal_cylinder"]
+
+
+class RotatingCylinder(_Correlation):
     """Rotating shaft in air or oil mist; diameter and speed from the shaft."""
 
     law: Literal["rotating_cylinder"]
-    correlation: Literal["becker", "jungnickel"] = "becker"
-    """becker: air at the film temperature; jungnickel: constants of air near room temperature."""
+    correlation: Literal["becker", "jungnickel", "kays_bjorklund", "etemad", "dropkin_carmi"] = "becker"
+    """becker, etemad, dropkin_carmi: air at the film temperature; kays_bjorklund: with buoyancy, down to standstill;
+    jungnickel: constants of air near room temperature."""
     fluid: Fluid
     medium: Medium = "air"
 
 
-class RotatingDisc(_Condition):
+class RotatingDisc(_Correlation):
     """Rotating end or gear face in air or oil mist; radius and speed from the shaft."""
 
     law: Literal["rotating_disc"]
@@ -164,7 +195,7 @@ class ThermalRadiation(_Condition):
     """Walls of the room; ambient when left out."""
 
 
-class GapExchange(_Condition):
+class GapExchange(_Correlation):
     """Heat across a narrow rotating gap from each surface to its partner (area means)."""
 
     law: Literal["narrow_gap"]
@@ -199,12 +230,20 @@ class Insulated(_Condition):
     law: Literal["insulated"]
 
 
+PlateFilm = NiemannWinter | RecknagelPlate | IsoTr14179 | VerticalPlate | HorizontalPlate
+"""Film between a still wall or plate and room air."""
+ShaftFilm = HorizontalCylinder | RotatingCylinder | RotatingDisc
+"""Film that takes its diameter from a shaft or gear."""
+
 Condition = Annotated[
     NiemannWinter
     | RecknagelPlate
     | IsoTr14179
+    | VerticalPlate
+    | HorizontalPlate
     | ConstantFilm
     | FlankFilm
+    | HorizontalCylinder
     | RotatingCylinder
     | RotatingDisc
     | BearingFilm

@@ -13,7 +13,9 @@ from rigdesign.case.housing import (
     IsoTr14179,
     NiemannWinter,
     SeriesExchange,
+    ShaftFilm,
     ThermalRadiation,
+    VerticalPlate,
 )
 from rigdesign.case.paths import nearest
 from rigdesign.errors import Fault
@@ -41,6 +43,7 @@ def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
     return [
         *_boundary(at, housing, names),
         *_printed_films(at, housing),
+        *_off_shafts(at, housing, names),
         *_said_twice(at, gearbox, housing, names),
         *flank_faults(name, gearbox, housing, names),
     ]
@@ -149,7 +152,10 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
 def _said_twice(at: str, gearbox: Gearbox, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
     """Heights and gaps that a film repeats must be those of the housing and its seals."""
     for name, film in housing.boundary.items():
-        if isinstance(film, NiemannWinter | IsoTr14179) and film.height not in (None, housing.height):
+        if isinstance(film, NiemannWinter | IsoTr14179 | VerticalPlate) and film.height not in (
+            None,
+            housing.height,
+        ):
             yield Fault(
                 f"{at}.{name}.height", show(film.height or 0.0, "length"),
                 f"is not the height of the housing, {show(housing.height, 'length')}",
@@ -167,6 +173,18 @@ def _said_twice(at: str, gearbox: Gearbox, housing: Housing, names: tuple[str, .
                 f"{at}.{name}.gap", show(film.gap or 0.0, "length"),
                 f"is not the radial gap of the seals of {own.shaft}, {show(own.radial_gap, 'length')}",
                 "leave it out: the film takes the gap of the seals",
+            )  # fmt: skip
+
+
+def _off_shafts(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
+    """Films that take diameter and speed from a shaft need a surface of one."""
+    for name, surface, _ in conditions_of(housing, names):
+        film = housing.boundary[name]
+        if isinstance(film, ShaftFilm) and not any(f"_{shaft}_" in f"{surface}_" for shaft in housing.shafts):
+            yield Fault(
+                f"{at}.{name}.surfaces", written(surface),
+                f"is no surface of a shaft or gear: {film.law} takes its diameter from there",
+                "take it out, or choose a film for still walls",
             )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, partner_of
 from rigdesign.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.losses import PlacedLoss
+from rigdesign.rig.films import plate_film, shaft_film
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
@@ -139,18 +140,6 @@ def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, laws.TakenFrom]]:
             yield surface, condition.taken_from
 
 
-def printed_law(taken: laws.TakenFrom) -> FilmLaw | None:
-    """Film law a printed coefficient was read from; None if the case does not say."""
-    match taken.law:
-        case "niemann_winter":
-            return convection.niemann_winter(taken.height or 0.0)
-        case "recknagel_plate":
-            return convection.recknagel_plate("dimensional")
-        case "iso_tr_14179_2":
-            return convection.iso_tr_14179_2_free(taken.height or 0.0)
-    return None
-
-
 def _condition(
     context: _Context, condition: laws.Condition, surface: str, stood_for: tuple[str, ...]
 ) -> BoundaryCondition:
@@ -190,32 +179,19 @@ def _fluid_of(context: _Context, condition: laws.Condition) -> tuple[str, float]
 
 
 def _film_law(context: _Context, condition: laws.Condition, surface: str) -> FilmLaw:
-    match condition:
-        case laws.NiemannWinter():
-            return convection.niemann_winter(
-                condition.height or context.housing.height, condition.draught_factor
-            )
-        case laws.RecknagelPlate():
-            turbulent = condition.correlation == "turbulent"
-            return convection.recknagel_plate("turbulent" if turbulent else "dimensional")
-        case laws.IsoTr14179():
-            return convection.iso_tr_14179_2_free(condition.height or context.housing.height)
-        case laws.ConstantFilm():
-            taken = condition.taken_from
-            formula = "constant" if taken is None or taken.law is None else taken.law
-            usual = None if condition.fluid == "ambient" else convection.OIL_RANGE
-            value, source = condition.heat_transfer_coefficient, context.source(condition)
-            return convection.constant(value, source, formula, usual)
-        case laws.RotatingCylinder():
-            turning = context.speed(surface), context.diameter(surface)
-            if condition.correlation == "jungnickel":
-                return convection.rotating_cylinder_jungnickel(*turning)
-            return convection.rotating_cylinder_becker(*turning, context.density(condition.medium))
-        case laws.RotatingDisc():
-            turning = context.speed(surface), 0.5 * context.diameter(surface)
-            if condition.correlation == "jungnickel":
-                return convection.rotating_disc_jungnickel(*turning)
-            return convection.rotating_disc(*turning, context.density(condition.medium))
+    if isinstance(condition, laws.PlateFilm):
+        return plate_film(condition, context.housing.height)
+    if isinstance(condition, laws.ShaftFilm):
+        density = None
+        if not isinstance(condition, laws.HorizontalCylinder):
+            density = context.density(condition.medium)
+        return shaft_film(condition, context.speed(surface), context.diameter(surface), density)
+    if isinstance(condition, laws.ConstantFilm):
+        taken = condition.taken_from
+        formula = "constant" if taken is None or taken.law is None else taken.law
+        usual = None if condition.fluid == "ambient" else convection.OIL_RANGE
+        value, source = condition.heat_transfer_coefficient, context.source(condition)
+        return convection.constant(value, source, formula, usual)
     raise TypeError(f"no film law for {type(condition).__name__}")
 
 
@@ -225,9 +201,9 @@ def _exchange_law(
     if isinstance(condition, laws.GapExchange):
         gap = condition.gap or context.shaft(surface).seal_gap
         turning = context.speed(surface), 0.5 * context.diameter(surface)
-        if condition.correlation == "jungnickel":
-            return convection.narrow_gap_jungnickel(*turning, gap)
-        return convection.narrow_gap_taylor(*turning, gap)
+        jungnickel = condition.correlation == "jungnickel"
+        across = convection.narrow_gap_jungnickel if jungnickel else convection.narrow_gap_taylor
+        return convection.scaled(across(*turning, gap), condition.film_factor)
     first, second = condition.coefficients
     source = "input of the case"
     return convection.series(convection.constant(first, source), convection.constant(second, source))

@@ -16,6 +16,7 @@ LAWS: dict[str, Callable[[], FilmLaw]] = {
     "recknagel_plate_dimensional": lambda: films.recknagel_plate("dimensional"),
     "vertical_plate_churchill": lambda: films.vertical_plate_churchill(0.28),
     "horizontal_plate_mcadams": lambda: films.horizontal_plate_mcadams(0.1),
+    "horizontal_plate_rohsenow": lambda: films.horizontal_plate_rohsenow(0.1),
     "horizontal_plate_vdi": lambda: films.horizontal_plate_vdi(0.1),
     "horizontal_cylinder_churchill_chu": lambda: films.horizontal_cylinder_churchill_chu(0.04),
     "iso_tr_14179_2_free": lambda: films.iso_tr_14179_2_free(0.28),
@@ -26,6 +27,7 @@ LAWS: dict[str, Callable[[], FilmLaw]] = {
     "rotating_cylinder_becker": lambda: films.rotating_cylinder_becker(1000.0, 0.04),
     "rotating_cylinder_kays_bjorklund": lambda: films.rotating_cylinder_kays_bjorklund(1000.0, 0.04),
     "rotating_cylinder_etemad": lambda: films.rotating_cylinder_etemad(1000.0, 0.04),
+    "rotating_cylinder_dropkin_carmi": lambda: films.rotating_cylinder_dropkin_carmi(1200.0, 0.05),
     "rotating_disc": lambda: films.rotating_disc(1000.0, 0.05),
     "narrow_gap_taylor": lambda: films.narrow_gap_taylor(1000.0, 0.02, 5e-4),
     "constant": lambda: films.constant(12.0, "measured"),
@@ -55,7 +57,7 @@ def test_no_film_turns_negative_or_infinite_without_a_temperature_difference(nam
 
 
 def test_every_law_is_exported_and_covered_here() -> None:
-    apart = {"FilmError", "series", "formula_4"}
+    apart = {"FilmError", "series", "scaled", "formula_4"}
     exported = {"recknagel_plate" if name.startswith("recknagel_plate") else name for name in LAWS}
     assert exported | apart == set(films.__all__)
 
@@ -71,7 +73,8 @@ def test_still_films_are_even_in_the_difference_at_one_film_temperature(name: st
 
 
 def test_a_warm_plate_facing_down_and_a_cold_one_facing_up_are_calm() -> None:
-    for factory in (films.horizontal_plate_mcadams, films.horizontal_plate_vdi):
+    factories = films.horizontal_plate_mcadams, films.horizontal_plate_vdi, films.horizontal_plate_rohsenow
+    for factory in factories:
         stirred = factory(0.5, "up")(WALL, FLUID).value
         calm = factory(0.5, "down")(WALL, FLUID).value
         assert calm < 0.6 * stirred
@@ -88,6 +91,11 @@ def test_a_warm_plate_facing_down_and_a_cold_one_facing_up_are_calm() -> None:
         (films.rotating_cylinder_becker(1e5, 0.2), ("Reynolds number", "another law for rotating")),
         (films.rotating_cylinder_jungnickel(0.0, 0.04), ("speed = 0", "free-convection")),
         (films.rotating_disc(1e5, 0.2, density=5.0), ("Reynolds number", "another law for rotating")),
+        (
+            films.rotating_cylinder_dropkin_carmi(100.0, 0.04),
+            ("Reynolds number", "15000 to 430000", "free-convection"),
+        ),
+        (films.horizontal_cylinder_churchill_chu(0.04, 10.0), ("speed = 10 rad/s", "rotating shafts")),
         (films.rotating_disc(0.1, 0.02), ("Reynolds number", "free-convection")),
         (films.narrow_gap_taylor(1000.0, 0.02, 5e-3), ("gap / radius = 0.25", "wider-gap")),
         (films.horizontal_plate_mcadams(1e-3), ("Rayleigh number", "10000 to 1e+11")),
@@ -104,6 +112,17 @@ def test_outside_its_range_a_film_warns_by_name_value_limit_and_remedy(
     assert len(warnings) == 1
     for word in words:
         assert word in warnings[0]
+
+
+def test_a_scaled_film_keeps_its_provenance_and_says_its_factor() -> None:
+    plain, scaled = films.niemann_winter(0.3), films.scaled(films.niemann_winter(0.3), 1.25)
+    assert films.scaled(plain, 1.0) is plain
+    one, other = plain(WALL, FLUID), scaled(WALL, FLUID)
+    assert other.value == pytest.approx(1.25 * one.value)
+    assert other.inputs == one.inputs | {"film_factor": 1.25}
+    assert (other.formula, other.source, other.valid_range) == (one.formula, one.source, one.valid_range)
+    with pytest.raises(films.FilmError, match="film factor = 0"):
+        films.scaled(plain, 0.0)
 
 
 def test_a_wall_colder_than_the_air_warns_for_the_housing_formula() -> None:

@@ -124,6 +124,42 @@ def test_horizontal_plates_on_the_field_of_p2() -> None:
         assert law(length)(AMBIENT + 100.0, AMBIENT).value == pytest.approx(expected, abs=0.01)
 
 
+def test_vdi_plate_by_hand() -> None:
+    """The stirred side term by term with numbers of air at 70 degC written out here, not through the air module.
+
+    nu = 1.99e-5 m2/s, k = 0.0294 W/(m K), Pr = 0.705, beta = 1/343.15 K: Ra = 9.80665 * 100 * 0.5714^3 / (343.15 *
+    nu^2) * Pr = 9.49e8; f2 = (1 + (0.322/0.705)^0.55)^(-20/11) = 0.402; Nu = 0.15 (Ra f2)^(1/3) = 108.8. With the
+    exponent of the other sign it would be 1.84 times as much.
+    """
+    length = 1.6 * 4.0 / 11.2
+    rayleigh = 9.80665 * 100.0 * length**3 / (343.15 * 1.99e-5**2) * 0.705
+    factor = (1.0 + (0.322 / 0.705) ** 0.55) ** (-20.0 / 11.0)
+    assert factor < 1.0
+    by_hand = 0.15 * (rayleigh * factor) ** (1.0 / 3.0) * 0.0294 / length
+    ours = films.horizontal_plate_vdi(length)(AMBIENT + 100.0, AMBIENT).value
+    assert ours == pytest.approx(by_hand, rel=0.01)
+
+
+def test_laws_of_rotating_cylinders_lie_together_at_12000_rpm_and_80_mm() -> None:
+    """Air at 90 degC: Becker 146.7, Kays and Bjorklund 141.7, Etemad 141.4; Dropkin and Carmi 73/76 of Etemad."""
+    speed, wall = 12000.0 * math.pi / 30.0, 90.0 + ZERO
+    found = {
+        law: getattr(films, f"rotating_cylinder_{law}")(speed, 0.080)(wall, wall).value
+        for law in ("becker", "kays_bjorklund", "etemad", "dropkin_carmi")
+    }
+    assert found["becker"] == pytest.approx(146.7, abs=0.5)
+    assert found["kays_bjorklund"] == pytest.approx(141.7, abs=0.5)
+    assert found["etemad"] == pytest.approx(141.4, abs=0.5)
+    assert found["dropkin_carmi"] == pytest.approx(73.0 / 76.0 * found["etemad"], rel=1e-12)
+
+
+def test_rohsenow_plate_on_the_field_of_p2() -> None:
+    """7.11 W/(m2 K) on A/P = 0.571 m at 100 K (thermal sheet b, through ht): beside McAdams' 7.59."""
+    film = films.horizontal_plate_rohsenow(1.6 * 4.0 / 11.2)(AMBIENT + 100.0, AMBIENT)
+    assert film.value == pytest.approx(7.11, abs=0.02)
+    assert film.warnings == ()
+
+
 def test_vdi_exponent_is_not_the_one_of_the_library() -> None:
     """f2 lowers the Rayleigh number; ht 1.2.0 raises it, and gets 1.84 times the coefficient in air."""
     from ht.conv_free_immersed import Nu_horizontal_plate_VDI
