@@ -26,7 +26,9 @@ not meshed, nor is the air in the chambers.
 """
 
 import math
+from collections.abc import Mapping
 from functools import lru_cache, partial
+from types import MappingProxyType
 from typing import Literal
 
 from thermal.fe.mesh import MeshError, disjoint_union
@@ -77,14 +79,19 @@ Fidelity = Literal["quick", "standard", "reference"]
 _SCALES: dict[Fidelity, tuple[float, float, float, int]] = {
     "quick": (0.1, 0.3, 0.08, 7),
     "standard": (0.04, 0.15, 0.05, 10),
-    "reference": (0.018, 0.06, 0.02, 20),
+    "reference": (0.0108, 0.045, 0.02, 20),
 }
 """Elements of walls, field and shafts relative to the root of the housing's outer area, the root of the
 field's area and the longest shaft, and elements a turn: the node count hardly depends on its size."""
 
 
-def mesh_sizes(geometry: HousingGeometry, fidelity: Fidelity) -> MeshSizes:
+def mesh_sizes(
+    geometry: HousingGeometry, fidelity: Fidelity, zones: Mapping[str, float] = MappingProxyType({})
+) -> MeshSizes:
     """Element sizes of one fidelity, scaled with the parts of ``geometry``.
+
+    zones : size [m] by zone (wall, field, seal, bearing, gear) at standard fidelity, in place of the usual
+        one; the other fidelities keep their ratio to it
 
     Raises GeometryError for a fidelity that is not quick, standard or reference.
     """
@@ -95,13 +102,20 @@ def mesh_sizes(geometry: HousingGeometry, fidelity: Fidelity) -> MeshSizes:
     outer = math.sqrt(2.0 * (g.length * g.width + g.length * g.height + g.width * g.height))
     plate = math.sqrt(g.field.length * g.field.width) if g.field is not None else outer
     reach = max(g.length + s.overhang_front + s.overhang_rear for s in g.shafts)
-    return MeshSizes(wall=wall * outer, field=field * plate, shaft=shaft * reach, circle=circle)
+    ratio = wall / _SCALES["standard"][0]
+    given = {zone: ratio * size for zone, size in zones.items()}
+    return MeshSizes(
+        wall=given.get("wall", wall * outer), field=given.get("field", field * plate), shaft=shaft * reach,
+        circle=circle, seal=given.get("seal", math.inf), bearing=given.get("bearing", math.inf),
+        gear=given.get("gear", math.inf),
+    )  # fmt: skip
 
 
 def build_gearbox(geometry: HousingGeometry, fidelity: Fidelity | MeshSizes = "quick") -> GearboxModel:
     """Mesh a gearbox and locate its bearings, seals, shafts and gears.
 
-    fidelity : quick (about 10 k nodes for a usual gearbox), standard (30 k), reference (150 k), or sizes
+    fidelity : quick (10 to 20 k nodes for a usual gearbox), standard (30 to 50 k), reference (350 k and
+        more), or sizes
 
     The same input gives the same arrays in every process; a model built before is returned again from memory,
     so do not write into it. Raises GeometryError (ValueError), MeshError (ValueError) and, where gmsh or a

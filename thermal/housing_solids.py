@@ -2,12 +2,15 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from thermal.housing_curving import BendAxis
 from thermal.housing_geometry import SIDES, ClampingField, GeometryError, HousingGeometry, ShaftGeometry
 from thermal.housing_mesh import SizeLaw
 from thermal.housing_surfaces import shaft_zones
+
+SAME = 1e-6
+"""Two lengths are one if they differ by less [m]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,11 +23,18 @@ class MeshSizes:
     shaft: float
     circle: int
     """Least number of elements round a bore or shaft."""
+    seal: float = math.inf
+    """At most, on the bores and shafts of seals."""
+    bearing: float = math.inf
+    """At most, on bearing bores, bosses and journals."""
+    gear: float = math.inf
+    """At most, on gears and their seats."""
 
     def __post_init__(self) -> None:
-        for name in ("wall", "field", "shaft"):
+        for name in ("wall", "field", "shaft", "seal", "bearing", "gear"):
             value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
+            bounded = math.isfinite(value) or name in ("seal", "bearing", "gear")
+            if not (bounded and value > 0.0):
                 raise GeometryError(f"mesh size {name} = {value} m must be greater than 0; give a length")
         if self.circle < 6:
             raise GeometryError(
@@ -123,40 +133,64 @@ def _portal(occ: Any, x: float, half_width: float, height: float) -> list[int]:
 
 def bend_axes(g: HousingGeometry) -> list[BendAxis]:
     """The axes of the bores, and the radius of the largest bore or boss round each."""
-    return [(shaft.y, g.shaft_height, max(radius for _, radius in _circles(g, shaft))) for shaft in g.shafts]
+    return [(shaft.y, g.shaft_height, max(radius for radius, _ in _circles(g, shaft))) for shaft in g.shafts]
 
 
-def _circles(g: HousingGeometry, shaft: ShaftGeometry) -> list[tuple[float, float]]:
-    radii = [g.seal_radius(shaft), g.bearing_radius(shaft)]
+def _circles(g: HousingGeometry, shaft: ShaftGeometry) -> list[tuple[float, Literal["seal", "bearing"]]]:
+    """Radius and zone of every bore and boss of a shaft in the housing."""
+    circles: list[tuple[float, Literal["seal", "bearing"]]] = [
+        (g.seal_radius(shaft), "seal"),
+        (g.bearing_radius(shaft), "bearing"),
+    ]
     if shaft.overhang_front or shaft.overhang_rear:
-        radii.append(g.end_seal_radius(shaft))
+        circles.append((g.end_seal_radius(shaft), "seal"))
     if g.protrusion(shaft) > 0.0:
-        radii.append(g.boss_radius(shaft))
-    return [(shaft.y, radius) for radius in radii]
+        circles.append((g.boss_radius(shaft), "bearing"))
+    return circles
 
 
 def housing_size(g: HousingGeometry, sizes: MeshSizes) -> SizeLaw:
     """Element size at the corners of housing and field: field, walls, and finer round the bores."""
-    circles = [circle for shaft in g.shafts for circle in _circles(g, shaft)]
+    circles = [(shaft.y, *circle) for shaft in g.shafts for circle in _circles(g, shaft)]
+    most = {"seal": sizes.seal, "bearing": sizes.bearing}
 
     def size(x: float, y: float, z: float) -> float:
         if z < -1e-9 or x < -1e-9 or x > g.length + 1e-9 or abs(y) > g.width / 2.0 + 1e-9:
             return sizes.field
-        for axis, radius in circles:
-            if abs(math.hypot(y - axis, z - g.shaft_height) - radius) < 1e-6:
-                return min(sizes.wall, 2.0 * math.pi * radius / sizes.circle)
-        return sizes.wall
+        on = [
+            min(most[zone], 2.0 * math.pi * radius / sizes.circle)
+            for axis, radius, zone in circles
+            if abs(math.hypot(y - axis, z - g.shaft_height) - radius) < SAME
+        ]
+        return min([sizes.wall, *on])
 
     return size
 
 
 def shaft_size(g: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> SizeLaw:
     """Element size at the vertices of one shaft; in its bore they are up to three times longer than wide."""
-    thinnest = min(zone.radius for zone in shaft_zones(g, shaft))
+    zones = shaft_zones(g, shaft)
+    thinnest = min(zone.radius for zone in zones)
+    finest = {"_seal_": sizes.seal, "_journal_": sizes.bearing}
+    limits = [
+        (zone.radius, zone.start, zone.end, size)
+        for zone in zones
+        for part, size in finest.items()
+        if part in zone.surface.removeprefix(f"shaft_{shaft.name}")
+    ]
 
     def size(x: float, y: float, z: float) -> float:
         radius = math.hypot(y - shaft.y, z - g.shaft_height)
         around = max(radius, min(3.0 * radius, thinnest))
-        return min(sizes.shaft, 2.0 * math.pi * around / sizes.circle)
+        on = [
+            most
+            for own, start, end, most in limits
+            if abs(radius - own) < SAME and start - SAME < x < end + SAME
+        ]
+        if shaft.gear is not None:
+            first, last = g.gear_limits(shaft)
+            if radius > 0.5 * shaft.seat_diameter - SAME and first - SAME < x < last + SAME:
+                on.append(sizes.gear)
+        return min(sizes.shaft, 2.0 * math.pi * around / sizes.circle, *on)
 
     return size

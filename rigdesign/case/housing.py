@@ -17,6 +17,7 @@ from rigdesign.case.fields import (
     Text,
 )
 from rigdesign.case.joint import FootContact
+from rigdesign.case.mesh import HousingMesh
 from thermal.audit import RADIATION_INCLUDED
 
 Fluid = Literal[
@@ -290,6 +291,8 @@ class Housing(Part):
     field: ClampingField
     foot_contact: FootContact | None = None
     """Joint between foot and field; perfect contact when left out."""
+    mesh: HousingMesh = HousingMesh()
+    """Element sizes by zone where the usual ones do not do."""
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
     boundary: Mapping[Name, Condition] = Field(min_length=1)
     radiation_included: bool

@@ -22,7 +22,7 @@ from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, se
 from rigdesign.rig.speeds import speed_ratios
 from thermal.conduction import ConductionSetup
 from thermal.expansion import ExpansionSetup
-from thermal.housing import build_gearbox
+from thermal.housing import build_gearbox, mesh_sizes
 from thermal.housing_geometry import HousingGeometry
 from thermal.stations import GearboxModel
 
@@ -86,7 +86,16 @@ class Rig:
     @cached_property
     def models(self) -> Mapping[str, GearboxModel]:
         """Meshed housing of every gearbox that has one."""
-        return {name: build_gearbox(geometry, self.fidelity) for name, geometry in self.geometries.items()}
+        return self.meshed(self.fidelity)
+
+    def meshed(self, fidelity: Fidelity) -> dict[str, GearboxModel]:
+        """The housings meshed at one fidelity, with the sizes the case gives for its zones."""
+        models = {}
+        for name, geometry in self.geometries.items():
+            housing = self.case.gearboxes[name].housing
+            assert housing is not None
+            models[name] = build_gearbox(geometry, mesh_sizes(geometry, fidelity, housing.mesh.sizes()))
+        return models
 
     @cached_property
     def conduction(self) -> Mapping[str, ConductionSetup]:
