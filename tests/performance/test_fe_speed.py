@@ -118,7 +118,7 @@ def supports(mesh: NamedMesh) -> np.ndarray:
 
 MESHES: dict[str, Callable[[], NamedMesh]] = {
     "tet 100k": lambda: gearbox(1.4),
-    "tet 355k": lambda: gearbox(0.85),
+    "tet 390k": lambda: gearbox(0.82),
     "tet 1M": lambda: gearbox(0.54),
     "hex 330k": lambda: hollow_box(58, 5),
 }
