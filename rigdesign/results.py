@@ -243,6 +243,22 @@ class GrowthResult:
 
 
 @dataclass(frozen=True, kw_only=True)
+class DiscretisationRow:
+    """How far a number of the governing stage is from that of an infinitely fine mesh."""
+
+    quantity: str
+    gearbox: str
+    stage: str
+    value: float
+    error: float
+    """Estimated size of the error in the unit of the value."""
+    unit: str
+    method: str
+    order: float | None
+    """Order of convergence behind the estimate; None where none was used."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class CouplingHistory:
     """Residuals of every pass of the coupling loop of one stage."""
 
@@ -303,6 +319,7 @@ class RunResult:
     thermal: list[ThermalResult]
     growth: list[GrowthResult]
     coupling: list[CouplingHistory]
+    discretisation: list[DiscretisationRow] = field(default_factory=list)
     hand_checks: list[dict[str, Any]]
     """{quantity, computed, by_hand, unit, formula}: a number an engineer can redo beside each key result."""
     assumptions: list[AssumptionRecord]

@@ -20,6 +20,7 @@ from rigdesign.assemble.hand import hand_checks
 from rigdesign.case.model import Case
 from rigdesign.checks import Subject, all_checks
 from rigdesign.coupling import PointResult, governing_point, solve_point
+from rigdesign.discretisation import coarser_rig, discretisation, on_finer_mesh
 from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError, UsageError
 from rigdesign.ramp_run import held_points, run_ramp, schedule_of
 from rigdesign.results import AssumptionRecord, Check, Fidelity, Finding, LossRow, RunResult
@@ -76,8 +77,9 @@ def solve_case(
 ) -> Subject:
     """The solved rig before its checks; ``lap`` is called with the name of every part that is done."""
     say("building the rig")
-    rig = build_rig(case, fidelity)
-    schedule_of(rig)
+    wanted = build_rig(case, fidelity)
+    schedule_of(wanted)
+    rig = coarser_rig(wanted)
     for name in rig.models:
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
     lap("rig_and_mesh")
@@ -88,6 +90,10 @@ def solve_case(
         points.append(solve_point(rig, point, start=start))
     lap("coupling")
     run = None if rig.drivetrain is None else _dynamic_run(rig, tuple(points), say, lap)
+    if rig is not wanted:
+        say(f"last pass on the {fidelity} mesh")
+        rig, points = wanted, [on_finer_mesh(wanted, point) for point in points]
+        lap("last_pass")
     say("assembling the result")
     return Subject(
         rig=rig,
@@ -105,6 +111,8 @@ def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
     case, rig, points = subject.case, subject.rig, list(subject.points)
     checks = all_checks(subject)
     clock.lap("checks")
+    errors = discretisation(rig, points)
+    clock.lap("discretisation")
     return RunResult(
         case=_case_record(case),
         fidelity=rig.fidelity,
@@ -117,6 +125,7 @@ def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
         thermal=list(subject.thermal),
         growth=list(subject.growth),
         coupling=[heat.coupling_history(p) for p in points],
+        discretisation=errors,
         hand_checks=hand_checks(subject),
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),

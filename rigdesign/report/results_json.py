@@ -41,6 +41,7 @@ def results_document(result: RunResult) -> dict[str, Any]:
         "thermal": result.thermal,
         "growth": result.growth,
         "coupling": _coupling(result.coupling),
+        "discretisation": result.discretisation,
         "hand_checks": result.hand_checks,
         "assumptions": result.assumptions,
         "overrides": result.overrides,
