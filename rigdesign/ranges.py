@@ -61,8 +61,8 @@ def with_ranges(
     reference, stated = settle(case)
     solved = _solve(wanted, reference, processes, count or (lambda done, whole, path: None))
     outcomes = [_outcome(end, stated, solved) for end in ends]
-    joined = _joined(result, stated, list(zip(ends, outcomes, strict=True)), left)
-    return replace(joined, timings_s={**result.timings_s, "ranges": round(time.perf_counter() - began, 3)})
+    found = joined(result, stated, list(zip(ends, outcomes, strict=True)), left)
+    return replace(found, timings_s={**result.timings_s, "ranges": round(time.perf_counter() - began, 3)})
 
 
 def _solve(
@@ -87,9 +87,10 @@ def _outcome(end: RangeEnd, stated: Outcome, solved: dict[tuple[str, str], Outco
     return solved[end.path, end.end]
 
 
-def _joined(
+def joined(
     result: RunResult, stated: Outcome, ends: list[tuple[RangeEnd, Outcome]], left: list[LeftOut]
 ) -> RunResult:
+    """The result with its verdicts over the ends; ``stated`` and the outcomes at the fidelity of the ends."""
     ranged = {entry.check.id: entry for entry in ranged_checks(result.checks, stated, ends)}
     checks = [judged(ranged[check.id]) if check.id in ranged else check for check in result.checks]
     ranges = RangesResult(
