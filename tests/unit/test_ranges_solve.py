@@ -10,7 +10,7 @@ import pytest
 from rigdesign import load_case, run_case
 from rigdesign.case import Case
 from rigdesign.ranges import with_ranges
-from rigdesign.ranges_plan import PARTS, RangeEnd, parts_of, plan
+from rigdesign.ranges_plan import Part, RangeEnd, parts_of, plan
 from rigdesign.ranges_point import Outcome, Reference, settle, solve_end
 from rigdesign.results import Check
 
@@ -56,10 +56,10 @@ def loop(tmp_path_factory: pytest.TempPathFactory) -> tuple[Reference, Outcome]:
     return settle(written(tmp_path_factory.mktemp("loop"), LOOP))
 
 
-def end(case: Case, path: str, value: str, *, everything: bool = False) -> RangeEnd:
+def end(case: Case, path: str, value: str, *more: Part) -> RangeEnd:
     return RangeEnd(
         path=path, together_with=(), end="low", value=value, stated="", case=case.with_value(path, value),
-        parts=PARTS if everything else parts_of(path),
+        parts=(*parts_of(path), *more),
     )  # fmt: skip
 
 
@@ -85,8 +85,8 @@ def test_losses_need_no_march_for_the_torque_of_the_motor(
     """
     reference, stated = loop
     quick = solve_end(end(reference.case, path, value), reference=reference)
-    full = solve_end(end(reference.case, path, value, everything=True), reference=reference)
-    assert (quick.parts, full.parts) == (("coupling",), PARTS)
+    full = solve_end(end(reference.case, path, value, "time run"), reference=reference)
+    assert (quick.parts, full.parts) == (("coupling",), ("coupling", "time run"))
     motor = [outcome.checks["bought_part.motor"].value for outcome in (stated, quick, full)]
     assert None not in motor
     before, shifted, marched = (float(value or 0.0) for value in motor)
@@ -142,7 +142,7 @@ def resting(check: Check, *paths: str) -> Check:
     return replace(check, assumptions=paths)
 
 
-def test_ranges_of_a_case_in_two_processes(tmp_path: Path) -> None:
+def test_ranges_of_a_case_in_a_worker_process(tmp_path: Path) -> None:
     """Flow and limit solved; the travel decides nothing; a share above 1 is no valid case."""
     case = written(tmp_path, GIVEN)
     run = run_case(case, fidelity="quick")
@@ -152,7 +152,7 @@ def test_ranges_of_a_case_in_two_processes(tmp_path: Path) -> None:
     result = with_ranges(
         case,
         replace(run, checks=checks),
-        workers=2,
+        workers=1,
         count=lambda done, whole, last: seen.append((done, whole)),
     )
     ranges = result.ranges
