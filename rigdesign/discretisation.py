@@ -62,10 +62,9 @@ def on_finer_mesh(rig: Rig, settled: PointResult) -> PointResult:
     """
     fields, growth = _solved(rig, settled)
     done = replace(settled.last, fields=fields, growth=growth)
-    after = feedback_of(rig, done)
-    before = feedback_of(rig, settled.last)
+    before, after = settled.last.feedback, feedback_of(rig, done)
     feedback = replace(
-        settled.last.feedback,
+        before,
         gear_temperature=after.gear_temperature,
         centre_distance=after.centre_distance,
         bearing_clearance=after.bearing_clearance,
@@ -88,9 +87,9 @@ def discretisation(rig: Rig, points: Sequence[PointResult]) -> list[Discretisati
         coarser.append((other, *_solved(other, point)))
     for name, field in point.last.fields.items():
         rows.append(_energy_row(rig, field, point.point.stage))
-        meshes = [_measured(other, fields[name], growth[name]) for other, fields, growth in coarser]
-        own = _measured(rig, field, point.last.growth[name])
-        if meshes:
+        meshes = [_measured(other, fields[name], growth.get(name)) for other, fields, growth in coarser]
+        own = _measured(rig, field, point.last.growth.get(name))
+        if meshes and meshes[-1].nodes != own.nodes:
             rows += _rows(name, point.point.stage, [*meshes, own])
     return rows
 
@@ -105,18 +104,22 @@ def _solved(rig: Rig, point: PointResult) -> tuple[dict[str, HousingField], dict
     return fields, {name: expand_housing(rig, fields[name]) for name in last.growth}
 
 
-def _measured(rig: Rig, field: HousingField, growth: HousingGrowth) -> OneMesh:
+def _measured(rig: Rig, field: HousingField, growth: HousingGrowth | None) -> OneMesh:
     """Every number of a housing that a check or the heat table shows."""
     name, mesh = field.gearbox, rig.models[field.gearbox].mesh
-    housing = field.temperature[mesh.cells[mesh.bodies["housing"]]]
+    housing = field.temperature[mesh.cells[mesh.bodies.get("housing", slice(None))]]
     values: dict[tuple[str, str], float] = {
         ("max_temperature", "degC"): float(field.temperature.max()) - ZERO,
         ("housing.max_temperature", "degC"): float(housing.max()) - ZERO,
     }
     for gear, entry in rig.case.gearboxes[name].gears.items():
+        if f"gear_{entry.shaft}" not in mesh.bodies:
+            continue
         values[f"{gear}.bulk_temperature", "degC"] = body_mean(rig, field, f"gear_{entry.shaft}") - ZERO
     for kind, power in field.solution.balance.by_kind().items():
         values[f"heat.{kind}", "W"] = power
+    if growth is None:
+        return OneMesh(len(mesh.points), values)
     shape = growth.expansion
     for seal in shape.seals.values():
         values[f"{seal.name}.seal_gap", "mm"] = MM * seal.minimum

@@ -92,6 +92,7 @@ def _growth(
     return {
         name: expand_housing(rig, field, None if before is None else before.growth[name])
         for name, field in fields.items()
+        if not rig.models[name].no_expansion
     }
 
 
@@ -103,18 +104,19 @@ def feedback_of(rig: Rig, done: PassResult) -> Feedback:
     clearance: dict[str, float] = {}
     tooth_growth = dict.fromkeys(rig.pairs, 0.0)
     for name, box in rig.case.gearboxes.items():
+        streams = {stream.name: stream for stream in done.streams}
+        bulk = streams[f"{name}.gear_oil"].outlet
+        gear_temperature |= {f"{name}.{gear}": bulk for gear in box.gears}
         if name in done.fields:
-            field, growth = done.fields[name], done.growth[name]
             gear_temperature |= {
-                f"{name}.{gear}": body_mean(rig, field, f"gear_{entry.shaft}")
+                f"{name}.{gear}": body_mean(rig, done.fields[name], f"gear_{entry.shaft}")
                 for gear, entry in box.gears.items()
+                if f"gear_{entry.shaft}" in rig.models[name].mesh.bodies
             }
-            centre_distance |= growth.centre_distance
-            tooth_growth |= growth.tooth_growth
+        if name in done.growth:
+            centre_distance |= done.growth[name].centre_distance
+            tooth_growth |= done.growth[name].tooth_growth
         else:
-            streams = {stream.name: stream for stream in done.streams}
-            bulk = streams[f"{name}.gear_oil"].outlet
-            gear_temperature |= {f"{name}.{gear}": bulk for gear in box.gears}
             centre_distance |= uniform_growth(rig, name, streams[f"{name}.bearing_oil"].outlet)
     clearance |= hot_clearances(rig, done.point.speed, done.growth)
     torque = old.mesh_torque

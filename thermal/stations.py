@@ -91,3 +91,5 @@ class GearboxModel:
     """Surface of ``fixed_body`` on which it stands."""
     joint: FootJoint | None = None
     """What stands on the fixed body; None where they share their nodes or are one."""
+    no_expansion: str = ""
+    """Why no clearance can be read from this model, which then has no stations; empty where it can."""

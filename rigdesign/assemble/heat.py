@@ -287,7 +287,9 @@ def fields_of(rig: Rig, result: PointResult) -> list[TemperatureField]:
             result.point.stage,
             rig.models[name].mesh,
             field.temperature,
-            result.last.growth[name].expansion.displacement,
+            result.last.growth[name].expansion.displacement
+            if name in result.last.growth
+            else np.zeros_like(rig.models[name].mesh.points),
         )
         for name, field in result.last.fields.items()
     ]

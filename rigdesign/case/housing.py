@@ -293,6 +293,11 @@ class Housing(Part):
     """Joint between foot and field; perfect contact when left out."""
     mesh: HousingMesh = HousingMesh()
     """Element sizes by zone where the usual ones do not do."""
+    mesh_file: Text | None = None
+    """A gmsh .msh beside the case file in place of the parametric box: 10-node tetrahedra or hexahedra of 20 or
+    27 nodes, in metres, physical volumes named like the bodies of the box, physical surfaces with the names that
+    ``boundary`` covers. Heights of films, diameters and speeds of shafts stay those of this table; clearances are read
+    where bearings, shafts and gears carry the names of the box."""
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
     boundary: Mapping[Name, Condition] = Field(min_length=1)
     radiation_included: bool

@@ -100,6 +100,12 @@ class Case(Part):
             "values": _rounded(self.model_dump(mode="json")),
             "marks": [mark.as_record() for mark in sorted(self._origin.marks, key=lambda mark: mark.path)],
         }
+        for name, box in self.gearboxes.items():
+            if box.housing is not None and box.housing.mesh_file is not None:
+                file = self.path.parent / box.housing.mesh_file
+                content[f"mesh_file.{name}"] = (
+                    hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
+                )
         text = json.dumps(content, sort_keys=True, ensure_ascii=False, allow_nan=False)
         return hashlib.sha256(text.encode()).hexdigest()
 

@@ -39,7 +39,23 @@ def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
         names = tuple(surface_names(housing_geometry(gearbox)))
     except ValueError as error:
         return [Fault(f"{at}.housing", "", str(error), "correct the measures of the housing")]
-    at = f"{at}.housing.boundary"
+    if housing.mesh_file is None:
+        return boundary_faults(name, gearbox, names)
+    if housing.mesh.sizes():
+        return [
+            Fault(
+                f"{at}.housing.mesh", "", "element sizes do nothing to a mesh that is read from a file",
+                "remove them or mesh_file",
+            )
+        ]  # fmt: skip
+    return []
+
+
+def boundary_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> list[Fault]:
+    """What is wrong with the boundary conditions of a housing whose surfaces have ``names``."""
+    housing = gearbox.housing
+    assert housing is not None
+    at = f"gearboxes.{name}.housing.boundary"
     return [
         *_boundary(at, housing, names),
         *_printed_films(at, housing),

@@ -34,6 +34,16 @@ class Subject:
         """The held point that speaks for the rig."""
         return governing_point(self.points)
 
+    @property
+    def no_clearances(self) -> str:
+        """Why there are no hot clearances, where there are none."""
+        reasons = {
+            f"gearbox {name}: {model.no_expansion}"
+            for name, model in self.rig.models.items()
+            if model.no_expansion
+        }
+        return "; ".join(sorted(reasons)) or NO_HOUSING
+
     def label(self, mesh: int) -> str:
         """Name of a mesh in ids and results."""
         return self.rig.mesh_labels[self.rig.mesh_names[mesh]]

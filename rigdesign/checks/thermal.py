@@ -154,7 +154,7 @@ def _clearances(subject: Subject) -> Iterator[Check]:
         yield _held(
             f"clearance.{key}", title, unit, _scaled(limit, scale), values,
             source=f"limits.clearances.{key}_minimum", at_least=True,
-            absent=NO_PLAY if key == "axial_play" and shafts else NO_HOUSING,
+            absent=NO_PLAY if key == "axial_play" and shafts else subject.no_clearances,
         )  # fmt: skip
     yield from _seal_travel(subject)
 

@@ -27,7 +27,6 @@ from thermal.boundary import (
 )
 from thermal.condition_checks import Condition
 from thermal.housing_geometry import SIDES, HousingGeometry, ShaftGeometry
-from thermal.housing_surfaces import surface_names
 
 GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"
 """Kinds of films: what takes the heat up, as the heat balance names it."""
@@ -116,7 +115,7 @@ def boundary_conditions(
     context = _Context(rig, name, point, feedback, bearings)
     housing = context.box.housing
     assert housing is not None
-    rows = conditions_of(housing, surface_names(context.geometry))
+    rows = conditions_of(housing, rig.surface_names(name))
     covered = {surface for entry, surface, _ in rows if laws.holds_radiation(housing.boundary[entry])}
     conditions: list[Condition] = [*foot_joint(rig, name)]
     for entry, surface, stood_for in rows:
@@ -134,7 +133,7 @@ def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, laws.TakenFrom]]:
     """(surface, what its coefficient was read from) of every film of a housing that assumes a difference."""
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
-    for entry, surface, _ in conditions_of(housing, surface_names(rig.geometries[name])):
+    for entry, surface, _ in conditions_of(housing, rig.surface_names(name)):
         condition = housing.boundary[entry]
         if isinstance(condition, laws.ConstantFilm) and condition.taken_from is not None:
             yield surface, condition.taken_from

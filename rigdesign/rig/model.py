@@ -20,10 +20,12 @@ from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
+from rigdesign.rig.user_mesh import user_model
 from thermal.conduction import ConductionSetup
 from thermal.expansion import ExpansionSetup
 from thermal.housing import build_gearbox, mesh_sizes
 from thermal.housing_geometry import HousingGeometry
+from thermal.housing_surfaces import surface_names
 from thermal.stations import GearboxModel
 
 
@@ -88,12 +90,22 @@ class Rig:
         """Meshed housing of every gearbox that has one."""
         return self.meshed(self.fidelity)
 
+    def surface_names(self, name: str) -> tuple[str, ...]:
+        """Surfaces of a housing that want a boundary condition: of the box, or all of a mesh file."""
+        housing = self.case.gearboxes[name].housing
+        if housing is not None and housing.mesh_file is not None:
+            return tuple(self.models[name].mesh.surfaces)
+        return tuple(surface_names(self.geometries[name]))
+
     def meshed(self, fidelity: Fidelity) -> dict[str, GearboxModel]:
         """The housings meshed at one fidelity, with the sizes the case gives for its zones."""
         models = {}
         for name, geometry in self.geometries.items():
             housing = self.case.gearboxes[name].housing
             assert housing is not None
+            if housing.mesh_file is not None:
+                models[name] = user_model(name, self.case.gearboxes[name], geometry, self.case.path)
+                continue
             models[name] = build_gearbox(geometry, mesh_sizes(geometry, fidelity, housing.mesh.sizes()))
         return models
 
