@@ -71,6 +71,27 @@ def mutants(seed: int, count: int) -> list[tuple[str, object]]:
     return list(islice(mutations(shortened(), seed), count))
 
 
+class SolverReachedError(Exception):
+    """The mutant passed validation and the assembly of the rig: the coupling loop begins."""
+
+
+def until_coupling(line: str) -> None:
+    """Progress that ends a run where its first solver begins."""
+    if line.startswith("coupling"):
+        raise SolverReachedError
+
+
+def reaches_a_solver(path: str, value: object) -> bool:
+    """True if a mutant is valid up to the coupling loop, which is not run."""
+    try:
+        run_case(shortened().with_value(path, value), fidelity="quick", progress=until_coupling)
+    except SolverReachedError:
+        return True
+    except RigdesignError:
+        return False
+    raise AssertionError(f"{path}: ran through without a line of the coupling loop")
+
+
 def outcome(path: str, value: object) -> Outcome:
     """Run one mutant as the command does; an exception outside the tool's own tree is not caught."""
     started = time.perf_counter()
@@ -90,16 +111,22 @@ def outcome(path: str, value: object) -> Outcome:
 
 
 def judge(outcomes: Sequence[Outcome]) -> None:
-    """Every end has words, only errors of the right kinds occur, and at least half came to a solver."""
+    """Every end has words, and only errors of the right kinds occur."""
     for entry in outcomes:
         assert entry.kind in ("solved", "refused", "not converged"), entry
         assert entry.kind == "solved" or len(entry.message.split()) > 4, entry
-    assert sum(entry.reached for entry in outcomes) >= len(outcomes) / 2
 
 
 @pytest.mark.parametrize("seed", range(CHUNKS))
 def test_mutants_end_in_a_result_or_a_plain_error(seed: int) -> None:
     judge([outcome(path, value) for path, value in mutants(seed, PER_CHUNK)])
+
+
+def test_half_of_the_mutants_come_to_a_solver() -> None:
+    reached = [
+        reaches_a_solver(path, value) for seed in range(CHUNKS) for path, value in mutants(seed, PER_CHUNK)
+    ]
+    assert sum(reached) >= len(reached) / 2
 
 
 @pytest.mark.slow
