@@ -11,6 +11,7 @@ import numpy as np
 from thermal.fe.elements import SurfaceElements
 from thermal.fe.mesh import FloatArray
 from thermal.fe.reference import triangle_values
+from thermal.fe.shapes import IndexArray
 from thermal.stations import Point
 
 
@@ -29,6 +30,8 @@ class CylinderMotion:
     """Growth of the mean radius, a0 [m]."""
     ovality: float
     """Largest minus smallest diameter of the second harmonic [m]."""
+    tilt: tuple[float, float]
+    """Slope of the axis in y and z along x [rad]."""
     turn: float
     """Mean rotation about the axis [rad]."""
 
@@ -54,13 +57,14 @@ def cylinder_motion(
     basis = np.column_stack([one, cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
     basis = np.hstack([basis, along[:, None] * basis[:, :3]])
     root = np.sqrt(area)
-    a0, a1, b1, a2, b2 = np.linalg.lstsq(basis * root[:, None], radial * root)[0][:5].tolist()
+    a0, a1, b1, a2, b2, _, tilt_y, tilt_z = np.linalg.lstsq(basis * root[:, None], radial * root)[0].tolist()
     axial = np.linalg.lstsq(tilted * root[:, None], moved[:, 0] * root)[0]
     tangential = moved[:, 2] * cos - moved[:, 1] * sin
     return CylinderMotion(
         shift=(float(axial[0]), a1, b1),
         radius_growth=a0,
         ovality=4.0 * float(np.hypot(a2, b2)),
+        tilt=(tilt_y, tilt_z),
         turn=float((tangential / radius) @ area / area.sum()),
     )
 
@@ -71,42 +75,52 @@ def axial_range(surface: SurfaceElements, points: FloatArray) -> tuple[float, fl
     return float(x.min()), float(x.max())
 
 
-def radial_displacement(
-    surface: SurfaceElements,
-    points: FloatArray,
-    displacement: FloatArray,
-    strain: FloatArray,
-    centre: Point,
-    angles: FloatArray,
-    x: float,
-) -> FloatArray:
-    """Radial displacement (n,) [m] of a cylinder in section ``x`` at ``angles`` (n,) [rad], +y to +z.
+@dataclass(frozen=True, eq=False)
+class Section:
+    """Points round a cylinder in one cross-section, found once in its mesh and read for any displacement.
 
-    Interpolated with the shape functions of the facet that covers each point of the unrolled cylinder; the
-    other arguments are those of `cylinder_motion`.
+    nodes : (n, 6) of the facet that covers each point of the unrolled cylinder; shapes : (n, 6) functions there
+    off : (n,) distance of the facet inside the cylinder [m]; cos, sin : (n,) of the angles, +y to +z
     """
-    corners = points[surface.facets[:, :3]] - np.array(centre)
-    phi = np.arctan2(corners[:, :, 2], corners[:, :, 1])
-    start = phi[:, :1]
-    phi = start + np.remainder(phi - start + np.pi, 2.0 * np.pi) - np.pi
-    middle = phi.mean(axis=1)
-    turned = middle + np.remainder(angles[:, None] - middle + np.pi, 2.0 * np.pi) - np.pi
-    radius = _radius(surface, points, centre)
-    edge_1 = np.column_stack([radius * (phi[:, 1] - phi[:, 0]), corners[:, 1, 0] - corners[:, 0, 0]])
-    edge_2 = np.column_stack([radius * (phi[:, 2] - phi[:, 0]), corners[:, 2, 0] - corners[:, 0, 0]])
-    det = edge_1[:, 0] * edge_2[:, 1] - edge_1[:, 1] * edge_2[:, 0]
-    to_1 = radius * (turned - phi[:, 0])
-    to_2 = x - centre[0] - corners[:, 0, 0]
-    xi = (to_1 * edge_2[:, 1] - to_2 * edge_2[:, 0]) / det
-    eta = (to_2 * edge_1[:, 0] - to_1 * edge_1[:, 1]) / det
-    best = np.argmax(np.minimum(np.minimum(xi, eta), 1.0 - xi - eta), axis=1)
-    rows = np.arange(len(angles))
-    shapes = triangle_values(np.column_stack([xi[rows, best], eta[rows, best]]))
-    nodes = surface.facets[best]
-    moved = np.einsum("na,nai->ni", shapes, displacement[nodes])
-    place = np.einsum("na,nai->ni", shapes, points[nodes] - np.array(centre))
-    swell = np.einsum("na,na->n", shapes, strain[nodes]) * (radius - np.hypot(place[:, 1], place[:, 2]))
-    return np.asarray(moved[:, 1] * np.cos(angles) + moved[:, 2] * np.sin(angles) + swell)
+
+    nodes: IndexArray
+    shapes: FloatArray
+    off: FloatArray
+    cos: FloatArray
+    sin: FloatArray
+
+    @classmethod
+    def of(
+        cls, surface: SurfaceElements, points: FloatArray, centre: Point, angles: FloatArray, x: float
+    ) -> "Section":
+        """Find the points at ``angles`` (n,) [rad] in section ``x`` [m] of a cylinder about an axis along x."""
+        corners = points[surface.facets[:, :3]] - np.array(centre)
+        phi = np.arctan2(corners[:, :, 2], corners[:, :, 1])
+        start = phi[:, :1]
+        phi = start + np.remainder(phi - start + np.pi, 2.0 * np.pi) - np.pi
+        middle = phi.mean(axis=1)
+        turned = middle + np.remainder(angles[:, None] - middle + np.pi, 2.0 * np.pi) - np.pi
+        radius = _radius(surface, points, centre)
+        edge_1 = np.column_stack([radius * (phi[:, 1] - phi[:, 0]), corners[:, 1, 0] - corners[:, 0, 0]])
+        edge_2 = np.column_stack([radius * (phi[:, 2] - phi[:, 0]), corners[:, 2, 0] - corners[:, 0, 0]])
+        det = edge_1[:, 0] * edge_2[:, 1] - edge_1[:, 1] * edge_2[:, 0]
+        to_1 = radius * (turned - phi[:, 0])
+        to_2 = x - centre[0] - corners[:, 0, 0]
+        xi = (to_1 * edge_2[:, 1] - to_2 * edge_2[:, 0]) / det
+        eta = (to_2 * edge_1[:, 0] - to_1 * edge_1[:, 1]) / det
+        best = np.argmax(np.minimum(np.minimum(xi, eta), 1.0 - xi - eta), axis=1)
+        rows = np.arange(len(angles))
+        shapes = triangle_values(np.column_stack([xi[rows, best], eta[rows, best]]))
+        nodes = surface.facets[best]
+        place = np.einsum("na,nai->ni", shapes, points[nodes] - np.array(centre))
+        off = radius - np.hypot(place[:, 1], place[:, 2])
+        return cls(nodes, shapes, off, np.cos(angles), np.sin(angles))
+
+    def radial(self, displacement: FloatArray, strain: FloatArray) -> FloatArray:
+        """Radial displacement (n,) [m] from that of the nodes (n_nodes, 3) [m] and their free strain (n_nodes,)."""
+        moved = np.einsum("na,nai->ni", self.shapes, displacement[self.nodes])
+        swell = np.einsum("na,na->n", self.shapes, strain[self.nodes]) * self.off
+        return np.asarray(moved[:, 1] * self.cos + moved[:, 2] * self.sin + swell)
 
 
 def _radius(surface: SurfaceElements, points: FloatArray, centre: Point) -> float:

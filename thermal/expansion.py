@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermal.alignment import ShaftAxis
 from thermal.elastic import ElasticError
 from thermal.expansion_setup import ExpansionSetup
 from thermal.fe.mesh import FloatArray
@@ -35,6 +36,8 @@ class Expansion:
     seals: dict[str, SealGrowth]
     shafts: dict[str, ShaftGrowth]
     gears: dict[str, GearGrowth]
+    axes: dict[str, ShaftAxis]
+    """Hot axis of every shaft, through its bearing bores."""
     centre_distances: tuple[CentreDistance, ...]
     """Every two gears of different shafts whose widths overlap."""
     largest_reaction: float
@@ -105,6 +108,7 @@ def read_expansion(
         seals={s.name: shape.seal(s) for s in model.seals},
         shafts={s.name: shape.shaft(s) for s in model.shafts},
         gears={g.name: shape.gear(g) for g in model.gears},
+        axes=shape.axes,
         centre_distances=shape.centre_distances(),
         largest_reaction=largest_reaction,
         iterations=iterations,

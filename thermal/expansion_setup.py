@@ -1,13 +1,18 @@
-"""Stiffness and supports of a gearbox, made once for all its temperature fields."""
+"""Stiffness, supports and measuring points of a gearbox, made once for all its temperature fields."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
+from thermal.cylinders import Section
 from thermal.elastic import ElasticError, ElasticSetup, three_two_one
 from thermal.fe.elements import FiniteElements
+from thermal.fe.mesh import FloatArray
 from thermal.fe.solver import BoolArray
-from thermal.stations import BearingStation, GearboxModel, ShaftStation
+from thermal.stations import BearingStation, GearboxModel, Point, ShaftStation
+
+ROUND: FloatArray = np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False)
+"""(72,) angles round a seal or bore at which it is measured [rad], from +y towards +z."""
 
 
 class ExpansionSetup:
@@ -36,6 +41,15 @@ class ExpansionSetup:
         self.piece = self._pieces()
         """Shaft name -> number of its piece."""
         self.elastic = ElasticSetup(self.elements, elastic, self._supports())
+        self._sections: dict[tuple[str, Point, float], Section] = {}
+
+    def section(self, surface: str, centre: Point, x: float) -> Section:
+        """Cross-section ``x`` [m] of a cylindrical surface about ``centre``, at the angles `ROUND`."""
+        found = self._sections.get((surface, centre, x))
+        if found is None:
+            face, points = self.elements.surfaces[surface], self.model.mesh.points
+            found = self._sections[surface, centre, x] = Section.of(face, points, centre, ROUND, x)
+        return found
 
     def _piece_of(self, body: str) -> int:
         found = np.unique(self.elements.components[self.model.mesh.bodies[body]])

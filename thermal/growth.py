@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermal.alignment import Roundness
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray
 
@@ -18,7 +19,13 @@ class BearingGrowth:
     bore_growth: float
     """Of the mean bore diameter [m]."""
     bore_ovality: float
-    """Largest minus smallest hot bore diameter [m]."""
+    """Largest minus smallest hot bore diameter of the ellipse [m], mean over the length."""
+    bore_roundness: Roundness
+    """Out of round in the first, middle and last section."""
+    bore_tilt: tuple[float, float]
+    """Slope of the bore's axis in y and z [rad]."""
+    misalignment: tuple[float, float]
+    """Tilt of the shaft axis in the bore in y and z [rad]."""
     journal_growth: float
     """Of the mean journal diameter [m]."""
 
@@ -26,6 +33,11 @@ class BearingGrowth:
     def clearance_change(self) -> float:
         """Change of the diametral clearance [m]: bore minus journal."""
         return self.bore_growth - self.journal_growth
+
+    @property
+    def tilt(self) -> float:
+        """Angle between the axes of shaft and bore [rad]."""
+        return float(np.hypot(*self.misalignment))
 
 
 @dataclass(frozen=True, kw_only=True)

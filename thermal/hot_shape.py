@@ -4,9 +4,10 @@ from itertools import combinations
 
 import numpy as np
 
-from thermal.cylinders import CylinderMotion, axial_range, cylinder_motion, radial_displacement
+from thermal.alignment import ShaftAxis, misalignment, roundness, shaft_axis
+from thermal.cylinders import CylinderMotion, axial_range, cylinder_motion
 from thermal.elastic import ElasticError, rigid_motion
-from thermal.expansion_setup import ExpansionSetup
+from thermal.expansion_setup import ROUND, ExpansionSetup
 from thermal.fe.mesh import FloatArray
 from thermal.growth import (
     BearingGrowth,
@@ -19,9 +20,6 @@ from thermal.growth import (
     length_mean,
 )
 from thermal.stations import BearingStation, GearStation, Point, SealStation, ShaftStation
-
-SEAL_ANGLES = 72
-"""Angles around a seal at which its gap is given."""
 
 
 class HotShape:
@@ -40,6 +38,7 @@ class HotShape:
         self.displacement = displacement.copy()
         self._place_housing()
         self.bores = {b.name: self._motion(b.bore_surface, b.centre) for b in self.model.bearings}
+        self.axes = {shaft.name: self._axis(shaft.name) for shaft in self.model.shafts}
         for shaft in self.model.shafts:
             self._place_shaft(shaft)
 
@@ -81,27 +80,37 @@ class HotShape:
             gaps.append(np.subtract(self.bores[bearing.name].shift, journal.shift))
             if bearing is locating:
                 turn = journal.turn
-        arms = np.array([b.centre[0] - locating.centre[0] for b in bearings])
-        offset, slope = _line(arms, np.array(gaps)[:, 1:])
-        shift = np.array([gaps[bearings.index(locating)][0], *offset])
-        rotation = np.array([-turn, -slope[1], slope[0]])
+        gap = shaft_axis(
+            shaft.name, [b.centre[0] for b in bearings], [(float(y), float(z)) for _, y, z in gaps]
+        )
+        shift = np.array([gaps[bearings.index(locating)][0], *gap.shift(locating.centre[0])])
+        rotation = np.array([-turn, -gap.slope[1], gap.slope[0]])
         self._move(self.setup.piece[shaft.name], np.array(locating.centre), shift, rotation)
 
     def bearing(self, station: BearingStation) -> BearingGrowth:
         """Read one bearing."""
         bore = self.bores[station.name]
         journal = self._motion(station.journal_surface, station.centre)
+        first, last = axial_range(self.surfaces[station.bore_surface], self.points)
+        places = (first, 0.5 * (first + last), last)
         return BearingGrowth(
             name=station.name,
             bore_shift=bore.shift,
             bore_growth=2.0 * bore.radius_growth,
             bore_ovality=bore.ovality,
+            bore_roundness=roundness(ROUND, self._radial(station.bore_surface, station.centre, *places)),
+            bore_tilt=bore.tilt,
+            misalignment=misalignment(self.axes[station.shaft], bore.tilt),
             journal_growth=2.0 * journal.radius_growth,
         )
 
+    def _radial(self, surface: str, centre: Point, *places: float) -> FloatArray:
+        """(len(places), n) radial displacement [m] of a cylinder at the angles `ROUND` in sections x [m]."""
+        sections = (self.setup.section(surface, centre, x) for x in places)
+        return np.array([section.radial(self.displacement, self.strain) for section in sections])
+
     def seal(self, station: SealStation) -> SealGrowth:
         """Read one seal: bore minus shaft at fixed angles in three sections."""
-        angles: FloatArray = np.linspace(0.0, 2.0 * np.pi, SEAL_ANGLES, endpoint=False)
         bore, shaft = self.surfaces[station.bore_surface], self.surfaces[station.shaft_surface]
         ranges = np.array([axial_range(bore, self.points), axial_range(shaft, self.points)])
         first, last = float(ranges[:, 0].max()), float(ranges[:, 1].min())
@@ -109,13 +118,12 @@ class HotShape:
             raise ElasticError(
                 f"seal {station.name!r}: bore and shaft surface do not face each other along x"
             )
-        fields = (self.points, self.displacement, self.strain)
-        gaps = [
+        places = (first, 0.5 * (first + last), last)
+        gaps = (
             station.radial_gap
-            + radial_displacement(bore, *fields, station.centre, angles, x)
-            - radial_displacement(shaft, *fields, station.centre, angles, x)
-            for x in (first, 0.5 * (first + last), last)
-        ]
+            + self._radial(station.bore_surface, station.centre, *places)
+            - self._radial(station.shaft_surface, station.centre, *places)
+        )
         axial = (
             self._motion(station.shaft_surface, station.centre).shift[0]
             - self._motion(station.bore_surface, station.centre).shift[0]
@@ -129,8 +137,8 @@ class HotShape:
         return SealGrowth(
             name=station.name,
             cold_gap=station.radial_gap,
-            angles=angles,
-            gaps=np.array(gaps),
+            angles=ROUND,
+            gaps=gaps,
             axial_shift=axial,
             gap_by_hand=station.radial_gap + by_hand,
         )
@@ -180,26 +188,26 @@ class HotShape:
 
     def _centre_distance(self, a: GearStation, b: GearStation) -> CentreDistance:
         plane = 0.5 * (a.centre[0] + b.centre[0])
-        shift_a, slope_a = self._axis(a.shaft, plane)
-        shift_b, slope_b = self._axis(b.shaft, plane)
+        axis_a, axis_b = self.axes[a.shaft], self.axes[b.shaft]
         cold = np.subtract(b.centre, a.centre)[1:]
         distance = float(np.hypot(*cold))
         along = cold / distance
-        opening = slope_b - slope_a
+        opening = np.subtract(axis_b.slope, axis_a.slope)
+        apart = np.subtract(axis_b.shift(plane), axis_a.shift(plane))
         return CentreDistance(
             gear_a=a.name,
             gear_b=b.name,
             cold=distance,
-            hot=float(np.hypot(*(cold + shift_b - shift_a))),
+            hot=float(np.hypot(*(cold + apart))),
             inclination=float(opening @ along),
             skew=float(along[0] * opening[1] - along[1] * opening[0]),
         )
 
-    def _axis(self, shaft: str, x: float) -> tuple[FloatArray, FloatArray]:
-        """Displacement (2,) [m] of a hot axis in y and z at ``x`` and its slope (2,), from bore centres."""
+    def _axis(self, shaft: str) -> ShaftAxis:
+        """Hot axis of a shaft, from its bore centres."""
         bearings = self._bearings(shaft)
-        arms = np.array([b.centre[0] - x for b in bearings])
-        return _line(arms, np.array([self.bores[b.name].shift[1:] for b in bearings]))
+        shifts = [self.bores[b.name].shift for b in bearings]
+        return shaft_axis(shaft, [b.centre[0] for b in bearings], [(y, z) for _, y, z in shifts])
 
     def _axial(self, surface: str) -> float:
         return self.surfaces[surface].mean(self.displacement[:, 0])
@@ -210,14 +218,3 @@ class HotShape:
         cell = np.flatnonzero(np.isin(self.model.mesh.cells, facet).sum(axis=1) == 3)[0]
         bodies = self.model.mesh.bodies.items()
         return next(self.setup.elastic.elastic[body].expansion for body, cells in bodies if cell in cells)
-
-
-def _line(arms: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Offset and slope (2,) of the straight line through ``values`` (n, 2) at ``arms`` (n,), least squares.
-
-    One bearing gives no slope.
-    """
-    if len(arms) == 1:
-        return values[0], np.zeros(2)
-    fit = np.linalg.lstsq(np.column_stack([np.ones_like(arms), arms]), values)[0]
-    return fit[0], fit[1]

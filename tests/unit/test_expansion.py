@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from thermal.cylinders import cylinder_motion, radial_displacement
+from thermal.cylinders import Section, cylinder_motion
 from thermal.elastic import ElasticError
 from thermal.expansion import Expansion, ExpansionSetup, expand
 from thermal.growth import concentric_gap_change, free_growth, length_mean
@@ -213,7 +213,8 @@ def test_interpolated_displacement_is_exact_for_rigid_motion_and_swelling(model,
     moved = np.array([3e-6, -2e-6, 5e-6]) + 1e-3 * (points - np.array(station.centre))
     strain = np.full(len(points), 1e-3)
     surface = setup.elements.surfaces[station.bore_surface]
-    radial = radial_displacement(surface, points, moved, strain, station.centre, angles, station.centre[0])
+    section = Section.of(surface, points, station.centre, angles, station.centre[0])
+    radial = section.radial(moved, strain)
     expected = -2e-6 * np.cos(angles) + 5e-6 * np.sin(angles) + 1e-3 * (0.02 + 20e-6)
     assert_allclose(radial, expected, atol=2e-8)
     fit = cylinder_motion(surface, points, moved, strain, station.centre)
