@@ -122,11 +122,11 @@ def shaft_pair(
     return ShaftPair(offset=(float(shift[0]), float(shift[1])), angle=(float(slope[0]), float(slope[1])))
 
 
-def axis_tolerances(helix_tolerance: float, bearing_span: float, face_width: float) -> tuple[float, float]:
-    """Greatest in-plane and out-of-plane deviation of two axes over their bearing span [m].
+def axis_tolerances(helix_tolerance: float) -> tuple[float, float]:
+    """Greatest in-plane and out-of-plane deviation of two axes over the face width [m].
 
-    helix_tolerance : total helix tolerance F_beta of the gear [m]; bearing_span, face_width : [m]
-    Source: ISO/TR 10064-3:1996, recommended values f_Sigma_beta = 0.5 (L/b) F_beta across, twice that in the plane.
+    helix_tolerance : total helix tolerance F_beta of the gear [m]
+    Source: ISO/TR 10064-3:1996, recommended over the bearing span L with the face width b:
+    f_Sigma_beta = 0.5 (L/b) F_beta across, f_Sigma_delta = 2 f_Sigma_beta in the plane; here times b/L.
     """
-    across = 0.5 * bearing_span / face_width * helix_tolerance
-    return 2.0 * across, across
+    return helix_tolerance, 0.5 * helix_tolerance

@@ -86,6 +86,8 @@ class ShaftGrowth:
     """Of the part towards the end face at low x; positive when longer."""
     end: float
     """Of the part towards the end face at high x."""
+    datum: float
+    """Travel of the journal in the locating bearing along x."""
     start_by_hand: float
     """alpha L (Tm - T0) with the length-mean temperature."""
     end_by_hand: float

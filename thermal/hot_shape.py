@@ -163,6 +163,7 @@ class HotShape:
             name=station.name,
             start=datum - self._axial(station.start_surface),
             end=self._axial(station.end_surface) - datum,
+            datum=datum,
             start_by_hand=by_hand[0],
             end_by_hand=by_hand[1],
             between_bearings=shaft,

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from rigdesign.assemble.alignment import axis_rows, bore_rows, coupling_rows
 from rigdesign.assemble.heat_split import heat_split_rows
 from rigdesign.coupling import PointResult
 from rigdesign.growth import axes_of, bearing_growth
@@ -170,6 +171,9 @@ def growth_result(rig: Rig, result: PointResult, name: str) -> GrowthResult:
         shafts=_shafts(rig, name, shape),
         gears=_gears(rig, result, name, shape),
         bearings=_bearings(rig, result, name, shape),
+        bores=bore_rows(rig, result, name, shape),
+        axes=axis_rows(rig, name, shape),
+        couplings=coupling_rows(rig, result, name),
     )
 
 

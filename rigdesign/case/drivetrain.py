@@ -10,8 +10,10 @@ from rigdesign.case.fields import (
     Inertia,
     Length,
     Name,
+    Offset,
     Part,
     Text,
+    Tilt,
     Torque,
     TorsionalDamping,
     TorsionalStiffness,
@@ -52,6 +54,14 @@ class Coupling(Part):
     torsional_stiffness: TorsionalStiffness
     torsional_damping: TorsionalDamping
     """Massless; its flanges and a torque flange are discs of the shafts."""
+    radial_offset_maximum: Length | None = None
+    """What its maker allows between the axes, cold and hot."""
+    angle_maximum: Tilt | None = None
+    """What its maker allows between the axes, cold and hot."""
+    cold_offset_lateral: Offset = 0.0
+    """Axis of the first shaft against that of the second when set up cold, across (y)."""
+    cold_offset_vertical: Offset = 0.0
+    """The same upwards (z)."""
 
 
 class Motor(Part):

@@ -88,6 +88,8 @@ Offset = Annotated[float, Quantity("length", at_least="-20 m", at_most="20 m")]
 Small = Annotated[float, Quantity("length", at_least="0 um", at_most="1 mm")]
 """A flank modification, a roughness."""
 Angle = Annotated[float, Quantity("angle", at_least="-360 deg", at_most="360 deg")]
+Tilt = Annotated[float, Quantity("angle", above="0 mrad", at_most="100 mrad")]
+"""A small angle between axes."""
 PressureAngle = Annotated[float, Quantity("angle", at_least="10 deg", at_most="35 deg")]
 HelixAngle = Annotated[float, Quantity("angle", at_least="0 deg", at_most="45 deg")]
 Temperature = Annotated[float, Quantity("temperature", at_least="-60 degC", at_most="600 degC")]

@@ -15,11 +15,13 @@ from rigdesign.case.fields import (
     Positive,
     Power,
     Share,
+    Small,
     Speed,
     Stress,
     Temperature,
     TemperatureDifference,
     Text,
+    Tilt,
     Torque,
     fault,
 )
@@ -35,6 +37,19 @@ class ClearanceLimits(Part):
     tip_clearance_minimum: Gap | None = None
     bearing_clearance_minimum: Gap | None = None
     """Diametral."""
+
+
+class AlignmentLimits(Part):
+    """How far axes and bores may leave their drawing when hot; couplings carry limits of their own."""
+
+    bearing_tilt_maximum: Tilt | None = None
+    """Of a shaft axis in a bearing bore."""
+    bore_out_of_round_maximum: Share | None = None
+    """Peak to valley of the bore radius as a share of the hot radial clearance."""
+    axis_inclination_maximum: Small | None = None
+    """In-plane deviation of the axes of a mesh over the face width."""
+    axis_skew_maximum: Small | None = None
+    """Out-of-plane deviation of the axes of a mesh over the face width."""
 
 
 class TemperatureLimits(Part):
@@ -193,6 +208,7 @@ class Limits(Part):
     """All limits of the rig."""
 
     clearances: ClearanceLimits = ClearanceLimits()
+    alignment: AlignmentLimits = AlignmentLimits()
     temperatures: TemperatureLimits = TemperatureLimits()
     oil: OilLimits = OilLimits()
     bearing: BearingLimits = BearingLimits()

@@ -1,6 +1,6 @@
 """Design checks: every rule of the case held against the solved rig."""
 
-from rigdesign.checks import dynamics, ramp, strength, thermal
+from rigdesign.checks import alignment, dynamics, ramp, strength, thermal
 from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.subject import Subject
 from rigdesign.results import Check
@@ -19,5 +19,6 @@ def held_checks(subject: Subject) -> list[Check]:
         *dynamics.checks(subject),
         *strength.checks(subject),
         *thermal.checks(subject),
+        *alignment.checks(subject),
         *ramp.checks(subject),
     ]

@@ -59,6 +59,8 @@ RESTS = {
     ),
     "clearance.bearing_clearance": HEAT,
     "clearance.seal_travel.*": GROWN,
+    "alignment.coupling_*": (*GROWN, "drivetrain.couplings.*.cold_offset_*"),
+    "alignment.*": GROWN,
     "transient.*": (*GROWN, "transient"),
     "bearing.*": (*BEARINGS, *HEAT, "gearboxes.*.gears.*.position"),
     "oil.flow": ("gearboxes.*.oil.flow", "gearboxes.*.bearing_oil.flow"),

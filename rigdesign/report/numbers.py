@@ -12,7 +12,7 @@ UNIT_SIGNS = {
 """Unit as stored -> as printed."""
 
 KEY_UNITS = (
-    "l_min", "W_m2K", "N_um", "mm2_s", "kg_m3", "m_s", "Nm_deg", "kgm2", "degC", "deg", "MPa", "Nm", "rpm",
+    "l_min", "W_m2K", "N_um", "mm2_s", "kg_m3", "m_s", "Nm_deg", "kgm2", "degC", "deg", "mrad", "MPa", "Nm", "rpm",
     "Hz", "mm", "um", "m2", "kW", "kN", "kg", "Pa", "W", "N", "s", "K", "m",
 )  # fmt: skip
 """Units that may end a key, longest first."""
