@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
-from dynamics.journal_film import solve_film
+from dynamics.journal_film import FilmSolution, solve_film
 
 Array = NDArray[np.float64]
 
@@ -102,7 +102,9 @@ def characteristic(width_ratio: float) -> Characteristic:
 @lru_cache(maxsize=64)
 def _solved(steps: int) -> Characteristic:
     width_ratio = steps * WIDTH_RATIO_STEP
-    films = [solve_film(-math.expm1(-node), width_ratio) for node in NODES]
+    films: list[FilmSolution] = []
+    for node in NODES:
+        films.append(solve_film(-math.expm1(-node), width_ratio, near=films[-1] if films else None))
     load = [math.log(f.sommerfeld / short_bearing_load(f.eccentricity, width_ratio)) for f in films]
     attitude = [f.attitude_angle - short_bearing_attitude(f.eccentricity) for f in films]
     flow = [f.side_flow / short_bearing_side_flow(f.eccentricity, width_ratio) for f in films]

@@ -9,7 +9,7 @@ vanish (Reynolds or Swift-Stieber condition), found as a linear complementarity 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,9 +41,17 @@ class FilmSolution:
     shear_torque: float
     """Torque on the journal from its wall shear, M (C_D/2) / (2 eta omega B R^3), oil all round the gap [-];
     divided by So it is the friction number f/psi."""
+    carries: NDArray[np.bool_] = field(repr=False)
+    """(n_theta - 1, n_zeta) nodes within the film that carry pressure."""
 
 
-def solve_film(eccentricity: float, width_ratio: float, n_theta: int = 240, n_zeta: int = 24) -> FilmSolution:
+def solve_film(
+    eccentricity: float,
+    width_ratio: float,
+    n_theta: int = 240,
+    n_zeta: int = 24,
+    near: FilmSolution | None = None,
+) -> FilmSolution:
     """Solve the film at one eccentricity.
 
     Parameters
@@ -51,6 +59,7 @@ def solve_film(eccentricity: float, width_ratio: float, n_theta: int = 240, n_ze
     eccentricity : relative eccentricity eps, above 0 and below 1 [-]
     width_ratio : B/D, above 0 [-]
     n_theta, n_zeta : cells round the film and over half the width; second-order accurate
+    near : film of a neighbouring eccentricity on as many cells; the search for the break-up starts from its own
 
     Returns
     -------
@@ -69,7 +78,10 @@ def solve_film(eccentricity: float, width_ratio: float, n_theta: int = 240, n_ze
         raise ValueError(f"width ratio B/D = {width_ratio}: must be above 0; give a positive width")
     theta = _clustered_angles(eccentricity, n_theta)
     zeta = np.sin(np.linspace(0.0, 0.5 * math.pi, n_zeta + 1))
-    pressure = _pressure(theta, zeta, eccentricity, width_ratio)
+    start = np.broadcast_to((theta[1:-1] < 1.2 * math.pi)[:, None], (n_theta - 1, n_zeta))
+    if near is not None and near.carries.shape == start.shape:
+        start = near.carries
+    pressure = _pressure(theta, zeta, eccentricity, width_ratio, start)
     return _integrals(theta, zeta, pressure, eccentricity, width_ratio)
 
 
@@ -84,8 +96,13 @@ def _clustered_angles(eccentricity: float, n_theta: int) -> Array:
     return angles
 
 
-def _pressure(theta: Array, zeta: Array, eccentricity: float, width_ratio: float) -> Array:
-    """Nodal pressure P, shape (n_theta + 1, n_zeta + 1), zeta = 0 the plane of symmetry."""
+def _pressure(
+    theta: Array, zeta: Array, eccentricity: float, width_ratio: float, start: NDArray[np.bool_]
+) -> Array:
+    """Nodal pressure P, shape (n_theta + 1, n_zeta + 1), zeta = 0 the plane of symmetry.
+
+    start : (n_theta - 1, n_zeta) nodes that carry pressure in the first step
+    """
     n, m = theta.size - 2, zeta.size - 1
     gap_mid = 1.0 + eccentricity * np.cos(0.5 * (theta[1:] + theta[:-1]))
     gap_cubed = (1.0 + eccentricity * np.cos(theta[1:-1])) ** 3
@@ -107,7 +124,7 @@ def _pressure(theta: Array, zeta: Array, eccentricity: float, width_ratio: float
     bands[1] = axial.ravel()
     bands[m, : size - m] = -round_link[1:-1].ravel()
     source = inflow.ravel()
-    active = np.broadcast_to((theta[1:-1] < 1.2 * math.pi)[:, None], (n, m)).ravel().copy()
+    active = start.ravel()
     for _ in range(100):
         solution = _solve_active(bands, source, active, m)
         residual = _apply(bands, solution, m) - source
@@ -169,4 +186,5 @@ def _integrals(
         attitude_angle=math.atan2(across, along),
         side_flow=side_flow,
         shear_torque=couette + poiseuille,
+        carries=pressure[1:-1, :-1] > 0.0,
     )

@@ -1,9 +1,12 @@
 """The linear part of a drivetrain: everything but the gear meshes, as matrices with named freedoms."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
+from dynamics.modal_form import ModalForm, modal_form
 
 Array = NDArray[np.float64]
 
@@ -36,3 +39,8 @@ class LinearSystem:
     drive_dof: int
     twist_load: Array
     drag_loads: dict[str, Array]
+
+    @cached_property
+    def form(self) -> ModalForm:
+        """Complex modes without the meshes, solved once for all speeds and passes."""
+        return modal_form(self.inertia, self.damping, self.stiffness, self.lines)

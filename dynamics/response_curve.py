@@ -17,10 +17,10 @@ from dynamics.harmonic_balance import HarmonicSolution, Problem, Waveform, wavef
 from dynamics.harmonic_walk import LEAST_HARMONICS, HarmonicWalk
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
-from dynamics.modal_form import modal_form
 from dynamics.periodic_response import Period, PeriodicResponse, periodic_by_time
-from dynamics.propagator import DEFAULT_CUTOFF
+from dynamics.propagator import DEFAULT_CUTOFF, ModalModel, modal_model
 from dynamics.static_loop import NotConverged, PortModel, port_model
+from dynamics.time_march import slow_loads
 
 Array = NDArray[np.float64]
 Method = Literal["harmonic_balance", "time_integration"]
@@ -141,7 +141,7 @@ def periodic_response(
         )
     problem = Problem(
         model=port_model(system, laws),
-        form=modal_form(system.inertia, system.damping, system.stiffness, system.lines),
+        form=system.form,
         torque=torque,
         twist=twist,
         control_mesh=control_mesh,
@@ -154,9 +154,13 @@ def periodic_response(
     if "harmonic_balance" in methods:
         found, reasons = _by_harmonics(walk, given, drags)
     if "time_integration" in methods:
+        models: dict[tuple[str, ...], ModalModel] = {}
         for i, reason in reasons.items():
+            names = tuple(drags[i] or {})
             try:
-                found[i] = _in_time(walk, system, given[i], drags[i], period, cutoff)
+                if names not in models:
+                    models[names] = modal_model(system, laws, slow_loads(system, names), cutoff=cutoff)
+                found[i] = _in_time(walk, system, given[i], drags[i], period, cutoff, models[names])
             except NotConverged as also:
                 reasons[i] = "; ".join(filter(None, (reason, str(also))))
     return ResponseCurve(
@@ -241,11 +245,12 @@ def _in_time(
     drags: Mapping[str, float] | None,
     period: Period,
     cutoff: float,
+    model: ModalModel,
 ) -> CurvePoint:
     problem = walk.problem
     result = periodic_by_time(
         system, problem.model.laws, speed=speed, torque=problem.torque, twist=problem.twist,
-        period=period, drag_torques=drags, cutoff=cutoff,
+        period=period, drag_torques=drags, cutoff=cutoff, model=model,
     )  # fmt: skip
     if not result.steady:
         raise NotConverged("; ".join(result.warnings))
