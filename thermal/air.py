@@ -1,17 +1,8 @@
-"""Properties of dry air at one atmosphere.
-
-The equation of state is CoolProp's; as loading its fluids takes seconds, films ask Chebyshev series in ln T that
-were fitted to it (`thermal.air_series`) and reproduce it to 2e-7.
-"""
+"""Properties of dry air at one atmosphere, from CoolProp (imported when first asked for)."""
 
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
-
-import numpy as np
-from numpy.polynomial.chebyshev import chebval
-
-from thermal.air_series import SERIES
 
 ATMOSPHERE = 101325.0
 """[Pa]"""
@@ -56,28 +47,15 @@ class Air:
 
 @lru_cache(maxsize=8192)
 def air(temperature: float) -> Air:
-    """Air at ``temperature`` [K] and one atmosphere, within 2e-7 of `air_by_equation_of_state`.
+    """Air at ``temperature`` [K] and one atmosphere (CoolProp, HEOS equation of state of Lemmon et al. 2000).
 
     Raises AirRangeError outside 200 to 1000 K.
     """
-    _require_range(temperature)
-    place = (2.0 * np.log(temperature) - np.log(LOWEST * HIGHEST)) / np.log(HIGHEST / LOWEST)
-    density, specific_heat, conductivity, viscosity = np.exp(chebval(place, SERIES)).tolist()
-    return Air(
-        temperature=temperature,
-        density=density,
-        specific_heat=specific_heat,
-        conductivity=conductivity,
-        viscosity=viscosity,
-    )
-
-
-def air_by_equation_of_state(temperature: float) -> Air:
-    """The same from CoolProp, HEOS equation of state of Lemmon et al. 2000 (imported when first asked for).
-
-    Raises AirRangeError outside 200 to 1000 K.
-    """
-    _require_range(temperature)
+    if not LOWEST <= temperature <= HIGHEST:
+        raise AirRangeError(
+            f"air temperature = {temperature:g} K is outside {LOWEST:g} to {HIGHEST:g} K; check the wall and "
+            "ambient temperatures of this film"
+        )
     from CoolProp.CoolProp import PT_INPUTS
 
     state = _equation_of_state()
@@ -89,14 +67,6 @@ def air_by_equation_of_state(temperature: float) -> Air:
         conductivity=state.conductivity(),
         viscosity=state.viscosity(),
     )
-
-
-def _require_range(temperature: float) -> None:
-    if not LOWEST <= temperature <= HIGHEST:
-        raise AirRangeError(
-            f"air temperature = {temperature:g} K is outside {LOWEST:g} to {HIGHEST:g} K; check the wall and "
-            "ambient temperatures of this film"
-        )
 
 
 @lru_cache(maxsize=1)
