@@ -99,14 +99,29 @@ def _temperatures(subject: Subject) -> Iterator[Check]:
 
 
 def _tempering_distances(subject: Subject) -> Iterator[tuple[float, str]]:
-    """Tempering temperature less bulk temperature of every gear whose material has one [K]."""
+    """Tempering temperature less the gear's own, of its teeth where a flank film gives them [K].
+
+    A gear whose gearbox has no housing takes the temperature of its oil outlet; gears of a material without a
+    tempering temperature are left out.
+    """
+    teeth = {
+        (split.gear, row.stage): split.tooth_degC + ZERO
+        for row in subject.thermal
+        for split in row.heat_split
+        if split.tooth_degC is not None
+    }
     for point in subject.points:
-        for name, temperature in point.last.feedback.gear_temperature.items():
+        stage = point.point.stage
+        for name, bulk in point.last.feedback.gear_temperature.items():
             box, gear = name.split(".")
             material = subject.rig.materials[subject.case.gearboxes[box].gears[gear].material]
-            if material.tempering_temperature is not None:
-                where = f"{name} at {temperature - ZERO:.1f} degC, stage {point.point.stage}"
-                yield material.tempering_temperature - temperature, where
+            if material.tempering_temperature is None:
+                continue
+            hottest = max(bulk, teeth.get((name, stage), bulk))
+            part = "teeth of " if hottest > bulk else ""
+            basis = "" if box in subject.rig.models else ", its oil outlet"
+            where = f"{part}{name} at {hottest - ZERO:.1f} degC{basis}, stage {stage}"
+            yield material.tempering_temperature - hottest, where
 
 
 def _films(subject: Subject) -> list[tuple[str, BearingState]]:

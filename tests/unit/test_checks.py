@@ -182,3 +182,26 @@ def test_cooler_heater_and_room_are_those_of_their_own_worst_stage() -> None:
     assert found["oil.cooler"] == (pytest.approx(12.0), "stage fast")
     assert found["oil.heater"] == (pytest.approx(1.5), "stage fast")
     assert found["oil.room"] == (pytest.approx(2.0), "stage hot")
+
+
+def test_teeth_hotter_than_their_gear_govern_the_tempering_distance() -> None:
+    """180 degC of case-hardened steel less 150 degC of the wheel's teeth, 130 degC of the pinion, 60 degC of oil."""
+    temperature = {
+        "test.pinion": 403.15,
+        "test.wheel": 393.15,
+        "reference.pinion": 333.15,
+        "reference.wheel": 333.15,
+    }
+    point = held("test", (1.1, 1.2), feedback=SimpleNamespace(gear_temperature=temperature))
+    split = [
+        SimpleNamespace(gear="test.pinion", tooth_degC=None),
+        SimpleNamespace(gear="test.wheel", tooth_degC=150.0),
+    ]
+    row: Any = SimpleNamespace(stage="test", heat_split=split)
+    found = list(thermal._tempering_distances(replace(subject([point]), thermal=[row])))
+    assert [(round(value, 9), where) for value, where in found] == [
+        (50.0, "test.pinion at 130.0 degC, stage test"),
+        (30.0, "teeth of test.wheel at 150.0 degC, stage test"),
+        (120.0, "reference.pinion at 60.0 degC, its oil outlet, stage test"),
+        (120.0, "reference.wheel at 60.0 degC, its oil outlet, stage test"),
+    ]
