@@ -117,10 +117,14 @@ def mesh_phase(rig: Rig, name: str) -> float:
 
 
 def _slices(rig: Rig, pair: GearPair) -> int:
-    """Slices over the face width; half of them at quick fidelity."""
+    """Slices over the face width; quick fidelity halves them for spur gears.
+
+    Slices of a helical gear enter the mesh one by one: too few of them excite it by the steps of the sum.
+    """
     numerics = rig.case.numerics
-    slices = numerics.slices_helical if pair.helix_angle else numerics.slices_spur
-    return max(1, (slices + 1) // 2) if rig.fidelity == "quick" else slices
+    if pair.helix_angle:
+        return numerics.slices_helical
+    return max(1, (numerics.slices_spur + 1) // 2) if rig.fidelity == "quick" else numerics.slices_spur
 
 
 def flank_growth(cold: GearPair, warm: GearPair) -> float:
