@@ -10,8 +10,8 @@ from rigdesign.passes import PassResult, feedback_of, heat_residual, one_pass
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint, growth_change, temperature_change, torque_change
 
-GROWTH_FROM = 1.0
-"""Change of temperature in a pass [K] below which the next one expands the housings afresh."""
+GROWTH_FROM = 8.0
+"""Change of temperature in a pass [K] below which the next one is fine: it expands the housings afresh."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,8 +69,8 @@ def solve_point(
     residuals: list[Residual] = []
     done = before
     for _ in range(numerics.coupling_passes):
-        fresh = not residuals or residuals[-1].temperature < GROWTH_FROM
-        done = one_pass(rig, point, feedback, setting, done, fresh_growth=fresh)
+        fine = not residuals or residuals[-1].temperature < GROWTH_FROM
+        done = one_pass(rig, point, feedback, setting, done, fine=fine)
         after = feedback_of(rig, done).hold(hold, cold)
         heat = 0.0 if {"bearing_heat", "wall_heat"} & hold else heat_residual(rig, done)
         residuals.append(
@@ -81,7 +81,7 @@ def solve_point(
             )
         )
         feedback = after
-        if fresh and _settled(residuals[-1], rig):
+        if fine and _settled(residuals[-1], rig):
             return PointResult(point=point, last=done, setting=setting, residuals=tuple(residuals))
     raise NotConvergedError(_history(point, residuals, rig))
 

@@ -13,7 +13,17 @@ from rigdesign.losses import PlacedLoss, mesh_losses, rotating_losses
 from rigdesign.lubrication import OilStream, oil_streams
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
-from rigdesign.temperatures import HousingField, body_mean, heat_into_films, heat_into_oil, solve_housing
+from rigdesign.temperatures import (
+    TOLERANCE,
+    HousingField,
+    body_mean,
+    heat_into_films,
+    heat_into_oil,
+    solve_housing,
+)
+
+ROUGH = 1e-5
+"""Heat left over in the fields of a pass that cannot be the last: some millikelvin."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,12 +54,13 @@ def one_pass(
     setting: Setting | None,
     before: PassResult | None = None,
     *,
-    fresh_growth: bool = True,
+    fine: bool = True,
 ) -> PassResult:
     """Compute one pass; ``before`` gives the fields to start from.
 
-    fresh_growth : expand the housings; else the growth of ``before`` is carried on, which saves time while the
-        temperatures still move a lot. A pass that ends the loop must be fresh.
+    fine : expand the housings and solve the fields to the last digit; else the growth of ``before`` is carried on
+        and the heat of the fields closes to 1e-4, which saves time while the temperatures still move a lot. A pass
+        that ends the loop must be fine.
     """
     models = mesh_models(rig, point, feedback)
     bearings = solve_bearings(rig, point, feedback)
@@ -57,9 +68,11 @@ def one_pass(
     drags = drag_torques(turning, rig, point.speed)
     response = None if setting is None else respond(rig, point, models, drags, setting)
     losses = (*turning, *mesh_losses(rig, point, models, response, feedback))
+    starts: Mapping[str, HousingField] = {} if before is None else before.fields
+    tolerance = TOLERANCE if fine else ROUGH
     fields = {
         name: solve_housing(
-            rig, name, point, feedback, bearings, losses, None if before is None else before.fields[name]
+            rig, name, point, feedback, bearings, losses, starts.get(name), tolerance=tolerance
         )
         for name in rig.models
     }
@@ -78,16 +91,16 @@ def one_pass(
         losses=losses,
         streams=tuple(oil_streams(rig, losses, feedback.bearing_heat, feedback.wall_heat)),
         fields=fields,
-        growth=_growth(rig, fields, before, fresh_growth),
+        growth=_growth(rig, fields, before, fine),
         bearing_heat=bearing_heat,
         wall_heat=wall_heat,
     )
 
 
 def _growth(
-    rig: Rig, fields: Mapping[str, HousingField], before: PassResult | None, fresh: bool
+    rig: Rig, fields: Mapping[str, HousingField], before: PassResult | None, fine: bool
 ) -> dict[str, HousingGrowth]:
-    if before is not None and not fresh:
+    if before is not None and not fine:
         return dict(before.growth)
     return {
         name: expand_housing(rig, field, None if before is None else before.growth[name])

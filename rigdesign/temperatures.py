@@ -15,6 +15,9 @@ from rigdesign.state import Feedback, OperatingPoint
 from thermal.condition_checks import Condition
 from thermal.conduction import TemperatureSolution, solve_steady
 
+TOLERANCE = 1e-9
+"""Heat left over at the nodes, relative to the heat turned over, at which a field is solved."""
+
 
 @dataclass(frozen=True)
 class HousingField:
@@ -40,11 +43,13 @@ def solve_housing(
     start: HousingField | None = None,
     *,
     radiation_included: bool | None = None,
+    tolerance: float = TOLERANCE,
 ) -> HousingField:
     """Temperature field of the housing of gearbox ``name``.
 
     start : field of an earlier pass, a good first guess
     radiation_included : reading of the film to room air; that of the case when left out
+    tolerance : of the heat left over, relative to the heat turned over
 
     Raises
     ------
@@ -64,8 +69,9 @@ def solve_housing(
         setup.mesh,
         setup.conductivity,
         conditions,
-        initial=None if start is None else start.temperature,
+        near=None if start is None else start.solution,
         reuse=setup,
+        tolerance=tolerance,
     )
     return HousingField(gearbox=name, conditions=tuple(conditions), solution=solution)
 

@@ -6,7 +6,7 @@ the heat balance of thermal.balance, which closes to 1e-8 of the heat turned ove
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -23,6 +23,9 @@ CLOSURE = 1e-8
 
 CONTRACTION = 0.1
 """Fall of the residual in a Newton step of a time step below which the Jacobian is made afresh."""
+
+WORN = 14
+"""Iterations of a linear solve of a steady problem after which the preconditioner is made afresh."""
 
 SMALLEST_STEP = 1e-2
 """Share of a Newton step that is taken even if the residual rises."""
@@ -43,6 +46,8 @@ class TemperatureSolution:
     """What is to be said of joints, and what the film laws said about their range; each sentence once."""
     volumes: dict[str, float]
     """Volume of a stream network -> temperature at which its fluid leaves [K]."""
+    preconditioner: Preconditioner | None = field(repr=False, compare=False)
+    """Of the last linear solve: good for the next problem nearby."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +67,7 @@ def solve_steady(
     conditions: Sequence[Condition],
     initial: FloatArray | float | None = None,
     *,
+    near: TemperatureSolution | None = None,
     reuse: ConductionSetup | None = None,
     tolerance: float = 1e-9,
     max_steps: int = 30,
@@ -72,8 +78,9 @@ def solve_steady(
     conditions : at least one for every surface on the boundary, see thermal.boundary, contact, enclosure,
         streams
     initial : (n_nodes,) field or one value [K] to start from; the mean of all given temperatures if None
+    near : solution on this mesh under conditions not far off, to start from in field and preconditioner
     reuse : setup of the same mesh and conductivities; all but the boundary terms is then at hand
-    tolerance : of the nodal residuals' sum relative to the heat turned over; the balance closes to it
+    tolerance : of the nodal residuals' sum relative to the heat turned over; the balance closes to ten times it
 
     Raises ConditionError (a ValueError) for conditions or values that cannot be computed, NotConverged (a
     RuntimeError with its history) if Newton's method or a linear solve stalls.
@@ -85,13 +92,15 @@ def solve_steady(
         )
     check_conditions(setup.elements, conditions)
     problem = ConductionProblem(setup, conditions)
-    start = problem.start(initial)
+    start = problem.start(initial if near is None else near.temperature)
     problem.check_paths(start)
-    result = newton(problem, start, tolerance, max_steps)
+    result = newton(problem, start, tolerance, max_steps, None if near is None else near.preconditioner)
     n = problem.n_nodes
     temperature, volumes = result.field[:n], dict(zip(problem.volumes.index, result.field[n:].tolist()))
     balance = heat_balance(setup, conditions, temperature, problem.reactions(result.field), volumes)
-    if balance.closure > CLOSURE and balance.worst_piece > problem.roundoff(result.field):
+    if balance.closure > max(CLOSURE, 10.0 * tolerance) and balance.worst_piece > problem.roundoff(
+        result.field
+    ):
         raise NotConverged(
             f"heat balance open by {balance.closure:.3g} of the heat turned over, above {CLOSURE:g}; "
             "lower the tolerance",
@@ -104,6 +113,7 @@ def solve_steady(
         linear_iterations=result.linear_iterations,
         warnings=(*setup.notes(conditions), *balance.warnings),
         volumes=volumes,
+        preconditioner=result.preconditioner,
     )
 
 
@@ -150,6 +160,8 @@ def newton(
         load = linear.load(residual)
         step = gmres(linear, load, preconditioner, tolerance=_forcing(history, limit / size))
         iterations.append(step.iterations)
+        if step.iterations > WORN and problem.storage is None:
+            preconditioner = None
         whole = linear.whole(residual, step.values)
         field, residual, turned = _line_search(problem, field, whole, residual)
 

@@ -105,9 +105,7 @@ def _solved_again(
             condition = replace(condition, power=kept * friction[gear])
         conditions.append(condition)
     setup = rig.conduction[name]
-    solution = solve_steady(
-        setup.mesh, setup.conductivity, conditions, initial=field.temperature, reuse=setup
-    )
+    solution = solve_steady(setup.mesh, setup.conductivity, conditions, near=field.solution, reuse=setup)
     return HousingField(gearbox=name, conditions=tuple(conditions), solution=solution)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
+from scipy.sparse.linalg import norm
 
 from thermal.fe import kernels
 from thermal.fe.aggregation import as_blocks, coarsen, inverse_points
@@ -35,6 +36,9 @@ COARSE_CYCLES = 3
 
 CYCLE_RANGE = (0.2, 1.05)
 """Eigenvalues of the linear matrix times one cycle: a symmetric cycle has none above 1."""
+
+SAME = 0.05
+"""Relative change of a small-rank part up to which its inverse on the linear space is kept."""
 
 LOOSE = 1e-10
 """A mode of the last level costs no energy if its share of the largest diagonal entry is below this."""
@@ -74,6 +78,14 @@ class LowRank:
 
     left: sparse.csc_array
     right: sparse.csc_array
+
+    def near(self, other: "LowRank") -> bool:
+        """Whether both factors differ from those of another by less than ``SAME`` of their size."""
+        pairs = ((self.left, other.left), (self.right, other.right))
+        return all(
+            mine.shape == theirs.shape and norm(mine - theirs) <= SAME * norm(theirs)
+            for mine, theirs in pairs
+        )
 
     def __matmul__(self, x: Numbers) -> Numbers:
         return np.asarray(self.left @ (self.right.T @ x))
@@ -288,13 +300,21 @@ class TwoLevelMultigrid:
             modes = np.tile(np.eye(self._block), (prolongation.shape[1], 1))
         self._coarse = AggregationHierarchy(coarse, modes * ~fixed_coarse[:, None])
         self._low_rank: LowRank | None = None
+        self._inverted: LowRank | None = None
         self._correction: tuple[FloatArray, FloatArray] | None = None
 
     def set_low_rank(self, low_rank: LowRank | None) -> None:
-        """Replace the small-rank part; its coarse form is inverted by the Woodbury identity."""
-        self._low_rank, self._correction = low_rank, None
+        """Replace the small-rank part; its coarse form is inverted by the Woodbury identity.
+
+        The inverse of a part that differs by less than ``SAME`` serves again: it only guides the iteration.
+        """
+        self._low_rank = low_rank
         if low_rank is None:
+            self._inverted = self._correction = None
             return
+        if self._inverted is not None and low_rank.near(self._inverted):
+            return
+        self._inverted = low_rank
         left = (self._down @ low_rank.left).toarray() * self._free_coarse[:, None]
         right = (self._down @ low_rank.right).toarray() * self._free_coarse[:, None]
         columns = [self._coarse(column.astype(np.float32)) for column in left.T]
