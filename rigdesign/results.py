@@ -300,7 +300,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class TemperatureField:
-    """Temperature and displacement of one gearbox at one stage, for pictures and .vtu."""
+    """Temperature, displacement and heat flux of one gearbox at one stage, for pictures and .vtu."""
 
     gearbox: str
     stage: str
@@ -309,6 +309,8 @@ class TemperatureField:
     """(n_nodes,) [K]"""
     displacement: NDArray[np.float64]
     """(n_nodes, 3) [m]"""
+    heat_flux: NDArray[np.float64] | None = None
+    """(n_nodes, 3) [W/m2]"""
 
 
 @dataclass(frozen=True, kw_only=True)

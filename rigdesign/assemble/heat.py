@@ -27,6 +27,7 @@ from rigdesign.rig.model import Rig
 from rigdesign.temperatures import HousingField, heat_to_room, solve_housing
 from thermal.balance import HeatRow as SolvedRow
 from thermal.expansion import Expansion
+from thermal.flux import heat_flux
 
 ZERO = 273.15
 MM, UM, L_MIN = 1e3, 1e6, 6e4
@@ -294,6 +295,7 @@ def fields_of(rig: Rig, result: PointResult) -> list[TemperatureField]:
             result.last.growth[name].expansion.displacement
             if name in result.last.growth
             else np.zeros_like(rig.models[name].mesh.points),
+            heat_flux(rig.conduction[name], field.temperature),
         )
         for name, field in result.last.fields.items()
     ]
