@@ -1,85 +1,63 @@
-"""Rows of the conduction benchmarks of NAFEMS, computed on small meshes with thermal.conduction."""
+"""Rows of the NAFEMS benchmarks of heat and thermal stress, computed on small meshes of tetrahedra."""
 
 from collections.abc import Iterator
 
-import numpy as np
+from rigdesign.validation.heat_benchmarks import (
+    SOURCE,
+    local_flux_temperature,
+    t2_end_temperature,
+    t3_temperature,
+    t4_temperature,
+)
+from rigdesign.validation.rows import ValidationRow, compare
+from rigdesign.validation.stress_benchmarks import le11_stress, t1_stress
 
-from rigdesign.validation.rows import ValidationRow, compare, not_modelled
-from thermal.boundary import Adiabatic, BoundaryCondition, Film, PrescribedTemperature, Radiation
-from thermal.conduction import solve_steady
-from thermal.convection import constant
-from thermal.fe.mesh import FloatArray, NamedMesh, box_mesh
-
-ZERO = 273.15
-SOURCE = "NAFEMS, The Standard NAFEMS Benchmarks (1990)"
+HEAT_GATE, STRESS_GATE = 1e-3, 2e-2
+MEGAPASCAL = 1e6
 
 
 def benchmark_rows() -> Iterator[ValidationRow]:
-    """T2 and T4 computed; what needs time, expansion of other shapes or axial symmetry is not modelled."""
-    yield compare(
-        id="NAFEMS-T2", quantity="T2, one-dimensional with radiation, end temperature", source=SOURCE,
-        published=927.0, computed=_t2(), unit="K", basis="verification", gate=1e-3,
-        assumptions="10 elements; analytic 927.008 K",
+    """T1 to T4, the cylinder with local flux and LE11."""
+    yield from heat_rows()
+    yield from stress_rows()
+
+
+def heat_rows() -> Iterator[ValidationRow]:
+    """T2, T3, T4 and the cylinder with local flux."""
+    yield _row(
+        "T2", "one-dimensional with radiation, end temperature", 927.0, t2_end_temperature(), "K", HEAT_GATE,
+        "10 elements; analytic 927.008 K",
     )  # fmt: skip
-    yield compare(
-        id="NAFEMS-T4", quantity="T4, two-dimensional with convection, temperature at E", source=SOURCE,
-        published=18.25, computed=_t4(), unit="degC", basis="verification", gate=1e-3,
-        assumptions="18 x 30 x 1 bricks of tetrahedra; converged 18.2538 degC",
+    yield _row(
+        "T3", "one-dimensional transient, x = 0.08 m, 32 s", 36.6, t3_temperature(), "degC", HEAT_GATE,
+        "20 elements, steps by their error; analytic 36.603 degC",
     )  # fmt: skip
-    missing = (
-        (
-            "T1",
-            "hot spot in a membrane, stress beside the spot",
-            "50",
-            "MPa",
-            "plane-stress membrane with a spot",
-        ),
-        ("T3", "one-dimensional transient, x = 0.08 m, 32 s", "36.6", "degC", "temperature over time"),
-        ("T-axi", "axisymmetric with flux, r = z = 0.04 m", "332.97", "K", "axisymmetric mesh"),
-        (
-            "LE11",
-            "axial stress at A of the cylinder, taper and sphere",
-            "-105",
-            "MPa",
-            "thermal stress recovery",
-        ),
-    )
-    for name, quantity, published, unit, what in missing:
-        yield not_modelled(
-            id=f"NAFEMS-{name}", quantity=f"{name}, {quantity}", source=SOURCE, published=published,
-            unit=unit,
-            basis="verification", reason=f"{what}: not modelled yet",
-        )  # fmt: skip
+    yield _row(
+        "T4", "two-dimensional with convection, temperature at E", 18.25, t4_temperature(), "degC", HEAT_GATE,
+        "18 x 30 x 1 bricks of tetrahedra; converged 18.2538 degC",
+    )  # fmt: skip
+    yield _row(
+        "T-axi", "axisymmetric with local flux, r = z = 0.04 m", 332.97, local_flux_temperature(), "K", HEAT_GATE,
+        "sector of 10 degrees; converged 332.9705 K",
+    )  # fmt: skip
 
 
-def _t2() -> float:
-    """End temperature [K]: bar of 0.1 m, k 55.6, 1000 K at one end, eps 0.98 to 300 K at the other."""
-    mesh = box_mesh((0.1, 0.01, 0.01), (10, 1, 1))
-    conditions = [
-        PrescribedTemperature(surface="x_min", temperature=1000.0),
-        Radiation(surface="x_max", emissivity=0.98, surroundings_temperature=300.0),
-        *_insulated("y_min", "y_max", "z_min", "z_max"),
-    ]
-    return _at(mesh, solve_steady(mesh, {"box": 55.6}, conditions).temperature, (0.1, 0.0, 0.0))
+def stress_rows() -> Iterator[ValidationRow]:
+    """T1 and LE11, on bricks of 20 nodes."""
+    yield _row(
+        "T1", "hot spot in a membrane, stress beside the spot", 50.0, t1_stress("hexahedron20") / MEGAPASCAL,
+        "MPa", STRESS_GATE, "thin plate with a pinhole in the spot; Lame's field fitted beside the edge of the spot",
+    )  # fmt: skip
+    yield _row(
+        "LE11", "axial stress at A of cylinder, taper and sphere", -105.0, le11_stress("hexahedron20") / MEGAPASCAL,
+        "MPa", STRESS_GATE, "90 degrees of the body; converged -106.0 MPa",
+    )  # fmt: skip
 
 
-def _t4() -> float:
-    """Temperature [degC] at (0.6, 0.2): plate 0.6 x 1 m, bottom 100 degC, h 750 on right and top."""
-    mesh = box_mesh((0.6, 1.0, 0.02), (18, 30, 1))
-    film = constant(750.0, SOURCE)
-    conditions = [
-        PrescribedTemperature(surface="y_min", temperature=100.0 + ZERO),
-        *(Film(surface=side, kind="air", fluid_temperature=ZERO, law=film) for side in ("x_max", "y_max")),
-        *_insulated("x_min", "z_min", "z_max"),
-    ]
-    return _at(mesh, solve_steady(mesh, {"box": 52.0}, conditions).temperature, (0.6, 0.2, 0.0)) - ZERO
-
-
-def _insulated(*surfaces: str) -> list[BoundaryCondition]:
-    return [Adiabatic(surface=surface) for surface in surfaces]
-
-
-def _at(mesh: NamedMesh, temperature: FloatArray, point: tuple[float, float, float]) -> float:
-    """Temperature at the node nearest to ``point`` [m]."""
-    distance = np.linalg.norm(mesh.points - np.array(point), axis=1)
-    return float(temperature[int(np.argmin(distance))])
+def _row(
+    name: str, quantity: str, published: float, computed: float, unit: str, gate: float, assumptions: str
+) -> ValidationRow:
+    return compare(
+        id=f"NAFEMS-{name}", quantity=f"{name}, {quantity}", source=SOURCE, published=published,
+        computed=computed, unit=unit, basis="verification", gate=gate, assumptions=assumptions,
+    )  # fmt: skip

@@ -1,7 +1,7 @@
 """Temperatures over time against closed forms.
 
 Carslaw, Jaeger, Conduction of Heat in Solids, 2nd ed.: 2.7 (semi-infinite solid with a film), 3.11 (plate
-with films); NAFEMS, The Standard NAFEMS Benchmarks (1990): T3, one-dimensional transient, 36.6 degC.
+with films).
 """
 
 import math
@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from scipy.special import erfc, erfcx
 
 from tests.two_blocks import law
-from thermal.boundary import STEFAN_BOLTZMANN, Adiabatic, BodySource, Film, PrescribedTemperature, Radiation
+from thermal.boundary import STEFAN_BOLTZMANN, Adiabatic, BodySource, Film, Radiation
 from thermal.capacity import HeatCapacity
 from thermal.condition_checks import Condition
 from thermal.conduction import ConductionSetup
@@ -118,25 +118,6 @@ def test_a_thick_wall_warms_like_a_semi_infinite_solid() -> None:
         g = h / k * np.sqrt(k / capacity * t)
         excess = erfc(s) - np.exp(-(s**2)) * erfcx(s + g)
         assert solution.probes[name][later] == pytest.approx(300.0 + 100.0 * excess, abs=0.1)
-
-
-def test_nafems_t3() -> None:
-    def conditions(time: float) -> list[Condition]:
-        end = ZERO + 100.0 * math.sin(math.pi * time / 40.0)
-        return [
-            PrescribedTemperature(surface="x_min", temperature=ZERO),
-            PrescribedTemperature(surface="x_max", temperature=end),
-            *adiabatic(SIDES),
-        ]
-
-    mesh = box_mesh((0.1, 0.01, 0.01), (20, 1, 1))
-    solution = solve_transient(
-        mesh, {"box": 35.0}, {"box": 440.5 * 7200.0},
-        [ThermalStage(name="t3", duration=32.0, conditions=conditions)], ZERO, tolerance=0.01,
-    )  # fmt: skip
-    at = np.isclose(mesh.points[:, 0], 0.08)
-    assert solution.temperature[at] - ZERO == pytest.approx(36.60, abs=0.04)
-    assert solution.temperature[at].mean() - ZERO == pytest.approx(36.603, abs=0.01)
 
 
 def test_steps_are_of_second_order_against_the_exponential() -> None:
