@@ -3,7 +3,8 @@
 The settled point is solved once more, same losses, films and oil, on meshes of another fidelity: quick beside
 standard; quick and standard beside reference. From three meshes the error follows by Richardson extrapolation
 with the order observed, from two with the order of a field at re-entrant edges. At quick there is nothing
-coarser, only the energy norm of the recovered gradient is given.
+coarser, only the energy norm of the recovered gradient is given. The values of the checks are taken on every
+mesh as they are, the worst place of all; a verdict that hangs on the mesh says so (`rigdesign.rules.with_error`).
 Sources: Roache, Annu. Rev. Fluid Mech. 29 (1997) 123; Celik et al., J. Fluids Eng. 130 (2008) 078001 for meshes
 without a constant ratio; Strang, Fix, An Analysis of the Finite Element Method, ch. 8: at an edge of 270 degrees
 the gradient converges with order 2/3, integrals of the field with twice that.
@@ -11,19 +12,17 @@ the gradient converges with order 2/3, integrals of the field with twice that.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
 
-from rigdesign.coupling import PointResult, Residual, governing_point
-from rigdesign.growth import HousingGrowth, expand_housing
-from rigdesign.loads import mesh_models
-from rigdesign.passes import PassResult, feedback_of
-from rigdesign.results import DiscretisationRow, Fidelity
+from rigdesign.coupling import PointResult, governing_point
+from rigdesign.growth import HousingGrowth
+from rigdesign.remesh import checked, looping_rig, on_mesh, with_fidelity
+from rigdesign.results import Check, DiscretisationRow, Fidelity, MeshShift
 from rigdesign.rig.model import Rig
-from rigdesign.state import growth_change, temperature_change
-from rigdesign.temperatures import HousingField, body_mean, solve_housing
+from rigdesign.temperatures import HousingField, body_mean
 from thermal.fe.recovery import energy_error
 
 ZERO = 273.15
@@ -43,69 +42,76 @@ COARSER: dict[Fidelity, tuple[Fidelity, ...]] = {
 
 
 @dataclass(frozen=True)
-class OneMesh:
-    """Quantities (name, unit) -> value of one housing on one mesh."""
+class MeshErrors:
+    """What the meshes say of a solved rig."""
 
-    nodes: int
-    values: Mapping[tuple[str, str], float]
-
-
-def coarser_rig(rig: Rig) -> Rig:
-    """The rig on which the coupling iterates: at reference that of the standard mesh."""
-    return replace(rig, fidelity="standard") if rig.fidelity == "reference" else rig
+    rows: tuple[DiscretisationRow, ...]
+    """One for each quantity of the governing point, the energy norm of each housing first, then the checks."""
+    shifts: tuple[MeshShift, ...]
+    """At reference, from the standard to the fine mesh."""
 
 
-def on_finer_mesh(rig: Rig, settled: PointResult) -> PointResult:
-    """The last pass of a point settled on a coarser mesh: fields, growth and warm gears on that of ``rig``.
+@dataclass(frozen=True)
+class Numbers:
+    """Values and units of one mesh by (quantity, gearbox); an empty gearbox stands for checks."""
 
-    The residual that is added is the shift between the meshes.
+    nodes: Mapping[str, int]
+    """By gearbox; those of all housings under the empty name."""
+    values: Mapping[tuple[str, str], tuple[float, str]]
+
+
+def discretisation(rig: Rig, settled: Sequence[PointResult], points: Sequence[PointResult]) -> MeshErrors:
+    """Errors of all numbers of the governing held point and of the checks.
+
+    settled : held points as the loop left them
+    points : the same on the mesh of ``rig``, of which the errors are wanted
     """
-    fields, growth = _solved(rig, settled)
-    done = replace(settled.last, fields=fields, growth=growth)
-    before, after = settled.last.feedback, feedback_of(rig, done)
-    feedback = replace(
-        before,
-        gear_temperature=after.gear_temperature,
-        centre_distance=after.centre_distance,
-        bearing_clearance=after.bearing_clearance,
-        tooth_growth=after.tooth_growth,
-    )
-    shift = Residual(
-        temperature=temperature_change(before, after), growth=growth_change(before, after), torque=0.0
-    )
-    last: PassResult = replace(done, feedback=feedback, models=mesh_models(rig, settled.point, feedback))
-    return replace(settled, last=last, residuals=(*settled.residuals, shift))
-
-
-def discretisation(rig: Rig, points: Sequence[PointResult]) -> list[DiscretisationRow]:
-    """Errors of the governing held point, one row for each quantity, the energy norm of each housing first."""
-    point = governing_point(points)
-    rows = []
-    coarser = []
+    last = governing_point(points)
+    governing = next(i for i, point in enumerate(points) if point is last)
+    meshes: list[Numbers] = []
+    lost = ""
     for fidelity in COARSER[rig.fidelity]:
-        other = replace(rig, fidelity=fidelity)
-        coarser.append((other, *_solved(other, point)))
-    for name, field in point.last.fields.items():
-        rows.append(_energy_row(rig, field, point.point.stage))
-        meshes = [_measured(other, fields[name], growth.get(name)) for other, fields, growth in coarser]
-        own = _measured(rig, field, point.last.growth.get(name))
-        if meshes and meshes[-1].nodes != own.nodes:
-            rows += _rows(name, point.point.stage, [*meshes, own])
-    return rows
+        other = with_fidelity(looping_rig(rig), fidelity)
+        if _nodes(other) == _nodes(rig):
+            continue
+        try:
+            meshes.append(_numbers(other, [on_mesh(other, point) for point in settled], governing))
+        except (ValueError, RuntimeError) as error:
+            lost = f"; no result on the mesh of {fidelity} fidelity: {error}"
+    # at reference the points come from one more pass as those of the coarser meshes do; else they do not yet
+    ours = points if rig.fidelity == "reference" or not meshes else [on_mesh(rig, point) for point in settled]
+    rows = [_energy_row(rig, field, last.point.stage, lost) for field in last.last.fields.values()]
+    meshes.append(_numbers(rig, ours, governing))
+    if len(meshes) == 1:
+        return MeshErrors(tuple(rows), ())
+    rows += _rows(last.point.stage, meshes)
+    return MeshErrors(tuple(rows), _shifts(meshes[-2], meshes[-1]) if rig.fidelity == "reference" else ())
 
 
-def _solved(rig: Rig, point: PointResult) -> tuple[dict[str, HousingField], dict[str, HousingGrowth]]:
-    """Fields and growth of the housings at a settled point, on the mesh of ``rig``."""
-    last = point.last
-    fields = {
-        name: solve_housing(rig, name, last.point, last.feedback, last.bearings, last.losses)
-        for name in last.fields
+def _nodes(rig: Rig) -> dict[str, int]:
+    """Nodes of every housing; those of a mesh from a file are the same at any fidelity."""
+    return {name: len(model.mesh.points) for name, model in rig.models.items()}
+
+
+def _numbers(rig: Rig, points: Sequence[PointResult], governing: int) -> Numbers:
+    last = points[governing].last
+    nodes = _nodes(rig)
+    values = {
+        (quantity, name): (value, unit)
+        for name, field in last.fields.items()
+        for (quantity, unit), value in _measured(rig, field, last.growth.get(name)).items()
     }
-    return fields, {name: expand_housing(rig, fields[name]) for name in last.growth}
+    values |= {(check.id, ""): (_value(check), check.unit) for check in checked(rig, points).values()}
+    return Numbers({**nodes, "": sum(nodes.values())}, values)
 
 
-def _measured(rig: Rig, field: HousingField, growth: HousingGrowth | None) -> OneMesh:
-    """Every number of a housing that a check or the heat table shows."""
+def _value(check: Check) -> float:
+    assert check.value is not None
+    return check.value
+
+
+def _measured(rig: Rig, field: HousingField, growth: HousingGrowth | None) -> dict[tuple[str, str], float]:
+    """Every number of a housing that a check or the heat table shows, by quantity and unit."""
     name, mesh = field.gearbox, rig.models[field.gearbox].mesh
     housing = field.temperature[mesh.cells[mesh.bodies.get("housing", slice(None))]]
     values: dict[tuple[str, str], float] = {
@@ -119,7 +125,7 @@ def _measured(rig: Rig, field: HousingField, growth: HousingGrowth | None) -> On
     for kind, power in field.solution.balance.by_kind().items():
         values[f"heat.{kind}", "W"] = power
     if growth is None:
-        return OneMesh(len(mesh.points), values)
+        return values
     shape = growth.expansion
     for seal in shape.seals.values():
         values[f"{seal.name}.seal_gap", "mm"] = MM * seal.minimum
@@ -131,10 +137,10 @@ def _measured(rig: Rig, field: HousingField, growth: HousingGrowth | None) -> On
         values[f"{bearing.name}.clearance_change", "um"] = UM * bearing.clearance_change
     for full, distance in growth.centre_distance.items():
         values[f"{full.split('.')[1]}.centre_distance", "mm"] = MM * distance
-    return OneMesh(len(mesh.points), values)
+    return values
 
 
-def _energy_row(rig: Rig, field: HousingField, stage: str) -> DiscretisationRow:
+def _energy_row(rig: Rig, field: HousingField, stage: str, lost: str) -> DiscretisationRow:
     setup = rig.conduction[field.gearbox]
     k = {
         body: float(law(np.array([LAW_TEMPERATURE]))[0]) if callable(law) else float(law)
@@ -144,29 +150,47 @@ def _energy_row(rig: Rig, field: HousingField, stage: str) -> DiscretisationRow:
     return DiscretisationRow(
         quantity="temperature_gradient", gearbox=field.gearbox, stage=stage, value=found.energy,
         error=found.total, unit="(W K)^0.5", order=None,
-        method="energy norm against the recovered gradient (Zienkiewicz, Zhu 1992)",
+        method=f"energy norm against the recovered gradient (Zienkiewicz, Zhu 1992){lost}",
     )  # fmt: skip
 
 
-def _rows(gearbox: str, stage: str, meshes: Sequence[OneMesh]) -> list[DiscretisationRow]:
-    """One row for each quantity; meshes from coarse to fine, the last is that of the result."""
-    counts = " and ".join(str(mesh.nodes) for mesh in meshes)
+def _rows(stage: str, meshes: Sequence[Numbers]) -> list[DiscretisationRow]:
+    """One row for each number all meshes have; meshes from coarse to fine, the last is that of the result."""
     rows = []
-    for key, value in meshes[-1].values.items():
-        error, order, how = richardson([m.nodes for m in meshes], [m.values[key] for m in meshes])
+    for key, (value, unit) in meshes[-1].values.items():
+        quantity, gearbox = key
+        nodes = [mesh.nodes[gearbox] for mesh in meshes]
+        if nodes[-1] == nodes[-2] or not all(key in mesh.values for mesh in meshes):
+            continue
+        error, order, how = richardson(nodes, [mesh.values[key][0] for mesh in meshes])
         rows.append(
             DiscretisationRow(
-                quantity=key[0],
+                quantity=quantity,
                 gearbox=gearbox,
-                stage=stage,
+                stage=stage if gearbox else "",
                 value=value,
                 error=error,
-                unit=key[1],
+                unit=unit,
                 order=order,
-                method=f"meshes of {counts} nodes, {how}",
+                method=f"meshes of {' and '.join(map(str, nodes))} nodes, {how}",
             )
         )
     return rows
+
+
+def _shifts(standard: Numbers, reference: Numbers) -> tuple[MeshShift, ...]:
+    """Change of every check from one mesh to the next."""
+    return tuple(
+        MeshShift(
+            id=quantity,
+            standard=standard.values[quantity, gearbox][0],
+            reference=value,
+            shift=value - standard.values[quantity, gearbox][0],
+            unit=unit,
+        )
+        for (quantity, gearbox), (value, unit) in reference.values.items()
+        if not gearbox and (quantity, gearbox) in standard.values
+    )
 
 
 def richardson(nodes: Sequence[int], values: Sequence[float]) -> tuple[float, float | None, str]:

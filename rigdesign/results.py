@@ -43,6 +43,9 @@ class Check:
     """Second limit of a window (comparison ``within``)."""
     assumptions: tuple[str, ...] = ()
     """Case paths of the assumptions the value rests on."""
+    discretisation_error: float | None = None
+    """How far the value may be from that of an infinitely fine housing mesh, in its unit; None where no housing
+    mesh enters, or where there is no coarser one to tell."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -254,11 +257,14 @@ class GrowthResult:
 
 @dataclass(frozen=True, kw_only=True)
 class DiscretisationRow:
-    """How far a number of the governing stage is from that of an infinitely fine mesh."""
+    """How far a number is from that of an infinitely fine mesh."""
 
     quantity: str
+    """A number of one gearbox at the governing stage, or the id of a check."""
     gearbox: str
+    """Empty for a check, which takes the worst place of all."""
     stage: str
+    """Empty for a check."""
     value: float
     error: float
     """Estimated size of the error in the unit of the value."""
@@ -266,6 +272,17 @@ class DiscretisationRow:
     method: str
     order: float | None
     """Order of convergence behind the estimate; None where none was used."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshShift:
+    """What the fine mesh changes in the value of one check."""
+
+    id: str
+    standard: float
+    reference: float
+    shift: float
+    unit: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -332,6 +349,8 @@ class RunResult:
     growth: list[GrowthResult]
     coupling: list[CouplingHistory]
     discretisation: list[DiscretisationRow] = field(default_factory=list)
+    reference_shift: list[MeshShift] = field(default_factory=list)
+    """At reference: every check that rests on a housing mesh, on the standard mesh and on the fine one."""
     hand_checks: list[dict[str, Any]]
     """{quantity, computed, by_hand, unit, formula}: a number an engineer can redo beside each key result."""
     assumptions: list[AssumptionRecord]

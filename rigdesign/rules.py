@@ -135,3 +135,22 @@ def exact(check: Check) -> Check:
     if check.verdict == "warn" and check.margin is not None and check.margin >= 0.0:
         return replace(check, verdict="pass")
     return check
+
+
+def with_error(check: Check, error: float | None) -> Check:
+    """A check with the discretisation error of its value: a verdict that hangs on the mesh says so.
+
+    A held rule whose margin is smaller than the error is a warning; a broken one stays as it is.
+    """
+    if error is None or check.margin is None:
+        return check
+    known = replace(check, discretisation_error=error)
+    if abs(check.margin) >= error:
+        return known
+    unit = "K" if check.unit == "degC" else check.unit
+    doubt = f"the mesh leaves {error:.2g} {unit} open, more than the margin: refine it"
+    return replace(
+        known,
+        verdict="warn" if check.verdict == "pass" else check.verdict,
+        reason="; ".join(part for part in (check.reason, doubt) if part),
+    )

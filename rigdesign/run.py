@@ -6,23 +6,24 @@ they give and make the last digits of a result depend on the machine's load.
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rigdesign.assemble import heat
-from rigdesign.assemble.curves import solve_curves
-from rigdesign.assemble.dynamics import DynamicRun, dynamics_result
+from rigdesign.assemble.dynamics import dynamics_result
 from rigdesign.assemble.findings import not_modelled, warnings_of
 from rigdesign.assemble.hand import hand_checks
 from rigdesign.case.model import Case
 from rigdesign.checks import Subject, all_checks
 from rigdesign.coupling import PointResult, governing_point, solve_point
-from rigdesign.discretisation import coarser_rig, discretisation, on_finer_mesh
+from rigdesign.discretisation import discretisation
+from rigdesign.dynamic_work import DynamicWork
 from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError, UsageError
-from rigdesign.ramp_run import held_points, run_ramp, schedule_of
+from rigdesign.ramp_run import held_points, schedule_of
+from rigdesign.remesh import looping_rig, on_mesh
 from rigdesign.results import AssumptionRecord, Check, Fidelity, Finding, LossRow, RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rules import overall
@@ -79,30 +80,40 @@ def solve_case(
     say("building the rig")
     wanted = build_rig(case, fidelity)
     schedule_of(wanted)
-    rig = coarser_rig(wanted)
+    rig = looping_rig(wanted)
     for name in rig.models:
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
     lap("rig_and_mesh")
-    points: list[PointResult] = []
+    settled: list[PointResult] = []
     for point in held_points(rig):
         say(f"coupling loads, losses, temperatures and growth at stage {point.stage}")
-        start = points[-1].last.feedback if points else None
-        points.append(solve_point(rig, point, start=start))
+        start = settled[-1].last.feedback if settled else None
+        settled.append(solve_point(rig, point, start=start))
     lap("coupling")
-    run = None if rig.drivetrain is None else _dynamic_run(rig, tuple(points), say, lap)
-    if rig is not wanted:
-        say(f"last pass on the {fidelity} mesh")
-        rig, points = wanted, [on_finer_mesh(wanted, point) for point in points]
-        lap("last_pass")
+    say("response over speed, time run over the schedule")
+    with nullcontext() if rig.drivetrain is None else DynamicWork(rig, settled) as dynamics:
+        points = settled
+        if rig is not wanted:
+            say(f"last pass on the {fidelity} mesh")
+            points = [on_mesh(wanted, point) for point in settled]
+            lap("last_pass")
+        meshes = discretisation(wanted, settled, points)
+        lap("discretisation")
+        thermal = [heat.thermal_result(wanted, p, field) for p in points for field in p.last.fields.values()]
+        lap("alternatives")
+        run = None if dynamics is None else dynamics.result()
+        lap("dynamics")
     say("assembling the result")
     return Subject(
-        rig=rig,
+        rig=wanted,
         points=points,
         run=run,
-        dynamics=None if run is None else dynamics_result(rig, run),
-        thermal=[heat.thermal_result(rig, p, field) for p in points for field in p.last.fields.values()],
-        growth=[heat.growth_result(rig, p, name) for p in points for name in p.last.growth],
-        cooler=[heat.cooler(rig, point.last) for point in points],
+        dynamics=None if run is None else dynamics_result(wanted, run),
+        thermal=thermal,
+        growth=[heat.growth_result(wanted, p, name) for p in points for name in p.last.growth],
+        cooler=[heat.cooler(wanted, point.last) for point in points],
+        discretisation=meshes.rows,
+        mesh_shifts=meshes.shifts,
     )
 
 
@@ -111,8 +122,6 @@ def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
     case, rig, points = subject.case, subject.rig, list(subject.points)
     checks = all_checks(subject)
     clock.lap("checks")
-    errors = discretisation(rig, points)
-    clock.lap("discretisation")
     return RunResult(
         case=_case_record(case),
         fidelity=rig.fidelity,
@@ -125,7 +134,8 @@ def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
         thermal=list(subject.thermal),
         growth=list(subject.growth),
         coupling=[heat.coupling_history(p) for p in points],
-        discretisation=errors,
+        discretisation=list(subject.discretisation),
+        reference_shift=list(subject.mesh_shifts),
         hand_checks=hand_checks(subject),
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),
@@ -150,19 +160,6 @@ def _doubts(case: Case) -> list[Finding]:
         return []
     text = f"the schedule is for simulation only: {reason}; the verdict does not release the rig for it"
     return [Finding(id="simulation_only", text=text)]
-
-
-def _dynamic_run(rig: Rig, points: tuple[PointResult, ...], say: Progress, lap: Progress) -> DynamicRun:
-    """Response over speed and the time run over the schedule, once, with the warm rig."""
-    test = governing_point(points)
-    say("response over speed")
-    curves = solve_curves(rig, test.last)
-    lap("response_over_speed")
-    say("time run over the schedule")
-    assert test.setting is not None
-    ramp = run_ramp(rig, test.last, test.setting, test.last.feedback)
-    lap("time_run")
-    return DynamicRun(points=points, curves=curves, ramp=ramp)
 
 
 def _all_losses(rig: Rig, points: list[PointResult]) -> list[LossRow]:

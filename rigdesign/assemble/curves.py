@@ -1,7 +1,7 @@
 """K_V over speed: simulated, under variants of the mesh law, and by ISO 6336-1 beside it."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -52,28 +52,47 @@ class Curves:
         return {f"{abs(torque):g} Nm": (torque, curve) for torque, curve in found.items()}
 
 
-def solve_curves(rig: Rig, warm: PassResult) -> Curves:
+@dataclass(frozen=True)
+class CurvePlan:
+    """What `Curves` are made of: computations that need nothing of each other."""
+
+    torque: float
+    works: Mapping[float | str, Callable[[], ResponseCurve]]
+    """By torque, those of the shipped laws; by name, those under a variant."""
+
+    def curves(self, solved: Sequence[ResponseCurve]) -> Curves:
+        """The results of the works, in their order."""
+        found = dict(zip(self.works, solved, strict=True))
+        shipped = {key: curve for key, curve in found.items() if isinstance(key, float)}
+        return Curves(
+            response=shipped.pop(self.torque),
+            others=shipped,
+            variants={key: curve for key, curve in found.items() if isinstance(key, str)},
+            torque=self.torque,
+        )
+
+
+def plan_curves(rig: Rig, warm: PassResult) -> CurvePlan:
     """Periodic response over speed at every torque of the schedule, warm gears of ``warm``."""
     numerics = rig.case.numerics
     governing = _key(signed_torque(rig, warm.point))
-    ranges = speed_ranges(rig)
     solve = partial(_curve, rig, warm, laws_of(warm.models))
-    others = {
-        torque: solve(torque, grid(rig, *limits)) for torque, limits in ranges.items() if torque != governing
+    works: dict[float | str, Callable[[], ResponseCurve]] = {
+        torque: partial(solve, torque, grid(rig, *limits)) for torque, limits in speed_ranges(rig).items()
     }
     shipped = rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else ""
     other = "iso_6336_scaled" if shipped == VARIANT else VARIANT
-    variants = {}
     if rig.fidelity != "quick":
         models = mesh_models(rig, warm.point, warm.feedback, other)
         own = grid(rig, numerics.curve_speed_start, numerics.curve_speed_end)
-        variants[other] = _curve(rig, warm, laws_of(models), governing, own, refined=False)
-    return Curves(
-        response=solve(governing, grid(rig, *ranges[governing])),
-        others=others,
-        variants=variants,
-        torque=governing,
-    )
+        works[other] = partial(_curve, rig, warm, laws_of(models), governing, own, refined=False)
+    return CurvePlan(torque=governing, works=works)
+
+
+def solve_curves(rig: Rig, warm: PassResult) -> Curves:
+    """The curves of `plan_curves`, one after the other."""
+    plan = plan_curves(rig, warm)
+    return plan.curves([work() for work in plan.works.values()])
 
 
 def speed_ranges(rig: Rig) -> dict[float, tuple[float, float]]:

@@ -32,9 +32,7 @@ def heat_split_rows(rig: Rig, result: PointResult, field: HousingField) -> list[
     """
     friction = friction_heat(rig, result, field.gearbox)
     films = _films(rig, field.gearbox)
-    rows = {
-        gear: _row(rig, result, field, gear, heat, films.get(gear)) for gear, heat in friction.items() if heat
-    }
+    rows = split_as_solved(rig, result, field)
     found: list[dict[str, dict[str, float | None]]] = []
     for end in (0, 1):
         ends = _ends(rig, field.gearbox, films, end)
@@ -45,6 +43,16 @@ def heat_split_rows(rig: Rig, result: PointResult, field: HousingField) -> list[
         found.append({gear: {key: getattr(row, key) for key in SHOWN} for gear, row in at_end.items()})
     low, high = found
     return [replace(row, weak_film=low[gear], strong_film=high[gear]) for gear, row in rows.items()]
+
+
+def split_as_solved(rig: Rig, result: PointResult, field: HousingField) -> dict[str, HeatSplitRow]:
+    """Row of every gear that friction heats, without its range: nothing is solved again."""
+    films = _films(rig, field.gearbox)
+    return {
+        gear: _row(rig, result, field, gear, heat, films.get(gear))
+        for gear, heat in friction_heat(rig, result, field.gearbox).items()
+        if heat
+    }
 
 
 def friction_heat(rig: Rig, result: PointResult, name: str) -> dict[str, float]:

@@ -4,13 +4,17 @@ from rigdesign.checks import alignment, dynamics, ramp, strength, thermal
 from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.subject import Subject
 from rigdesign.results import Check
+from rigdesign.rules import with_error
 
 __all__ = ["Subject", "all_checks", "held_checks"]
 
 
 def all_checks(subject: Subject) -> list[Check]:
-    """Every check in the order of the report, each with the assumed inputs it rests on."""
-    return [with_assumptions(subject.case, check) for check in held_checks(subject)]
+    """Every check in the order of the report, each with its discretisation error and the assumed inputs it rests on."""
+    return [
+        with_error(with_assumptions(subject.case, check), subject.mesh_errors.get(check.id))
+        for check in held_checks(subject)
+    ]
 
 
 def held_checks(subject: Subject) -> list[Check]:

@@ -6,7 +6,14 @@ from dataclasses import dataclass
 from rigdesign.assemble.dynamics import DynamicRun
 from rigdesign.case.model import Case
 from rigdesign.coupling import PointResult, governing_point
-from rigdesign.results import DynamicsResult, GrowthResult, Role, ThermalResult
+from rigdesign.results import (
+    DiscretisationRow,
+    DynamicsResult,
+    GrowthResult,
+    MeshShift,
+    Role,
+    ThermalResult,
+)
 from rigdesign.rig.model import Rig
 
 
@@ -23,6 +30,13 @@ class Subject:
     growth: Sequence[GrowthResult]
     cooler: Sequence[Mapping[str, float | str]]
     """Where the heat goes, one row for each held stage (`assemble.heat.cooler`)."""
+    discretisation: Sequence[DiscretisationRow] = ()
+    mesh_shifts: Sequence[MeshShift] = ()
+
+    @property
+    def mesh_errors(self) -> Mapping[str, float]:
+        """Discretisation error of the value of a check, by its id."""
+        return {row.quantity: row.error for row in self.discretisation if not row.gearbox}
 
     @property
     def case(self) -> Case:

@@ -42,6 +42,7 @@ def results_document(result: RunResult) -> dict[str, Any]:
         "growth": result.growth,
         "coupling": _coupling(result.coupling),
         "discretisation": result.discretisation,
+        "reference_shift": result.reference_shift,
         "hand_checks": result.hand_checks,
         "assumptions": result.assumptions,
         "overrides": result.overrides,

@@ -1,0 +1,112 @@
+"""A settled operating point on another mesh: one more pass, with the loads and losses it settled on.
+
+At reference the loop runs on the standard mesh and this pass on the fine one ends it. The same pass on coarser
+meshes tells how far mesh and result hang together (`rigdesign.discretisation`).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from rigdesign.assemble import heat
+from rigdesign.assemble.heat_split import split_as_solved
+from rigdesign.bearing_films import solve_bearings
+from rigdesign.checks import thermal
+from rigdesign.checks.subject import Subject
+from rigdesign.coupling import PointResult, Residual
+from rigdesign.growth import expand_housing
+from rigdesign.loads import mesh_models
+from rigdesign.lubrication import oil_streams
+from rigdesign.passes import PassResult, feedback_of
+from rigdesign.results import Check, Fidelity, ThermalResult
+from rigdesign.rig.model import Rig
+from rigdesign.state import Feedback, growth_change, temperature_change
+from rigdesign.temperatures import HousingField, heat_into_films, heat_into_oil, solve_housing
+
+
+def with_fidelity(rig: Rig, fidelity: Fidelity) -> Rig:
+    """The rig at another fidelity, itself at its own."""
+    return rig if rig.fidelity == fidelity else replace(rig, fidelity=fidelity)
+
+
+def looping_rig(rig: Rig) -> Rig:
+    """The rig on which the coupling iterates: at reference that of the standard mesh."""
+    return with_fidelity(rig, "standard") if rig.fidelity == "reference" else rig
+
+
+def on_mesh(rig: Rig, settled: PointResult) -> PointResult:
+    """One more pass of a settled point on the mesh of ``rig``: fields, growth, oil, warm gears and bearings.
+
+    The periodic response and the losses are those the point settled on. The residual that is added is the
+    change of this pass: the shift from mesh to mesh.
+
+    Raises
+    ------
+    NotConverged
+        A solve stalls on that mesh.
+    """
+    last = settled.last
+    fields, growth = {}, {}
+    for name, field in last.fields.items():
+        same = len(field.temperature) == len(rig.models[name].mesh.points)
+        fields[name] = solve_housing(
+            rig, name, last.point, last.feedback, last.bearings, last.losses, field if same else None
+        )
+        if name in last.growth:
+            growth[name] = expand_housing(rig, fields[name], last.growth[name] if same else None)
+    bearing_heat = dict(last.bearing_heat)
+    wall_heat = dict(last.wall_heat)
+    for field in fields.values():
+        bearing_heat |= heat_into_films(field)
+        wall_heat |= heat_into_oil(field)
+    done = replace(
+        last,
+        fields=fields,
+        growth=growth,
+        bearing_heat=bearing_heat,
+        wall_heat=wall_heat,
+        streams=tuple(oil_streams(rig, last.losses, bearing_heat, wall_heat)),
+    )
+    after = feedback_of(rig, done)
+    change = Residual(
+        temperature=temperature_change(done.feedback, after),
+        growth=growth_change(done.feedback, after),
+        torque=0.0,
+    )
+    return replace(settled, last=_warmed(rig, done, after), residuals=(*settled.residuals, change))
+
+
+def _warmed(rig: Rig, done: PassResult, after: Feedback) -> PassResult:
+    """The pass with gears and bearings at the lengths and temperatures it ended with."""
+    feedback = replace(
+        done.feedback,
+        gear_temperature=after.gear_temperature,
+        centre_distance=after.centre_distance,
+        bearing_clearance=after.bearing_clearance,
+        tooth_growth=after.tooth_growth,
+        bearing_heat=done.bearing_heat,
+    )
+    return replace(
+        done,
+        feedback=feedback,
+        models=mesh_models(rig, done.point, feedback),
+        bearings=solve_bearings(rig, done.point, feedback),
+    )
+
+
+def checked(rig: Rig, points: Sequence[PointResult]) -> dict[str, Check]:
+    """The checks that rest on temperatures, growth and oil, by id, as ``points`` on the mesh of ``rig`` have them."""
+    subject = Subject(
+        rig=rig,
+        points=points,
+        run=None,
+        dynamics=None,
+        thermal=[_temperatures(rig, p, field) for p in points for field in p.last.fields.values()],
+        growth=[heat.growth_result(rig, p, name) for p in points for name in p.last.growth],
+        cooler=[heat.cooler(rig, point.last) for point in points],
+    )
+    return {check.id: check for check in thermal.checks(subject) if check.value is not None}
+
+
+def _temperatures(rig: Rig, point: PointResult, field: HousingField) -> ThermalResult:
+    split = split_as_solved(rig, point, field)
+    return replace(heat.solved_temperatures(rig, point, field), heat_split=list(split.values()))
