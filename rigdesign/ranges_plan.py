@@ -26,7 +26,14 @@ SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
         "limits.dynamics.dangerous_force_share",
         "limits.bearing.start_torque_limit",
     ): ("curves",),
-    ("limits", "test_plan", "gearboxes.*.seals.*.axial_travel", "gearboxes.*.meshes.*.face_load_factor"): (),
+    (
+        "limits",
+        "test_plan",
+        "gearboxes.*.seals.*.axial_travel",
+        "gearboxes.*.meshes.*.face_load_factor",
+        "drivetrain.couplings.*.radial_offset_maximum",
+        "drivetrain.couplings.*.angle_maximum",
+    ): (),
     ("schedule.stages.*.duration", "drivetrain.motor.torque_limit"): ("time run",),
     (
         "gearboxes.*.housing",
