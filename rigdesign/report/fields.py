@@ -17,7 +17,7 @@ def file_stem(*names: str) -> str:
 
 
 def write_field(field: TemperatureField, path: Path) -> dict[str, Any]:
-    """Write temperature [degC], displacement [m] and body number on the 10-node tetrahedra.
+    """Write temperature [degC], displacement [m], heat flux [W/m2] and body number on the second-order cells.
 
     Returns
     -------
@@ -31,19 +31,19 @@ def write_field(field: TemperatureField, path: Path) -> dict[str, Any]:
     body = np.zeros(len(mesh.cells), dtype=np.int32)
     for number, name in enumerate(bodies):
         body[mesh.bodies[name]] = number
+    point_data = {
+        "temperature_degC": field.temperature - ZERO_CELSIUS,
+        "displacement_m": field.displacement,
+    }
+    if field.heat_flux is not None:
+        point_data["heat_flux_W_m2"] = field.heat_flux
     document = meshio.Mesh(
-        mesh.points,
-        [("tetra10", mesh.cells)],
-        point_data={
-            "temperature_degC": field.temperature - ZERO_CELSIUS,
-            "displacement_m": field.displacement,
-        },
-        cell_data={"body": [body]},
+        mesh.points, [(mesh.shape.name, mesh.cells)], point_data=point_data, cell_data={"body": [body]}
     )
     document.write(path, file_format="vtu")
     return {
         "gearbox": field.gearbox,
         "stage": field.stage,
-        "point_data": ["temperature_degC", "displacement_m"],
+        "point_data": list(point_data),
         "bodies": bodies,
     }

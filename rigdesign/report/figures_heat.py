@@ -1,13 +1,11 @@
 """Figures of losses, oil, heat flows, clearances and convergence."""
 
-from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from rigdesign.report.drawing import INK, MUTED, SERIES, finish, legend_right, new_figure, plain
-from rigdesign.results import CouplingHistory, GrowthResult, LossRow, OilRow, ThermalResult
+from rigdesign.report.drawing import MUTED, SERIES, finish, legend_right, new_figure, plain
+from rigdesign.results import CouplingHistory, LossRow, OilRow
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 WARM, COLD = "#b3452c", "#2b6ca3"
@@ -84,70 +82,6 @@ def oil_figure(oil: list[OilRow], stage: str) -> "Figure":
     axes.legend(loc="best")
     figure.subplots_adjust(left=0.26, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
     return figure
-
-
-def heat_flow_figure(thermal: ThermalResult) -> "Figure":
-    """Heat into the solid by kind of boundary [W]: sources to the right, sinks to the left."""
-    totals: dict[str, float] = defaultdict(float)
-    for row in thermal.heat:
-        totals[row.kind] += row.power_W
-    kinds = sorted(totals, key=lambda kind: -totals[kind])
-    height = 0.75 + 0.25 * len(kinds)
-    figure = new_figure(height)
-    axes = figure.subplots()
-    powers = [totals[kind] for kind in kinds]
-    axes.barh(range(len(kinds)), powers, color=[WARM if p > 0 else COLD for p in powers], height=0.65)
-    for place, power in enumerate(powers):
-        offset, align = (4, "left") if power > 0 else (-4, "right")
-        axes.annotate(
-            f"{power:+.0f} W".replace("-", "\u2212"),
-            (power, place),
-            textcoords="offset points",
-            xytext=(offset, -3),
-            ha=align,
-            fontsize=7.5,
-        )
-    axes.axvline(0, color=INK, linewidth=0.8)
-    axes.set_yticks(range(len(kinds)), [plain(_words(kind)) for kind in kinds])
-    axes.invert_yaxis()
-    axes.grid(axis="y", visible=False)
-    axes.margins(x=0.12)
-    finish(axes, "heat, positive into the solid [W]")
-    figure.subplots_adjust(left=0.2, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
-    return figure
-
-
-def seal_gap_figure(growth: list[GrowthResult]) -> "Figure":
-    """Radial gap of every seal round its circumference, hot against cold [mm]."""
-    shown = [item for item in growth if any(seal.get("hot_mm") for seal in item.seal_gaps)]
-    height = 0.4 + 2.2 * len(shown)
-    figure = new_figure(height)
-    for axes, item in zip(figure.subplots(len(shown), 1, squeeze=False)[:, 0], shown, strict=True):
-        _seal_gaps(axes, item)
-        finish(
-            axes,
-            "angle about the shaft axis [°]",
-            "radial gap, local [mm]",
-            f"Gearbox {plain(item.gearbox)}, stage {plain(item.stage)}",
-        )
-        legend_right(axes)
-    figure.subplots_adjust(left=0.085, right=0.76, top=1 - 0.28 / height, bottom=0.47 / height, hspace=0.5)
-    return figure
-
-
-def _seal_gaps(axes: "Axes", item: GrowthResult) -> None:
-    seals = [seal for seal in item.seal_gaps if seal.get("hot_mm")]
-    for colour, seal in zip(_colours(len(seals)), seals, strict=True):
-        axes.plot(
-            [*seal["angle_deg"]],
-            seal["hot_mm"],
-            color=colour,
-            label=f"{plain(_words(str(seal['seal'])))}, hot",
-        )
-    for number, gap in enumerate(sorted({seal["cold_mm"] for seal in seals})):
-        axes.axhline(gap, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=None if number else "cold")
-    axes.set_xlim(0, 360)
-    axes.set_xticks(range(0, 361, 45))
 
 
 def convergence_figure(histories: list[CouplingHistory]) -> "Figure":

@@ -146,7 +146,7 @@ def _has_root_stress(gearbox: GearboxDynamics) -> bool:
 
 
 def _heat_figures(result: RunResult, draw: Callable[["Figure", str], "Markup"]) -> dict[str, Any]:
-    from rigdesign.report import figures_field, figures_heat
+    from rigdesign.report import figures_heat, figures_seals
 
     stage = views.main_stage(result)
     shown: dict[str, Any] = dict.fromkeys(
@@ -167,25 +167,77 @@ def _heat_figures(result: RunResult, draw: Callable[["Figure", str], "Markup"]) 
         )
     if any(seal.get("hot_mm") for growth in result.growth for seal in growth.seal_gaps):
         shown["seal_gaps"] = draw(
-            figures_heat.seal_gap_figure(result.growth), "Seal gap round the circumference, hot and cold"
+            figures_seals.seal_gap_figure(result.growth), "Seal gap over the angle, hot and cold"
         )
     if any(history.residuals for history in result.coupling):
         shown["convergence"] = draw(
             figures_heat.convergence_figure(result.coupling), "Residuals of the coupling loop by pass"
         )
-    shown["pictures"] = {
-        (field.gearbox, field.stage): draw(
-            figures_field.temperature_figure(field),
-            f"Temperature of gearbox {field.gearbox} at stage {field.stage}",
-        )
-        for field in result.fields
-    }
-    shown["heat_flows"] = {
-        (item.gearbox, item.stage): draw(
-            figures_heat.heat_flow_figure(item),
-            f"Heat of gearbox {item.gearbox} by kind at stage {item.stage}",
-        )
-        for item in result.thermal
-        if item.heat
-    }
+    shown |= _flow_figures(result, oil_stage, draw)
+    shown["pictures"] = _pictures(result, draw)
+    shown["seals_round"] = _seals_round(result, draw)
     return shown
+
+
+def _flow_figures(result: RunResult, stage: str, draw: Callable[["Figure", str], "Markup"]) -> dict[str, Any]:
+    """Heat of the rig at its main held stage, and through the bodies of every gearbox at every held stage."""
+    from rigdesign.report.figures_flow import body_flow_figure, rig_flow_figure
+
+    balance = next((row for row in result.cooler if row["stage"] == stage), None)
+    whole = None
+    if balance is not None:
+        losses = [row for row in result.losses if row.stage == stage]
+        figure = rig_flow_figure(losses, [row for row in result.oil if row.stage == stage], balance)
+        whole = (
+            None
+            if figure is None
+            else draw(figure, f"Heat of the rig from losses to cooler and room at stage {stage}")
+        )
+    return {
+        "rig_flow": whole,
+        "flow_stage": stage,
+        "heat_flows": {
+            (item.gearbox, item.stage): draw(
+                body_flow_figure(item), f"Heat through gearbox {item.gearbox} at stage {item.stage}"
+            )
+            for item in result.thermal
+            if any(row.power_W for row in item.heat)
+        },
+    }
+
+
+def _pictures(
+    result: RunResult, draw: Callable[["Figure", str], "Markup"]
+) -> dict[tuple[str, str], list[tuple["Markup", str]]]:
+    """Temperature, heat flux and displacement with their captions, by gearbox and stage."""
+    from rigdesign.report.figures_field import MeshViews, field_pictures
+
+    views: dict[int, MeshViews] = {}
+    shown: dict[tuple[str, str], list[tuple[Markup, str]]] = {}
+    for field in result.fields:
+        view = views.setdefault(id(field.mesh), MeshViews(field.mesh))
+        shown[field.gearbox, field.stage] = [
+            (
+                draw(picture.figure, f"{picture.title} of gearbox {field.gearbox} at stage {field.stage}"),
+                picture.caption,
+            )
+            for picture in field_pictures(field, view)
+        ]
+    return shown
+
+
+def _seals_round(
+    result: RunResult, draw: Callable[["Figure", str], "Markup"]
+) -> dict[tuple[str, str], "Markup"]:
+    """Seal gaps round the shafts by gearbox and stage, with the limit of the case."""
+    from rigdesign.report.figures_seals import seal_round_figure
+
+    limit = next((check.limit for check in result.checks if check.id == "clearance.seal_gap"), None)
+    return {
+        (item.gearbox, item.stage): draw(
+            seal_round_figure(item, limit),
+            f"Seal gaps round the shafts of gearbox {item.gearbox} at stage {item.stage}",
+        )
+        for item in result.growth
+        if any(seal.get("hot_mm") for seal in item.seal_gaps)
+    }

@@ -1,4 +1,4 @@
-"""Geometry of pictures: what is seen of a tetrahedral mesh from outside and in a plane cut. No drawing."""
+"""Geometry of pictures: what is seen of a mesh from outside and in a plane cut. No drawing."""
 
 from dataclasses import dataclass
 
@@ -23,11 +23,22 @@ SUB_TETRAHEDRA = np.array(
 )
 """Eight linear tetrahedra that fill a 10-node one (VTK order), the inner octahedron split along 01-23."""
 
+HEX_TETRAHEDRA = np.array(
+    [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
+)
+"""Six tetrahedra round a diagonal that fill a hexahedron, from its corners alone."""
+
 EDGE_ON = 1e-9
 """Cosine to the viewer below which a facet is only a line."""
 
 SUB_TRIANGLES = np.array([(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)])
 """Four linear triangles that fill a 6-node one (corners first, mid-sides 01 12 20)."""
+
+SUB_QUADRILATERAL = np.array([(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 6), (4, 6, 7)])
+"""Six linear triangles that fill a quadrilateral of 8 or 9 nodes (corners first, then mid-sides)."""
+
+FINE = 40_000
+"""Facets from which their corners alone are drawn: smaller than what a picture resolves."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +85,9 @@ def cut_mesh(mesh: NamedMesh, axis: int, position: float) -> PlaneCut:
     body_of_cell = np.zeros(len(mesh.cells), dtype=np.int64)
     for number, cells in enumerate(mesh.bodies.values()):
         body_of_cell[cells] = number
-    tetrahedra = mesh.cells[met][:, SUB_TETRAHEDRA].reshape(-1, 4).astype(np.int64)
-    bodies = np.repeat(body_of_cell[met], len(SUB_TETRAHEDRA))
+    parts = SUB_TETRAHEDRA if mesh.cells.shape[1] == 10 else HEX_TETRAHEDRA
+    tetrahedra = mesh.cells[met][:, parts].reshape(-1, 4).astype(np.int64)
+    bodies = np.repeat(body_of_cell[met], len(parts))
     edges, owners = _crossed_edges(tetrahedra, bodies, beyond)
     nodes, inverse = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
     first, second = distance[nodes[:, 0]], distance[nodes[:, 1]]
@@ -113,21 +125,30 @@ class OutsideView:
     corners : (k, 3, 2) picture coordinates [m]
     nodes : (k, 3) mesh nodes of the corners
     brightness : (k,) 0 to 1 from the angle to the light
+    focus : (2, 2) lowest and highest picture coordinates of everything but the field [m]
     """
 
     corners: FloatArray
     nodes: Indices
     brightness: FloatArray
+    focus: FloatArray
 
 
-def view_outside(mesh: NamedMesh, azimuth_deg: float = -60.0, elevation_deg: float = 28.0) -> OutsideView:
+def view_outside(
+    mesh: NamedMesh,
+    azimuth_deg: float = -60.0,
+    elevation_deg: float = 28.0,
+    points: FloatArray | None = None,
+) -> OutsideView:
     """Parallel projection of the named surfaces, x along the shafts, z up.
 
     azimuth_deg, elevation_deg : direction from which the viewer looks, azimuth from the x axis about z
+    points : (n_nodes, 3) places of the nodes [m], those of the mesh when left out
     """
+    places = mesh.points if points is None else points
     right, up, towards = _camera(np.radians(azimuth_deg), np.radians(elevation_deg))
-    facets = np.concatenate(list(mesh.surfaces.values()))[:, SUB_TRIANGLES].reshape(-1, 3).astype(np.int64)
-    corners = mesh.points[facets]
+    facets = surface_triangles(mesh)
+    corners = places[facets]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1)
     normals /= np.where(lengths > 0, lengths, 1.0)[:, None]
@@ -135,7 +156,28 @@ def view_outside(mesh: NamedMesh, azimuth_deg: float = -60.0, elevation_deg: flo
     facing = facing[np.argsort(corners[facing].mean(axis=1) @ towards, kind="stable")]
     light = towards + 0.6 * up - 0.4 * right
     brightness = 0.7 + 0.3 * np.clip(normals[facing] @ (light / np.linalg.norm(light)), 0.0, 1.0)
-    return OutsideView(corners[facing] @ np.column_stack([right, up]), facets[facing], brightness)
+    plane = np.column_stack([right, up])
+    standing = _standing_nodes(mesh)
+    seen = places[standing] @ plane
+    focus = np.array([seen.min(axis=0), seen.max(axis=0)])
+    return OutsideView(corners[facing] @ plane, facets[facing], brightness, focus)
+
+
+def surface_triangles(mesh: NamedMesh) -> Indices:
+    """(k, 3) nodes of linear triangles that cover all named surfaces."""
+    facets = np.concatenate(list(mesh.surfaces.values()))
+    if facets.shape[1] == 6:
+        parts = SUB_TRIANGLES if len(facets) < FINE else np.array([(0, 1, 2)])
+    else:
+        parts = SUB_QUADRILATERAL if len(facets) < FINE else np.array([(0, 1, 2), (0, 2, 3)])
+    return np.asarray(facets[:, parts].reshape(-1, 3), dtype=np.int64)
+
+
+def _standing_nodes(mesh: NamedMesh) -> Indices:
+    """Nodes of all bodies but the field under them; of all where there is nothing else."""
+    bodies = [cells for name, cells in mesh.bodies.items() if "field" not in name and len(cells)]
+    cells = mesh.cells[np.concatenate(bodies)] if bodies else mesh.cells
+    return np.unique(cells).astype(np.int64)
 
 
 def _camera(azimuth: float, elevation: float) -> tuple[FloatArray, FloatArray, FloatArray]:
