@@ -1,6 +1,6 @@
 """The thermal course of a run, as it stands in results.json under ``transient``."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,11 +18,14 @@ class TransientCurve:
     """By place: bodies by their mean, ``housing_max``, oil outlets, bearing films, probes of the case."""
     clearances_mm: dict[str, dict[str, list[float]]]
     """Quantity -> place -> clearance."""
+    alignment: dict[str, dict[str, list[float]]] = field(default_factory=dict)
+    """Quantity with its unit -> place -> size: bearing_tilt_mrad, bore_out_of_round (share of the radial clearance),
+    axis_inclination_um, axis_skew_um (over the face width), coupling_offset_mm, coupling_angle_mrad."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class WorstMoment:
-    """The least clearance or highest temperature of all courses."""
+    """The least clearance, highest temperature or largest misalignment of all courses."""
 
     quantity: str
     value: float

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.assemble.transient_alignment import UNITS, misalignments, worst_misalignments
 from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.subject import Subject
 from rigdesign.checks.transient import transient_checks
@@ -69,13 +70,17 @@ def transient_result(subject: Subject, run: TransientRun) -> TransientResult:
     """All branches as records."""
     plan = subject.case.transient
     return TransientResult(
-        curves=[curve(subject.rig, branch) for branch in run.branches],
+        curves=[curve(subject.rig, branch, run.branches) for branch in run.branches],
         worst=[
             row
             for planned in (True, False)
             for branches in ([b for b in run.branches if (b.name != "cold_start") is planned],)
             if branches
-            for row in (*_least(subject, branches, planned), *_hottest(subject, branches, planned))
+            for row in (
+                *_least(subject, branches, planned),
+                *_hottest(subject, branches, planned),
+                *worst_misalignments(subject, branches, run.branches, planned),
+            )
         ],
         settling=[row for branch in run.branches if branch.name == SCHEDULE for row in _settling(subject, branch)],
         soak=list(run.soak),
@@ -94,8 +99,8 @@ def transient_result(subject: Subject, run: TransientRun) -> TransientResult:
     )  # fmt: skip
 
 
-def curve(rig: Rig, branch: Branch) -> TransientCurve:
-    """One branch in the units of the result."""
+def curve(rig: Rig, branch: Branch, branches: Sequence[Branch]) -> TransientCurve:
+    """One branch in the units of the result, beside the ``branches`` of all gearboxes."""
     begins = np.concatenate([[0.0], np.cumsum([phase.duration for phase in branch.phases])])
     speeds = [
         branch.phases[number].speed(float(time - branch.start - begins[number]))
@@ -116,6 +121,12 @@ def curve(rig: Rig, branch: Branch) -> TransientCurve:
                 for place in branch.clearances[0][quantity]
             }
             for quantity in QUANTITIES
+        },
+        alignment={
+            quantity if UNITS[quantity][0] == "-" else f"{quantity}_{UNITS[quantity][0]}": {
+                place: values.tolist() for place, values in places.items()
+            }
+            for quantity, places in misalignments(rig, branch, branches).items()
         },
     )  # fmt: skip
 

@@ -14,11 +14,22 @@ TITLES = {
     "backlash": "smallest backlash over time",
     "tip_clearance": "smallest tip clearance over time",
     "housing_temperature": "hottest place of the housing over time",
+    "bearing_tilt": "largest tilt of a shaft in a bearing bore over time",
+    "bore_out_of_round": "bearing bore out of round over time, share of the radial clearance",
+    "axis_inclination": "in-plane deviation of the axes of a mesh over time",
+    "axis_skew": "out-of-plane deviation of the axes of a mesh over time",
+    "coupling_offset": "radial offset between the shafts over time, coupling",
+    "coupling_angle": "angle between the shafts over time, coupling",
 }
 SOURCES = {
     **{key: f"limits.clearances.{key}_minimum; thermal course" for key in list(TITLES)[:5]},
     "housing_temperature": "limits.temperatures.housing_maximum; thermal course",
+    **{key: f"limits.alignment.{key}_maximum; thermal course" for key in list(TITLES)[6:10]},
+    "coupling_offset": "drivetrain.couplings.{place}.radial_offset_maximum; thermal course",
+    "coupling_angle": "drivetrain.couplings.{place}.angle_maximum; thermal course",
 }
+LEAST = list(TITLES)[:5]
+"""Quantities whose smallest value is the worst."""
 
 
 def transient_checks(case: Case, record: TransientResult) -> Iterator[Check]:
@@ -31,11 +42,12 @@ def transient_checks(case: Case, record: TransientResult) -> Iterator[Check]:
 
 
 def _worst(case: Case, moment: WorstMoment) -> Check:
-    hot = moment.unit == "degC"
+    own = f".{moment.place}" if moment.quantity.startswith("coupling_") else ""
     rule = Rule(
-        id=f"transient.{moment.quantity}", title=TITLES[moment.quantity], unit=moment.unit,
-        source=SOURCES[moment.quantity], group="transient", limit=moment.limit, comparison="<=" if hot else ">=",
-        datum=case.ambient.temperature - 273.15 if hot else 0.0,
+        id=f"transient.{moment.quantity}{own}", title=TITLES[moment.quantity] + own.replace(".", " "),
+        unit=moment.unit, source=SOURCES[moment.quantity].format(place=moment.place), group="transient",
+        limit=moment.limit, comparison=">=" if moment.quantity in LEAST else "<=",
+        datum=case.ambient.temperature - 273.15 if moment.unit == "degC" else 0.0,
     )  # fmt: skip
     if moment.limit is None:
         return not_applicable(rule, "the case states no limit")

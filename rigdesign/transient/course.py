@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.alignment import Alignment, alignment
 from rigdesign.coupling import PointResult
 from rigdesign.results_transient import Soak
 from rigdesign.rig.model import Rig
@@ -13,6 +14,7 @@ from rigdesign.transient.clearances import Clearances, clearances
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.phases import SCHEDULE, Phase, event_phases, schedule_phases
 from rigdesign.transient.places import probes_of
+from thermal.alignment import ShaftAxis
 from thermal.expansion_course import ExpansionCourse
 from thermal.transient import TransientSolution, solve_transient
 
@@ -41,6 +43,10 @@ class Branch:
     """Probe -> (n,) [K]."""
     clearances: tuple[Clearances, ...]
     """At every time."""
+    alignment: tuple[Alignment, ...]
+    """At every time."""
+    axes: tuple[Mapping[str, ShaftAxis], ...]
+    """Hot axis of every shaft at every time."""
     energy_closure: float
     warnings: tuple[str, ...]
 
@@ -195,12 +201,17 @@ def read_branch(rig: Rig, name: str, course: Course, shapes: ExpansionCourse) ->
     """Clearances of a course at every time."""
     solution = course.solution
     begins = np.concatenate([[0.0], np.cumsum([phase.duration for phase in course.phases])])
-    read = []
+    read: list[Clearances] = []
+    aligned: list[Alignment] = []
+    axes: list[Mapping[str, ShaftAxis]] = []
     for time, number, field in zip(solution.times, solution.stages, course.fields, strict=True):
         phase = course.phases[number]
         speed = phase.speed(min(float(time - begins[number]), phase.duration))
         temperature = np.asarray(field, dtype=np.float64)
-        read.append(clearances(rig, name, temperature, shapes.shape(temperature), speed))
+        shape = shapes.shape(temperature)
+        read.append(clearances(rig, name, temperature, shape, speed))
+        aligned.append(alignment(rig, name, shape, read[-1]["bearing_clearance"]))
+        axes.append(shape.axes)
     return Branch(
         gearbox=name,
         name=course.name,
@@ -210,6 +221,8 @@ def read_branch(rig: Rig, name: str, course: Course, shapes: ExpansionCourse) ->
         phase=solution.stages,
         temperatures=solution.probes,
         clearances=tuple(read),
+        alignment=tuple(aligned),
+        axes=tuple(axes),
         energy_closure=solution.energy.closure,
         warnings=solution.warnings,
     )
