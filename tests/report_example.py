@@ -62,7 +62,8 @@ def gearbox_field(spacing=0.025):
     warm = 1 / (1 + np.exp((x - 0.2) / 0.04))
     temperature = 313.15 + 95 * warm * np.exp(-(((z - 0.11) / 0.25) ** 2)) + 12 * np.cos(20 * y) * warm
     displacement = 1.2e-5 * (temperature - 293.15)[:, None] * (mesh.points - [0.35, 0.15, 0.0])
-    return r.TemperatureField("test", "dwell", mesh, temperature, displacement)
+    heat_flux = -50.0 * np.column_stack([temperature * 0.01 / spacing, 0.0 * x, z])
+    return r.TemperatureField("test", "dwell", mesh, temperature, displacement, heat_flux)
 
 
 def make_check(identity, value, limit, *, verdict=None, comparison="<=", unit="mm", **more):

@@ -7,6 +7,7 @@ import numpy as np
 from rigdesign.report.drawing import INK, MUTED, SERIES, finish, legend_right, new_figure, plain
 from rigdesign.report.numbers import number_text
 from rigdesign.results import GrowthResult
+from thermal.fe.mesh import FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,9 +88,7 @@ def _closed(seal: dict[str, Any]) -> tuple[list[float], list[float]]:
     return angle, gap
 
 
-def _round(
-    axes: "Axes", seal: dict[str, Any], middle: np.ndarray[Any, Any], top: float, limit: float | None
-) -> None:
+def _round(axes: "Axes", seal: dict[str, Any], middle: FloatArray, top: float, limit: float | None) -> None:
     """One seal: shaft, hot gap as a band between shaft and bore, cold bore dashed, least gap marked."""
     from matplotlib.patches import Circle
 
@@ -109,12 +108,10 @@ def _round(
                     linewidth=0.9, zorder=4,
                 )
             )  # fmt: skip
-    least = int(np.argmin(gap))
-    toward = around[least]
-    axes.plot(
-        *np.column_stack([middle + SHAFT * toward, edge[least]]), color="#b3261e", linewidth=1.6, zorder=5
-    )
-    axes.plot([middle[0] + SHAFT, middle[0] + 1.12], [middle[1]] * 2, color=MUTED, linewidth=0.6, zorder=2)
+    least = int(np.argmin(np.abs(angle - seal["angle_of_min_deg"])))
+    toward = np.array([middle + SHAFT * around[least], edge[least]])
+    axes.plot(toward[:, 0], toward[:, 1], color="#b3261e", linewidth=1.6, zorder=5)
+    _scale(axes, middle, top)
     axes.text(
         middle[0],
         middle[1] + 1.3,
@@ -127,6 +124,22 @@ def _round(
     words = f"{least_words}, mean {number_text(seal['hot_mean_mm'], 3)}"
     axes.text(middle[0], middle[1] + 1.12, words, ha="center", fontsize=7)
     axes.text(middle[0], middle[1], "shaft", ha="center", va="center", fontsize=6.5, zorder=6)
+
+
+def _scale(axes: "Axes", middle: FloatArray, top: float) -> None:
+    """Ticks of the gap [mm] from the shaft to the right."""
+    from matplotlib.ticker import MaxNLocator
+
+    ticks = [float(tick) for tick in MaxNLocator(3).tick_values(0.0, top) if 0.0 < tick <= top]
+    places = middle[0] + SHAFT + (1.0 - SHAFT) * np.array(ticks) / top
+    axes.plot([middle[0] + SHAFT, places[-1]], [middle[1]] * 2, color=MUTED, linewidth=0.6, zorder=2)
+    axes.plot(places, np.full(len(places), middle[1]), "|", color=MUTED, markersize=4, zorder=2)
+    for number, (tick, place) in enumerate(zip(ticks, places, strict=True)):
+        last = number == len(ticks) - 1
+        text = f"{number_text(tick, 2)} mm" if last else number_text(tick, 2)
+        axes.text(
+            place - 0.02, middle[1] - 0.1, text, ha="right" if last else "center", va="center", fontsize=6
+        )
 
 
 def _words(name: str) -> str:
