@@ -75,13 +75,13 @@ def discretisation(rig: Rig, settled: Sequence[PointResult], points: Sequence[Po
         if _nodes(other) == _nodes(rig):
             continue
         try:
-            meshes.append(_numbers(other, [on_mesh(other, point) for point in settled], governing))
+            meshes.append(numbers(other, [on_mesh(other, point) for point in settled], governing))
         except (ValueError, RuntimeError) as error:
             lost = f"; no result on the mesh of {fidelity} fidelity: {error}"
     # at reference the points come from one more pass as those of the coarser meshes do; else they do not yet
     ours = points if rig.fidelity == "reference" or not meshes else [on_mesh(rig, point) for point in settled]
     rows = [_energy_row(rig, field, last.point.stage, lost) for field in last.last.fields.values()]
-    meshes.append(_numbers(rig, ours, governing))
+    meshes.append(numbers(rig, ours, governing))
     if len(meshes) == 1:
         return MeshErrors(tuple(rows), ())
     rows += _rows(last.point.stage, meshes)
@@ -93,7 +93,8 @@ def _nodes(rig: Rig) -> dict[str, int]:
     return {name: len(model.mesh.points) for name, model in rig.models.items()}
 
 
-def _numbers(rig: Rig, points: Sequence[PointResult], governing: int) -> Numbers:
+def numbers(rig: Rig, points: Sequence[PointResult], governing: int) -> Numbers:
+    """Numbers of the governing point and of the checks, as held ``points`` on the mesh of ``rig`` have them."""
     last = points[governing].last
     nodes = _nodes(rig)
     values = {
