@@ -31,6 +31,7 @@ STYLE: dict[Any, Any] = {
     "axes.titlesize": 9,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
+    "axes.titley": 1.0,
     "axes.linewidth": 0.7,
     "axes.grid": True,
     "axes.axisbelow": True,
@@ -51,8 +52,11 @@ STYLE: dict[Any, Any] = {
     "figure.facecolor": "white",
     "image.composite_image": False,
 }
-"""matplotlib settings of every figure; text stays text, so that it can be searched and copied."""
+"""matplotlib settings of every figure; text stays text, so that it can be searched and copied. Titles stand at the
+top of the axes: to search a place for them takes a tenth of the drawing."""
 
+SUBSCRIPT = re.compile(r"\b([KYfnσ])_([A-Z]|z)\b")
+"""Symbols of the field with their index."""
 NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
 FONT_STACK = "'DejaVu Sans', Verdana, Geneva, sans-serif"
 
@@ -91,8 +95,19 @@ def inline_svg(figure: "Figure", name: str, description: str) -> str:
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, count=1, flags=re.DOTALL)
     svg = re.sub(r'( id="|xlink:href="#|url\(#)', rf"\g<1>{name}-", svg)
     svg = svg.replace("'DejaVu Sans'", FONT_STACK)
+    svg = re.sub(r"(?<=>)[^<>]*[A-Za-zσ]_(?:[A-Z]|z)\b[^<>]*(?=</text>)", lambda m: _lowered(m[0]), svg)
     label = escape(description, quote=True)
     return svg.replace("<svg ", f'<svg role="img" aria-label="{label}" ', 1)
+
+
+def _lowered(text: str) -> str:
+    """Text of an SVG element in which K_V, f_z and the like carry a subscript, as in the text of the page."""
+    parts = SUBSCRIPT.split(text)
+    found = [parts[0]]
+    for symbol, index, rest in zip(parts[1::3], parts[2::3], parts[3::3], strict=True):
+        found.append(f'{symbol}<tspan dy=".22em" style="font-size:70%">{index}</tspan>')
+        found.append(f'<tspan dy="-.154em">{rest}</tspan>' if rest else "")
+    return "".join(found)
 
 
 def plain(text: str) -> str:

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-KV = r"$K_\mathrm{V}$"
-SIGMA_F = r"$\sigma_\mathrm{F}$"
+KV = "K_V"
+SIGMA_F = "σ_F"
 
 
 def dynamic_factor_figure(dynamics: DynamicsResult) -> "Figure":
@@ -156,7 +156,7 @@ def _orders(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> 
     for harmonic, slope in sorted(slopes.items()):
         end = min(top_speed, ceiling / slope)
         axes.plot([0, end], [0, slope * end], color=INK, linewidth=0.9)
-        label = r"$f_\mathrm{z}$" if harmonic == 1 else rf"{harmonic:g}$\,f_\mathrm{{z}}$"
+        label = "f_z" if harmonic == 1 else f"{harmonic:g} f_z"
         axes.annotate(
             label, (end, slope * end), textcoords="offset points", xytext=(-3, 4), ha="right", fontsize=7.5
         )

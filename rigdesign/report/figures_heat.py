@@ -3,9 +3,11 @@
 from typing import TYPE_CHECKING
 
 from rigdesign.report.drawing import MUTED, SERIES, finish, legend_right, new_figure, plain
+from rigdesign.report.numbers import power_text
 from rigdesign.results import CouplingHistory, LossRow, OilRow
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 WARM, COLD = "#b3452c", "#2b6ca3"
@@ -103,12 +105,22 @@ def convergence_figure(histories: list[CouplingHistory]) -> "Figure":
                 label=plain(history.stage),
             )
         if any(row.get(quantity) for history in histories for row in history.residuals):
-            axes.set_yscale("log")
+            _logarithmic(axes)
         axes.xaxis.get_major_locator().set_params(integer=True)
         finish(axes, "pass [–]", _residual_label(quantity))
         axes.legend(loc="best")
     figure.subplots_adjust(left=0.085, right=0.985, top=0.94, bottom=0.21, wspace=0.32)
     return figure
+
+
+def _logarithmic(axes: "Axes") -> None:
+    """A logarithmic axis whose ticks are powers of ten, without the search for smaller ones."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(numticks=7))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: power_text(value)))
+    axes.yaxis.set_minor_locator(NullLocator())
 
 
 def _residual_label(key: str) -> str:

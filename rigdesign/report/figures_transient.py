@@ -1,8 +1,9 @@
-"""Temperatures, seal gap and backlash over the schedule; the worst moment is marked."""
+"""Temperatures, clearances and coupling offset over the schedule; the worst moment is marked."""
 
 import math
 import textwrap
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,59 +22,73 @@ SHOWN = ("housing", "field", "gear", "shaft", "gear_oil_outlet", "bearing_oil_ou
 """Beginnings of the places whose temperature is drawn, in this order."""
 ROWS = (("seal_gap", "smallest seal gap\n[mm]"), ("bearing_clearance", "smallest bearing\nclearance [mm]"),
         ("backlash", "smallest backlash\n[mm]"))  # fmt: skip
-TITLE_WIDTH = 12
-"""Characters of a line over a column."""
+OFFSET = ("coupling_offset", "largest offset of a\ncoupling [mm]")
 LEAST_SPAN = 30.0
 """Least ratio of the last to the first time of a column."""
 EARLIEST = 1.0
 """Time of a phase [s] at which its logarithmic axis begins."""
+APART = 0.25
+"""Decades between two columns."""
+MARKS = {1.0: "1 s", 60.0: "1 min", 3600.0: "1 h", 86400.0: "1 d", 2592000.0: "30 d"}
+LABEL_ROOM = 1.25
+"""Least distance of two time labels in decades."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A phase on the common axis: its entries, and where its decades begin and end."""
+
+    phase: str
+    at: list[int]
+    start: float
+    end: float
+
+    def places(self, curve: TransientCurve) -> FloatArray:
+        """Place of every entry: decades of the time since the start of the phase, from `EARLIEST`."""
+        time = np.array([curve.time_s[i] for i in self.at])
+        return np.asarray(self.start + np.log10(np.maximum(time - time[0], EARLIEST) / EARLIEST))
+
+
+def columns_of(curve: TransientCurve) -> list[Column]:
+    """Phases side by side, each as wide as its decades of time, so that equal factors are equally long in all."""
+    columns: list[Column] = []
+    start = 0.0
+    for phase in dict.fromkeys(curve.phase):
+        at = [i for i, name in enumerate(curve.phase) if name == phase]
+        at = [at[0] - 1, *at] if at[0] > 0 else at
+        last = curve.time_s[at[-1]] - curve.time_s[at[0]]
+        end = start + math.log10(max(last / EARLIEST, LEAST_SPAN))
+        columns.append(Column(phase, at, start, end))
+        start = end + APART
+    return columns
 
 
 def transient_figure(result: TransientResult, curve: TransientCurve) -> "Figure":
-    """One course: a column for each phase on a logarithmic axis of its own, since a ramp takes seconds and a field
+    """One course: a column for each phase on a logarithmic time of its own, since a ramp takes seconds and a field
     days; the worst moment of a quantity is a ring."""
-    phases = list(dict.fromkeys(curve.phase))
-    height = 8.4
+    coupled = bool(curve.alignment.get("coupling_offset_mm"))
+    rows = [*ROWS, OFFSET] if coupled else list(ROWS)
+    columns = columns_of(curve)
+    height = 4.2 + 1.4 * len(rows)
     figure = new_figure(height)
-    ratios = {
-        "height_ratios": [2.0, *[1.0] * len(ROWS)],
-        "width_ratios": [_decades(curve, phase) for phase in phases],
-    }
-    grid = figure.subplots(1 + len(ROWS), len(phases), sharey="row", squeeze=False, gridspec_kw=ratios)
-    for column, phase in enumerate(phases):
-        at = _of_phase(curve, phase)
-        time = _since(curve, at)
-        _temperatures(grid[0][column], curve, at, time)
-        title = textwrap.fill(plain(phase.replace("_", " ")), TITLE_WIDTH)
-        grid[0][column].set_title(title, fontsize=7.5)
-        for row, (quantity, _) in enumerate(ROWS, start=1):
-            _clearance(grid[row][column], result.worst, curve, quantity, at, time)
-        for axes in grid[:, column]:
-            axes.set_xscale("log")
-            end = max(float(time[-1]), LEAST_SPAN * EARLIEST)
-            _time_ticks(axes, end)
-            axes.set_xlim(EARLIEST, end)
-        for axes in grid[:-1, column]:
-            axes.tick_params(labelbottom=False)
-    grid[0][0].set_ylabel("temperature [°C]")
-    for row, (_, label) in enumerate(ROWS, start=1):
-        grid[row][0].set_ylabel(label)
-    grid[-1][len(phases) // 2].set_xlabel("time since the start of the phase")
-    legend_right(grid[0][-1])
-    figure.subplots_adjust(left=0.085, right=0.83, top=0.93, bottom=0.08, hspace=0.12, wspace=0.1)
+    grid = figure.subplots(
+        1 + len(rows), 1, sharex=True, squeeze=False, gridspec_kw={"height_ratios": [2.0, *[1.0] * len(rows)]}
+    )[:, 0]
+    _temperatures(grid[0], curve, columns)
+    for axes, (quantity, label) in zip(grid[1:], rows, strict=True):
+        _worst_of(axes, result.worst, curve, columns, quantity)
+        axes.set_ylabel(label)
+    for axes in grid:
+        for column in columns[1:]:
+            axes.axvspan(column.start - APART, column.start, color="white", linewidth=0, zorder=1.5)
+            axes.axvline(column.start - 0.5 * APART, color=MUTED, linewidth=0.6)
+        axes.yaxis.set_label_coords(-0.075, 0.5)
+    _time_axis(grid[-1], columns)
+    _phase_names(grid[0], columns)
+    grid[0].set_ylabel("temperature [°C]")
+    legend_right(grid[0])
+    figure.subplots_adjust(left=0.085, right=0.83, top=1 - 0.62 / height, bottom=0.5 / height, hspace=0.12)
     return figure
-
-
-def _of_phase(curve: TransientCurve, phase: str) -> list[int]:
-    """Entries of a phase, with the one it starts from."""
-    at = [i for i, name in enumerate(curve.phase) if name == phase]
-    return [at[0] - 1, *at] if at[0] > 0 else at
-
-
-def _since(curve: TransientCurve, at: Sequence[int]) -> FloatArray:
-    """Time since the start of the phase [s], not before the axis begins."""
-    time = np.array([curve.time_s[i] for i in at])
-    return np.asarray(np.maximum(time - time[0], EARLIEST))
 
 
 def _places(curve: TransientCurve) -> list[str]:
@@ -86,45 +101,77 @@ def _places(curve: TransientCurve) -> list[str]:
     return sorted(chosen, key=lambda place: (rank(place), place))
 
 
-def _temperatures(axes: "Axes", curve: TransientCurve, at: Sequence[int], time: FloatArray) -> None:
+def _joined(
+    curve: TransientCurve, columns: Sequence[Column], values: Sequence[float]
+) -> tuple[FloatArray, FloatArray]:
+    """Places and values of all columns in one line that breaks between them."""
+    x = [np.append(column.places(curve), np.nan) for column in columns]
+    y = [np.append([values[i] for i in column.at], np.nan) for column in columns]
+    return np.concatenate(x), np.concatenate(y)
+
+
+def _temperatures(axes: "Axes", curve: TransientCurve, columns: Sequence[Column]) -> None:
     for number, place in enumerate(_places(curve)):
-        values = [curve.temperatures_degC[place][i] for i in at]
+        x, y = _joined(curve, columns, curve.temperatures_degC[place])
         style = "--" if place.endswith("outlet") else "-"
-        colour = SERIES[number % len(SERIES)]
-        axes.plot(time, values, style, color=colour, label=plain(place.replace("_", " ")))
+        axes.plot(x, y, style, color=SERIES[number % len(SERIES)], label=plain(place.replace("_", " ")))
 
 
-def _clearance(
+def _worst_of(
     axes: "Axes",
     worst: Sequence[WorstMoment],
     curve: TransientCurve,
+    columns: Sequence[Column],
     quantity: str,
-    at: Sequence[int],
-    time: FloatArray,
 ) -> None:
-    places = curve.clearances_mm[quantity]
-    values = [min(course[i] for course in places.values()) for i in at]
-    axes.plot(time, values, color=INK)
-    moment = next((m for m in worst if (m.quantity, m.branch) == (quantity, curve.branch)), None)
-    if moment is None:
-        return
-    if moment.limit is not None:
-        axes.axhline(moment.limit, color=MUTED, linewidth=0.8, linestyle=":")
-    least = min(range(len(at)), key=lambda i: abs(curve.time_s[at[i]] - moment.time_s))
-    if curve.phase[at[least]] == moment.phase and abs(curve.time_s[at[least]] - moment.time_s) < 1e-6:
-        axes.plot([time[least]], [moment.value], "o", mfc="none", mec=SERIES[1], ms=8, mew=1.6)
+    """The worst place of a quantity at every time, its limit, a ring where a course has its worst moment."""
+    offset = quantity == OFFSET[0]
+    places = curve.alignment["coupling_offset_mm"] if offset else curve.clearances_mm[quantity]
+    values = (
+        np.array(list(places.values())).max(axis=0) if offset else np.array(list(places.values())).min(axis=0)
+    )
+    axes.plot(*_joined(curve, columns, values.tolist()), color=INK)
+    for moment in (m for m in worst if (m.quantity, m.branch) == (quantity, curve.branch)):
+        if moment.limit is not None:
+            axes.axhline(moment.limit, color=MUTED, linewidth=0.8, linestyle=":")
+        if moment.place not in places:
+            continue
+        for column in columns:
+            least = min(range(len(column.at)), key=lambda i: abs(curve.time_s[column.at[i]] - moment.time_s))
+            exact = abs(curve.time_s[column.at[least]] - moment.time_s) < 1e-6
+            if column.phase == moment.phase and exact:
+                where = float(column.places(curve)[least])
+                axes.plot([where], [moment.value], "o", mfc="none", mec=SERIES[1], ms=8, mew=1.6)
 
 
-def _decades(curve: TransientCurve, phase: str) -> float:
-    """Width of a column: decades of time, so that equal factors are equally long in all."""
-    last = float(_since(curve, _of_phase(curve, phase))[-1])
-    return math.log10(max(last / EARLIEST, LEAST_SPAN))
+def _phase_names(axes: "Axes", columns: Sequence[Column]) -> None:
+    """Names over the columns, on two levels where they would meet."""
+    whole = columns[-1].end - columns[0].start
+    for column in columns:
+        width = max(10, int(95 * (column.end - column.start) / whole))
+        text = textwrap.fill(plain(column.phase.replace("_", " ")), width)
+        axes.annotate(
+            text, (column.start, 1.0), xycoords=("data", "axes fraction"), textcoords="offset points",
+            xytext=(2, 4), va="bottom", fontsize=7.5, fontweight="bold",
+        )  # fmt: skip
 
 
-def _time_ticks(axes: "Axes", end: float) -> None:
+def _time_axis(axes: "Axes", columns: Sequence[Column]) -> None:
+    """Marks of time in every column, those left out that would touch their neighbour."""
     from matplotlib.ticker import NullLocator
 
-    marks = {1.0: "1 s", 60.0: "1 min", 3600.0: "1 h", 86400.0: "1 d", 2592000.0: "30 d"}
-    shown = {time: text for time, text in marks.items() if time <= 1.01 * end}
+    places: list[float] = []
+    labels: list[str] = []
+    last = -LABEL_ROOM
+    for column in columns:
+        for time, text in MARKS.items():
+            place = column.start + math.log10(time / EARLIEST)
+            if place <= column.end + 1e-9:
+                places.append(place)
+                shown = place - last >= LABEL_ROOM
+                labels.append(text if shown else "")
+                last = place if shown else last
+    axes.set_xticks(places, labels, fontsize=6.5)
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xticks(list(shown), list(shown.values()), fontsize=6.5)
+    axes.set_xlim(columns[0].start, columns[-1].end)
+    axes.set_xlabel("time since the start of the phase, logarithmic")

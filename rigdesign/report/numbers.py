@@ -1,5 +1,6 @@
 """How numbers, units and keys read in a report."""
 
+import math
 from typing import Any
 
 from rigdesign.results import Check
@@ -44,6 +45,12 @@ def number_text(value: float | None, digits: int = 4) -> str:
     if magnitude >= 10000:
         text = f"{float(text):,.10g}".replace(",", NARROW_SPACE)
     return text.replace("-", "\u2212")
+
+
+def power_text(value: float) -> str:
+    """A power of ten on an axis: 10⁻³, 0.1, 1, 10."""
+    power = round(math.log10(value))
+    return f"{10.0**power:g}" if -2 < power < 3 else f"10{str(power).translate(SUPERSCRIPTS)}"
 
 
 def unit_text(unit: str) -> str:
