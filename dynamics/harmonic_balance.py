@@ -389,8 +389,7 @@ class _Newton:
             c = self.problem.control_mesh
             matrix[rest + size + 1, c * n : (c + 1) * n] = -tangent[c, 0, mean]
             right[rest + size + 1] = asked
-        scale = np.abs(matrix).max(axis=1)
-        solution = np.linalg.solve(matrix / scale[:, None], right / scale)
+        solution = _solve_paired(matrix, right, n_meshes, n)
         approach = solution[:rest].reshape(n_meshes, n)
         torque = self._on_bodies(tangent, approach)
         tail = solution[rest:].real
@@ -411,3 +410,31 @@ class _Newton:
         positive = index > 0
         torque[:, index[positive] - 1] = change[:, positive]
         torque[:, -index[~positive] - 1] = change[:, ~positive].conj()
+
+
+def _solve_paired(matrix: Complex, right: Complex, n_meshes: int, n: int) -> Complex:
+    """Solution of a system for real motions, in real numbers: a quarter of the work.
+
+    The first unknowns are ``n_meshes`` spectra of ``n`` signed harmonics, the rest are real. Harmonics of opposite
+    sign are conjugate, a + ib and a - ib, and so are their equations: of each pair one is kept, as its real and
+    imaginary part for a and b.
+    """
+    mean = n // 2
+    start = np.arange(n_meshes)[:, None] * n + mean
+    positive, negative = ((start + sign * np.arange(1, mean + 1)).ravel() for sign in (1, -1))
+    single = np.append(start.ravel(), np.arange(n_meshes * n, len(right)))
+
+    def of_parts(rows: Complex) -> Complex:
+        after, before = rows[:, positive], rows[:, negative]
+        return np.hstack([after + before, 1j * (after - before), rows[:, single]])
+
+    pairs = of_parts(matrix[positive])
+    real = np.vstack([pairs.real, pairs.imag, of_parts(matrix[single]).real])
+    load = np.concatenate([right[positive].real, right[positive].imag, right[single].real])
+    scale = np.abs(real).max(axis=1)
+    cosine, sine, others = np.split(
+        np.linalg.solve(real / scale[:, None], load / scale), [positive.size, 2 * positive.size]
+    )
+    solution = np.empty(len(right), complex)
+    solution[positive], solution[negative], solution[single] = cosine + 1j * sine, cosine - 1j * sine, others
+    return solution
