@@ -30,6 +30,8 @@ EARLIEST = 1.0
 APART = 0.25
 """Decades between two columns."""
 MARKS = {1.0: "1 s", 60.0: "1 min", 3600.0: "1 h", 86400.0: "1 d", 2592000.0: "30 d"}
+AXES_CHARACTERS, NARROW = 90, 12
+"""Characters over the whole width, and least number of a line over a column."""
 LABEL_ROOM = 1.25
 """Least distance of two time labels in decades."""
 
@@ -145,15 +147,17 @@ def _worst_of(
 
 
 def _phase_names(axes: "Axes", columns: Sequence[Column]) -> None:
-    """Names over the columns, on two levels where they would meet."""
-    whole = columns[-1].end - columns[0].start
+    """Names over the columns, each above its left neighbour where that is wider than its column."""
+    per_decade = AXES_CHARACTERS / (columns[-1].end - columns[0].start)
+    height = 4
     for column in columns:
-        width = max(10, int(95 * (column.end - column.start) / whole))
-        text = textwrap.fill(plain(column.phase.replace("_", " ")), width)
+        room = int(per_decade * (column.end - column.start))
+        lines = textwrap.wrap(plain(column.phase.replace("_", " ")), max(room, NARROW))
         axes.annotate(
-            text, (column.start, 1.0), xycoords=("data", "axes fraction"), textcoords="offset points",
-            xytext=(2, 4), va="bottom", fontsize=7.5, fontweight="bold",
+            "\n".join(lines), (column.start, 1.0), xycoords=("data", "axes fraction"), textcoords="offset points",
+            xytext=(2, height), va="bottom", fontsize=7.5, fontweight="bold",
         )  # fmt: skip
+        height = height + 10 * len(lines) if max(map(len, lines)) > room else 4
 
 
 def _time_axis(axes: "Axes", columns: Sequence[Column]) -> None:

@@ -49,4 +49,16 @@ def _columns(curve: TransientCurve) -> dict[str, list[Any]]:
             for quantity, places in curve.clearances_mm.items()
             for place, values in places.items()
         },
+        **{
+            f"{quantity} {place} [{unit}]": values
+            for key, places in curve.alignment.items()
+            for quantity, unit in (_named(key),)
+            for place, values in places.items()
+        },
     }
+
+
+def _named(key: str) -> tuple[str, str]:
+    """Quantity and unit of a key of the alignment: ``bearing_tilt_mrad``, ``bore_out_of_round``."""
+    quantity, _, unit = key.rpartition("_")
+    return (quantity, unit) if unit in ("mrad", "um", "mm") else (key, "1")
