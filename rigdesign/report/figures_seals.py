@@ -120,8 +120,8 @@ def _round(axes: "Axes", seal: dict[str, Any], middle: FloatArray, top: float, l
         fontsize=8,
         fontweight="bold",
     )
-    least_words = f"least {number_text(seal['hot_min_mm'], 3)} mm at {seal['angle_of_min_deg']:.0f}°"
-    words = f"{least_words}, mean {number_text(seal['hot_mean_mm'], 3)}"
+    least_words = f"least {seal['hot_min_mm']:.3f} mm at {seal['angle_of_min_deg']:.0f}°"
+    words = f"{least_words}, mean {seal['hot_mean_mm']:.3f}"
     axes.text(middle[0], middle[1] + 1.12, words, ha="center", fontsize=7)
     axes.text(middle[0], middle[1], "shaft", ha="center", va="center", fontsize=6.5, zorder=6)
 
@@ -134,12 +134,14 @@ def _scale(axes: "Axes", middle: FloatArray, top: float) -> None:
     places = middle[0] + SHAFT + (1.0 - SHAFT) * np.array(ticks) / top
     axes.plot([middle[0] + SHAFT, places[-1]], [middle[1]] * 2, color=MUTED, linewidth=0.6, zorder=2)
     axes.plot(places, np.full(len(places), middle[1]), "|", color=MUTED, markersize=4, zorder=2)
-    for number, (tick, place) in enumerate(zip(ticks, places, strict=True)):
-        last = number == len(ticks) - 1
-        text = f"{number_text(tick, 2)} mm" if last else number_text(tick, 2)
-        axes.text(
-            place - 0.02, middle[1] - 0.1, text, ha="right" if last else "center", va="center", fontsize=6
-        )
+    axes.text(
+        places[-1] - 0.02,
+        middle[1] - 0.1,
+        f"{number_text(ticks[-1], 2)} mm",
+        ha="right",
+        va="center",
+        fontsize=6,
+    )
 
 
 def _words(name: str) -> str:
