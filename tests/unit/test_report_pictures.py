@@ -1,10 +1,24 @@
 """Cuts and views of a mesh, against areas and values that are known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from rigdesign.report.mesh_views import SUB_TETRAHEDRA, cut_mesh, shaft_axis_height, view_outside
+from rigdesign.report import mesh_views
+from rigdesign.report.drawing import drawing_style
+from rigdesign.report.fields import write_field
+from rigdesign.report.figures_field import DRAWN, MeshViews, field_pictures, magnification
+from rigdesign.report.mesh_views import (
+    SUB_TETRAHEDRA,
+    cut_mesh,
+    shaft_axis_height,
+    surface_triangles,
+    view_outside,
+)
+from rigdesign.results import TemperatureField
 from tests.report_example import gearbox_field, voxel_mesh
+from thermal.fe.mesh import box_mesh
 
 
 @pytest.fixture(scope="module")
@@ -84,3 +98,74 @@ def test_cut_height_is_the_shaft_axis(block):
     assert shaft_axis_height(block) == pytest.approx(0.15)
     plain = voxel_mesh(np.zeros((2, 2, 2), dtype=int), ["housing"], 0.1)
     assert shaft_axis_height(plain) == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("cell", ["tetra10", "hexahedron20", "hexahedron27"])
+def test_every_kind_of_cell_is_cut_and_seen(cell):
+    """A box of 0.4 x 0.3 x 0.2 m: area of its section, and of its front seen along y."""
+    mesh = box_mesh((0.4, 0.3, 0.2), (3, 2, 2), cell=cell, name="housing")
+    cut = cut_mesh(mesh, 2, 0.07)
+    assert triangle_areas(cut.points, cut.triangles).sum() == pytest.approx(0.12)
+    values = mesh.points @ [3.0, -2.0, 5.0]
+    np.testing.assert_allclose(cut.interpolate(values), cut.points @ [3.0, -2.0, 5.0])
+    view = view_outside(mesh, azimuth_deg=-90.0, elevation_deg=0.0)
+    a, b, c = (view.corners[:, k] for k in range(3))
+    areas = 0.5 * np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+    assert areas.sum() == pytest.approx(0.08)
+
+
+def test_many_facets_are_drawn_by_their_corners(block, monkeypatch):
+    every = surface_triangles(block)
+    monkeypatch.setattr(mesh_views, "FINE", 1)
+    coarse = surface_triangles(block)
+    assert len(every) == 4 * len(coarse)
+    areas = [triangle_areas(block.points, triangles).sum() for triangles in (every, coarse)]
+    assert areas[0] == pytest.approx(areas[1])
+
+
+def test_the_view_looks_at_the_gearbox_not_at_the_field():
+    field = gearbox_field()
+    focus = view_outside(field.mesh).focus
+    whole = view_outside(field.mesh).corners.reshape(-1, 2)
+    assert np.all(np.ptp(focus, axis=0) < np.ptp(whole, axis=0))
+    assert np.all(focus[0] >= whole.min(axis=0) - 1e-12)
+
+
+def test_displacement_is_drawn_with_the_factor_that_is_printed():
+    field = gearbox_field()
+    views = MeshViews(field.mesh)
+    factor = magnification(field, views)
+    largest = factor * np.linalg.norm(field.displacement, axis=1).max()
+    assert 0.4 * DRAWN * views.size < largest <= DRAWN * views.size
+    assert f"{factor:g}"[0] in "125"
+    moved = view_outside(field.mesh, points=field.mesh.points + factor * field.displacement)
+    assert np.abs(moved.focus - views.outside.focus).max() > 0.2 * largest
+    with drawing_style():
+        picture = list(field_pictures(field, views))[-1]
+    assert picture.title == "Displacement"
+    assert f"{factor:g} times" in picture.caption
+    assert f"× {factor:g}" in picture.figure.axes[0].get_title(loc="left")
+
+
+def test_pictures_without_flux_or_displacement_are_left_out():
+    field = gearbox_field()
+    bare = replace(field, heat_flux=None, displacement=np.zeros_like(field.displacement))
+    with drawing_style():
+        assert [p.title for p in field_pictures(bare, MeshViews(field.mesh))] == ["Temperature"]
+        titles = [p.title for p in field_pictures(field, MeshViews(field.mesh))]
+    assert titles == ["Temperature", "Heat flux", "Displacement"]
+
+
+def test_fields_of_hexahedra_are_written_as_such(tmp_path):
+    import meshio
+
+    mesh = box_mesh((0.4, 0.3, 0.2), (2, 1, 1), cell="hexahedron20", name="housing")
+    flux = np.tile([1.0, 2.0, 3.0], (len(mesh.points), 1))
+    field = TemperatureField(
+        "test", "dwell", mesh, np.full(len(mesh.points), 300.0), np.zeros_like(mesh.points), flux
+    )
+    entry = write_field(field, tmp_path / "field.vtu")
+    assert entry["point_data"] == ["temperature_degC", "displacement_m", "heat_flux_W_m2"]
+    read = meshio.read(tmp_path / "field.vtu")
+    assert read.cells[0].type == "hexahedron20"
+    np.testing.assert_allclose(read.point_data["heat_flux_W_m2"], flux)
