@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 
 from rigdesign.coupling import PointResult, governing_point
 from rigdesign.growth import HousingGrowth
-from rigdesign.remesh import checked, looping_rig, on_mesh, with_fidelity
+from rigdesign.remesh import checked, on_mesh, with_fidelity
 from rigdesign.results import Check, DiscretisationRow, Fidelity, MeshShift
 from rigdesign.rig.model import Rig
 from rigdesign.temperatures import HousingField, body_mean
@@ -60,9 +60,12 @@ class Numbers:
     values: Mapping[tuple[str, str], tuple[float, str]]
 
 
-def discretisation(rig: Rig, settled: Sequence[PointResult], points: Sequence[PointResult]) -> MeshErrors:
+def discretisation(
+    rig: Rig, source: Rig, settled: Sequence[PointResult], points: Sequence[PointResult]
+) -> MeshErrors:
     """Errors of all numbers of the governing held point and of the checks.
 
+    source : the rig on which the loop ran, that of ``rig`` or a coarser one
     settled : held points as the loop left them
     points : the same on the mesh of ``rig``, of which the errors are wanted
     """
@@ -71,15 +74,19 @@ def discretisation(rig: Rig, settled: Sequence[PointResult], points: Sequence[Po
     meshes: list[Numbers] = []
     lost = ""
     for fidelity in COARSER[rig.fidelity]:
-        other = with_fidelity(looping_rig(rig), fidelity)
+        other = with_fidelity(source, fidelity)
         if _nodes(other) == _nodes(rig):
             continue
         try:
-            meshes.append(numbers(other, [on_mesh(other, point) for point in settled], governing))
+            meshes.append(numbers(other, [on_mesh(other, point, source) for point in settled], governing))
         except (ValueError, RuntimeError) as error:
             lost = f"; no result on the mesh of {fidelity} fidelity: {error}"
     # at reference the points come from one more pass as those of the coarser meshes do; else they do not yet
-    ours = points if rig.fidelity == "reference" or not meshes else [on_mesh(rig, point) for point in settled]
+    ours = (
+        points
+        if rig.fidelity == "reference" or not meshes
+        else [on_mesh(rig, point, rig) for point in settled]
+    )
     rows = [_energy_row(rig, field, last.point.stage, lost) for field in last.last.fields.values()]
     meshes.append(numbers(rig, ours, governing))
     if len(meshes) == 1:

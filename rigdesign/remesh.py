@@ -7,6 +7,9 @@ meshes tells how far mesh and result hang together (`rigdesign.discretisation`).
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+from scipy.spatial import cKDTree
+
 from rigdesign.assemble import heat
 from rigdesign.assemble.heat_split import split_as_solved
 from rigdesign.bearing_films import solve_bearings
@@ -21,6 +24,7 @@ from rigdesign.results import Check, Fidelity, ThermalResult
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, growth_change, temperature_change
 from rigdesign.temperatures import HousingField, heat_into_films, heat_into_oil, solve_housing
+from thermal.fe.mesh import NamedMesh
 
 
 def with_fidelity(rig: Rig, fidelity: Fidelity) -> Rig:
@@ -33,11 +37,13 @@ def looping_rig(rig: Rig) -> Rig:
     return with_fidelity(rig, "standard") if rig.fidelity == "reference" else rig
 
 
-def on_mesh(rig: Rig, settled: PointResult) -> PointResult:
+def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
     """One more pass of a settled point on the mesh of ``rig``: fields, growth, oil, warm gears and bearings.
 
     The periodic response and the losses are those the point settled on. The residual that is added is the
     change of this pass: the shift from mesh to mesh.
+
+    source : the rig on which the point settled
 
     Raises
     ------
@@ -47,10 +53,10 @@ def on_mesh(rig: Rig, settled: PointResult) -> PointResult:
     last = settled.last
     fields, growth = {}, {}
     for name, field in last.fields.items():
-        same = len(field.temperature) == len(rig.models[name].mesh.points)
-        fields[name] = solve_housing(
-            rig, name, last.point, last.feedback, last.bearings, last.losses, field if same else None
-        )
+        meshes = source.models[name].mesh, rig.models[name].mesh
+        same = meshes[0] is meshes[1]
+        guess = field if same and rig is source else _carried(field, *meshes)
+        fields[name] = solve_housing(rig, name, last.point, last.feedback, last.bearings, last.losses, guess)
         if name in last.growth:
             growth[name] = expand_housing(rig, fields[name], last.growth[name] if same else None)
     bearing_heat = dict(last.bearing_heat)
@@ -73,6 +79,16 @@ def on_mesh(rig: Rig, settled: PointResult) -> PointResult:
         torque=0.0,
     )
     return replace(settled, last=_warmed(rig, done, after), residuals=(*settled.residuals, change))
+
+
+def _carried(field: HousingField, old: NamedMesh, new: NamedMesh) -> HousingField:
+    """First guess of a field on another mesh: each node is as warm as the nearest one of its body was."""
+    temperature = np.empty(len(new.points))
+    for body, cells in new.bodies.items():
+        nodes, known = np.unique(new.cells[cells]), np.unique(old.cells[old.bodies[body]])
+        _, nearest = cKDTree(old.points[known]).query(new.points[nodes])
+        temperature[nodes] = field.temperature[known[nearest]]
+    return replace(field, solution=replace(field.solution, temperature=temperature, preconditioner=None))
 
 
 def _warmed(rig: Rig, done: PassResult, after: Feedback) -> PassResult:

@@ -95,9 +95,9 @@ def solve_case(
         points = settled
         if rig is not wanted:
             say(f"last pass on the {fidelity} mesh")
-            points = [on_mesh(wanted, point) for point in settled]
+            points = [on_mesh(wanted, point, rig) for point in settled]
             lap("last_pass")
-        meshes = discretisation(wanted, settled, points)
+        meshes = discretisation(wanted, rig, settled, points)
         lap("discretisation")
         thermal = [heat.thermal_result(wanted, p, field) for p in points for field in p.last.fields.values()]
         lap("alternatives")

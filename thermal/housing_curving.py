@@ -56,19 +56,23 @@ def straighten_inverted(points: FloatArray, cells: IndexArray, name: str = "mesh
     """
     points = points.copy()
     straight = np.zeros(len(cells), dtype=bool)
+    changed = np.arange(len(cells))
     while True:
-        bad = jacobian_ratio(points, cells) < LEAST_JACOBIAN
-        if not bad.any():
+        bad = changed[jacobian_ratio(points, cells[changed]) < LEAST_JACOBIAN]
+        if not len(bad):
             return points
-        if np.any(bad & straight):
+        if straight[bad].any():
             raise MeshError(
-                f"{name}: {int(np.sum(bad & straight))} of {len(cells)} elements are inverted; choose a "
+                f"{name}: {np.count_nonzero(straight[bad])} of {len(cells)} elements are inverted; choose a "
                 "finer mesh or avoid walls and steps much thinner than the rest"
             )
-        straight |= bad
+        straight[bad] = True
+        chosen = cells[bad]
         for middle, (first, second) in enumerate(CELL_EDGES, start=4):
-            chosen = cells[bad]
             points[chosen[:, middle]] = 0.5 * (points[chosen[:, first]] + points[chosen[:, second]])
+        moved = np.zeros(len(points), dtype=bool)
+        moved[chosen[:, 4:]] = True
+        changed = np.flatnonzero(moved[cells[:, 4:]].any(axis=1))
 
 
 def jacobian_ratio(points: FloatArray, cells: IndexArray) -> FloatArray:
@@ -80,7 +84,7 @@ def jacobian_ratio(points: FloatArray, cells: IndexArray) -> FloatArray:
     mean = _determinants(nodes[:, 1:4] - nodes[:, :1])
     least = np.full(len(cells), np.inf)
     for gradients in _NODE_GRADIENTS:
-        least = np.minimum(least, _determinants(np.einsum("nj,eni->eji", gradients, nodes)))
+        least = np.minimum(least, _determinants(gradients.T @ nodes))
     ratio = np.full(len(cells), -np.inf)
     np.divide(least, mean, out=ratio, where=mean > 0.0)
     return ratio
@@ -88,8 +92,8 @@ def jacobian_ratio(points: FloatArray, cells: IndexArray) -> FloatArray:
 
 def _determinants(matrices: FloatArray) -> FloatArray:
     """Determinants of (n, 3, 3) by the triple product."""
-    first, second, third = matrices[:, 0], matrices[:, 1], matrices[:, 2]
-    return np.asarray(np.einsum("ei,ei->e", first, np.cross(second, third)))
+    (a, b, c), (d, e, f), (g, h, i) = matrices.transpose(1, 2, 0)
+    return np.asarray(a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g))
 
 
 def _node_gradients() -> FloatArray:

@@ -150,11 +150,18 @@ def _collect(
     surfaces = _name_triangles(name, points, cells, triangles, faces)
     points = bend_round_axes(points, cells, _free_nodes(gmsh, index, points), axes)
     points = straighten_inverted(points, cells, name)
-    used, packed = np.unique(cells, return_inverse=True)
+    used = _distinct(cells, len(points))
     index = np.zeros(len(points), dtype=np.int32)
     index[used] = np.arange(len(used), dtype=np.int32)
     surfaces = {face: index[corners] for face, corners in surfaces.items()}
-    return named_mesh(points[used], packed.reshape(cells.shape).astype(np.int32), named_bodies, surfaces)
+    return named_mesh(points[used], index[cells], named_bodies, surfaces)
+
+
+def _distinct(nodes: IndexArray, n_nodes: int) -> IndexArray:
+    """Nodes that occur in an array, in their order."""
+    met = np.zeros(n_nodes, dtype=bool)
+    met[nodes] = True
+    return np.flatnonzero(met).astype(np.int32)
 
 
 def _elements(gmsh: ModuleType, kind: int, tag: int, index: IndexArray) -> IndexArray:
@@ -191,10 +198,12 @@ def _name_triangles(
     parts: dict[str, list[IndexArray]] = {face.name: [] for face in faces}
     for tag, nodes in triangles.items():
         corners = nodes[:, :3]
-        outside = np.isin(facet_keys(corners, len(points)), boundary)
+        keys = facet_keys(corners, len(points))
+        place = np.minimum(np.searchsorted(boundary, keys), len(boundary) - 1)
+        outside = boundary[place] == keys
         if not outside.any():
             continue
-        on_face = points[np.unique(corners)]
+        on_face = points[_distinct(corners, len(points))]
         found = [
             face.name for face in faces if any(patch.holds(on_face, TOLERANCE) for patch in face.patches)
         ]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rigdesign.assemble.alignment import axis_rows, bore_rows, coupling_rows
-from rigdesign.assemble.heat_split import heat_split_rows
+from rigdesign.assemble.heat_split import COMPARED, heat_split_rows
 from rigdesign.coupling import PointResult
 from rigdesign.growth import axes_of, bearing_growth
 from rigdesign.losses import PlacedLoss
@@ -99,7 +99,7 @@ def thermal_result(rig: Rig, result: PointResult, field: HousingField) -> Therma
     assert housing is not None
     other = solve_housing(
         rig, name, result.point, last.feedback, last.bearings, last.losses, field,
-        radiation_included=not housing.radiation_included,
+        radiation_included=not housing.radiation_included, tolerance=COMPARED,
     )  # fmt: skip
     readings = {housing.radiation_included: field, not housing.radiation_included: other}
     return replace(

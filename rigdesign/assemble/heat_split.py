@@ -21,6 +21,9 @@ ZERO = 273.15
 RANGED = ("wetted_share", "film_factor")
 """Inputs of a flank film whose ranges make the range of the split, both at their low and both at their high end."""
 
+COMPARED = 1e-7
+"""Heat left over, relative to the heat turned over, of fields that are only held beside the result: microkelvins."""
+
 SHOWN = ("share_into_oil", "bulk_degC", "tooth_degC", "flank_film_W_m2K")
 """What a row shows at the ends of its range."""
 
@@ -113,7 +116,9 @@ def _solved_again(
             condition = replace(condition, power=kept * friction[gear])
         conditions.append(condition)
     setup = rig.conduction[name]
-    solution = solve_steady(setup.mesh, setup.conductivity, conditions, near=field.solution, reuse=setup)
+    solution = solve_steady(
+        setup.mesh, setup.conductivity, conditions, near=field.solution, reuse=setup, tolerance=COMPARED
+    )
     return HousingField(gearbox=name, conditions=tuple(conditions), solution=solution)
 
 

@@ -62,9 +62,9 @@ def estimate(meshes: list[Numbers], key: tuple[str, str]) -> tuple[float, float 
     return found[0], found[1]
 
 
-def solved(rig: Rig, settled: PointResult) -> Numbers:
+def solved(rig: Rig, settled: PointResult, source: Rig) -> Numbers:
     began = time.perf_counter()
-    found = numbers(rig, [on_mesh(rig, settled)], 0)
+    found = numbers(rig, [on_mesh(rig, settled, source)], 0)
     print(f"{found.nodes['']} nodes: {time.perf_counter() - began:.0f} s", flush=True)
     return found
 
@@ -74,8 +74,8 @@ def solved(rig: Rig, settled: PointResult) -> Numbers:
 def test_mesh_study(name: str) -> None:
     rig = build_rig(load_case(CASES / name), "standard")
     settled = solve_point(rig, held_points(rig)[-1])
-    quick, standard = (solved(with_fidelity(rig, f), settled) for f in ("quick", "standard"))
-    family = [solved(sized(rig, factor), settled) for factor in FACTORS]
+    quick, standard = (solved(with_fidelity(rig, f), settled, rig) for f in ("quick", "standard"))
+    family = [solved(sized(rig, factor), settled, rig) for factor in FACTORS]
     assert family[2].nodes[""] >= 350_000
     header = [str(mesh.nodes[""]) for mesh in (quick, standard, *family)]
     print(f"\n{name}\n{'':42}" + "".join(f"{n:>11}" for n in header), end="")

@@ -14,21 +14,8 @@ from scipy import sparse
 from thermal.fe.elements import FiniteElements
 from thermal.fe.shapes import FloatArray, IndexArray
 
-POWERS = np.array(
-    [
-        [0, 0, 0],
-        [1, 0, 0],
-        [0, 1, 0],
-        [0, 0, 1],
-        [2, 0, 0],
-        [0, 2, 0],
-        [0, 0, 2],
-        [1, 1, 0],
-        [1, 0, 1],
-        [0, 1, 1],
-    ]
-)
-"""Exponents of the polynomial of a patch, the constant first."""
+TERMS = 10
+"""Monomials of the polynomial of a patch, up to the second degree, the constant first."""
 
 RIDGE = 1e-12
 """Share of the mean diagonal added to a patch's matrix, so that patches of few cells can be solved."""
@@ -94,21 +81,22 @@ def recovered_gradient(
     for column in range(shape.n_corners):
         reach = np.abs(at_points - mesh.points[local[:, column]][:, None]).max(axis=(1, 2))
         np.maximum.at(size, patch[:, column], reach)
-    matrix = np.zeros((len(corners), len(POWERS) ** 2))
-    right = np.zeros((len(corners), 3 * len(POWERS)))
+    matrix = np.zeros((len(corners), TERMS**2))
+    right = np.zeros((len(corners), 3 * TERMS))
     for column in range(shape.n_corners):
         mine = patch[:, column]
         terms = _terms(at_points - mesh.points[local[:, column]][:, None], size[mine][:, None])
         into = sparse.csr_array(
             (np.ones(len(cells)), (mine, np.arange(len(cells)))), shape=(len(corners), len(cells))
         )
-        matrix += into @ np.einsum("eqa,eqb->eab", terms, terms).reshape(len(cells), -1)
-        right += into @ np.einsum("eqa,eqi->eai", terms, computed, optimize=True).reshape(len(cells), -1)
-    whole = matrix.reshape(-1, len(POWERS), len(POWERS))
-    mean = np.einsum("kaa->k", whole) / len(POWERS)
+        turned = terms.transpose(0, 2, 1)
+        matrix += np.asarray(into @ (turned @ terms).reshape(len(cells), -1))
+        right += np.asarray(into @ (turned @ computed).reshape(len(cells), -1))
+    whole = matrix.reshape(-1, TERMS, TERMS)
+    mean = np.einsum("kaa->k", whole) / TERMS
     poor = np.linalg.eigvalsh(whole)[:, 0] < DETERMINED * mean
-    whole[:, 1:, 1:] += RIDGE * mean[:, None, None] * np.eye(len(POWERS) - 1)
-    polynomial = np.asarray(np.linalg.solve(whole, right.reshape(-1, len(POWERS), 3)), dtype=np.float64)
+    whole[:, 1:, 1:] += RIDGE * mean[:, None, None] * np.eye(TERMS - 1)
+    polynomial = np.asarray(np.linalg.solve(whole, right.reshape(-1, TERMS, 3)), dtype=np.float64)
     patches = _Patches(corners, size, polynomial, np.where(poor, POOR, 1.0))
     return _averaged(elements, local, patch, patches)
 
@@ -124,7 +112,7 @@ class _Patches:
 
     def at(self, mine: IndexArray, off: FloatArray) -> FloatArray:
         """(k, 3) gradient of the patches ``mine`` (k,) at ``off`` (k, 3) from their corners."""
-        return np.asarray(np.einsum("ea,eai->ei", _terms(off, self.size[mine]), self.polynomial[mine]))
+        return np.asarray((_terms(off, self.size[mine])[:, None] @ self.polynomial[mine])[:, 0])
 
 
 def _averaged(
@@ -156,12 +144,16 @@ def _averaged(
             mine = patch[cells, parent]
             weight = patches.weight[mine]
             found = patches.at(mine, points[local[cells, node]] - points[patches.corners[mine]])
-            np.add.at(values, place, weight[:, None] * found)
-            np.add.at(weights, place, weight)
+            for direction in range(3):
+                values[:, direction] += np.bincount(place, weight * found[:, direction], len(nodes))
+            weights += np.bincount(place, weight, len(nodes))
     return nodes.astype(np.int32), values / weights[:, None]
 
 
 def _terms(off: FloatArray, size: FloatArray) -> FloatArray:
     """(..., 10) monomials of ``off`` (..., 3) relative to ``size`` (...)."""
-    x = off / size[..., None]
-    return np.asarray(np.prod(x[..., None, :] ** POWERS, axis=-1))
+    x, y, z = np.moveaxis(off / size[..., None], -1, 0)
+    terms = np.empty((*x.shape, TERMS))
+    for place, term in enumerate((1.0, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z)):
+        terms[..., place] = term
+    return terms
