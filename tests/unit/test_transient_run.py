@@ -159,3 +159,19 @@ def test_a_rig_without_a_housing_says_so(tmp_path: Path, capsys: pytest.CaptureF
     assert any(
         row["id"] == "transient" and "no gearbox has a housing" in row["text"] for row in document["warnings"]
     )
+
+
+def test_alignment_starts_straight_and_ends_in_the_steady_state(
+    result: RunResult, course: TransientResult, planned: TransientCurve
+) -> None:
+    at = last(planned, "test")
+    (growth,) = result.growth
+    for row in growth.bores:
+        tilt, share = (
+            planned.alignment[key][row["bearing"]] for key in ("bearing_tilt_mrad", "bore_out_of_round")
+        )
+        assert tilt[0] == share[0] == pytest.approx(0.0, abs=1e-9)
+        assert tilt[at] == pytest.approx(row["tilt_mrad"], abs=2e-3)
+        assert share[at] == pytest.approx(row["out_of_round_share"], abs=2e-3)
+    worst = next(moment for moment in course.worst if moment.quantity == "bearing_tilt")
+    assert worst.steady is not None and worst.value >= worst.steady - 2e-3
