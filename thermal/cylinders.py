@@ -36,37 +36,64 @@ class CylinderMotion:
     """Mean rotation about the axis [rad]."""
 
 
-def cylinder_motion(
-    surface: SurfaceElements, points: FloatArray, displacement: FloatArray, strain: FloatArray, centre: Point
-) -> CylinderMotion:
-    """Fit the motion of a whole cylinder about the x-line through ``centre``.
+@dataclass(frozen=True, eq=False)
+class Cylinder:
+    """A whole cylinder about an x-line, its fit found once and read for any displacement.
 
-    points, displacement : (n_nodes, 3) [m] cold coordinates and displacement
-    strain : (n_nodes,) free thermal strain
+    cos, sin : (n_q,) of the angle of the quadrature points; off : (n_q,) their distance inside the cylinder [m]
+    radial : (8, n_q) makes the harmonics of the radial displacement, axial : (4, n_q) those of the axial one
+    turn : (n_q,) makes the mean rotation
     """
-    area = surface.weights.ravel()
-    along, *rest = (surface.at_points(points) - np.array(centre)).reshape(-1, 3).T
-    across = np.column_stack(rest)
-    moved = surface.at_points(displacement).reshape(-1, 3)
-    radius = np.hypot(across[:, 0], across[:, 1])
-    cos, sin = (across / radius[:, None]).T
-    radial = moved[:, 1] * cos + moved[:, 2] * sin
-    radial += surface.at_points(strain).ravel() * (_radius(surface, points, centre) - radius)
-    one = np.ones_like(cos)
-    tilted = np.column_stack([one, along, cos, sin])
-    basis = np.column_stack([one, cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
-    basis = np.hstack([basis, along[:, None] * basis[:, :3]])
+
+    surface: SurfaceElements
+    cos: FloatArray
+    sin: FloatArray
+    off: FloatArray
+    radial: FloatArray
+    axial: FloatArray
+    turn: FloatArray
+
+    @classmethod
+    def of(cls, surface: SurfaceElements, points: FloatArray, centre: Point) -> "Cylinder":
+        """Prepare the fit about the x-line through ``centre``; points : (n_nodes, 3) [m] cold coordinates."""
+        area = surface.weights.ravel()
+        along, *rest = (surface.at_points(points) - np.array(centre)).reshape(-1, 3).T
+        across = np.column_stack(rest)
+        radius = np.hypot(across[:, 0], across[:, 1])
+        cos, sin = (across / radius[:, None]).T
+        one = np.ones_like(cos)
+        basis = np.column_stack([one, cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
+        basis = np.hstack([basis, along[:, None] * basis[:, :3]])
+        return cls(
+            surface=surface,
+            cos=cos,
+            sin=sin,
+            off=_radius(surface, points, centre) - radius,
+            radial=_fit(basis, area),
+            axial=_fit(np.column_stack([one, along, cos, sin]), area),
+            turn=area / radius / area.sum(),
+        )
+
+    def motion(self, displacement: FloatArray, strain: FloatArray) -> CylinderMotion:
+        """Motion from the displacement of the nodes (n_nodes, 3) [m] and their free thermal strain (n_nodes,)."""
+        moved = self.surface.at_points(displacement).reshape(-1, 3)
+        outwards = moved[:, 1] * self.cos + moved[:, 2] * self.sin
+        outwards += self.surface.at_points(strain).ravel() * self.off
+        a0, a1, b1, a2, b2, _, tilt_y, tilt_z = (self.radial @ outwards).tolist()
+        tangential = moved[:, 2] * self.cos - moved[:, 1] * self.sin
+        return CylinderMotion(
+            shift=(float(self.axial[0] @ moved[:, 0]), a1, b1),
+            radius_growth=a0,
+            ovality=4.0 * float(np.hypot(a2, b2)),
+            tilt=(tilt_y, tilt_z),
+            turn=float(self.turn @ tangential),
+        )
+
+
+def _fit(basis: FloatArray, area: FloatArray) -> FloatArray:
+    """(k, n) that makes the coefficients of a ``basis`` (n, k) from values (n,), least squares weighted by area."""
     root = np.sqrt(area)
-    a0, a1, b1, a2, b2, _, tilt_y, tilt_z = np.linalg.lstsq(basis * root[:, None], radial * root)[0].tolist()
-    axial = np.linalg.lstsq(tilted * root[:, None], moved[:, 0] * root)[0]
-    tangential = moved[:, 2] * cos - moved[:, 1] * sin
-    return CylinderMotion(
-        shift=(float(axial[0]), a1, b1),
-        radius_growth=a0,
-        ovality=4.0 * float(np.hypot(a2, b2)),
-        tilt=(tilt_y, tilt_z),
-        turn=float((tangential / radius) @ area / area.sum()),
-    )
+    return np.asarray(np.linalg.pinv(basis * root[:, None]) * root)
 
 
 def axial_range(surface: SurfaceElements, points: FloatArray) -> tuple[float, float]:

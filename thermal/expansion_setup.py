@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from thermal.cylinders import Section
+from thermal.cylinders import Cylinder, Section
 from thermal.elastic import ElasticError, ElasticSetup, three_two_one
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray
@@ -42,6 +42,25 @@ class ExpansionSetup:
         """Shaft name -> number of its piece."""
         self.elastic = ElasticSetup(self.elements, elastic, self._supports())
         self._sections: dict[tuple[str, Point, float], Section] = {}
+        self._cylinders: dict[tuple[str, Point], Cylinder] = {}
+        self._expansions: dict[str, float] = {}
+
+    def cylinder(self, surface: str, centre: Point) -> Cylinder:
+        """A cylindrical surface about ``centre``, its fit found once."""
+        found = self._cylinders.get((surface, centre))
+        if found is None:
+            face, points = self.elements.surfaces[surface], self.model.mesh.points
+            found = self._cylinders[surface, centre] = Cylinder.of(face, points, centre)
+        return found
+
+    def expansion_of(self, surface: str) -> float:
+        """Expansion coefficient [1/K] of the body a surface bounds."""
+        if surface not in self._expansions:
+            facet = self.model.mesh.surfaces[surface][0, :3]
+            cell = np.flatnonzero(np.isin(self.model.mesh.cells, facet).sum(axis=1) == 3)[0]
+            body = next(name for name, cells in self.model.mesh.bodies.items() if cell in cells)
+            self._expansions[surface] = self.elastic.elastic[body].expansion
+        return self._expansions[surface]
 
     def section(self, surface: str, centre: Point, x: float) -> Section:
         """Cross-section ``x`` [m] of a cylindrical surface about ``centre``, at the angles `ROUND`."""

@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 
 from thermal.alignment import ShaftAxis, misalignment, roundness, shaft_axis
-from thermal.cylinders import CylinderMotion, axial_range, cylinder_motion
+from thermal.cylinders import CylinderMotion, axial_range
 from thermal.elastic import ElasticError, rigid_motion
 from thermal.expansion_setup import ROUND, ExpansionSetup
 from thermal.fe.mesh import FloatArray
@@ -43,7 +43,7 @@ class HotShape:
             self._place_shaft(shaft)
 
     def _motion(self, surface: str, centre: Point) -> CylinderMotion:
-        return cylinder_motion(self.surfaces[surface], self.points, self.displacement, self.strain, centre)
+        return self.setup.cylinder(surface, centre).motion(self.displacement, self.strain)
 
     def _place_housing(self) -> None:
         """Take out the mean shift and rotation of the foot; what stands in a foot joint follows its seat."""
@@ -130,8 +130,8 @@ class HotShape:
         )
         by_hand = concentric_gap_change(
             0.5 * station.shaft_diameter,
-            (self._expansion(station.bore_surface), bore.mean(self.temperature)),
-            (self._expansion(station.shaft_surface), shaft.mean(self.temperature)),
+            (self.setup.expansion_of(station.bore_surface), bore.mean(self.temperature)),
+            (self.setup.expansion_of(station.shaft_surface), shaft.mean(self.temperature)),
             self.reference,
         )
         return SealGrowth(
@@ -212,10 +212,3 @@ class HotShape:
 
     def _axial(self, surface: str) -> float:
         return self.surfaces[surface].mean(self.displacement[:, 0])
-
-    def _expansion(self, surface: str) -> float:
-        """Expansion coefficient [1/K] of the body a surface bounds."""
-        facet = self.model.mesh.surfaces[surface][0, :3]
-        cell = np.flatnonzero(np.isin(self.model.mesh.cells, facet).sum(axis=1) == 3)[0]
-        bodies = self.model.mesh.bodies.items()
-        return next(self.setup.elastic.elastic[body].expansion for body, cells in bodies if cell in cells)

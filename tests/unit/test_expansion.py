@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from thermal.cylinders import Section, cylinder_motion
+from thermal.cylinders import Cylinder, Section
 from thermal.elastic import ElasticError
 from thermal.expansion import Expansion, ExpansionSetup, expand
 from thermal.growth import concentric_gap_change, free_growth, length_mean
@@ -171,7 +171,8 @@ def test_shaft_axis_passes_through_the_hot_bores(model, materials, setup) -> Non
     for station in model.bearings:
         surface = setup.elements.surfaces[station.journal_surface]
         strain = setup.elastic.free_strain(field, COLD)
-        journal = cylinder_motion(surface, model.mesh.points, result.displacement, strain, station.centre)
+        cylinder = Cylinder.of(surface, model.mesh.points, station.centre)
+        journal = cylinder.motion(result.displacement, strain)
         bore = result.bearings[station.name].bore_shift
         assert journal.shift[1:] == pytest.approx(bore[1:], abs=5e-8)
         if station.locating:
@@ -217,7 +218,7 @@ def test_interpolated_displacement_is_exact_for_rigid_motion_and_swelling(model,
     radial = section.radial(moved, strain)
     expected = -2e-6 * np.cos(angles) + 5e-6 * np.sin(angles) + 1e-3 * (0.02 + 20e-6)
     assert_allclose(radial, expected, atol=2e-8)
-    fit = cylinder_motion(surface, points, moved, strain, station.centre)
+    fit = Cylinder.of(surface, points, station.centre).motion(moved, strain)
     assert fit.shift == pytest.approx((3e-6, -2e-6, 5e-6), abs=1e-8)
     assert fit.radius_growth == pytest.approx(1e-3 * (0.02 + 20e-6), rel=1e-5)
 
