@@ -18,7 +18,8 @@ LOOP = (
     *(f"gearboxes.*.meshes.*.{key}" for key in (
         "contact_ratio", "tip_cut", "profile_shift_split", "rack", "damping"
     )),
-    "drivetrain.shafts", "drivetrain.couplings", "drivetrain.motor.inertia",
+    "drivetrain.shafts", "drivetrain.couplings.*.torsional_stiffness", "drivetrain.couplings.*.torsional_damping",
+    "drivetrain.motor.inertia",
 )  # fmt: skip
 """What the torsional response of the loop is made of."""
 RATING = ("gearboxes.{box}.gears", "gearboxes.{box}.meshes")
@@ -59,7 +60,9 @@ RESTS = {
     ),
     "clearance.bearing_clearance": HEAT,
     "clearance.seal_travel.*": GROWN,
-    "alignment.coupling_*": (*GROWN, "drivetrain.couplings.*.cold_offset_*"),
+    "alignment.coupling_*": (
+        *GROWN, "drivetrain.couplings.*.cold_offset_lateral", "drivetrain.couplings.*.cold_offset_vertical",
+    ),
     "alignment.*": GROWN,
     "transient.*": (*GROWN, "transient"),
     "bearing.*": (*BEARINGS, *HEAT, "gearboxes.*.gears.*.position"),
