@@ -14,7 +14,7 @@ from dynamics.modal_form import ModalForm
 from dynamics.periodic_response import Period
 from dynamics.static_loop import NotConverged, PortModel, solve_static
 
-LEAST_HARMONICS, MOST_HARMONICS = 24, 96
+LEAST_HARMONICS, MOST_HARMONICS = 24, 136
 """Harmonics of the mesh frequency that are used at least and at most."""
 LEAST_SAMPLES = 256
 """Samples per mesh that are used at least."""
