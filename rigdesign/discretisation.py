@@ -19,8 +19,8 @@ from scipy.optimize import brentq
 
 from rigdesign.coupling import PointResult, governing_point
 from rigdesign.growth import HousingGrowth
-from rigdesign.remesh import checked, on_mesh, with_fidelity
-from rigdesign.results import Check, DiscretisationRow, Fidelity, MeshShift
+from rigdesign.remesh import checked, on_mesh
+from rigdesign.results import Check, DiscretisationRow, MeshShift
 from rigdesign.rig.model import Rig
 from rigdesign.temperatures import HousingField, body_mean
 from thermal.fe.recovery import energy_error
@@ -33,12 +33,6 @@ ORDERS = (0.5, 4.0)
 """Orders that are believed; four is what second-order elements reach on smooth fields."""
 LAW_TEMPERATURE = 373.15
 """Temperature [K] at which a conductivity law weighs the energy."""
-
-COARSER: dict[Fidelity, tuple[Fidelity, ...]] = {
-    "quick": (),
-    "standard": ("quick",),
-    "reference": ("quick", "standard"),
-}
 
 
 @dataclass(frozen=True)
@@ -61,38 +55,34 @@ class Numbers:
 
 
 def discretisation(
-    rig: Rig, source: Rig, settled: Sequence[PointResult], points: Sequence[PointResult]
+    rigs: Sequence[Rig], source: Rig, settled: Sequence[PointResult], points: Sequence[PointResult]
 ) -> MeshErrors:
     """Errors of all numbers of the governing held point and of the checks.
 
-    source : the rig on which the loop ran, that of ``rig`` or a coarser one
-    settled : held points as the loop left them
-    points : the same on the mesh of ``rig``, of which the errors are wanted
+    rigs : from coarse to fine meshes; the errors are those of the last
+    source : the rig on which the loop ran; settled : held points as the loop left them
+    points : the same on the mesh of the last rig
     """
+    *coarser, rig = rigs
     last = governing_point(points)
     governing = next(i for i, point in enumerate(points) if point is last)
     meshes: list[Numbers] = []
     lost = ""
-    for fidelity in COARSER[rig.fidelity]:
-        other = with_fidelity(source, fidelity)
+    for other in coarser:
         if _nodes(other) == _nodes(rig):
             continue
         try:
             meshes.append(numbers(other, [on_mesh(other, point, source) for point in settled], governing))
         except (ValueError, RuntimeError) as error:
-            lost = f"; no result on the mesh of {fidelity} fidelity: {error}"
-    # at reference the points come from one more pass as those of the coarser meshes do; else they do not yet
-    ours = (
-        points
-        if rig.fidelity == "reference" or not meshes
-        else [on_mesh(rig, point, rig) for point in settled]
-    )
+            lost = f"; no result on the mesh of {other.fidelity} fidelity: {error}"
+    # after a last pass on a finer mesh the points come from one more pass, as those of the coarser meshes do
+    ours = points if rig is not source or not meshes else [on_mesh(rig, point, rig) for point in settled]
     rows = [_energy_row(rig, field, last.point.stage, lost) for field in last.last.fields.values()]
     meshes.append(numbers(rig, ours, governing))
     if len(meshes) == 1:
         return MeshErrors(tuple(rows), ())
     rows += _rows(last.point.stage, meshes)
-    return MeshErrors(tuple(rows), _shifts(meshes[-2], meshes[-1]) if rig.fidelity == "reference" else ())
+    return MeshErrors(tuple(rows), () if rig is source else _shifts(meshes[-2], meshes[-1]))
 
 
 def _nodes(rig: Rig) -> dict[str, int]:

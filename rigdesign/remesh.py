@@ -6,6 +6,8 @@ meshes tells how far mesh and result hang together (`rigdesign.discretisation`).
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
+from typing import Self
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -13,6 +15,7 @@ from scipy.spatial import cKDTree
 from rigdesign.assemble import heat
 from rigdesign.assemble.heat_split import split_as_solved
 from rigdesign.bearing_films import solve_bearings
+from rigdesign.beside import Beside
 from rigdesign.checks import thermal
 from rigdesign.checks.subject import Subject
 from rigdesign.coupling import PointResult, Residual
@@ -24,17 +27,65 @@ from rigdesign.results import Check, Fidelity, ThermalResult
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, growth_change, temperature_change
 from rigdesign.temperatures import HousingField, heat_into_films, heat_into_oil, solve_housing
-from thermal.fe.mesh import NamedMesh
+from thermal.fe.mesh import MeshError, NamedMesh
+from thermal.stations import GearboxModel
 
-
-def with_fidelity(rig: Rig, fidelity: Fidelity) -> Rig:
-    """The rig at another fidelity, itself at its own."""
-    return rig if rig.fidelity == fidelity else replace(rig, fidelity=fidelity)
+COARSER: dict[Fidelity, tuple[Fidelity, ...]] = {
+    "quick": (),
+    "standard": ("quick",),
+    "reference": ("quick", "standard"),
+}
+"""Meshes beside that of a fidelity which tell its errors, from coarse to fine."""
 
 
 def looping_rig(rig: Rig) -> Rig:
     """The rig on which the coupling iterates: at reference that of the standard mesh."""
-    return with_fidelity(rig, "standard") if rig.fidelity == "reference" else rig
+    return replace(rig, fidelity="standard") if rig.fidelity == "reference" else rig
+
+
+class MeshesBeside:
+    """Meshes the rig at all other fidelities its errors need, on another core; `rigs` waits for them.
+
+    rig : of which the errors are wanted; source : the one on which the loop runs
+    """
+
+    def __init__(self, rig: Rig, source: Rig) -> None:
+        self._rig, self._source = rig, source
+        fidelities = (*COARSER[rig.fidelity], rig.fidelity)
+        self._others = tuple(f for f in fidelities if f != source.fidelity)
+        works = [partial(_meshed, source, f, needed=f == rig.fidelity) for f in self._others]
+        self._works: Beside[dict[str, GearboxModel] | None] = Beside(works)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._works.end()
+
+    def rigs(self) -> tuple[Rig, ...]:
+        """The rigs from coarse to fine, the last that of which the errors are wanted.
+
+        Raises
+        ------
+        MeshError
+            The last one cannot be meshed; a coarser one is left out then.
+        """
+        made = {self._source.fidelity: self._source}
+        for fidelity, models in zip(self._others, self._works.results(), strict=True):
+            if models is not None:
+                made[fidelity] = replace(self._source, fidelity=fidelity).with_models(models)
+        wanted = (*COARSER[self._rig.fidelity], self._rig.fidelity)
+        return tuple(made[fidelity] for fidelity in wanted if fidelity in made)
+
+
+def _meshed(rig: Rig, fidelity: Fidelity, *, needed: bool) -> dict[str, GearboxModel] | None:
+    """Housings at one fidelity; None where one cannot be meshed that is not needed."""
+    try:
+        return rig.meshed(fidelity)
+    except MeshError:
+        if needed:
+            raise
+        return None
 
 
 def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:

@@ -23,7 +23,7 @@ from rigdesign.discretisation import discretisation
 from rigdesign.dynamic_work import DynamicWork
 from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError, UsageError
 from rigdesign.ramp_run import held_points, schedule_of
-from rigdesign.remesh import looping_rig, on_mesh
+from rigdesign.remesh import MeshesBeside, looping_rig, on_mesh
 from rigdesign.results import AssumptionRecord, Check, Fidelity, Finding, LossRow, RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rules import overall
@@ -84,20 +84,20 @@ def solve_case(
     for name in rig.models:
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
     lap("rig_and_mesh")
-    settled: list[PointResult] = []
-    for point in held_points(rig):
-        say(f"coupling loads, losses, temperatures and growth at stage {point.stage}")
-        start = settled[-1].last.feedback if settled else None
-        settled.append(solve_point(rig, point, start=start))
-    lap("coupling")
+    with MeshesBeside(wanted, rig) as meshing:
+        settled = _settled(rig, say)
+        lap("coupling")
+        rigs = meshing.rigs()
+        lap("other_meshes")
+    wanted = rigs[-1]
     say("response over speed, time run over the schedule")
     with nullcontext() if rig.drivetrain is None else DynamicWork(rig, settled) as dynamics:
         points = settled
-        if rig is not wanted:
+        if wanted is not rig:
             say(f"last pass on the {fidelity} mesh")
             points = [on_mesh(wanted, point, rig) for point in settled]
             lap("last_pass")
-        meshes = discretisation(wanted, rig, settled, points)
+        meshes = discretisation(rigs, rig, settled, points)
         lap("discretisation")
         thermal = [heat.thermal_result(wanted, p, field) for p in points for field in p.last.fields.values()]
         lap("alternatives")
@@ -115,6 +115,16 @@ def solve_case(
         discretisation=meshes.rows,
         mesh_shifts=meshes.shifts,
     )
+
+
+def _settled(rig: Rig, say: Progress) -> list[PointResult]:
+    """Every held point, each from the one before."""
+    settled: list[PointResult] = []
+    for point in held_points(rig):
+        say(f"coupling loads, losses, temperatures and growth at stage {point.stage}")
+        start = settled[-1].last.feedback if settled else None
+        settled.append(solve_point(rig, point, start=start))
+    return settled
 
 
 def _assemble(subject: Subject, clock: "_Clock") -> RunResult:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from dynamics.drivetrain import Drivetrain, assemble
@@ -108,6 +108,12 @@ class Rig:
                 continue
             models[name] = build_gearbox(geometry, mesh_sizes(geometry, fidelity, housing.mesh.sizes()))
         return models
+
+    def with_models(self, models: Mapping[str, GearboxModel]) -> "Rig":
+        """This rig with housings that were meshed elsewhere."""
+        rig = replace(self)
+        rig.__dict__["models"] = models
+        return rig
 
     @cached_property
     def conduction(self) -> Mapping[str, ConductionSetup]:

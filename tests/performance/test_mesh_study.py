@@ -20,7 +20,7 @@ from rigdesign import load_case
 from rigdesign.coupling import PointResult, solve_point
 from rigdesign.discretisation import EDGE_ORDER, Numbers, numbers, richardson
 from rigdesign.ramp_run import held_points
-from rigdesign.remesh import on_mesh, with_fidelity
+from rigdesign.remesh import on_mesh
 from rigdesign.rig.model import Rig, build_rig
 from thermal.housing import MeshSizes, build_gearbox, mesh_sizes
 
@@ -45,9 +45,7 @@ def sized(rig: Rig, factor: float) -> Rig:
             circle=round(usual.circle / factor),
         )  # fmt: skip
         models[name] = build_gearbox(geometry, sizes)
-    other = replace(rig, fidelity="reference")
-    other.__dict__["models"] = models
-    return other
+    return replace(rig, fidelity="reference").with_models(models)
 
 
 def limit(first: Numbers, second: Numbers, key: tuple[str, str]) -> float:
@@ -74,7 +72,7 @@ def solved(rig: Rig, settled: PointResult, source: Rig) -> Numbers:
 def test_mesh_study(name: str) -> None:
     rig = build_rig(load_case(CASES / name), "standard")
     settled = solve_point(rig, held_points(rig)[-1])
-    quick, standard = (solved(with_fidelity(rig, f), settled, rig) for f in ("quick", "standard"))
+    quick, standard = (solved(other, settled, rig) for other in (replace(rig, fidelity="quick"), rig))
     family = [solved(sized(rig, factor), settled, rig) for factor in FACTORS]
     assert family[2].nodes[""] >= 350_000
     header = [str(mesh.nodes[""]) for mesh in (quick, standard, *family)]
