@@ -10,8 +10,10 @@ from thermal.fe.recovery import energy_error
 from thermal.fe.solver import constrain, solve_direct
 
 
-def solved(mesh: NamedMesh, exact: FloatArray, source: FloatArray) -> tuple[FiniteElements, FloatArray]:
-    """-lap u = source with u given on the boundary, k = 1."""
+def solved(
+    mesh: NamedMesh, exact: FloatArray, source: FloatArray, insulated: tuple[str, ...] = ()
+) -> tuple[FiniteElements, FloatArray]:
+    """-lap u = source, k = 1, with u given on all surfaces but the ``insulated`` ones."""
     elements = FiniteElements(mesh)
     level = elements.fine
     matrix = level.matrix(elements.conduction(np.ones(len(mesh.cells)), level))
@@ -20,8 +22,8 @@ def solved(mesh: NamedMesh, exact: FloatArray, source: FloatArray) -> tuple[Fini
     load = np.zeros(len(mesh.points))
     np.add.at(load, mesh.cells, per_point @ elements.shape.values(elements._load_rule.points))
     held = np.zeros(len(mesh.points), dtype=bool)
-    for nodes in mesh.surfaces.values():
-        held[nodes] = True
+    for name, nodes in mesh.surfaces.items():
+        held[nodes] |= name not in insulated
     u = np.where(held, exact, 0.0)
     right = np.where(held, u * matrix.diagonal(), load - matrix @ u)
     return elements, solve_direct(constrain(matrix, held), right)
