@@ -47,7 +47,6 @@ def pack_meshes(
     scales: list[Array] = []
     starts: list[int] = [0]
     blocks: list[Array] = []
-    in_cell: list[int] = []
     least: list[Array] = []
     for mesh, law in enumerate(laws):
         n_slices, n_path = law.stiffness.shape
@@ -57,17 +56,16 @@ def pack_meshes(
         front_at = len(starts) - 1
         for sign in (1.0, -1.0) if n_phases else ():
             for block in _phase_blocks(law, sign, n_phases):
-                starts.append(starts[-1] + len(block[0]))
+                starts.append(starts[-1] + len(block[1]))
                 blocks.append(block[0])
                 least.append(block[1])
-                in_cell.append(block[2])
         counts[mesh] = (
             n_slices, n_path - 1, sum(map(len, cells)), sum(map(len, shifts)), individual,
             law.teeth_1, law.teeth_2, law.tooth_offset_2,
             len(law.deviation_1), deviation_at,
             len(law.deviation_2), deviation_at + len(law.deviation_1) * (n_path - 1),
             len(law.scale_1), scale_at, len(law.scale_2), scale_at + len(law.scale_1),
-            most_groups(law),
+            most_contacts(law),
             n_phases, front_at, front_at + n_phases,
         )  # fmt: skip
         cells.append(np.hstack((_cells(law.stiffness), _cells(law.gap))))
@@ -82,9 +80,8 @@ def pack_meshes(
         deviations=np.vstack(deviations),
         scales=np.concatenate(scales),
         phase_starts=np.array(starts, np.int64),
-        phase_counts=np.array(in_cell, np.int64),
         phase_least=np.concatenate([np.zeros(0), *least]),
-        phase_data=np.concatenate([np.zeros(1), *(block.ravel() for block in blocks)])[1:].copy(),
+        phase_data=np.concatenate([np.zeros(0), *(block.ravel() for block in blocks)]),
         offsets=np.array([law.offset for law in laws], float),
     )
 
@@ -100,11 +97,11 @@ def phase_count(law: MeshLaw) -> int:
     return max(8, int(np.ceil(law.base_pitch / law.path_step - 1e-9)))
 
 
-def most_groups(law: MeshLaw) -> int:
-    """Return how many groups of contacts one flank can have on the path at once."""
+def most_contacts(law: MeshLaw) -> int:
+    """Return how many contacts one flank can have on the path at once, filled up to whole turns of a loop."""
     n_slices, n_path = law.stiffness.shape
     contacts = int(n_slices) * (int(law.path_step * (n_path - 1) / law.base_pitch) + 2)
-    return -(-contacts // kernels.LANES)
+    return kernels.VECTOR * -(-contacts // kernels.VECTOR)
 
 
 def _values(law: MeshLaw, derivative_torques: bool) -> tuple[float, ...]:
@@ -114,8 +111,9 @@ def _values(law: MeshLaw, derivative_torques: bool) -> tuple[float, ...]:
         law.base_radius_1, law.base_radius_2, law.base_pitch, law.phase, law.back_phase, law.backlash,
         law.path_start, 1.0 / law.path_step, law.damping / law.mean_stiffness, law.friction,
         law.rolling_radius_1, law.rolling_radius_2, 1.0 / reversal, least_gap, float(derivative_torques),
-        1e-12 * law.mean_stiffness * law.base_radius_1, 1.0 / law.base_pitch, 1.0 / law.base_radius_1,
-        1.0 / law.base_radius_2, law.base_pitch / phase_count(law), 1.0 / law.damping_depth,
+        1e-12 * law.mean_stiffness * law.base_radius_1, 1.0 / law.base_pitch,
+        law.friction / law.base_radius_1, law.friction / law.base_radius_2, law.base_pitch / phase_count(law),
+        phase_count(law) / law.base_pitch, law.damping_depth, 1.0 / law.damping_depth,
     )  # fmt: skip
 
 
@@ -130,9 +128,10 @@ def _cells(table: Array) -> Array:
     return np.ascontiguousarray(coefficients.swapaxes(0, 1).reshape(-1, 4))
 
 
-def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[tuple[Array, Array, int]]:
-    """Return for every phase cell the contacts on the path of one flank: groups (n, N_PHASE, LANES), lower
-    bounds of their gaps in increasing order, number.
+def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[tuple[Array, Array]]:
+    """Return for every phase cell the contacts on the path of one flank: rows (N_PHASE, n) and the lower bounds
+    (n,) of their gaps in increasing order. More than one are filled up to whole turns of a compiled loop with some
+    of no stiffness.
 
     The cubics are carried from the path to the phase by value and slope at both ends of the phase cell.
     """
@@ -166,13 +165,8 @@ def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[tuple[Array,
     blocks = []
     ends = np.searchsorted(cells, np.arange(1, n_phases))
     for own, low in zip(np.split(lanes, ends, axis=1), np.split(bound, ends)):
-        groups = -(-own.shape[1] // kernels.LANES)
-        padded = np.zeros((kernels.N_PHASE, groups * kernels.LANES))
-        padded[:, : own.shape[1]] = own
-        least = np.full(groups * kernels.LANES, np.inf)
-        least[: own.shape[1]] = low
-        table = padded.reshape(kernels.N_PHASE, groups, kernels.LANES).swapaxes(0, 1)
-        blocks.append((table, least, own.shape[1]))
+        spare = -own.shape[1] % kernels.VECTOR if own.shape[1] > 1 else 0
+        blocks.append((np.pad(own, ((0, 0), (0, spare))), np.pad(low, (0, spare), constant_values=np.inf)))
     return blocks
 
 

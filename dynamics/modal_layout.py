@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.kernels import WIDTH
+from dynamics.kernels import WIDTH, port_place
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -20,8 +20,6 @@ class Layout(NamedTuple):
 
     modes: Integers
     """(n_modes,) real part of each mode; its imaginary part stands WIDTH further."""
-    slots: Integers
-    """(n_ports,) old torque of each port."""
     starts: Integers
     """(n_branches + 1,) first state of each branch."""
 
@@ -33,53 +31,63 @@ class Layout(NamedTuple):
         return laid
 
 
-def branch_layout(branches: Integers, port_branches: Integers) -> Layout:
-    """Return the places of modes on ``branches`` (n_modes,), not decreasing, and of ports on ``port_branches``."""
-    modes = []
-    slots = np.zeros(len(port_branches), np.int64)
-    starts = [0]
-    for branch, size in zip(*np.unique(branches, return_counts=True)):
+class PortBlocks(NamedTuple):
+    """Tables of ``kernels.DiscreteModes`` with the same names."""
+
+    blocks: Integers
+    further: Integers
+    bank: Array
+    links: Integers
+    through: Array
+
+
+def branch_layout(branches: Integers) -> Layout:
+    """Return the places of modes on ``branches`` (n_modes,), not decreasing."""
+    modes, starts = [], [0]
+    for size in np.unique(branches, return_counts=True)[1]:
         own = np.arange(size)
         modes.append(starts[-1] + own // WIDTH * 2 * WIDTH + own % WIDTH)
-        slot = starts[-1] + -(-size // WIDTH) * 2 * WIDTH
-        ports = np.flatnonzero(port_branches == branch)
-        slots[ports] = slot + 2 * np.arange(len(ports))
-        starts.append(slot + 8 * -(-(2 * len(ports) + 3) // 8))
-    return Layout(np.concatenate(modes), slots, np.array(starts, np.int64))
+        starts.append(starts[-1] + 2 * WIDTH * -(-int(size) // WIDTH))
+    return Layout(np.concatenate(modes), np.array(starts, np.int64))
 
 
 def port_blocks(
     port_branches: Integers, layout: Layout, decay: ComplexArray, driven: ComplexArray, rows: ComplexArray, old: Array,
     new: Array,
-) -> tuple[Integers, Array, Array]:  # fmt: skip
-    """Return ``DiscreteModes.blocks``, ``tables`` and ``port_rows``.
+) -> PortBlocks:  # fmt: skip
+    """Return the tables that take the modes over a step and give the outputs of the ports.
 
     decay : (n_modes,); driven : (n_modes, n_ports); rows : (2 n_ports, n_modes), conjugated; old, new : (2
     n_ports, n_ports) outputs of the ports per torque at start and end of the step
     """
     n_ports = driven.shape[1]
-    seen = layout.lay(rows)
-    seen[:, layout.slots] = old
-    seen[:, layout.slots + 1] = new
-    # a last row of zeros for the port that stands for none
-    seen = np.vstack((seen, np.zeros((2, seen.shape[1]))))
-    pushes = np.vstack((layout.lay(driven.T), np.zeros(seen.shape[1])))
-    fades = layout.lay(decay), layout.lay(np.ones_like(decay))
+    # zeros for the port that stands for none
+    fades, pushes = layout.lay(decay), np.pad(layout.lay(driven.T), ((0, 1), (0, 0)))
+    seen = np.pad(layout.lay(rows), ((0, 2), (0, 0)))
+    through = np.pad(np.stack((old, new)), ((0, 0), (0, 2), (0, 1)))
     blocks: list[tuple[int, ...]] = []
-    tables, port_rows = [np.zeros(0)], [np.zeros(0)]
+    further: list[tuple[int, ...]] = []
+    own: list[tuple[int, ...]] = []
+    others: list[tuple[int, ...]] = []
+    bank, linked = [np.zeros(0)], [np.zeros(0)]
     for branch, (start, stop) in enumerate(zip(layout.starts[:-1], layout.starts[1:])):
         ports = np.flatnonzero(port_branches == branch)
-        clock = stop - 8 * -(-(2 * len(ports) + 3) // 8) + 2 * len(ports)
-        groups = (clock - 2 * len(ports) - start) // (2 * WIDTH)
-        modes = slice(start, start + 2 * WIDTH * groups)
-        spare = max(2 - len(ports), len(ports) % 2)
-        filled = np.append(ports, np.full(spare, n_ports))
-        for a, b in filled.reshape(-1, 2):
-            first = not blocks or blocks[-1][0] != start
-            slot_a, slot_b = (layout.slots[port] if port < n_ports else clock + 2 for port in (a, b))
-            at = sum(map(len, tables)), sum(map(len, port_rows))
-            blocks.append((start, groups, (stop - start) // 8, a, b, slot_a, slot_b, clock, *at, first))
-            table = np.array([part[modes] for part in (fades[0 if first else 1], pushes[a], pushes[b])])
-            tables.append(table.reshape(3, groups, 2 * WIDTH).swapaxes(0, 1).ravel())
-            port_rows.append(seen[[2 * a, 2 * a + 1, 2 * b, 2 * b + 1], start:stop].ravel())
-    return np.array(blocks, np.int64), np.concatenate(tables), np.concatenate(port_rows)
+        pairs = np.append(ports, np.full(max(2 - len(ports), len(ports) % 2), n_ports)).reshape(-1, 2)
+        home, groups = sum(map(len, bank)), (stop - start) // (2 * WIDTH)
+        for number, pair in enumerate(pairs):
+            outputs = [2 * pair[0], 2 * pair[0] + 1, 2 * pair[1], 2 * pair[1] + 1]
+            to = tuple(map(port_place, pair))
+            for source, acting in enumerate(pairs):
+                at = sum(map(len, linked))
+                linked.append(through[:, outputs][:, :, acting].ravel())
+                to_itself = source == number == 0
+                (own if to_itself else others).append((*to, *map(port_place, acting), at))
+                if source == number:
+                    bank_at = sum(map(len, bank))
+                    (further if number else blocks).append((start, bank_at, home, groups, *to, at))
+            table = np.stack((np.zeros_like(fades), fades, *pushes[pair], *seen[outputs]))[:, start:stop]
+            bank.append(table.reshape(-1, groups, 2 * WIDTH).swapaxes(0, 1).ravel())
+    return PortBlocks(
+        np.array(blocks, np.int64), np.array(further, np.int64).reshape(-1, len(blocks[0])), np.concatenate(bank),
+        np.array(own + others, np.int64), np.concatenate(linked),
+    )  # fmt: skip

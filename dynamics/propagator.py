@@ -163,8 +163,11 @@ def modal_model(
     )
 
 
-def discretise(model: ModalModel, step: float, *, with_losses: bool = True) -> Propagator:
-    """Return the propagator for one step length [s]; ``with_losses=False`` leaves out the joint losses."""
+def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses: bool = True) -> Propagator:
+    """Return the propagator for one step length [s].
+
+    The slow inputs are linear over ``substeps`` steps; ``with_losses=False`` leaves out the joint losses.
+    """
     if not step > 0.0:
         raise ValueError(f"step = {step} s must be positive")
     scaled = model.eigenvalues * step
@@ -191,8 +194,8 @@ def discretise(model: ModalModel, step: float, *, with_losses: bool = True) -> P
     dropped, dropped_rate = 0.5 * step * model.through[turn], model.through_rate[turn]
     through_old[turn] = (seen[turn] @ integral).real + dropped - dropped_rate
     through_new[turn] = (seen[turn] @ (step**2 * phi_3 * model.inputs)).real + dropped + dropped_rate
-    layout = branch_layout(model.branches, model.port_branches)
-    blocks, tables, port_rows = port_blocks(
+    layout = branch_layout(model.branches)
+    tables = port_blocks(
         model.port_branches,
         layout,
         decay,
@@ -201,20 +204,41 @@ def discretise(model: ModalModel, step: float, *, with_losses: bool = True) -> P
         through_old[:n_ports, :n_fast],
         through_new[:n_ports, :n_fast],
     )
+    slow_outputs, slow_states = _slow_responses(
+        decay, driven[:, n_fast:], rows, n_ports, through_old[:, n_fast:], through_new[:, n_fast:], substeps
+    )
     discrete = DiscreteModes(
-        blocks=blocks,
-        slots=layout.slots,
-        tables=tables,
-        port_rows=port_rows,
+        **tables._asdict(),
         port_new=np.ascontiguousarray(through_new[:n_ports, :n_fast].T),
         rows=layout.lay(rows[n_ports:].conj()),
         through_old=np.ascontiguousarray(through_old[n_ports:, :n_fast].T),
         through_new=np.ascontiguousarray(through_new[n_ports:, :n_fast].T),
-        slow_inputs=layout.lay(driven[:, n_fast:].T),
-        slow_old=np.ascontiguousarray(through_old[:, n_fast:]),
-        slow_new=np.ascontiguousarray(through_new[:, n_fast:]),
+        slow_outputs=slow_outputs,
+        slow_states=layout.lay(slow_states),
     )
     return Propagator(step=step, modes=discrete, hold=hold, layout=layout)
+
+
+def _slow_responses(
+    decay: ComplexArray, driven: ComplexArray, rows: ComplexArray, n_ports: int, old: Array, new: Array, substeps: int
+) -> tuple[Array, ComplexArray]:  # fmt: skip
+    """Return what slow inputs give in every step of a sample (2 n_slow, substeps * n_rows), and to the modes by its
+    end (2 n_slow, n_modes): in turn for an input held at one and for one that rises by one in each step.
+
+    The first ``n_ports`` of the ``rows`` look at the modes before a step, the others after it; ``old`` and ``new``
+    (n_rows, n_slow) belong to the input at start and end of a step.
+    """
+    n_modes, n_slow = driven.shape
+    outputs = np.zeros((n_slow, 2, substeps, len(rows)))
+    modes = np.zeros((n_slow, 2, n_modes), complex)
+    for step in range(substeps):
+        start, end = np.array([1.0, step])[:, None], np.array([1.0, step + 1.0])[:, None]
+        after = decay * modes + driven.T[:, None] * start
+        outputs[:, :, step, :n_ports] = (modes @ rows[:n_ports].T).real
+        outputs[:, :, step, n_ports:] = (after @ rows[n_ports:].T).real
+        outputs[:, :, step] += old.T[:, None] * start + new.T[:, None] * end
+        modes = after
+    return outputs.reshape(2 * n_slow, -1), modes.reshape(2 * n_slow, -1)
 
 
 def modal_state(

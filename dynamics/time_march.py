@@ -133,7 +133,7 @@ class TimeMarch:
         self.substeps = substeps
         self.drags = tuple(drags)
         self.model = model or modal_model(system, laws, slow_loads(system, drags), cutoff=cutoff)
-        self.propagator = discretise(self.model, step, with_losses=accounts)
+        self.propagator = discretise(self.model, step, substeps=substeps, with_losses=accounts)
         self.packed = pack_meshes(laws, derivative_torques=derivative_torques)
         self.unsettled = 0
         self._marched = 0
@@ -174,9 +174,10 @@ class TimeMarch:
             work=np.zeros(n_power),
             damping=damping,
         )
-        self._carried.state[:] = modal_state(
-            self.model, self.propagator, start.angles, start.speeds, self._inputs()
-        )
+        with np.errstate(invalid="ignore"):  # an infinite torque shows in the march, which says where
+            self._carried.state[:] = modal_state(
+                self.model, self.propagator, start.angles, start.speeds, self._inputs()
+            )
         torque = self.mean_torque_of_first_mesh()
         self._carried.memory[2:] = torque, speeds[0], torque
 

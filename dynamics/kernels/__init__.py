@@ -1,21 +1,22 @@
 """Compiled loops of the dynamics, the only numba in this package: plain numbers and arrays in and out.
 
-``contact`` lists and sums the tooth contacts of a flank, ``reactions`` evaluates meshes at given states,
-``linear_step`` takes the modes over one step, ``mesh_solve`` the meshes, ``march`` joins them. The disk cache of
-a compiled function is keyed by its own file: after an edit of one of the others touch ``reactions`` and
-``march`` too.
+``contact`` sums the tooth contacts of a flank, ``reactions`` evaluates meshes at given states, ``linear_step`` takes
+the modes over one step, ``mesh_solve`` the meshes, ``march`` joins them; ``book`` is what the last three share. The
+disk cache of a compiled function is keyed by its own file: after an edit of one of the others touch ``reactions``,
+``linear_step``, ``mesh_solve`` and ``march`` too.
 """
 
-from dynamics.kernels.contact import LANES, N_COUNTS, N_PHASE, N_VALUES, PackedMeshes
+from dynamics.kernels.book import port_place
+from dynamics.kernels.contact import N_COUNTS, N_PHASE, N_VALUES, VECTOR, PackedMeshes
 from dynamics.kernels.linear_step import WIDTH, DiscreteModes
 from dynamics.kernels.march import Carried, Orders, march
 from dynamics.kernels.reactions import mesh_reactions, tooth_pair_forces
 
 __all__ = [
-    "LANES",
     "N_COUNTS",
     "N_PHASE",
     "N_VALUES",
+    "VECTOR",
     "WIDTH",
     "Carried",
     "DiscreteModes",
@@ -23,5 +24,6 @@ __all__ = [
     "PackedMeshes",
     "march",
     "mesh_reactions",
+    "port_place",
     "tooth_pair_forces",
 ]

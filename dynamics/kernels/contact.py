@@ -10,9 +10,9 @@ where the damping grows with ``g = min(1, d / damping depth)``, and friction add
 and ``+mu F sgn(v_g) rho_2`` with the sliding speed ``v_g = omega_1 rho_1 - omega_2 rho_2``, ``rho_1 = T1C +
 s``, ``rho_2 = T2C - s``.
 
-A mesh whose teeth are all alike is tabulated over its phase within one base pitch, all contacts of a phase
-beside each other; a mesh with individual teeth looks every contact up on the path. Either way the contacts
-of a flank are listed in groups of LANES, row after row, which the compiler turns into vector instructions.
+All contacts of a flank stand beside each other in a table with N_PHASE rows, so that the compiler makes vector
+instructions of a loop over them. Teeth that are all alike are tabulated over the phase within one base pitch; with
+individual teeth every contact is looked up on the path and such a table is written for the moment.
 """
 
 import math
@@ -27,7 +27,7 @@ Integers = NDArray[np.int64]
 
 
 class PackedMeshes(NamedTuple):
-    """Tables of all meshes of a drivetrain; packed by ``dynamics.mesh_force.pack_meshes``."""
+    """Tables of all meshes of a drivetrain; packed by ``dynamics.mesh_tables.pack_meshes``."""
 
     values: Array
     """(n_meshes, N_VALUES) plain numbers."""
@@ -42,13 +42,11 @@ class PackedMeshes(NamedTuple):
     scales: Array
     """Stiffness scales of single teeth [-]."""
     phase_starts: Integers
-    """First group of every phase cell, front and back of each mesh."""
-    phase_counts: Integers
-    """Contacts in every phase cell."""
+    """(n_phase_cells + 1,) first contact of every phase cell, front and back of each mesh."""
     phase_least: Array
-    """Lower bound of the gap of every contact within its phase cell, in increasing order; LANES per group."""
+    """Lower bound of the gap of every contact within its phase cell, in increasing order."""
     phase_data: Array
-    """Groups (N_PHASE, LANES), flat: cubic of stiffness, cubic of gap, path position at the start of the cell."""
+    """Flat, cell after cell: N_PHASE rows over the contacts of the cell."""
     offsets: Array
     """(n_meshes,) imposed approach [m]."""
 
@@ -56,28 +54,47 @@ class PackedMeshes(NamedTuple):
 # columns of PackedMeshes.values
 R1, R2, PITCH, PHASE, BACK_PHASE, BACKLASH, START, PER_STEP = 0, 1, 2, 3, 4, 5, 6, 7
 DAMP_TIME, FRICTION, ROLL_1, ROLL_2, PER_REVERSAL, LEAST_GAP, DERIVATIVE, FLOOR = 8, 9, 10, 11, 12, 13, 14, 15
-PER_PITCH, PER_R1, PER_R2, PHASE_STEP, PER_DEPTH = 16, 17, 18, 19, 20
-N_VALUES = 21
+PER_PITCH, MU_1, MU_2, PHASE_STEP, PER_PHASE_STEP, DEPTH, PER_DEPTH = 16, 17, 18, 19, 20, 21, 22
+N_VALUES = 23
 # columns of PackedMeshes.counts
 N_SLICES, N_CELLS, CELLS_AT, SHIFTS_AT, INDIVIDUAL, TEETH_1, TEETH_2, OFFSET_2 = 0, 1, 2, 3, 4, 5, 6, 7
 ROWS_1, DEVIATION_1_AT, ROWS_2, DEVIATION_2_AT = 8, 9, 10, 11
-SCALES_1, SCALES_1_AT, SCALES_2, SCALES_2_AT, GROUPS = 12, 13, 14, 15, 16
+SCALES_1, SCALES_1_AT, SCALES_2, SCALES_2_AT, MOST = 12, 13, 14, 15, 16
 N_PHASES, FRONT_AT, BACK_AT = 17, 18, 19
 N_COUNTS = 20
+# rows of a table of contacts: cubics of stiffness and gap over the place in the cell, path position at its start
+ROW_K, ROW_E, ROW_S = 0, 4, 8
 N_PHASE = 9
-LANES = 16
-VECTOR = 4
-"""Numbers in a vector register. More than two contacts are filled up to whole registers with some of no stiffness."""
+VECTOR = 8
+"""Contacts in one turn of a compiled loop (two vector registers). More than one are filled up to whole turns with some
+of no stiffness."""
 POSITIVE = (
     1 << 40
 ) - 1  # masks a first index, so that the compiler knows it and what is added to be positive
-# rows of a group of listed contacts: stiffness, gap and its slope, lever factors, half the stiffness slope,
-# friction power per force
-LIST_K, LIST_E, LIST_DE, LIST_M1, LIST_M2, LIST_HK, LIST_POWER = 0, 1, 2, 3, 4, 5, 6
-N_LIST = 7
 
 # NaN and infinity keep their meaning; only the order of sums is free
 LOOSE = {"reassoc", "contract", "nsz", "arcp"}
+
+
+class Flank(NamedTuple):
+    """Contacts of one flank in a table, and where the flank stands: what a pass over them needs besides the law."""
+
+    first: int
+    """First number of the table."""
+    stride: int
+    """Contacts beside each other, the length of a row."""
+    n: int
+    """Contacts to look at."""
+    place: float
+    """Place within the cell, 0 to 1."""
+    per_metre: float
+    """Cells per metre of path."""
+    roll_1: float
+    """Rolling radii of a contact at path position 0 of the table [m]."""
+    roll_2: float
+    omega_1: float
+    """Speeds that decide on the direction of sliding [rad/s]."""
+    omega_2: float
 
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
@@ -89,78 +106,53 @@ def sliding_direction(ratio: float) -> float:
 
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
-def list_by_phase(
-    values: Array, counts: Integers, starts: Integers, contacts_in: Integers, least: Array, data: Array, m: int,
-    sign: float, pressed: float, theta_1: float, omega_1: float, omega_2: float, out: Array, at: int,
-) -> int:  # fmt: skip
-    """List the contacts of one flank of mesh ``m``, all teeth alike, at the angle ``theta_1``.
+def flank_in_phase(
+    book: Array, at: int, counts: Integers, starts: Integers, least: Array, m: int, sign: float, within: float,
+    theta_1: float, omega_1: float, omega_2: float,
+) -> Flank:  # fmt: skip
+    """Return the contacts of one flank of mesh ``m``, all teeth alike, at the angle ``theta_1``.
 
-    Contacts whose gap stays above ``pressed`` in this phase cell are left out (the last ones of the cell).
-    ``out`` receives groups of (N_LIST, LANES), flat, from ``at`` on; returns their number, filled up to whole
-    vectors.
+    ``book`` holds the numbers of the law, the columns of ``PackedMeshes.values``, from ``at`` on.
+
+    Contacts whose gap stays above ``within`` in this phase cell are left out (the last ones of the cell).
     """
     n_phases = counts[m, N_PHASES]
-    origin = values[m, PHASE] if sign > 0.0 else values[m, BACK_PHASE]
-    turned = (origin + sign * values[m, R1] * theta_1) * values[m, PER_PITCH]
-    place = (turned - math.floor(turned)) * n_phases
+    origin = book[at + PHASE] if sign > 0.0 else book[at + BACK_PHASE]
+    turned = (origin + sign * book[at + R1] * theta_1) * book[at + PER_PITCH]
+    place = (turned - np.floor(turned)) * n_phases
     j = max(0, min(int(place), n_phases - 1))  # also where a run that left the finite numbers asks
-    f = place - j
-    row = (counts[m, FRONT_AT] if sign > 0.0 else counts[m, BACK_AT]) + j
-    low = LANES * starts[row]
-    n = int(contacts_in[row])
-    if n > 2:
+    place -= j
+    row = ((counts[m, FRONT_AT] if sign > 0.0 else counts[m, BACK_AT]) + j) & POSITIVE
+    start = starts[row] & POSITIVE
+    n = starts[row + 1] - start
+    stride = n
+    if n > 1:
         near = 0
-        while near < n and least[low + near] < pressed:
+        while near < n and least[start + near] < within:
             near += VECTOR
         n = near
-    first = (N_PHASE * LANES * starts[row]) & POSITIVE
-    first_out = at & POSITIVE
-    per_step = n_phases * values[m, PER_PITCH]
-    derivative = values[m, DERIVATIVE]
-    half = 0.5 * per_step * derivative
-    friction = values[m, FRICTION]
-    mu_1 = sign * friction * values[m, PER_R1]
-    mu_2 = sign * friction * values[m, PER_R2]
-    roll_1 = values[m, ROLL_1] + f * values[m, PHASE_STEP]
-    roll_2 = values[m, ROLL_2] - f * values[m, PHASE_STEP]
-    per_reversal = values[m, PER_REVERSAL]
-    for group in range((n + LANES - 1) // LANES):
-        a = first + N_PHASE * LANES * group
-        b = first_out + N_LIST * LANES * group
-        for i in range(min(n - LANES * group, LANES)):
-            k_1, k_2, k_3 = data[a + LANES + i], data[a + 2 * LANES + i], data[a + 3 * LANES + i]
-            e_1, e_2, e_3 = data[a + 5 * LANES + i], data[a + 6 * LANES + i], data[a + 7 * LANES + i]
-            slope = (e_1 + f * (2.0 * e_2 + 3.0 * f * e_3)) * per_step
-            rho_1 = roll_1 + data[a + 8 * LANES + i]
-            rho_2 = roll_2 - data[a + 8 * LANES + i]
-            sliding = omega_1 * rho_1 - omega_2 * rho_2
-            direction = sliding_direction(sliding * per_reversal)
-            out[b + LIST_K * LANES + i] = data[a + i] + f * (k_1 + f * (k_2 + f * k_3))
-            out[b + LIST_E * LANES + i] = data[a + 4 * LANES + i] + f * (e_1 + f * (e_2 + f * e_3))
-            out[b + LIST_DE * LANES + i] = slope
-            out[b + LIST_M1 * LANES + i] = 1.0 - slope * derivative + mu_1 * direction * rho_1
-            out[b + LIST_M2 * LANES + i] = 1.0 + mu_2 * direction * rho_2
-            out[b + LIST_HK * LANES + i] = half * (k_1 + f * (2.0 * k_2 + 3.0 * f * k_3))
-            out[b + LIST_POWER * LANES + i] = friction * direction * sliding
-    return n
+    along = place * book[at + PHASE_STEP]
+    return Flank(
+        N_PHASE * start, stride, n, place, book[at + PER_PHASE_STEP], book[at + ROLL_1] + along,
+        book[at + ROLL_2] - along, omega_1, omega_2,
+    )  # fmt: skip
 
 
 @njit(cache=True, fastmath=LOOSE)
 def list_on_path(
-    values: Array, counts: Integers, cells: Array, shifts: Array, deviations: Array, scales: Array, m: int,
-    sign: float, theta_1: float, omega_1: float, omega_2: float, out: Array, at: int, pairs: Integers,
+    book: Array, at: int, counts: Integers, cells: Array, shifts: Array, deviations: Array, scales: Array, m: int,
+    sign: float, theta_1: float, out: Array, first: int, stride: int, pairs: Integers,
 ) -> int:  # fmt: skip
-    """List the contacts of a flank with individual teeth like ``list_by_phase``.
+    """Write the contacts of a flank with individual teeth into the table ``out`` from ``first`` on.
 
-    ``pairs`` (2, capacity, or 0) receives tooth pair and slice of each.
+    The polynomials are those of place 0 in cells of one metre. ``pairs`` (2, capacity, or 0) receives tooth pair
+    and slice of each. Returns the number of contacts; the table goes on with zeros to a whole turn.
     """
     n_cells = counts[m, N_CELLS]
-    per_step = values[m, PER_STEP]
-    derivative = values[m, DERIVATIVE]
-    pitch = values[m, PITCH] * per_step
-    origin = (values[m, PHASE] if sign > 0.0 else values[m, BACK_PHASE]) - values[m, START]
-    travel = origin + sign * values[m, R1] * theta_1
-    friction = values[m, FRICTION]
+    per_step = book[at + PER_STEP]
+    pitch = book[at + PITCH] * per_step
+    origin = (book[at + PHASE] if sign > 0.0 else book[at + BACK_PHASE]) - book[at + START]
+    travel = origin + sign * book[at + R1] * theta_1
     column = 0
     for i in range(counts[m, N_SLICES]):
         whole = (travel - sign * shifts[counts[m, SHIFTS_AT] + i]) * per_step
@@ -183,35 +175,36 @@ def list_on_path(
             d_2 = deviations[a, 2] + deviations[b, 2]
             d_3 = deviations[a, 3] + deviations[b, 3]
             e += deviations[a, 0] + deviations[b, 0] + f * (d_1 + f * (d_2 + f * d_3))
-            de = (de + d_1 + f * (2.0 * d_2 + 3.0 * f * d_3)) * per_step
+            de += d_1 + f * (2.0 * d_2 + 3.0 * f * d_3)
             scale = scales[counts[m, SCALES_1_AT] + pair % counts[m, SCALES_1]]
             scale *= scales[counts[m, SCALES_2_AT] + mate % counts[m, SCALES_2]]
-            s = values[m, START] + place / per_step
-            rho_1 = values[m, ROLL_1] + s
-            rho_2 = values[m, ROLL_2] - s
-            sliding = omega_1 * rho_1 - omega_2 * rho_2
-            direction = sliding_direction(sliding * values[m, PER_REVERSAL])
-            lane = at + (column // LANES) * N_LIST * LANES + column % LANES
-            out[lane + LIST_K * LANES] = k * scale
-            out[lane + LIST_E * LANES] = e
-            out[lane + LIST_DE * LANES] = de
-            out[lane + LIST_M1 * LANES] = (
-                1.0 - de * derivative + sign * friction * values[m, PER_R1] * direction * rho_1
-            )
-            out[lane + LIST_M2 * LANES] = 1.0 + sign * friction * values[m, PER_R2] * direction * rho_2
-            out[lane + LIST_HK * LANES] = 0.5 * dk * scale * per_step * derivative
-            out[lane + LIST_POWER * LANES] = friction * direction * sliding
+            to = first + column
+            for blank in range(N_PHASE):
+                out[to + blank * stride] = 0.0
+            out[to + ROW_K * stride] = k * scale
+            out[to + (ROW_K + 1) * stride] = dk * scale * per_step
+            out[to + ROW_E * stride] = e
+            out[to + (ROW_E + 1) * stride] = de * per_step
+            out[to + ROW_S * stride] = book[at + START] + place / per_step
             if pairs.shape[1] > 0:
                 pairs[0, column] = pair
                 pairs[1, column] = i
             column += 1
             turn -= 1.0
             place += pitch
-    for blank in range(column, VECTOR * ((column + VECTOR - 1) // VECTOR)):
-        lane = at + (blank // LANES) * N_LIST * LANES + blank % LANES
-        for row in range(N_LIST):
-            out[lane + row * LANES] = 0.0
+    for rest in range(column, VECTOR * ((column + VECTOR - 1) // VECTOR)):
+        for blank in range(N_PHASE):
+            out[first + rest + blank * stride] = 0.0
     return column
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def flank_on_path(
+    book: Array, at: int, first: int, stride: int, found: int, omega_1: float, omega_2: float
+) -> Flank:  # fmt: skip
+    """Return the contacts that ``list_on_path`` has written, filled up to whole turns."""
+    n = VECTOR * ((found + VECTOR - 1) // VECTOR)
+    return Flank(first, stride, n, 0.0, 1.0, book[at + ROLL_1], book[at + ROLL_2], omega_1, omega_2)
 
 
 class Pressed(NamedTuple):
@@ -236,54 +229,101 @@ class Pressed(NamedTuple):
     """Mixed second derivative of the force over reach and rate"""
 
 
+class _Pass(NamedTuple):
+    """What a pass over the contacts of a flank holds the same for all of them."""
+
+    f: float
+    f_2: float
+    f_3: float
+    reach: float
+    from_rate: float
+    from_slope: float
+    derivative: float
+    slip: float
+    slip_slope: float
+    mu_1: float
+    mu_2: float
+    roll_1: float
+    roll_2: float
+    per_depth: float
+    full_depth: float
+    guard: float
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def _press_contact(table: Array, c: int, stride: int, same: _Pass) -> Pressed:
+    """Return what the contact in column ``c`` does; slopes over the rate per damping time.
+
+    The lever factors ``m_1 = 1 - e' +- mu rho_1 / r_b1`` and ``m_2 = 1 +- mu rho_2 / r_b2`` carry the slope of the
+    gap and the friction.
+    """
+    f, f_2, f_3 = same.f, same.f_2, same.f_3
+    k_1, k_2, k_3 = table[c + stride], table[c + 2 * stride], table[c + 3 * stride]
+    e_1, e_2, e_3 = table[c + 5 * stride], table[c + 6 * stride], table[c + 7 * stride]
+    s = table[c + ROW_S * stride]
+    stiffness = table[c] + f * (k_1 + f * (k_2 + f * k_3))
+    over = same.reach - (table[c + ROW_E * stride] + f * (e_1 + f * (e_2 + f * e_3)))
+    slope = e_1 + f_2 * e_2 + f_3 * e_3
+    direction = sliding_direction(same.slip + same.slip_slope * s)
+    m_1 = 1.0 - slope * same.derivative + (same.mu_1 * direction) * (same.roll_1 + s)
+    m_2 = 1.0 + (same.mu_2 * direction) * (same.roll_2 - s)
+    closing = same.from_rate - slope * same.from_slope
+    depth = over if over > 0.0 else 0.0
+    grown = depth * same.per_depth
+    per = same.per_depth if grown < 1.0 else 0.0
+    grown = grown if grown < 1.0 else 1.0
+    pressed = depth + grown * closing
+    k = stiffness if pressed > 0.0 else 0.0  # never where depth = 0
+    bent = 0.5 * same.derivative * (k_1 + f_2 * k_2 + f_3 * k_3) * depth
+    force, k_x, k_v = k * pressed, k * (1.0 + per * closing), k * grown
+    margin = abs(pressed) if abs(pressed) < abs(over - same.full_depth) else abs(over - same.full_depth)
+    margin = margin if margin < abs(over) else abs(over)
+    margin = margin if over > -same.guard else same.guard
+    return Pressed(
+        force, force * m_1 + bent * depth, force * m_2, k_x, k_x * m_1 + 2.0 * bent, k_x * m_2, k_v, k_v * m_1,
+        k_v * m_2, stiffness if margin < same.guard else 0.0, k * per,
+    )  # fmt: skip
+
+
 @njit(cache=True, fastmath=LOOSE, inline="always")
 def press_flank(
-    contacts: Array, start: int, n: int, reach: float, rate: float, path_speed: float, damp_time: float,
-    per_depth: float, guard: float,
+    table: Array, flank: Flank, book: Array, at: int, sign: float, reach: float, rate: float, omega_1: float,
+    guard: float,
 ) -> Pressed:  # fmt: skip
-    """Sum the contacts of one flank listed from ``start`` on, pressed by ``reach`` and closing with ``rate``.
-
-    ``damp_time`` = damping / mean stiffness [s], ``per_depth`` = 1 / damping depth, ``n`` as listed.
-    """
+    """Sum the contacts of one flank, pressed by ``reach`` and closing with ``rate``, both seen from this flank."""
+    damp_time, per_reversal = book[at + DAMP_TIME], book[at + PER_REVERSAL]
+    same = _Pass(
+        flank.place, 2.0 * flank.place, 3.0 * flank.place * flank.place, reach, damp_time * rate,
+        damp_time * sign * book[at + R1] * omega_1 * flank.per_metre, book[at + DERIVATIVE] * flank.per_metre,
+        (flank.omega_1 * flank.roll_1 - flank.omega_2 * flank.roll_2) * per_reversal,
+        (flank.omega_1 + flank.omega_2) * per_reversal, sign * book[at + MU_1], sign * book[at + MU_2], flank.roll_1,
+        flank.roll_2, book[at + PER_DEPTH], book[at + DEPTH], guard,
+    )  # fmt: skip
+    first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     force, a_1, a_2 = 0.0, 0.0, 0.0
     force_x, a_1_x, a_2_x = 0.0, 0.0, 0.0
     force_v, a_1_v, a_2_v = 0.0, 0.0, 0.0
     kinked, curved = 0.0, 0.0
-    full = 1.0 / per_depth
-    first = start & POSITIVE
-    for group in range((n + LANES - 1) // LANES):
-        at = first + N_LIST * LANES * group
-        for i in range(min(n - LANES * group, LANES)):
-            closing = damp_time * (rate - contacts[at + LIST_DE * LANES + i] * path_speed)
-            over = reach - contacts[at + LIST_E * LANES + i]
-            depth = over if over > 0.0 else 0.0
-            stiffness = contacts[at + LIST_K * LANES + i]
-            k = stiffness if over > 0.0 else 0.0
-            grown = depth * per_depth
-            per = per_depth if grown < 1.0 else 0.0
-            grown = grown if grown < 1.0 else 1.0
-            pressed = depth + grown * closing
-            k = k if pressed > 0.0 else 0.0
-            f = k * pressed
-            k_x = k * (1.0 + per * closing)
-            k_v = k * grown
-            m_1 = contacts[at + LIST_M1 * LANES + i]
-            m_2 = contacts[at + LIST_M2 * LANES + i]
-            slope = contacts[at + LIST_HK * LANES + i] * depth
-            force += f
-            a_1 += f * m_1 + slope * depth
-            a_2 += f * m_2
-            force_x += k_x
-            a_1_x += k_x * m_1 + 2.0 * slope
-            a_2_x += k_x * m_2
-            force_v += k_v
-            a_1_v += k_v * m_1
-            a_2_v += k_v * m_2
-            margin = abs(pressed) if abs(pressed) < abs(depth - full) else abs(depth - full)
-            margin = margin if over > 0.0 else guard
-            margin = margin if margin < abs(over) else abs(over)
-            kinked += stiffness if margin < guard else 0.0
-            curved += k * per
+    if flank.n == 1:
+        one = _press_contact(table, first, stride, same)
+        force, a_1, a_2 = one.force, one.a_1, one.a_2
+        force_x, a_1_x, a_2_x = one.force_x, one.a_1_x, one.a_2_x
+        force_v, a_1_v, a_2_v = one.force_v, one.a_1_v, one.a_2_v
+        kinked, curved = one.kinked, one.curved
+    else:
+        for i in range(flank.n // VECTOR * VECTOR):
+            more = _press_contact(table, first + i, stride, same)
+            force += more.force
+            a_1 += more.a_1
+            a_2 += more.a_2
+            force_x += more.force_x
+            a_1_x += more.a_1_x
+            a_2_x += more.a_2_x
+            force_v += more.force_v
+            a_1_v += more.a_1_v
+            a_2_v += more.a_2_v
+            kinked += more.kinked
+            curved += more.curved
     return Pressed(
         force, a_1, a_2, force_x, a_1_x, a_2_x, force_v * damp_time, a_1_v * damp_time, a_2_v * damp_time,
         kinked, curved * damp_time,
@@ -292,54 +332,30 @@ def press_flank(
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
 def flank_powers(
-    contacts: Array, start: int, n: int, reach: float, rate: float, path_speed: float, damp_time: float,
-    per_depth: float,
-) -> tuple[float, float, float]:  # fmt: skip
+    table: Array, flank: Flank, book: Array, at: int, sign: float, reach: float, rate: float, omega_1: float
+) -> tuple[float, float, float]:
     """Return friction power, damping power and damping force of one flank, arguments as in ``press_flank``."""
     friction_power, damping_power, damping_force = 0.0, 0.0, 0.0
-    for group in range((n + LANES - 1) // LANES):
-        at = (start & POSITIVE) + N_LIST * LANES * group
-        for i in range(min(n - LANES * group, LANES)):
-            closing = rate - contacts[at + LIST_DE * LANES + i] * path_speed
-            depth = reach - contacts[at + LIST_E * LANES + i]
-            depth = depth if depth > 0.0 else 0.0
-            k = contacts[at + LIST_K * LANES + i]
-            grown = depth * per_depth
-            grown = grown if grown < 1.0 else 1.0
-            f = k * (depth + damp_time * grown * closing)
-            f = f if (depth > 0.0 and f > 0.0) else 0.0
-            damped = f - k * depth
-            friction_power += f * contacts[at + LIST_POWER * LANES + i]
-            damping_power += damped * closing
-            damping_force += damped
-    return friction_power, damping_power, damping_force
-
-
-@njit(cache=True, fastmath=LOOSE, inline="always")
-def list_flank(
-    values: Array, counts: Integers, starts: Integers, contacts_in: Integers, least: Array, data: Array,
-    cells: Array, shifts: Array, deviations: Array, scales: Array, m: int, sign: float, pressed: float,
-    theta_1: float, omega_1: float, omega_2: float, out: Array, at: int, no_pairs: Integers,
-) -> int:  # fmt: skip
-    """List the contacts of one flank by phase or on the path; return their number, filled up to whole vectors."""
-    if counts[m, INDIVIDUAL] == 0:
-        return list_by_phase(
-            values, counts, starts, contacts_in, least, data, m, sign, pressed, theta_1, omega_1, omega_2, out, at
-        )  # fmt: skip
-    found = list_on_path(
-        values,
-        counts,
-        cells,
-        shifts,
-        deviations,
-        scales,
-        m,
-        sign,
-        theta_1,
-        omega_1,
-        omega_2,
-        out,
-        at,
-        no_pairs,
-    )
-    return VECTOR * ((found + VECTOR - 1) // VECTOR)
+    f = flank.place
+    damp_time, per_depth = book[at + DAMP_TIME], book[at + PER_DEPTH]
+    path_speed = sign * book[at + R1] * omega_1 * flank.per_metre
+    first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
+    for i in range(flank.n):
+        c = first + i
+        k_1, k_2, k_3 = table[c + stride], table[c + 2 * stride], table[c + 3 * stride]
+        e_1, e_2, e_3 = table[c + 5 * stride], table[c + 6 * stride], table[c + 7 * stride]
+        s = table[c + ROW_S * stride]
+        k = table[c] + f * (k_1 + f * (k_2 + f * k_3))
+        depth = reach - (table[c + ROW_E * stride] + f * (e_1 + f * (e_2 + f * e_3)))
+        depth = depth if depth > 0.0 else 0.0
+        closing = rate - (e_1 + f * (2.0 * e_2 + 3.0 * f * e_3)) * path_speed
+        grown = depth * per_depth
+        grown = grown if grown < 1.0 else 1.0
+        force = k * (depth + damp_time * grown * closing)
+        force = force if (depth > 0.0 and force > 0.0) else 0.0
+        damped = force - k * depth
+        sliding = flank.omega_1 * (flank.roll_1 + s) - flank.omega_2 * (flank.roll_2 - s)
+        friction_power += force * sliding_direction(sliding * book[at + PER_REVERSAL]) * sliding
+        damping_power += damped * closing
+        damping_force += damped
+    return friction_power * book[at + FRICTION], damping_power, damping_force

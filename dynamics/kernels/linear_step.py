@@ -2,6 +2,7 @@
 
 Arrays come from ``dynamics.propagator``. The modes are sorted by shaft line (``branch``: lines that damping
 ties together), because a port, the place where a mesh acts on its line, sees the modes of its own branch only.
+One pass over the modes gives the outputs of two ports and takes the modes over the step.
 """
 
 from typing import NamedTuple
@@ -10,40 +11,49 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from dynamics.kernels.book import OLD, SPEED, TAU, TURN
 from dynamics.kernels.contact import LOOSE, POSITIVE, sliding_direction
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 WIDTH = 16
-"""Modes beside each other in the tables: enough that the compiler makes vector instructions of a loop over them."""
-N_TABLE = 6
+"""Modes beside each other in the tables: a fixed number, so that the compiler makes vector instructions of a loop
+over them."""
+N_BANK = 16
+"""Rows of WIDTH in a group of the bank, real and imaginary by turns: state, decay, push of torque a, of torque b,
+speed of port a, turn of port a, speed and turn of port b."""
 # columns of DiscreteModes.blocks
-STATE_AT, GROUPS, OCTETS, PORT_A, PORT_B, SLOT_A, SLOT_B, CLOCK_AT, TABLE_AT, ROWS_AT, IS_FIRST = range(11)
-N_BLOCK = 11
+STATE_AT, BANK_AT, HOME_AT, GROUPS, PORT_A, PORT_B, THROUGH_AT = range(7)
+# columns of DiscreteModes.links
+TO_A, TO_B, FROM_C, FROM_D, LINK_AT = range(5)
+# first entry of the outputs per torque at the start and at the end of the step, in a link of DiscreteModes.through
+AT_START, AT_END = 0, 8
 
 
 class DiscreteModes(NamedTuple):
-    """Modes at one step length; see ``dynamics.propagator.discretise``.
+    """Modes at one step length and number of steps per sample; see ``dynamics.propagator.discretise``.
 
-    The modal state ``w`` obeys ``w' = decay w + inputs tau + slow``. It is laid out branch by branch: groups of
-    WIDTH real parts and WIDTH imaginary parts, filled up with zeros, then slots for what else the outputs of the
-    branch depend on: torque of each of its ports at start and end of the step, one, steps since the last
-    sample, a zero. Port ``2 m`` is the pinion of mesh ``m``, ``2 m + 1`` its wheel, port ``2 n_meshes`` stands for
-    none. The outputs of port ``p`` are its speed (``2 p``) and the angle it turns in the step (``2 p + 1``).
+    The modal state ``w`` obeys ``w' = decay w + inputs tau`` in each step, ``tau`` being the torques of the ports
+    at its start; what the slow inputs give is added once per sample, and to the outputs in each step. Per branch the
+    state holds groups of WIDTH real parts and WIDTH imaginary parts, filled up with zeros. Port ``2 m`` is the
+    pinion of mesh ``m``, ``2 m + 1`` its wheel, port ``2 n_meshes`` stands for none. The outputs of port ``p`` are
+    its speed (``2 p``) and the angle it turns in the step (``2 p + 1``). Blocks and links name a port by its place in
+    the book (``kernels.book``).
     """
 
     blocks: Integers
-    """(n_blocks, N_BLOCK) for every two ports of a branch: first state, groups, states with slots in eights, both
-    ports, the slots of their old torques, slot of the one, first entries in ``tables`` and ``port_rows``, and
-    whether it is the first block of its branch, which alone holds decay and pull (a further one: decay one)."""
-    slots: Integers
-    """(n_ports,) state that holds the old torque of each port; the new one stands behind it."""
-    tables: Array
-    """Flat, per block and group: decay, inputs of both ports, each real then imaginary, WIDTH wide."""
-    port_rows: Array
-    """Flat, per block: speed and turn of both ports over the states and slots of the branch, before a step; the
-    part of the slow inputs is left open."""
+    """(n_branches, 7) for two ports of every branch: first state, first entry in the bank, the same of the block that
+    holds the state, groups, both ports, first entry in ``through`` of what their own torques give."""
+    further: Integers
+    """(n, 7) the other ports of branches with more than two."""
+    bank: Array
+    """Flat, per block and group: N_BANK rows; the rows of the state are filled by a march."""
+    links: Integers
+    """(n_links, 5) two ports, two ports of the same branch that act on them, first entry in ``through``; ports that
+    act on themselves first, in the order of ``blocks``."""
+    through: Array
+    """Flat, per link: outputs (4) per torque (2) at the start of the step, then at its end."""
     port_new: Array
     """(n_ports, n_outputs) outputs of the ports per mesh torque at the end of the step."""
     rows: Array
@@ -53,11 +63,11 @@ class DiscreteModes(NamedTuple):
     """(n_ports, n_rows) these per mesh torque at the start of the step."""
     through_new: Array
     """The same at its end."""
-    slow_inputs: Array
-    """(n_slow, n_states)"""
-    slow_old: Array
-    """(n_outputs + n_rows, n_slow)"""
-    slow_new: Array
+    slow_outputs: Array
+    """(2 n_slow, substeps * (n_outputs + n_rows)) what each slow input gives in every step of a sample, per value
+    at its start, then per change in a step."""
+    slow_states: Array
+    """(2 n_slow, n_states) the same for the state at the end of the sample."""
 
 
 @njit(cache=True, fastmath=LOOSE)
@@ -88,103 +98,156 @@ def slow_targets(
         target[2 + i] = value * sliding_direction(speed)
 
 
-@njit(cache=True, fastmath=LOOSE)
-def hold_slow(
-    modes: DiscreteModes, slow: Array, target: Array, substeps: int, pull: Array, pull_step: Array, base: Array,
-    slope: Array,
-) -> None:  # fmt: skip
-    """Prepare what the slow inputs, linear over the sample, add to modes and outputs in each step."""
-    pull[:] = 0.0
-    pull_step[:] = 0.0
-    base[:] = 0.0
-    slope[:] = 0.0
+@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+def hold_slow(responses: Array, slow: Array, target: Array, substeps: int, total: Array) -> None:
+    """Add to ``total`` (n,) what the slow inputs, linear over the sample, give by ``responses`` (2 n_slow, n)."""
+    n = total.shape[0]
     for k in range(slow.shape[0]):
         change = (target[k] - slow[k]) / substeps
-        for i in range(pull.shape[0]):
-            pull[i] += modes.slow_inputs[k, i] * slow[k]
-            pull_step[i] += modes.slow_inputs[k, i] * change
-        for r in range(base.shape[0]):
-            base[r] += modes.slow_old[r, k] * slow[k] + modes.slow_new[r, k] * (slow[k] + change)
-            slope[r] += (modes.slow_old[r, k] + modes.slow_new[r, k]) * change
-
-
-@njit(cache=True, fastmath=LOOSE)
-def put_slow(blocks: Integers, base: Array, slope: Array, rows: Array) -> None:
-    """Enter into ``port_rows`` what the slow inputs add to the outputs of the ports."""
-    for block in range(blocks.shape[0]):
-        span = 8 * blocks[block, OCTETS]
-        at = blocks[block, ROWS_AT] + blocks[block, CLOCK_AT] - blocks[block, STATE_AT]
-        for side in range(2):
-            port = blocks[block, PORT_A + side]
-            for k in range(2):
-                known = 2 * port + k < base.shape[0]
-                rows[at + (2 * side + k) * span] = base[2 * port + k] if known else 0.0
-                rows[at + (2 * side + k) * span + 1] = slope[2 * port + k] if known else 0.0
-
-
-@njit(cache=True, fastmath=LOOSE, inline="always")
-def predict_ports(blocks: Integers, rows: Array, state: Array, sub: int, outputs: Array) -> None:
-    """Fill ``outputs`` with speed and turn of every port; states and slots stand at the start of the step."""
-    for block in range(blocks.shape[0]):
-        n = 8 * (blocks[block, OCTETS] & POSITIVE)
-        first = blocks[block, STATE_AT] & POSITIVE
-        at = blocks[block, ROWS_AT] & POSITIVE
-        state[blocks[block, CLOCK_AT]] = 1.0
-        state[blocks[block, CLOCK_AT] + 1] = sub
-        s_0 = 0.0
-        s_1 = 0.0
-        s_2 = 0.0
-        s_3 = 0.0
         for i in range(n):
-            w = state[first + i]
-            s_0 += rows[at + i] * w
-            s_1 += rows[at + n + i] * w
-            s_2 += rows[at + 2 * n + i] * w
-            s_3 += rows[at + 3 * n + i] * w
-        a = blocks[block, PORT_A] & POSITIVE
-        b = blocks[block, PORT_B] & POSITIVE
-        outputs[2 * b] = s_2
-        outputs[2 * b + 1] = s_3
-        outputs[2 * a] = s_0
-        outputs[2 * a + 1] = s_1
+            total[i] += responses[2 * k, i] * slow[k] + responses[2 * k + 1, i] * change
+
+
+@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+def put_state(blocks: Integers, state: Array, bank: Array) -> None:
+    """Enter the modal state into the bank."""
+    for block in range(blocks.shape[0]):
+        for group in range(blocks[block, GROUPS]):
+            s = (blocks[block, STATE_AT] + 2 * WIDTH * group) & POSITIVE
+            b = (blocks[block, BANK_AT] + N_BANK * WIDTH * group) & POSITIVE
+            for i in range(2 * WIDTH):
+                bank[b + i] = state[s + i]
+
+
+@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+def take_state(blocks: Integers, bank: Array, state: Array) -> None:
+    """Copy the modal state out of the bank."""
+    for block in range(blocks.shape[0]):
+        for group in range(blocks[block, GROUPS]):
+            s = (blocks[block, STATE_AT] + 2 * WIDTH * group) & POSITIVE
+            b = (blocks[block, BANK_AT] + N_BANK * WIDTH * group) & POSITIVE
+            for i in range(2 * WIDTH):
+                state[s + i] = bank[b + i]
 
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
-def advance_modes(
-    blocks: Integers, tables: Array, state: Array, pull: Array, pull_step: Array, sub: int
+def add_torques(links: Integers, first: int, through: Array, part: int, book: Array, torque: int) -> None:
+    """Add to speeds and turns what the torques in column ``torque`` give by the links from ``first`` on.
+
+    They act at the start or the end of the step (``part``).
+    """
+    for link in range(first, links.shape[0]):
+        a, b = links[link, TO_A] & POSITIVE, links[link, TO_B] & POSITIVE
+        c = book[(links[link, FROM_C] & POSITIVE) + torque]
+        d = book[(links[link, FROM_D] & POSITIVE) + torque]
+        t = (links[link, LINK_AT] & POSITIVE) + part
+        speed_a = book[a + SPEED] + through[t] * c + through[t + 1] * d
+        turn_a = book[a + TURN] + through[t + 2] * c + through[t + 3] * d
+        speed_b = book[b + SPEED] + through[t + 4] * c + through[t + 5] * d
+        turn_b = book[b + TURN] + through[t + 6] * c + through[t + 7] * d
+        book[b + SPEED], book[b + TURN] = speed_b, turn_b
+        book[a + SPEED], book[a + TURN] = speed_a, turn_a
+
+
+@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+def _look(further: Integers, block: int, bank: Array, book: Array) -> None:
+    """Add the modes' part of the outputs of further ports."""
+    a, b = further[block, PORT_A], further[block, PORT_B]
+    for group in range(further[block, GROUPS]):
+        home = further[block, HOME_AT] + N_BANK * WIDTH * group
+        g = further[block, BANK_AT] + N_BANK * WIDTH * group
+        for i in range(WIDTH):
+            real, imag = bank[home + i], bank[home + WIDTH + i]
+            for k, output in ((0, SPEED), (2, TURN)):
+                row_a, row_b = g + (8 + k) * WIDTH + i, g + (12 + k) * WIDTH + i
+                book[a + output] += bank[row_a] * real + bank[row_a + WIDTH] * imag
+                book[b + output] += bank[row_b] * real + bank[row_b + WIDTH] * imag
+
+
+@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+def _push(further: Integers, block: int, bank: Array, book: Array) -> None:
+    """Add the torques of further ports to the state after the step."""
+    t_a, t_b = book[further[block, PORT_A] + OLD], book[further[block, PORT_B] + OLD]
+    for group in range(further[block, GROUPS]):
+        home = further[block, HOME_AT] + N_BANK * WIDTH * group
+        g = further[block, BANK_AT] + N_BANK * WIDTH * group
+        for i in range(2 * WIDTH):
+            bank[home + i] += bank[g + 4 * WIDTH + i] * t_a + bank[g + 6 * WIDTH + i] * t_b
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def step_modes(
+    blocks: Integers, further: Integers, links: Integers, bank: Array, through: Array, book: Array
 ) -> None:
-    """Take the modal state over one step, port torques at its start in their slots."""
+    """Add to speeds and turns what modes and torques give and take the modes over the step.
+
+    Ports beyond the first two of a branch look at its modes before and push them after that pass.
+    """
+    for block in range(further.shape[0]):
+        _look(further, block, bank, book)
     for block in range(blocks.shape[0]):
-        t_a = state[blocks[block, SLOT_A]]
-        t_b = state[blocks[block, SLOT_B]]
-        once = float(blocks[block, IS_FIRST])
-        more = once * sub
-        first = blocks[block, STATE_AT] & POSITIVE
-        table = blocks[block, TABLE_AT] & POSITIVE
+        a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
+        t_a, t_b, t_a_new, t_b_new = book[a + OLD], book[b + OLD], book[a + TAU], book[b + TAU]
+        first = blocks[block, BANK_AT] & POSITIVE
+        speed_a, turn_a, speed_b, turn_b = 0.0, 0.0, 0.0, 0.0
         for group in range(blocks[block, GROUPS]):
-            s = first + 2 * WIDTH * group
-            t = table + N_TABLE * WIDTH * group
+            g = first + N_BANK * WIDTH * group
             for i in range(WIDTH):
-                real, imag = state[s + i], state[s + WIDTH + i]
-                decay_r, decay_i = tables[t + i], tables[t + WIDTH + i]
-                push = once * pull[s + i] + more * pull_step[s + i]
-                push += tables[t + 2 * WIDTH + i] * t_a + tables[t + 4 * WIDTH + i] * t_b
-                turn = once * pull[s + WIDTH + i] + more * pull_step[s + WIDTH + i]
-                turn += tables[t + 3 * WIDTH + i] * t_a + tables[t + 5 * WIDTH + i] * t_b
-                state[s + i] = decay_r * real - decay_i * imag + push
-                state[s + WIDTH + i] = decay_i * real + decay_r * imag + turn
+                real, imag = bank[g + i], bank[g + WIDTH + i]
+                speed_a += bank[g + 8 * WIDTH + i] * real + bank[g + 9 * WIDTH + i] * imag
+                turn_a += bank[g + 10 * WIDTH + i] * real + bank[g + 11 * WIDTH + i] * imag
+                speed_b += bank[g + 12 * WIDTH + i] * real + bank[g + 13 * WIDTH + i] * imag
+                turn_b += bank[g + 14 * WIDTH + i] * real + bank[g + 15 * WIDTH + i] * imag
+                decay_r, decay_i = bank[g + 2 * WIDTH + i], bank[g + 3 * WIDTH + i]
+                push_r = bank[g + 4 * WIDTH + i] * t_a + bank[g + 6 * WIDTH + i] * t_b
+                push_i = bank[g + 5 * WIDTH + i] * t_a + bank[g + 7 * WIDTH + i] * t_b
+                bank[g + i] = decay_r * real - decay_i * imag + push_r
+                bank[g + WIDTH + i] = decay_i * real + decay_r * imag + push_i
+        t = blocks[block, THROUGH_AT] & POSITIVE
+        speed_a += (
+            through[t] * t_a + through[t + 1] * t_b + through[t + 8] * t_a_new + through[t + 9] * t_b_new
+        )
+        turn_a += (
+            through[t + 2] * t_a
+            + through[t + 3] * t_b
+            + through[t + 10] * t_a_new
+            + through[t + 11] * t_b_new
+        )
+        speed_b += (
+            through[t + 4] * t_a
+            + through[t + 5] * t_b
+            + through[t + 12] * t_a_new
+            + through[t + 13] * t_b_new
+        )
+        turn_b += (
+            through[t + 6] * t_a
+            + through[t + 7] * t_b
+            + through[t + 14] * t_a_new
+            + through[t + 15] * t_b_new
+        )
+        book[b + SPEED] += speed_b
+        book[b + TURN] += turn_b
+        book[a + SPEED] += speed_a
+        book[a + TURN] += turn_a
+    for block in range(further.shape[0]):
+        _push(further, block, bank, book)
+    if links.shape[0] > blocks.shape[0]:
+        add_torques(links, blocks.shape[0], through, AT_START, book, OLD)
+        add_torques(links, blocks.shape[0], through, AT_END, book, TAU)
 
 
 @njit(cache=True, fastmath=LOOSE)
 def end_rows(
-    modes: DiscreteModes, state: Array, tau_old: Array, tau: Array, base: Array, slope: Array, sub: int, values: Array
-) -> None:  # fmt: skip
-    """Fill the outputs that are no port's at the end of a step, ``state`` standing there."""
-    first = base.shape[0] - values.shape[0]
+    modes: DiscreteModes, state: Array, torques: Array, slow: Array, first: int, values: Array
+) -> None:
+    """Fill the outputs that are no port's at the end of a step, ``state`` standing there.
+
+    ``torques`` (2, n_ports) at start and end of the step; ``slow`` holds from ``first`` on what the slow inputs give.
+    """
     for r in range(values.shape[0]):
-        total = base[first + r] + sub * slope[first + r]
+        total = slow[first + r]
         for i in range(state.shape[0]):
             total += modes.rows[r, i] * state[i]
-        for p in range(modes.through_old.shape[0]):
-            total += modes.through_old[p, r] * tau_old[p] + modes.through_new[p, r] * tau[p]
+        for p in range(torques.shape[1]):
+            total += modes.through_old[p, r] * torques[0, p] + modes.through_new[p, r] * torques[1, p]
         values[r] = total

@@ -14,49 +14,58 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from dynamics.kernels.book import (
+    ANGLE,
+    APPROACH,
+    GUARD,
+    MISSING,
+    N_BOOK,
+    NET,
+    OFFSET,
+    OFFSET_RATE,
+    OLD,
+    OLDER,
+    PORT,
+    RATE,
+    REACH,
+    SPEED,
+    TAU,
+    TURN,
+)
 from dynamics.kernels.contact import (
     BACKLASH,
-    DAMP_TIME,
     FLOOR,
-    GROUPS,
-    LANES,
-    LEAST_GAP,
+    INDIVIDUAL,
     LOOSE,
-    N_LIST,
-    PER_DEPTH,
+    MOST,
+    N_PHASE,
+    POSITIVE,
     R1,
     R2,
     PackedMeshes,
     flank_powers,
-    list_flank,
 )
 from dynamics.kernels.linear_step import (
+    AT_END,
     DiscreteModes,
-    advance_modes,
+    add_torques,
     end_rows,
     hold_slow,
-    predict_ports,
-    put_slow,
+    put_state,
     slow_targets,
+    step_modes,
+    take_state,
 )
 from dynamics.kernels.mesh_solve import (
-    ANGLE,
-    APPROACH,
-    GIVE_V,
-    GIVE_X,
-    GUARD,
     LEAST_GUARD,
-    N_MOTION,
-    N_REACTION,
-    NET,
-    OFFSET,
-    OFFSET_RATE,
-    RATE,
-    REACH,
+    can_touch,
+    choose_contacts,
+    chosen_flank,
     correct,
     invert,
     left_open,
-    reach_and_rate,
+    list_individual,
+    look_ahead,
     react,
 )
 
@@ -107,76 +116,77 @@ class Carried(NamedTuple):
     """(n_meshes, 2) last damping force and approach rate."""
 
 
-@njit(cache=True, fastmath=LOOSE)
-def _account(
-    carried: Carried, values: Array, contacts: Array, size: int, found: Integers, motion: Array,
-    outputs: Array, ends: Array, fresh: Array, target: Array, share: float, step: float,
-) -> None:  # fmt: skip
-    """Add the work of one step to the accounts.
+class Workspace(NamedTuple):
+    """Arrays a march writes into and forgets."""
+
+    contacts: Array
+    """Room for the tables of both flanks of every mesh with individual teeth."""
+    found: Integers
+    """(n_meshes, 2) contacts in them."""
+    no_pairs: Integers
+    bank: Array
+    """That of the modes with the state in it."""
+    slow_outputs: Array
+    """Flat (substeps, n_outputs + n_rows): what the slow inputs give in each step of the sample."""
+    ends: Array
+    """(n_rows,) the outputs of no port."""
+    torques: Array
+    """(2, n_ports) torques of the ports at start and end of a step."""
+    give: Array
+    """Flat (n_meshes, n_meshes, 4): reach of another mesh per torque of both ports of one at the end of the step,
+    then its rate."""
+    book: Array
+    """Flat (n_meshes + 1, N_BOOK), see ``kernels.book``."""
+    target: Array
+    """(n_slow,) slow inputs at the end of the sample."""
+    fresh: Array
+    """Powers at the end of the step."""
+
+
+@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+def _account(meshes: PackedMeshes, carried: Carried, work: Workspace, step: float, share: float) -> None:
+    """Add the work of one step, which ends at ``share`` of the sample, to the accounts.
 
     Powers are integrated by trapezoids. The march lets a mesh torque vary linearly over the step, so the
     work of the damping force is its trapezoid less ``step dF dv / 12`` (the mean of a straight line times a
     smooth curve).
     """
-    work, powers, damping, slow = carried.work, carried.powers, carried.damping, carried.slow
+    total, powers, damping, slow = carried.work, carried.powers, carried.damping, carried.slow
+    counts, book, ends, fresh = meshes.counts, work.book, work.ends, work.fresh
     n_meshes, n_slow = damping.shape[0], slow.shape[0]
     for m in range(n_meshes):
+        table = meshes.phase_data if counts[m, INDIVIDUAL] == 0 else work.contacts
+        at = m * N_BOOK
+        reach, rate = book[at + REACH], book[at + RATE]
         lost, damped, pull = 0.0, 0.0, 0.0
         for side in range(2):
-            if found[m, side] > 0:
-                sign = 1.0 - 2.0 * side
-                sliding, damping_power, force = flank_powers(
-                    contacts, (2 * m + side) * size, found[m, side],
-                    sign * motion[m, REACH] - side * values[m, BACKLASH], sign * motion[m, RATE],
-                    sign * values[m, R1] * outputs[4 * m], values[m, DAMP_TIME], values[m, PER_DEPTH],
-                )  # fmt: skip
-                lost += sliding
-                damped += damping_power
-                pull += sign * force
+            if not can_touch(book, at, side):
+                continue
+            sign = 1.0 - 2.0 * side
+            flank = chosen_flank(
+                book, at, counts, meshes.phase_starts, meshes.phase_least, m, side, work.contacts, work.found
+            )  # fmt: skip
+            sliding, damping_power, force = flank_powers(
+                table, flank, book, at, sign, sign * reach - side * book[at + BACKLASH], sign * rate,
+                book[at + SPEED],
+            )  # fmt: skip
+            lost += sliding
+            damped += damping_power
+            pull += sign * force
         fresh[2 * m] = lost
         fresh[2 * m + 1] = damped
-        work[2 * m + 1] -= step * (pull - damping[m, 0]) * (motion[m, RATE] - damping[m, 1]) / 12.0
+        total[2 * m + 1] -= step * (pull - damping[m, 0]) * (rate - damping[m, 1]) / 12.0
         damping[m, 0] = pull
-        damping[m, 1] = motion[m, RATE]
+        damping[m, 1] = rate
     for k in range(n_slow):
-        fresh[2 * n_meshes + k] = (slow[k] + share * (target[k] - slow[k])) * ends[k]
+        fresh[2 * n_meshes + k] = (slow[k] + share * (work.target[k] - slow[k])) * ends[k]
     joints = 0.0
     for r in range(n_slow, ends.shape[0]):
         joints += ends[r] * ends[r]
     fresh[2 * n_meshes + n_slow] = joints
     for k in range(fresh.shape[0]):
-        work[k] += 0.5 * step * (powers[k] + fresh[k])
+        total[k] += 0.5 * step * (powers[k] + fresh[k])
         powers[k] = fresh[k]
-
-
-class Workspace(NamedTuple):
-    """Arrays a march writes into and forgets."""
-
-    contacts: Array
-    """Listed contacts of both flanks of every mesh."""
-    found: Integers
-    """(n_meshes, 2) how many."""
-    no_pairs: Integers
-    pulls: Array
-    """(2, n_states) what slow inputs add to the modes in a step, and its change per step."""
-    slow_outputs: Array
-    """(2, n_outputs + n_rows) the same for the outputs."""
-    outputs: Array
-    """(n_outputs + 2,) speed and turn of every port; the last two belong to no port."""
-    ends: Array
-    """(n_rows,) the other outputs."""
-    torques: Array
-    """(3, n_ports + 1) torques of the ports: two steps back, one step back, now; the last stays zero."""
-    motion: Array
-    """(n_meshes, N_MOTION)"""
-    reactions: Array
-    """(n_meshes, N_REACTION)"""
-    target: Array
-    """(n_slow,) slow inputs at the end of the sample."""
-    port_rows: Array
-    """Those of the modes with the part of the slow inputs."""
-    fresh: Array
-    """Powers at the end of the step."""
 
 
 def march(
@@ -185,30 +195,87 @@ def march(
 ) -> int:  # fmt: skip
     """March over ``len(orders.given)`` samples of ``substeps`` steps; return the number of unsettled steps.
 
-    Each step: outputs and modal state for the old mesh torques; contacts listed at the predicted angles;
+    Each step: outputs and modal state for the old mesh torques; contacts chosen at the predicted angles;
     Newton on the new torques with these contacts held; accounts. ``history`` (n_meshes, 1 or 6, steps):
     front - back force [, approach, pinion angle, approach rate, pinion speed, tau_1]; ``samples``
     (n_samples, 2 n_slow): slow inputs, then their speeds.
     """
-    n_meshes, n_slow = len(meshes.values), len(carried.slow)
-    n_states, n_rows = len(carried.state), len(modes.rows)
-    size = int(max(1, meshes.counts[:, GROUPS].max())) * N_LIST * LANES
+    n_meshes, n_rows = len(meshes.values), len(modes.rows)
+    most = int(max(1, meshes.counts[:, MOST].max()))
     work = Workspace(
-        contacts=np.zeros(2 * n_meshes * size),
+        contacts=np.zeros(2 * n_meshes * N_PHASE * most),
         found=np.zeros((n_meshes, 2), np.int64),
         no_pairs=np.empty((2, 0), np.int64),
-        pulls=np.zeros((2, n_states)),
-        slow_outputs=np.zeros((2, 4 * n_meshes + n_rows)),
-        outputs=np.zeros(4 * n_meshes + 2),
+        bank=modes.bank.copy(),
+        slow_outputs=np.zeros(modes.slow_outputs.shape[1]),
         ends=np.zeros(n_rows),
-        torques=np.zeros((3, 2 * n_meshes + 1)),
-        motion=np.zeros((n_meshes, N_MOTION)),
-        reactions=np.zeros((n_meshes, N_REACTION)),
-        target=np.zeros(n_slow),
-        port_rows=modes.port_rows.copy(),
+        torques=np.zeros((2, 2 * n_meshes)),
+        give=np.zeros(4 * n_meshes**2),
+        book=np.pad(meshes.values, ((0, 1), (0, N_BOOK - meshes.values.shape[1]))).ravel(),
+        target=np.zeros(len(carried.slow)),
         fresh=np.zeros(len(carried.work)),
     )
     return int(_march(meshes, modes, orders, carried, work, step, substeps, history, samples))
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def _begin(book: Array, ports: Array, port_new: Array, give: Array) -> None:
+    """Take over what was carried from the last call, and what the torques give to the meshes."""
+    n_meshes = ports.shape[0]
+    for m in range(n_meshes):
+        at = m * N_BOOK
+        for side in range(2):
+            book[at + side * PORT + OLD], book[at + side * PORT + OLDER] = ports[m, side], ports[m, 2 + side]
+        book[at + APPROACH], book[at + ANGLE], book[at + GUARD] = ports[m, 4], ports[m, 5], LEAST_GUARD
+        for port in range(2 * n_meshes):
+            for k in range(2):
+                given_1, given_2 = port_new[port, 4 * m + k], port_new[port, 4 * m + 2 + k]
+                place = 4 * (port // 2 * n_meshes + m) + 2 * (1 - k) + port % 2
+                give[place] = book[at + R1] * given_1 - book[at + R2] * given_2
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def _end(book: Array, ports: Array) -> None:
+    """Carry on what the next call takes over."""
+    for m in range(ports.shape[0]):
+        at = m * N_BOOK
+        for side in range(2):
+            ports[m, side], ports[m, 2 + side] = book[at + side * PORT + OLD], book[at + side * PORT + OLDER]
+        ports[m, 4], ports[m, 5] = book[at + APPROACH], book[at + ANGLE]
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def _guess(book: Array, n_meshes: int, by_slow: Array, first: int) -> None:
+    """Begin a step: torques straight on from the last two, speeds and turns with what the slow inputs give."""
+    for m in range(n_meshes):
+        at, given = (m * N_BOOK) & POSITIVE, (first + 4 * m) & POSITIVE
+        wheel = at + PORT
+        book[at + TAU] = 2.0 * book[at + OLD] - book[at + OLDER]
+        book[wheel + TAU] = 2.0 * book[wheel + OLD] - book[wheel + OLDER]
+        book[at + SPEED], book[at + TURN] = by_slow[given], by_slow[given + 1]
+        book[wheel + SPEED], book[wheel + TURN] = by_slow[given + 2], by_slow[given + 3]
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def _agree(book: Array, give: Array, n_meshes: int) -> bool:
+    """Bring all torques to the tangents of the meshes in turn, told where these stand.
+
+    Ends when all but the last mesh were found in agreement one after the other: the last is corrected since and
+    moves the others by less still. Returns whether that was reached and the meshes can be trusted to be there.
+    """
+    turn, agreed, m = 0, -1, 0
+    while agreed < n_meshes - 1 and turn < MOST_SWEEPS * n_meshes:
+        at = (m * N_BOOK) & POSITIVE
+        error = correct(book, at, give, (4 * m * n_meshes) & POSITIVE, n_meshes)
+        agreed = agreed + 1 if error <= TOLERANCE * abs(book[at + TAU]) + book[at + FLOOR] else 0
+        m = m + 1 if m + 1 < n_meshes else 0
+        turn += 1
+    settled = agreed >= n_meshes - 1
+    for m in range(n_meshes):
+        at = (m * N_BOOK) & POSITIVE
+        if left_open(book, at) > TOLERANCE * abs(book[at + TAU]) + book[at + FLOOR]:
+            settled = False
+    return settled
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
@@ -217,145 +284,91 @@ def _march(
     substeps: int, history: Array, samples: Array,
 ) -> int:  # fmt: skip
     """Do what ``march`` says. No array is made here, so that none has to be counted in the loop (``_nrt``)."""
-    values, counts, starts, data = meshes.values, meshes.counts, meshes.phase_starts, meshes.phase_data
-    contacts_in, least = meshes.phase_counts, meshes.phase_least
-    cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
-    blocks, tables, slots = modes.blocks, modes.tables, modes.slots
-    port_new = modes.port_new
-    state, ports, slow = carried.state, carried.ports, carried.slow
-    given, imposed = orders.given, orders.offsets
+    counts, starts, least, data = meshes.counts, meshes.phase_starts, meshes.phase_least, meshes.phase_data
+    blocks, further, links, through = modes.blocks, modes.further, modes.links, modes.through
+    state, slow, contacts, found = carried.state, carried.slow, work.contacts, work.found
+    bank, book, give, by_slow, torques = work.bank, work.book, work.give, work.slow_outputs, work.torques
+    n_meshes, n_slow = counts.shape[0], slow.shape[0]
     keeps_accounts = carried.work.shape[0] > 0
-    contacts, found, no_pairs, outputs, ends = (
-        work.contacts,
-        work.found,
-        work.no_pairs,
-        work.outputs,
-        work.ends,
-    )
-    pull, pull_step, base, slope = work.pulls[0], work.pulls[1], work.slow_outputs[0], work.slow_outputs[1]
-    tau_older, tau_old, tau = work.torques[0], work.torques[1], work.torques[2]
-    motion, reactions, target, port_rows = work.motion, work.reactions, work.target, work.port_rows
+    n_outputs = 4 * n_meshes + work.ends.shape[0]
 
-    n_meshes, n_slow = values.shape[0], slow.shape[0]
-    n_ports = 2 * n_meshes
-    size = contacts.shape[0] // n_ports
-    for m in range(n_meshes):
-        p, q = 2 * m, 2 * m + 1
-        tau_old[p], tau_old[q] = ports[m, 0], ports[m, 1]
-        tau_older[p], tau_older[q] = ports[m, 2], ports[m, 3]
-        motion[m, APPROACH], motion[m, ANGLE] = ports[m, 4], ports[m, 5]
-        motion[m, GUARD] = LEAST_GUARD
-        for port, k in ((p, 0), (q, 1)):
-            given_1, given_2 = port_new[port, 2 * p : 2 * p + 2], port_new[port, 2 * q : 2 * q + 2]
-            motion[m, GIVE_V + k] = values[m, R1] * given_1[0] - values[m, R2] * given_2[0]
-            motion[m, GIVE_X + k] = values[m, R1] * given_1[1] - values[m, R2] * given_2[1]
+    _begin(book, carried.ports, modes.port_new, give)
+    put_state(blocks, state, bank)
     mean_torque = carried.memory[2]
-    torque_share = values[0, R1] / substeps
+    torque_share = book[R1] / substeps
     unsettled = 0
-    at = 0
-    for sample in range(given.shape[0]):
+    now = 0
+    for sample in range(orders.given.shape[0]):
         slow_targets(
-            given[sample], orders.control, orders.drags, orders.per_drag_step, carried.memory, carried.speeds,
-            mean_torque, target,
+            orders.given[sample], orders.control, orders.drags, orders.per_drag_step, carried.memory,
+            carried.speeds, mean_torque, work.target,
         )  # fmt: skip
-        hold_slow(modes, slow, target, substeps, pull, pull_step, base, slope)
-        put_slow(blocks, base, slope, port_rows)
+        by_slow[:] = 0.0
+        hold_slow(modes.slow_outputs, slow, work.target, substeps, by_slow)
         for m in range(n_meshes):
-            motion[m, OFFSET] = carried.offset[m]
-            motion[m, OFFSET_RATE] = (imposed[sample, m] - carried.offset[m]) / (substeps * step)
+            rate = (orders.offsets[sample, m] - carried.offset[m]) / (substeps * step)
+            book[m * N_BOOK + OFFSET], book[m * N_BOOK + OFFSET_RATE] = carried.offset[m], rate
         mean_torque = 0.0
         for sub in range(substeps):
-            for port in range(n_ports):
-                tau[port] = 2.0 * tau_old[port] - tau_older[port]
-                state[slots[port]] = tau_old[port]
-                state[slots[port] + 1] = tau[port]
-            predict_ports(blocks, port_rows, state, sub, outputs)
-            advance_modes(blocks, tables, state, pull, pull_step, sub)
+            slow_at = sub * n_outputs
+            _guess(book, n_meshes, by_slow, slow_at)
+            step_modes(blocks, further, links, bank, through, book)
             settled = False
             attempt = 0
             while attempt < MOST_ITERATIONS and not settled:
                 for m in range(n_meshes):
-                    reach, rate = reach_and_rate(values, motion, outputs, step, m)
-                    motion[m, REACH], motion[m, RATE] = reach, rate
+                    at = (m * N_BOOK) & POSITIVE
+                    look_ahead(book, at, step)
                     if attempt == 0:
-                        theta = motion[m, ANGLE] + outputs[4 * m + 1]
-                        ahead = 2.0 * step * abs(rate)
-                        for side in range(2):
-                            sign = 1.0 - 2.0 * side
-                            pressed = sign * reach - side * values[m, BACKLASH] + ahead
-                            found[m, side] = 0
-                            if pressed > values[m, LEAST_GAP]:
-                                found[m, side] = list_flank(
-                                    values, counts, starts, contacts_in, least, data, cells, shifts, deviations,
-                                    scales, m, sign, pressed, theta, outputs[4 * m], outputs[4 * m + 2], contacts,
-                                    (2 * m + side) * size, no_pairs,
-                                )  # fmt: skip
-                    react(
-                        values,
-                        m,
-                        contacts,
-                        size,
-                        found,
-                        reach,
-                        rate,
-                        outputs[4 * m],
-                        motion[m, GUARD],
-                        reactions,
-                    )
-                    invert(reactions, motion, m)
-                sweep = 0
-                off = True
-                while off and sweep < MOST_SWEEPS:
-                    off = False
-                    for m in range(n_meshes):
-                        reach, rate = reach_and_rate(values, motion, outputs, step, m)
-                        error = correct(reactions, motion, port_new, reach, rate, m, tau, outputs)
-                        if n_meshes > 1 and error > TOLERANCE * abs(tau[2 * m]) + values[m, FLOOR]:
-                            off = True
-                    sweep += 1
-                settled = not off
+                        choose_contacts(book, at, step)
+                        if counts[m, INDIVIDUAL] != 0:
+                            list_individual(meshes, book, m, contacts, found, work.no_pairs)
+                    react(book, at, counts, starts, least, data, m, contacts, found)
+                    invert(book, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
+                    book[at + MISSING], book[at + PORT + MISSING] = -book[at + TAU], -book[at + PORT + TAU]
+                settled = _agree(book, give, n_meshes)
                 for m in range(n_meshes):
-                    reach, rate = reach_and_rate(values, motion, outputs, step, m)
-                    left = left_open(reactions, motion, reach, rate, values[m, R1], values[m, DAMP_TIME], m)
-                    if left > TOLERANCE * abs(tau[2 * m]) + values[m, FLOOR]:
-                        settled = False
+                    at = (m * N_BOOK) & POSITIVE
+                    book[at + MISSING] += book[at + TAU]
+                    book[at + PORT + MISSING] += book[at + PORT + TAU]
+                add_torques(links, 0, through, AT_END, book, MISSING)
                 attempt += 1
             if not settled:
                 unsettled += 1
             for m in range(n_meshes):
-                reach, rate = reach_and_rate(values, motion, outputs, step, m)
-                motion[m, REACH], motion[m, RATE] = reach, rate
-                motion[m, OFFSET] += step * motion[m, OFFSET_RATE]
-                motion[m, APPROACH] = reach - motion[m, OFFSET]
-                motion[m, ANGLE] += outputs[4 * m + 1]
-                history[m, 0, at] = reactions[m, NET]
+                at = (m * N_BOOK) & POSITIVE
+                book[at + OFFSET] += step * book[at + OFFSET_RATE]
+                book[at + APPROACH] = book[at + REACH] - book[at + OFFSET]
+                book[at + ANGLE] += book[at + TURN]
+                history[m, 0, now] = book[at + NET]
                 if history.shape[1] > 1:
-                    history[m, 1, at] = reach
-                    history[m, 2, at] = motion[m, ANGLE]
-                    history[m, 3, at] = rate
-                    history[m, 4, at] = outputs[4 * m]
-                    history[m, 5, at] = tau[2 * m]
+                    history[m, 1, now] = book[at + REACH]
+                    history[m, 2, now] = book[at + ANGLE]
+                    history[m, 3, now] = book[at + RATE]
+                    history[m, 4, now] = book[at + SPEED]
+                    history[m, 5, now] = book[at + TAU]
+            mean_torque += book[NET] * torque_share
+            now += 1
             if keeps_accounts or sub == substeps - 1:
-                end_rows(modes, state, tau_old, tau, base, slope, sub, ends)
+                for port in range(2 * n_meshes):
+                    at = port // 2 * N_BOOK + port % 2 * PORT
+                    torques[0, port], torques[1, port] = book[at + OLD], book[at + TAU]
+                take_state(blocks, bank, state)
+                end_rows(modes, state, torques, by_slow, slow_at + 4 * n_meshes, work.ends)
             if keeps_accounts:
-                share = (sub + 1.0) / substeps
-                _account(
-                    carried, values, contacts, size, found, motion, outputs, ends, work.fresh, target, share, step
-                )  # fmt: skip
-            for port in range(n_ports):
-                tau_older[port] = tau_old[port]
-                tau_old[port] = tau[port]
-            mean_torque += reactions[0, NET] * torque_share
-            at += 1
+                _account(meshes, carried, work, step, (sub + 1.0) / substeps)
+            for m in range(n_meshes):
+                at = (m * N_BOOK) & POSITIVE
+                book[at + OLDER], book[at + OLD] = book[at + OLD], book[at + TAU]
+                book[at + PORT + OLDER], book[at + PORT + OLD] = book[at + PORT + OLD], book[at + PORT + TAU]
+        hold_slow(modes.slow_states, slow, work.target, substeps, state)
+        put_state(blocks, state, bank)
         for k in range(n_slow):
-            slow[k] = target[k]
-            carried.speeds[k] = ends[k]
-            samples[sample, k] = target[k]
-            samples[sample, n_slow + k] = ends[k]
+            slow[k] = work.target[k]
+            carried.speeds[k] = work.ends[k]
+            samples[sample, k] = work.target[k]
+            samples[sample, n_slow + k] = work.ends[k]
         for m in range(n_meshes):
-            carried.offset[m] = imposed[sample, m]
-    for m in range(n_meshes):
-        ports[m, 0], ports[m, 1] = tau_old[2 * m], tau_old[2 * m + 1]
-        ports[m, 2], ports[m, 3] = tau_older[2 * m], tau_older[2 * m + 1]
-        ports[m, 4], ports[m, 5] = motion[m, APPROACH], motion[m, ANGLE]
+            carried.offset[m] = orders.offsets[sample, m]
+    _end(book, carried.ports)
     return unsettled

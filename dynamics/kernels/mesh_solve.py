@@ -2,140 +2,243 @@
 
 Between its kinks (a contact that closes, opens or reaches full damping) the force of a mesh is bilinear in
 reach and rate: a Newton step solves it but for a known remainder. Meshes that share a shaft move each other;
-their tangents are swept until all torques agree, without listing or summing the contacts again.
+their tangents are swept until all torques agree, without summing the contacts again. What is known of a mesh
+stands in the ``book`` (``kernels.book``) from ``at`` on.
 """
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import BACKLASH, DAMP_TIME, LOOSE, PER_DEPTH, R1, R2, press_flank
+from dynamics.kernels.book import (
+    AHEAD,
+    ANGLE,
+    APPROACH,
+    AT_RATE,
+    AT_REACH,
+    CHOSEN_1,
+    CHOSEN_2,
+    CHOSEN_ANGLE,
+    CHOSEN_REACH,
+    CURVED,
+    GUARD,
+    INVERSE,
+    KINKED,
+    N_BOOK,
+    NET,
+    NET_V,
+    NET_X,
+    OFFSET,
+    OFFSET_RATE,
+    PORT,
+    RATE,
+    REACH,
+    REACTION,
+    SLOPE_V,
+    SLOPE_X,
+    SPEED,
+    TAU,
+    TURN,
+)
+from dynamics.kernels.contact import (
+    BACKLASH,
+    DAMP_TIME,
+    INDIVIDUAL,
+    LEAST_GAP,
+    LOOSE,
+    N_PHASE,
+    POSITIVE,
+    R1,
+    R2,
+    Flank,
+    PackedMeshes,
+    Pressed,
+    flank_in_phase,
+    flank_on_path,
+    list_on_path,
+    press_flank,
+)
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 LEAST_GUARD = 1e-15
 """Least distance to a kink that is looked at [m]."""
-# columns of a mesh's reaction: torques, their slopes over reach and rate, force and its slopes, then bounds
-TAU_1, TAU_2, TAU_1_X, TAU_2_X, TAU_1_V, TAU_2_V, NET, NET_X, NET_V, KINKED, CURVED = range(11)
-N_REACTION = 11
-# columns of a mesh's motion: approach, pinion angle, imposed approach and its rate at the start of the step;
-# reach and rate as last evaluated; distance within which kinks are looked for; reach and rate given per torque
-# (2 each); inverse of the Newton matrix (4)
-APPROACH, ANGLE, OFFSET, OFFSET_RATE, REACH, RATE, GUARD, GIVE_X, GIVE_V, INVERSE = (
-    0,
-    1,
-    2,
-    3,
-    4,
-    5,
-    6,
-    7,
-    9,
-    11,
-)
-N_MOTION = 15
 
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
-def reach_and_rate(values: Array, motion: Array, outputs: Array, step: float, m: int) -> tuple[float, float]:
-    """Return approach and approach rate of mesh ``m`` at the end of the step, imposed ones included."""
-    r_1, r_2 = values[m, R1], values[m, R2]
-    o = 4 * m
-    turn = r_1 * outputs[o + 1] - r_2 * outputs[o + 3]
-    reach = motion[m, APPROACH] + turn + motion[m, OFFSET] + step * motion[m, OFFSET_RATE]
-    return reach, r_1 * outputs[o] - r_2 * outputs[o + 2] + motion[m, OFFSET_RATE]
+def look_ahead(book: Array, at: int, step: float) -> None:
+    """Set reach and rate of a mesh at the end of the step from its speeds and turns, imposed ones included."""
+    r_1, r_2 = book[at + R1], book[at + R2]
+    turn = r_1 * book[at + TURN] - r_2 * book[at + PORT + TURN]
+    reach = book[at + APPROACH] + turn + book[at + OFFSET] + step * book[at + OFFSET_RATE]
+    rate = r_1 * book[at + SPEED] - r_2 * book[at + PORT + SPEED] + book[at + OFFSET_RATE]
+    book[at + REACH], book[at + RATE] = reach, rate
+    book[at + AT_REACH], book[at + AT_RATE] = reach, rate
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def choose_contacts(book: Array, at: int, step: float) -> None:
+    """Keep the state at which the contacts of a mesh are chosen for this step."""
+    book[at + CHOSEN_ANGLE] = book[at + ANGLE] + book[at + TURN]
+    book[at + CHOSEN_1], book[at + CHOSEN_2] = book[at + SPEED], book[at + PORT + SPEED]
+    book[at + CHOSEN_REACH], book[at + AHEAD] = book[at + REACH], 2.0 * step * abs(book[at + RATE])
+
+
+@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+def list_individual(
+    meshes: PackedMeshes, book: Array, m: int, contacts: Array, found: Integers, no_pairs: Integers
+) -> None:
+    """List the contacts of a mesh with individual teeth at the angle chosen for this step."""
+    counts = meshes.counts
+    stride = contacts.shape[0] // (2 * N_PHASE * counts.shape[0])
+    for side in range(2):
+        found[m, side] = list_on_path(
+            book, m * N_BOOK, counts, meshes.cells, meshes.shifts, meshes.deviations, meshes.scales, m,
+            1.0 - 2.0 * side, book[m * N_BOOK + CHOSEN_ANGLE], contacts, (2 * m + side) * N_PHASE * stride, stride,
+            no_pairs,
+        )  # fmt: skip
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def can_touch(book: Array, at: int, side: int) -> bool:
+    """Return whether a flank comes within reach of its least gap in this step."""
+    within = (1.0 - 2.0 * side) * book[at + CHOSEN_REACH] - side * book[at + BACKLASH] + book[at + AHEAD]
+    return bool(within > book[at + LEAST_GAP])
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def chosen_flank(
+    book: Array, at: int, counts: Integers, starts: Integers, least: Array, m: int, side: int, contacts: Array,
+    found: Integers,
+) -> Flank:  # fmt: skip
+    """Return the contacts of a flank that were chosen for this step."""
+    sign = 1.0 - 2.0 * side
+    omega_1, omega_2 = book[at + CHOSEN_1], book[at + CHOSEN_2]
+    if counts[m, INDIVIDUAL] == 0:
+        within = sign * book[at + CHOSEN_REACH] - side * book[at + BACKLASH] + book[at + AHEAD]
+        return flank_in_phase(
+            book, at, counts, starts, least, m, sign, within, book[at + CHOSEN_ANGLE], omega_1, omega_2
+        )
+    stride = contacts.shape[0] // (2 * N_PHASE * counts.shape[0])
+    first = (2 * m + side) * N_PHASE * stride
+    return flank_on_path(book, at, first, stride, found[m, side], omega_1, omega_2)
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def _press_side(
+    book: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
+    found: Integers, side: int,
+) -> Pressed:  # fmt: skip
+    """Sum the contacts of one flank where the mesh was last looked at."""
+    sign = 1.0 - 2.0 * side
+    flank = chosen_flank(book, at, counts, starts, least, m, side, contacts, found)
+    reach = sign * book[at + AT_REACH] - side * book[at + BACKLASH]
+    return press_flank(
+        data if counts[m, INDIVIDUAL] == 0 else contacts, flank, book, at, sign, reach, sign * book[at + AT_RATE],
+        book[at + SPEED], book[at + GUARD],
+    )  # fmt: skip
+
+
+@njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
+def _add_back(
+    book: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
+    found: Integers,
+) -> None:  # fmt: skip
+    """Add the back flank to a reaction where both flanks can touch."""
+    wheel = at + PORT
+    sums = _press_side(book, at, counts, starts, least, data, m, contacts, found, 1)
+    r_1, r_2 = book[at + R1], book[at + R2]
+    book[at + REACTION] += r_1 * sums.a_1
+    book[wheel + REACTION] -= r_2 * sums.a_2
+    book[at + SLOPE_X] -= r_1 * sums.a_1_x
+    book[wheel + SLOPE_X] += r_2 * sums.a_2_x
+    book[at + SLOPE_V] -= r_1 * sums.a_1_v
+    book[wheel + SLOPE_V] += r_2 * sums.a_2_v
+    book[at + NET] -= sums.force
+    book[at + NET_X] += sums.force_x
+    book[at + NET_V] += sums.force_v
+    book[at + KINKED] += sums.kinked
+    book[at + CURVED] += sums.curved
 
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
 def react(
-    values: Array, m: int, contacts: Array, size: int, found: Integers, reach: float, rate: float, omega_1: float,
-    guard: float, reactions: Array,
+    book: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
+    found: Integers,
 ) -> None:  # fmt: skip
-    """Fill row ``m`` of ``reactions`` from both flanks, listed in parts ``2 m`` and ``2 m + 1`` of ``contacts``."""
-    r_1, r_2 = values[m, R1], values[m, R2]
-    t_1, t_2, x_1, x_2, v_1, v_2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    net, net_x, net_v, kinked, curved = 0.0, 0.0, 0.0, 0.0, 0.0
-    for side in range(2):
-        if found[m, side] == 0:
-            continue
-        sign = 1.0 - 2.0 * side
-        flank = press_flank(
-            contacts, (2 * m + side) * size, found[m, side], sign * reach - side * values[m, BACKLASH], sign * rate,
-            sign * r_1 * omega_1, values[m, DAMP_TIME], values[m, PER_DEPTH], guard,
-        )  # fmt: skip
-        t_1 -= sign * flank.a_1
-        t_2 += sign * flank.a_2
-        x_1 -= flank.a_1_x
-        x_2 += flank.a_2_x
-        v_1 -= flank.a_1_v
-        v_2 += flank.a_2_v
-        net += sign * flank.force
-        net_x += flank.force_x
-        net_v += flank.force_v
-        kinked += flank.kinked
-        curved += flank.curved
-    reactions[m, TAU_1] = r_1 * t_1
-    reactions[m, TAU_2] = r_2 * t_2
-    reactions[m, TAU_1_X] = r_1 * x_1
-    reactions[m, TAU_2_X] = r_2 * x_2
-    reactions[m, TAU_1_V] = r_1 * v_1
-    reactions[m, TAU_2_V] = r_2 * v_2
-    reactions[m, NET] = net
-    reactions[m, NET_X] = net_x
-    reactions[m, NET_V] = net_v
-    reactions[m, KINKED] = kinked
-    reactions[m, CURVED] = curved
+    """Set reaction and slopes of mesh ``m`` where it was last looked at, from the contacts chosen for this step."""
+    wheel = at + PORT
+    front, back = can_touch(book, at, 0), can_touch(book, at, 1)
+    if not (front or back):
+        for port in (at, wheel):
+            book[port + REACTION], book[port + SLOPE_X], book[port + SLOPE_V] = 0.0, 0.0, 0.0
+        book[at + NET], book[at + NET_X], book[at + NET_V] = 0.0, 0.0, 0.0
+        book[at + KINKED], book[at + CURVED] = 0.0, 0.0
+        return
+    side = 0 if front else 1
+    sign = 1.0 - 2.0 * side
+    sums = _press_side(book, at, counts, starts, least, data, m, contacts, found, side)
+    r_1, r_2 = book[at + R1], book[at + R2]
+    book[at + REACTION], book[wheel + REACTION] = -sign * r_1 * sums.a_1, sign * r_2 * sums.a_2
+    book[at + SLOPE_X], book[wheel + SLOPE_X] = -r_1 * sums.a_1_x, r_2 * sums.a_2_x
+    book[at + SLOPE_V], book[wheel + SLOPE_V] = -r_1 * sums.a_1_v, r_2 * sums.a_2_v
+    book[at + NET], book[at + NET_X], book[at + NET_V] = sign * sums.force, sums.force_x, sums.force_v
+    book[at + KINKED], book[at + CURVED] = sums.kinked, sums.curved
+    if front and back:
+        _add_back(book, at, counts, starts, least, data, m, contacts, found)
 
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
-def invert(reactions: Array, motion: Array, m: int) -> None:
-    """Keep the inverse of the Newton matrix of mesh ``m``: one less slope times what a torque gives in one step."""
-    x_p, x_q, v_p, v_q = motion[m, GIVE_X], motion[m, GIVE_X + 1], motion[m, GIVE_V], motion[m, GIVE_V + 1]
-    x_1, x_2 = reactions[m, TAU_1_X], reactions[m, TAU_2_X]
-    v_1, v_2 = reactions[m, TAU_1_V], reactions[m, TAU_2_V]
+def invert(book: Array, at: int, give: Array, own: int) -> None:
+    """Keep the inverse of the Newton matrix of a mesh: one less slope times what a torque gives in one step.
+
+    ``give`` holds from ``own`` on the reach per torque of both ports and the rate per torque.
+    """
+    x_p, x_q, v_p, v_q = give[own], give[own + 1], give[own + 2], give[own + 3]
+    x_1, x_2 = book[at + SLOPE_X], book[at + PORT + SLOPE_X]
+    v_1, v_2 = book[at + SLOPE_V], book[at + PORT + SLOPE_V]
     g_11 = 1.0 - x_1 * x_p - v_1 * v_p
     g_12 = x_1 * x_q + v_1 * v_q
     g_21 = x_2 * x_p + v_2 * v_p
     g_22 = 1.0 - x_2 * x_q - v_2 * v_q
     scale = 1.0 / (g_11 * g_22 - g_12 * g_21)
-    motion[m, INVERSE] = g_22 * scale
-    motion[m, INVERSE + 1] = g_12 * scale
-    motion[m, INVERSE + 2] = g_21 * scale
-    motion[m, INVERSE + 3] = g_11 * scale
+    book[at + INVERSE], book[at + INVERSE + 1] = g_22 * scale, g_12 * scale
+    book[at + INVERSE + 2], book[at + INVERSE + 3] = g_21 * scale, g_11 * scale
 
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
-def correct(
-    reactions: Array, motion: Array, through: Array, reach: float, rate: float, m: int, tau: Array, outputs: Array
-) -> float:  # fmt: skip
-    """Bring the torques of mesh ``m`` to its tangent at ``reach`` and ``rate``; return how far off they were."""
-    p, q = 2 * m, 2 * m + 1
-    dx, dv = reach - motion[m, REACH], rate - motion[m, RATE]
-    e_1 = reactions[m, TAU_1] + reactions[m, TAU_1_X] * dx + reactions[m, TAU_1_V] * dv - tau[p]
-    e_2 = reactions[m, TAU_2] + reactions[m, TAU_2_X] * dx + reactions[m, TAU_2_V] * dv - tau[q]
-    d_1 = motion[m, INVERSE] * e_1 + motion[m, INVERSE + 1] * e_2
-    d_2 = motion[m, INVERSE + 2] * e_1 + motion[m, INVERSE + 3] * e_2
-    tau[p] += d_1
-    tau[q] += d_2
-    for r in range(through.shape[1]):
-        outputs[r] += through[p, r] * d_1 + through[q, r] * d_2
+def correct(book: Array, at: int, give: Array, first: int, n_meshes: int) -> float:
+    """Bring the torques of a mesh to its tangent, all meshes moving with them; return how far off they were.
+
+    ``give`` holds from ``first`` on what these torques give to each of the ``n_meshes``, as in ``invert``.
+    """
+    wheel = at + PORT
+    dx, dv = book[at + REACH] - book[at + AT_REACH], book[at + RATE] - book[at + AT_RATE]
+    e_1 = book[at + REACTION] + book[at + SLOPE_X] * dx + book[at + SLOPE_V] * dv - book[at + TAU]
+    e_2 = book[wheel + REACTION] + book[wheel + SLOPE_X] * dx + book[wheel + SLOPE_V] * dv - book[wheel + TAU]
+    d_1 = book[at + INVERSE] * e_1 + book[at + INVERSE + 1] * e_2
+    d_2 = book[at + INVERSE + 2] * e_1 + book[at + INVERSE + 3] * e_2
+    book[at + TAU] += d_1
+    book[wheel + TAU] += d_2
+    for m in range(n_meshes):
+        to, given = (m * N_BOOK) & POSITIVE, first + 4 * m
+        book[to + REACH] += give[given] * d_1 + give[given + 1] * d_2
+        book[to + RATE] += give[given + 2] * d_1 + give[given + 3] * d_2
     return float(abs(e_1))
 
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
-def left_open(
-    reactions: Array, motion: Array, reach: float, rate: float, r_1: float, damp_time: float, m: int
-) -> float:
-    """Bring the force of mesh ``m`` to its tangent; return the torque by which the mesh can be off it [N m].
+def left_open(book: Array, at: int) -> float:
+    """Bring the force of a mesh to its tangent; return the torque by which the mesh can be off it [N m].
 
     The mesh force is bilinear in reach and rate, which leaves ``curved dx dv``, unless a kink lies within: then up
     to the stiffness of its contacts times ``dx``, and infinity where kinks were looked for in a smaller range.
     """
-    dx, dv = reach - motion[m, REACH], rate - motion[m, RATE]
-    reactions[m, NET] += reactions[m, NET_X] * dx + reactions[m, NET_V] * dv
-    moved = abs(dx) + damp_time * abs(dv)
-    looked_at = moved <= motion[m, GUARD]
-    motion[m, GUARD] = max(2.0 * moved, 0.9 * motion[m, GUARD], LEAST_GUARD)
-    left = r_1 * (reactions[m, KINKED] * moved + reactions[m, CURVED] * abs(dx * dv))
+    dx, dv = book[at + REACH] - book[at + AT_REACH], book[at + RATE] - book[at + AT_RATE]
+    book[at + NET] += book[at + NET_X] * dx + book[at + NET_V] * dv
+    moved = abs(dx) + book[at + DAMP_TIME] * abs(dv)
+    looked_at = moved <= book[at + GUARD]
+    book[at + GUARD] = max(2.0 * moved, 0.9 * book[at + GUARD], LEAST_GUARD)
+    left = book[at + R1] * (book[at + KINKED] * moved + book[at + CURVED] * abs(dx * dv))
     return float(left) if looked_at else np.inf

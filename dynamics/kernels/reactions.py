@@ -7,25 +7,30 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import (
     BACKLASH,
     DAMP_TIME,
-    GROUPS,
-    LANES,
+    DERIVATIVE,
+    INDIVIDUAL,
     LEAST_GAP,
-    LIST_DE,
-    LIST_E,
-    LIST_HK,
-    LIST_K,
-    LIST_M1,
-    LIST_M2,
     LOOSE,
-    N_LIST,
+    MOST,
+    MU_1,
+    MU_2,
+    N_PHASE,
     PER_DEPTH,
+    PER_REVERSAL,
+    POSITIVE,
     R1,
     R2,
+    ROW_E,
+    ROW_K,
+    ROW_S,
+    Flank,
     PackedMeshes,
+    flank_in_phase,
+    flank_on_path,
     flank_powers,
-    list_flank,
     list_on_path,
     press_flank,
+    sliding_direction,
 )
 
 Array = NDArray[np.float64]
@@ -34,37 +39,42 @@ Integers = NDArray[np.int64]
 
 @njit(cache=True, fastmath=LOOSE, inline="always")
 def _path_slopes(
-    contacts: Array,
-    n: int,
-    reach: float,
-    rate: float,
-    path_speed: float,
-    damp_time: float,
-    per_depth: float,
+    table: Array, flank: Flank, law: Array, sign: float, reach: float, rate: float, omega_1: float
 ) -> tuple[float, float, float]:
     """Return (da_1/ds, da_2/ds, elastic energy) of one flank at fixed reach, rate and friction levers."""
-    slope_1 = 0.0
-    slope_2 = 0.0
-    energy = 0.0
-    for group in range((n + LANES - 1) // LANES):
-        at = N_LIST * LANES * group
-        for i in range(min(n - LANES * group, LANES)):
-            depth = reach - contacts[at + LIST_E * LANES + i]
-            depth = depth if depth > 0.0 else 0.0
-            k = contacts[at + LIST_K * LANES + i]
-            k = k if depth > 0.0 else 0.0
-            gap_slope = contacts[at + LIST_DE * LANES + i]
-            stiffness_slope = 2.0 * contacts[at + LIST_HK * LANES + i]
-            closing = damp_time * (rate - gap_slope * path_speed)
-            grown = depth * per_depth
-            grown_slope = per_depth if grown < 1.0 else 0.0
-            grown = grown if grown < 1.0 else 1.0
-            pressed = depth + grown * closing
-            df = stiffness_slope * pressed - k * gap_slope * (1.0 + grown_slope * closing)
-            df = df if (depth > 0.0 and pressed > 0.0) else 0.0
-            energy += 0.5 * k * depth * depth
-            slope_1 += df * contacts[at + LIST_M1 * LANES + i] - stiffness_slope * depth * gap_slope
-            slope_2 += df * contacts[at + LIST_M2 * LANES + i]
+    slope_1, slope_2, energy = 0.0, 0.0, 0.0
+    f = flank.place
+    damp_time, per_depth = law[DAMP_TIME], law[PER_DEPTH]
+    path_speed = sign * law[R1] * omega_1
+    mu_1, mu_2 = sign * law[MU_1], sign * law[MU_2]
+    first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
+    for i in range(flank.n):
+        c = first + i
+        k_1, k_2, k_3 = table[c + stride], table[c + 2 * stride], table[c + 3 * stride]
+        e_1, e_2, e_3 = table[c + 5 * stride], table[c + 6 * stride], table[c + 7 * stride]
+        s = table[c + ROW_S * stride]
+        k = table[c] + f * (k_1 + f * (k_2 + f * k_3))
+        depth = reach - (table[c + ROW_E * stride] + f * (e_1 + f * (e_2 + f * e_3)))
+        depth = depth if depth > 0.0 else 0.0
+        k = k if depth > 0.0 else 0.0
+        gap_slope = (e_1 + f * (2.0 * e_2 + 3.0 * f * e_3)) * flank.per_metre
+        stiffness_slope = (k_1 + f * (2.0 * k_2 + 3.0 * f * k_3)) * flank.per_metre
+        stiffness_slope *= law[DERIVATIVE]
+        rho_1, rho_2 = flank.roll_1 + s, flank.roll_2 - s
+        sliding = flank.omega_1 * rho_1 - flank.omega_2 * rho_2
+        direction = sliding_direction(sliding * law[PER_REVERSAL])
+        m_1 = 1.0 - gap_slope * law[DERIVATIVE] + mu_1 * direction * rho_1
+        m_2 = 1.0 + mu_2 * direction * rho_2
+        closing = damp_time * (rate - gap_slope * path_speed)
+        grown = depth * per_depth
+        grown_slope = per_depth if grown < 1.0 else 0.0
+        grown = grown if grown < 1.0 else 1.0
+        pressed = depth + grown * closing
+        df = stiffness_slope * pressed - k * gap_slope * (1.0 + grown_slope * closing)
+        df = df if (depth > 0.0 and pressed > 0.0) else 0.0
+        energy += 0.5 * k * depth * depth
+        slope_1 += df * m_1 - stiffness_slope * depth * gap_slope
+        slope_2 += df * m_2
     return slope_1, slope_2, energy
 
 
@@ -75,8 +85,33 @@ def mesh_reactions(
 
     ``reach`` (n,) is the approach including the offset of the law.
     """
-    contacts = np.zeros(int(meshes.counts[0, GROUPS]) * N_LIST * LANES)
+    contacts = np.zeros(int(meshes.counts[0, MOST]) * N_PHASE)
     _mesh_reactions(meshes, theta_1, reach, omega_1, omega_2, contacts, np.empty((2, 0), np.int64), out)
+
+
+@njit(cache=True, fastmath=LOOSE, inline="always")
+def _add_flank(
+    table: Array, flank: Flank, law: Array, side: int, reach: float, omega_1: float, omega_2: float, out: Array
+) -> None:  # fmt: skip
+    """Add what one flank of the first mesh answers to the row ``out`` (13,)."""
+    sign = 1.0 - 2.0 * side
+    r_1, r_2 = law[R1], law[R2]
+    rate = sign * (r_1 * omega_1 - r_2 * omega_2)
+    sums = press_flank(table, flank, law, 0, sign, reach, rate, omega_1, 0.0)
+    friction_power, damping_power, _ = flank_powers(table, flank, law, 0, sign, reach, rate, omega_1)
+    slope_1, slope_2, energy = _path_slopes(table, flank, law, sign, reach, rate, omega_1)
+    out[0] -= sign * r_1 * sums.a_1
+    out[1] += sign * r_2 * sums.a_2
+    out[2 + side] += sums.force
+    out[4] -= r_1 * sums.a_1_x
+    out[5] += r_2 * sums.a_2_x
+    out[6] -= r_1 * sums.a_1_v
+    out[7] += r_2 * sums.a_2_v
+    out[8] -= r_1 * r_1 * slope_1
+    out[9] += r_1 * r_2 * slope_2
+    out[10] += friction_power
+    out[11] += damping_power
+    out[12] += energy
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
@@ -84,48 +119,30 @@ def _mesh_reactions(
     meshes: PackedMeshes, theta_1: Array, reach: Array, omega_1: Array, omega_2: Array, contacts: Array,
     no_pairs: Integers, out: Array,
 ) -> None:  # fmt: skip
-    values, counts = meshes.values, meshes.counts
-    cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
-    starts, contacts_in = meshes.phase_starts, meshes.phase_counts
+    """Do what ``mesh_reactions`` says, ``contacts`` being room for a table."""
+    law, counts, starts = meshes.values[0], meshes.counts, meshes.phase_starts
     least, data = meshes.phase_least, meshes.phase_data
-    r_1 = values[0, R1]
-    r_2 = values[0, R2]
-    damp_time, per_depth = values[0, DAMP_TIME], values[0, PER_DEPTH]
+    cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
+    stride = counts[0, MOST]
     for n in range(theta_1.shape[0]):
-        w_1 = omega_1[n]
-        w_2 = omega_2[n]
-        for column in range(out.shape[1]):
-            out[n, column] = 0.0
+        out[n] = 0.0
         for side in range(2):
             sign = 1.0 - 2.0 * side
-            pressed = sign * reach[n] - side * values[0, BACKLASH]
-            if pressed <= values[0, LEAST_GAP]:
+            within = sign * reach[n] - side * law[BACKLASH]
+            if within <= law[LEAST_GAP]:
                 continue
-            found = list_flank(
-                values, counts, starts, contacts_in, least, data, cells, shifts, deviations, scales, 0, sign,
-                pressed, theta_1[n], w_1, w_2, contacts, 0, no_pairs,
-            )  # fmt: skip
-            rate = sign * (r_1 * w_1 - r_2 * w_2)
-            path_speed = sign * r_1 * w_1
-            sums = press_flank(contacts, 0, found, pressed, rate, path_speed, damp_time, per_depth, 0.0)
-            friction_power, damping_power, _ = flank_powers(
-                contacts, 0, found, pressed, rate, path_speed, damp_time, per_depth
-            )
-            slope_1, slope_2, energy = _path_slopes(
-                contacts, found, pressed, rate, path_speed, damp_time, per_depth
-            )
-            out[n, 0] -= sign * r_1 * sums.a_1
-            out[n, 1] += sign * r_2 * sums.a_2
-            out[n, 2 + side] += sums.force
-            out[n, 4] -= r_1 * sums.a_1_x
-            out[n, 5] += r_2 * sums.a_2_x
-            out[n, 6] -= r_1 * sums.a_1_v
-            out[n, 7] += r_2 * sums.a_2_v
-            out[n, 8] -= r_1 * r_1 * slope_1
-            out[n, 9] += r_1 * r_2 * slope_2
-            out[n, 10] += friction_power
-            out[n, 11] += damping_power
-            out[n, 12] += energy
+            if counts[0, INDIVIDUAL] == 0:
+                alike = flank_in_phase(
+                    law, 0, counts, starts, least, 0, sign, within, theta_1[n], omega_1[n], omega_2[n]
+                )
+                _add_flank(data, alike, law, side, within, omega_1[n], omega_2[n], out[n])
+            else:
+                found = list_on_path(
+                    law, 0, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], contacts, 0, stride,
+                    no_pairs,
+                )  # fmt: skip
+                single = flank_on_path(law, 0, 0, stride, found, omega_1[n], omega_2[n])
+                _add_flank(contacts, single, law, side, within, omega_1[n], omega_2[n], out[n])
 
 
 @njit(cache=True, fastmath=LOOSE)
@@ -139,28 +156,27 @@ def tooth_pair_forces(
     force: Array,
 ) -> None:
     """Fill ``force`` (n, n_pairs, n_slices, 2), front and back; ``lowest`` (n,) is the pair of column 0."""
-    values, counts = meshes.values, meshes.counts
+    law, counts = meshes.values[0], meshes.counts
     cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
-    contacts = np.empty(counts[0, GROUPS] * N_LIST * LANES)
-    pairs = np.empty((2, counts[0, GROUPS] * LANES), np.int64)
+    stride = counts[0, MOST]
+    contacts = np.empty(stride * N_PHASE)
+    pairs = np.empty((2, stride), np.int64)
     for n in range(theta_1.shape[0]):
         for side in range(2):
             sign = 1.0 - 2.0 * side
-            pressed = sign * reach[n] - side * values[0, BACKLASH]
-            if pressed <= values[0, LEAST_GAP]:
+            pressed = sign * reach[n] - side * law[BACKLASH]
+            if pressed <= law[LEAST_GAP]:
                 continue
             found = list_on_path(
-                values, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], omega_1[n], omega_2[n],
-                contacts, 0, pairs,
+                law, 0, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], contacts, 0, stride, pairs
             )  # fmt: skip
-            path_speed = sign * values[0, R1] * omega_1[n]
-            rate = sign * (values[0, R1] * omega_1[n] - values[0, R2] * omega_2[n])
+            path_speed = sign * law[R1] * omega_1[n]
+            rate = sign * (law[R1] * omega_1[n] - law[R2] * omega_2[n])
             for i in range(found):
-                at = (i // LANES) * N_LIST * LANES + i % LANES
-                depth = pressed - contacts[at + LIST_E * LANES]
-                closing = rate - contacts[at + LIST_DE * LANES] * path_speed
-                grown = min(max(depth, 0.0) * values[0, PER_DEPTH], 1.0)
-                f = contacts[at + LIST_K * LANES] * (depth + values[0, DAMP_TIME] * grown * closing)
+                depth = pressed - contacts[ROW_E * stride + i]
+                closing = rate - contacts[(ROW_E + 1) * stride + i] * path_speed
+                grown = min(max(depth, 0.0) * law[PER_DEPTH], 1.0)
+                f = contacts[ROW_K * stride + i] * (depth + law[DAMP_TIME] * grown * closing)
                 column = pairs[0, i] - lowest[n]
                 if depth > 0.0 and f > 0.0 and 0 <= column < force.shape[1]:
                     force[n, column, pairs[1, i], side] = f
