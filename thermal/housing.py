@@ -78,7 +78,7 @@ Fidelity = Literal["quick", "standard", "reference"]
 
 _SCALES: dict[Fidelity, tuple[float, float, float, int]] = {
     "quick": (0.1, 0.3, 0.08, 7),
-    "standard": (0.04, 0.15, 0.05, 10),
+    "standard": (0.04, 0.1, 0.05, 10),
     "reference": (0.0108, 0.045, 0.024, 20),
 }
 """Elements of walls, field and shafts relative to the root of the housing's outer area, the root of the
