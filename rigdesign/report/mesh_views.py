@@ -68,9 +68,11 @@ class PlaneCut:
         sides = np.concatenate(
             [self.triangles[:, [0, 1]], self.triangles[:, [1, 2]], self.triangles[:, [2, 0]]]
         )
-        tagged = np.column_stack([np.sort(sides, axis=1), np.tile(self.bodies, 3)])
-        unique, counts = np.unique(tagged, axis=0, return_counts=True)
-        return np.asarray(unique[counts == 1, :2])
+        size = len(self.points)
+        pairs = np.sort(sides, axis=1) @ np.array([size, 1]) + size**2 * np.tile(self.bodies, 3)
+        found, counts = np.unique(pairs, return_counts=True)
+        first, second = np.divmod(found[counts == 1] % size**2, size)
+        return np.column_stack([first, second])
 
 
 def cut_mesh(mesh: NamedMesh, axis: int, position: float) -> PlaneCut:
@@ -89,7 +91,9 @@ def cut_mesh(mesh: NamedMesh, axis: int, position: float) -> PlaneCut:
     tetrahedra = mesh.cells[met][:, parts].reshape(-1, 4).astype(np.int64)
     bodies = np.repeat(body_of_cell[met], len(parts))
     edges, owners = _crossed_edges(tetrahedra, bodies, beyond)
-    nodes, inverse = np.unique(np.sort(edges.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+    ends = np.sort(edges.reshape(-1, 2), axis=1)
+    pairs, inverse = np.unique(ends @ np.array([len(mesh.points), 1]), return_inverse=True)
+    nodes = np.column_stack(np.divmod(pairs, len(mesh.points)))
     first, second = distance[nodes[:, 0]], distance[nodes[:, 1]]
     weights = first / (first - second)
     points = mesh.points[nodes[:, 0]] + weights[:, None] * (
@@ -176,8 +180,9 @@ def surface_triangles(mesh: NamedMesh) -> Indices:
 def _standing_nodes(mesh: NamedMesh) -> Indices:
     """Nodes of all bodies but the field under them; of all where there is nothing else."""
     bodies = [cells for name, cells in mesh.bodies.items() if "field" not in name and len(cells)]
-    cells = mesh.cells[np.concatenate(bodies)] if bodies else mesh.cells
-    return np.unique(cells).astype(np.int64)
+    held = np.zeros(len(mesh.points), dtype=bool)
+    held[mesh.cells[np.concatenate(bodies)] if bodies else mesh.cells] = True
+    return np.flatnonzero(held).astype(np.int64)
 
 
 def _camera(azimuth: float, elevation: float) -> tuple[FloatArray, FloatArray, FloatArray]:
