@@ -1,4 +1,4 @@
-"""Work on the other cores: computations that need nothing of each other, each in a forked copy of this process.
+"""Work on the other cores: computations that need nothing of each other, in a forked copy of this process a core.
 
 A copy starts with everything that was computed before, so nothing is packed up but the result, and it computes the
 same bits as this process would. Where there is no fork or no core to spare, and where a copy fails, the work is
@@ -33,11 +33,13 @@ class _Copy:
 
 
 class Beside(Generic[T]):
-    """Starts all works at once; `results` waits for them, `end` stops what is still running."""
+    """Starts the works, a share of them on each core; `results` waits for them, `end` stops what still runs."""
 
     def __init__(self, works: Sequence[Callable[[], T]]) -> None:
         self._works = tuple(works)
-        self._copies = [_fork(work) for work in works] if cores() > 1 else []
+        count = min(cores(), len(self._works))
+        shares = [self._works[number::count] for number in range(count)] if cores() > 1 else []
+        self._copies = [_fork(share) for share in shares]
 
     def __enter__(self) -> Self:
         return self
@@ -58,9 +60,11 @@ class Beside(Generic[T]):
         """Results in the order of the works; raises what a work raises."""
         if not self._copies:
             return [work() for work in self._works]
-        return [self._received(work) for work in self._works]
+        count = len(self._copies)
+        shares = [self._received(self._works[number::count]) for number in range(count)]
+        return [shares[place % count][place // count] for place in range(len(self._works))]
 
-    def _received(self, work: Callable[[], T]) -> T:
+    def _received(self, works: Sequence[Callable[[], T]]) -> list[T]:
         """What the first of the remaining copies sends; done here if that is nothing."""
         copy = self._copies[0]
         with copy.pipe:
@@ -68,12 +72,12 @@ class Beside(Generic[T]):
         _, status = os.waitpid(copy.process, 0)
         del self._copies[0]
         if status != 0:
-            return work()
-        result: T = pickle.loads(sent)
-        return result
+            return [work() for work in works]
+        results: list[T] = pickle.loads(sent)
+        return results
 
 
-def _fork(work: Callable[[], object]) -> _Copy:
+def _fork(works: Sequence[Callable[[], object]]) -> _Copy:
     reading, writing = os.pipe()
     with warnings.catch_warnings():
         # Python 3.12 warns of the threads of compiled libraries, which the works do not use
@@ -85,7 +89,7 @@ def _fork(work: Callable[[], object]) -> _Copy:
     status = 1
     try:
         os.close(reading)
-        sent = pickle.dumps(work(), protocol=pickle.HIGHEST_PROTOCOL)
+        sent = pickle.dumps([work() for work in works], protocol=pickle.HIGHEST_PROTOCOL)
         with os.fdopen(writing, "wb") as pipe:
             pipe.write(sent)
         status = 0

@@ -30,6 +30,7 @@ from rigdesign.rules import overall
 from rigdesign.stage_losses import stage_losses
 from rigdesign.state import OperatingPoint
 from rigdesign.system import gmsh_remedy, missing_gmsh_libraries
+from thermal.fe.kernels import one_thread
 
 Progress = Callable[[str], None]
 
@@ -84,14 +85,15 @@ def solve_case(
     for name in rig.models:
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
     lap("rig_and_mesh")
-    with MeshesBeside(wanted, rig) as meshing:
+    with MeshesBeside(wanted, rig) as meshing, one_thread():
         settled = _settled(rig, say)
         lap("coupling")
         rigs = meshing.rigs()
         lap("other_meshes")
     wanted = rigs[-1]
     say("response over speed, time run over the schedule")
-    with nullcontext() if rig.drivetrain is None else DynamicWork(rig, settled) as dynamics:
+    beside = nullcontext() if rig.drivetrain is None else DynamicWork(rig, settled)
+    with beside as dynamics, one_thread():
         points = settled
         if wanted is not rig:
             say(f"last pass on the {fidelity} mesh")

@@ -5,8 +5,11 @@ Rows are independent, so results do not depend on the number of threads; small p
 waking the others costs more than it saves.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 import numpy as np
-from numba import njit, prange
+from numba import get_num_threads, njit, prange, set_num_threads
 from numpy.typing import NDArray
 
 Numbers = NDArray[np.floating]
@@ -19,6 +22,20 @@ THREADED = 65_536
 
 CHUNK = 8192
 """Rows that one thread takes at a time."""
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Products and assembly on one thread, for times when the other cores have work of their own.
+
+    Threads that have to wait for a core hold up each other; the results are the same bits with any number.
+    """
+    before = get_num_threads()
+    set_num_threads(1)
+    try:
+        yield
+    finally:
+        set_num_threads(before)
 
 
 @njit(cache=True)
