@@ -45,20 +45,20 @@ def pack_meshes(
     shifts: list[Array] = []
     deviations: list[Array] = []
     scales: list[Array] = []
-    starts: list[int] = [0]
-    blocks: list[Array] = []
+    sizes: list[Integers] = []
+    data: list[Array] = []
     least: list[Array] = []
     for mesh, law in enumerate(laws):
         n_slices, n_path = law.stiffness.shape
         deviation_at, scale_at = sum(map(len, deviations)), sum(map(len, scales))
         individual = has_individual_teeth(law)
         n_phases = phase_count(law) if over_phase and not individual else 0
-        front_at = len(starts) - 1
+        front_at = sum(map(len, sizes))
         for sign in (1.0, -1.0) if n_phases else ():
-            for block in _phase_blocks(law, sign, n_phases):
-                starts.append(starts[-1] + len(block[1]))
-                blocks.append(block[0])
-                least.append(block[1])
+            size, bounds, rows = _phase_contacts(law, sign, n_phases)
+            sizes.append(size)
+            least.append(bounds)
+            data.append(rows)
         counts[mesh] = (
             n_slices, n_path - 1, sum(map(len, cells)), sum(map(len, shifts)), individual,
             law.teeth_1, law.teeth_2, law.tooth_offset_2,
@@ -79,9 +79,9 @@ def pack_meshes(
         shifts=np.concatenate(shifts),
         deviations=np.vstack(deviations),
         scales=np.concatenate(scales),
-        phase_starts=np.array(starts, np.int64),
+        phase_starts=np.concatenate(([0], np.cumsum(np.concatenate([np.zeros(0, np.int64), *sizes])))),
         phase_least=np.concatenate([np.zeros(0), *least]),
-        phase_data=np.concatenate([np.zeros(0), *(block.ravel() for block in blocks)]),
+        phase_data=np.concatenate([np.zeros(0), *data]),
         offsets=np.array([law.offset for law in laws], float),
     )
 
@@ -128,10 +128,12 @@ def _cells(table: Array) -> Array:
     return np.ascontiguousarray(coefficients.swapaxes(0, 1).reshape(-1, 4))
 
 
-def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[tuple[Array, Array]]:
-    """Return for every phase cell the contacts on the path of one flank: rows (N_PHASE, n) and the lower bounds
-    (n,) of their gaps in increasing order. More than one are filled up to whole turns of a compiled loop with some
-    of no stiffness.
+def _phase_contacts(law: MeshLaw, sign: float, n_phases: int) -> tuple[Integers, Array, Array]:
+    """Return the contacts on the path of one flank, phase cell after phase cell.
+
+    Their number in each cell (n_phases,); the lower bounds (n,) of their gaps, in increasing order within a cell; and
+    N_PHASE rows over the contacts of each cell, flat. More than one in a cell are filled up to whole turns of a
+    compiled loop with some of no stiffness.
 
     The cubics are carried from the path to the phase by value and slope at both ends of the phase cell.
     """
@@ -162,12 +164,16 @@ def _phase_blocks(law: MeshLaw, sign: float, n_phases: int) -> list[tuple[Array,
     bound = np.minimum.reduce([g_0, g_0 + g_1 / 3.0, g_0 + (2.0 * g_1 + g_2) / 3.0, g_0 + g_1 + g_2 + g_3])
     order = np.lexsort((bound, cells))
     lanes, bound = lanes[:, order], bound[order]
-    blocks = []
-    ends = np.searchsorted(cells, np.arange(1, n_phases))
-    for own, low in zip(np.split(lanes, ends, axis=1), np.split(bound, ends)):
-        spare = -own.shape[1] % kernels.VECTOR if own.shape[1] > 1 else 0
-        blocks.append((np.pad(own, ((0, 0), (0, spare))), np.pad(low, (0, spare), constant_values=np.inf)))
-    return blocks
+    found = np.bincount(cells, minlength=n_phases)
+    sizes = np.where(found > 1, kernels.VECTOR * -(-found // kernels.VECTOR), found)
+    starts = np.cumsum(sizes) - sizes
+    within = np.arange(len(cells)) - (np.cumsum(found) - found)[cells]
+    least = np.full(int(sizes.sum()), np.inf)
+    least[starts[cells] + within] = bound
+    data = np.zeros(kernels.N_PHASE * len(least))
+    rows = np.arange(kernels.N_PHASE)[:, None] * sizes[cells]
+    data[kernels.N_PHASE * starts[cells] + rows + within] = lanes
+    return sizes, least, data
 
 
 def _hermite(cubic: PchipInterpolator, at: Array, rows: Integers, width: float) -> tuple[Array, ...]:
