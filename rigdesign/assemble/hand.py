@@ -17,6 +17,11 @@ PLATE = (
 )
 RING = "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)], T_h of the bore; a warmer wall round it widens it further"
 
+RISE = (
+    "alpha_f h_f (T_f - T_0) + alpha h (T_h - T_0), T_f the mean of the field under the housing, T_h of the housing; "
+    "end walls colder than that rise less, a field that bows towards its warm side lifts them"
+)
+
 
 def hand_checks(subject: Subject) -> list[dict[str, Any]]:
     """quantity, computed, by_hand, unit, formula; in the order of the report."""
@@ -108,7 +113,38 @@ def _growth(subject: Subject) -> list[dict[str, Any]]:
             plate = partition_gap(subject, result, seal["seal"])
             by_hand, formula = (1e3 * plate, PLATE) if plate is not None else (seal["by_hand_mm"], RING)
             rows.append(_row(f"mean gap of seal {seal['seal']}", seal["hot_mean_mm"], by_hand, "mm", formula))
+        for coupling in result.couplings:
+            ends = [coupling[end].endswith("(cold)") for end in ("first", "second")]
+            if any(ends):
+                rise = coupling["recommended_cold_vertical_mm"] * (1.0 if ends[0] else -1.0)
+                name, by_hand = (
+                    f"rise of the shaft at coupling {coupling['coupling']}",
+                    axis_rise(subject, result),
+                )
+                rows.append(_row(name, rise, by_hand, "mm", RISE))
     return rows
+
+
+def axis_rise(subject: Subject, result: GrowthResult) -> float:
+    """Free expansion of the housing and of the field under it up to the shaft axes [mm], by their mean temperatures."""
+    name = result.gearbox
+    housing = subject.case.gearboxes[name].housing
+    assert housing is not None
+    field = next(p for p in subject.points if p.point.stage == result.stage).last.fields[name].temperature
+    elements, bodies = subject.rig.conduction[name].elements, subject.rig.models[name].mesh.bodies
+    box = elements.mesh.points[np.unique(elements.mesh.cells[bodies["housing"]]), :2]
+    low, high = box.min(axis=0), box.max(axis=0)
+    cold, rise = subject.case.ambient.reference_temperature, 0.0
+    for body, material, height in (
+        ("field", housing.field.material, housing.field.thickness),
+        ("housing", housing.material, housing.shaft_height),
+    ):
+        values, volumes = elements.at_points(field, bodies[body])
+        places, _ = elements.at_points(elements.mesh.points[:, :2], bodies[body])
+        under = ((places >= low) & (places <= high)).all(axis=1)
+        mean = float(np.average(values[under], weights=volumes[under]))
+        rise += subject.rig.materials[material].expansion_coefficient * height * (mean - cold)
+    return 1e3 * rise
 
 
 def partition_gap(subject: Subject, result: GrowthResult, seal: str) -> float | None:

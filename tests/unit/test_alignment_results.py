@@ -19,6 +19,7 @@ from rigdesign.alignment import (
 )
 from rigdesign.assemble import transient_alignment
 from rigdesign.assemble.alignment import axis_rows, bore_rows, coupling_rows
+from rigdesign.assemble.hand import axis_rise
 from rigdesign.assemble.transient_alignment import misalignments, worst_misalignments
 from rigdesign.case import load_case
 from rigdesign.case.limits import AlignmentLimits
@@ -87,6 +88,18 @@ def test_even_heat_offsets_a_coupling_by_its_height(rig: Rig, point: Any) -> Non
         locating = next(b for b in model.bearings if b.shaft == shaft and b.locating).centre[0]
         travel = strain * (locating - middle[0]) + steel * (station.end - locating)
         assert row["ends_nearer_mm"] == pytest.approx(1e3 * travel, rel=1e-3)
+
+
+def test_the_rise_of_a_shaft_is_that_by_hand_where_all_is_evenly_warm(rig: Rig, point: Any) -> None:
+    model = rig.models["test"]
+    field = np.full(len(model.mesh.points), rig.case.ambient.reference_temperature + RISE)
+    last = SimpleNamespace(fields={"test": SimpleNamespace(temperature=field)})
+    subject: Any = SimpleNamespace(
+        case=rig.case, rig=rig, points=[SimpleNamespace(point=SimpleNamespace(stage="test"), last=last)]
+    )
+    by_hand = axis_rise(subject, growth("test", 0.0, 0.0, (0.0, 0.0)))
+    for row in coupling_rows(rig, point, "test"):
+        assert row["vertical_hot_mm"] == pytest.approx(by_hand, rel=1e-4)
 
 
 def test_the_recommended_cold_offset_makes_the_hot_one_zero(rig: Rig, shape: Expansion) -> None:
