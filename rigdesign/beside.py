@@ -47,6 +47,11 @@ class Beside(Generic[T]):
     def __exit__(self, *_: object) -> None:
         self.end()
 
+    @property
+    def running(self) -> bool:
+        """Whether other cores are at work; not after `results`."""
+        return bool(self._copies)
+
     def end(self) -> None:
         """Stop the copies that are left."""
         for copy in self._copies:

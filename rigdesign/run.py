@@ -6,7 +6,7 @@ they give and make the last digits of a result depend on the machine's load.
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -92,18 +92,23 @@ def solve_case(
         lap("other_meshes")
     wanted = rigs[-1]
     say("response over speed, time run over the schedule")
-    beside = nullcontext() if rig.drivetrain is None else DynamicWork(rig, settled)
-    with beside as dynamics, one_thread():
+    with DynamicWork(rig, settled) as dynamics:
         points = settled
         if wanted is not rig:
             say(f"last pass on the {fidelity} mesh")
-            points = [on_mesh(wanted, point, rig) for point in settled]
+            with dynamics.sharing():
+                points = [on_mesh(wanted, point, rig) for point in settled]
             lap("last_pass")
-        meshes = discretisation(rigs, rig, settled, points)
-        lap("discretisation")
-        thermal = [heat.thermal_result(wanted, p, field) for p in points for field in p.last.fields.values()]
-        lap("alternatives")
-        run = None if dynamics is None else dynamics.result()
+            dynamics.result()
+            lap("dynamics")
+        with dynamics.sharing():
+            meshes = discretisation(rigs, rig, settled, points)
+            lap("discretisation")
+            thermal = [
+                heat.thermal_result(wanted, p, field) for p in points for field in p.last.fields.values()
+            ]
+            lap("alternatives")
+        run = dynamics.result()
         lap("dynamics")
     say("assembling the result")
     return Subject(
@@ -210,7 +215,7 @@ class _Clock:
 
     def lap(self, name: str) -> None:
         now = time.perf_counter()
-        self.laps[name] = round(now - self._last, 3)
+        self.laps[name] = round(self.laps.get(name, 0.0) + now - self._last, 3)
         self._last = now
 
 
