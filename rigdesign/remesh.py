@@ -16,7 +16,7 @@ from rigdesign.assemble import heat
 from rigdesign.assemble.heat_split import split_as_solved
 from rigdesign.bearing_films import solve_bearings
 from rigdesign.beside import Beside
-from rigdesign.checks import thermal
+from rigdesign.checks import alignment, thermal
 from rigdesign.checks.subject import Subject
 from rigdesign.coupling import PointResult, Residual
 from rigdesign.growth import expand_housing
@@ -171,7 +171,8 @@ def checked(rig: Rig, points: Sequence[PointResult]) -> dict[str, Check]:
         growth=[heat.growth_result(rig, p, name) for p in points for name in p.last.growth],
         cooler=[heat.cooler(rig, point.last) for point in points],
     )
-    return {check.id: check for check in thermal.checks(subject) if check.value is not None}
+    found = (*thermal.checks(subject), *alignment.checks(subject))
+    return {check.id: check for check in found if check.value is not None}
 
 
 def _temperatures(rig: Rig, point: PointResult, field: HousingField) -> ThermalResult:

@@ -83,7 +83,16 @@ def test_a_pass_on_its_own_mesh_changes_nothing() -> None:
     rig, point = settled()
     before, after = numbers(rig, [point], 0), numbers(rig, [on_mesh(rig, point, rig)], 0)
     assert after.values.keys() == before.values.keys()
-    tolerance = {"degC": 0.06, "K": 0.06, "W": 3.0, "kW": 3e-3, "mm": 6e-4, "um": 0.6}
+    tolerance = {
+        "degC": 0.06,
+        "K": 0.06,
+        "W": 3.0,
+        "kW": 3e-3,
+        "mm": 6e-4,
+        "um": 0.6,
+        "mrad": 2e-3,
+        "-": 2e-3,
+    }
     for key, (value, unit) in before.values.items():
         assert after.values[key][0] == pytest.approx(value, abs=tolerance.get(unit, 1e-6)), key
 
