@@ -38,7 +38,7 @@ def clearances(
             bulk[mesh.pinion],
             bulk[mesh.wheel],
             growth.centre_distance[full],
-            reference_temperature=rig.case.ambient.temperature,
+            reference_temperature=rig.case.ambient.reference_temperature,
             expansion_coefficients=(first, second),
             speed=rig.shaft_speed(gears[0].shaft, speed),
         )

@@ -124,7 +124,7 @@ def run_transient(
 def _read(rig: Rig, name: str, courses: Sequence[Course]) -> tuple[list[Branch], float]:
     """Clearances of courses of one housing, and what the patterns of their expansion miss [K]."""
     fields = [np.asarray(field, dtype=np.float64) for course in courses for field in course.fields]
-    shapes = ExpansionCourse.of(rig.expansion[name], rig.case.ambient.temperature, fields)
+    shapes = ExpansionCourse.of(rig.expansion[name], rig.case.ambient.reference_temperature, fields)
     return [read_branch(rig, name, course, shapes) for course in courses], shapes.missed
 
 
