@@ -85,7 +85,9 @@ def loop_modes(
         if frequency > highest_frequency:
             break
         reach = approach @ shape
-        gain = np.abs(reach * (form.loads[i] @ approach.T)) * mean / (abs(pole.real) * abs(pole))
+        # a mode without a damper would be infinite at its resonance: rounding is the damping it has at least
+        damping = max(abs(pole.real), np.finfo(float).eps * abs(pole))
+        gain = np.abs(reach * (form.loads[i] @ approach.T)) * mean / (damping * abs(pole))
         energy = _strain_energy(parts, shape, mean * np.abs(reach) ** 2)
         found.append(
             LoopMode(
