@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 DAMPING_RATIO_LIMIT = 0.3
 """Above this damping ratio a joint or mesh gets a warning: the resonance of its spring is gone [-]."""
 
+LEAST_DAMPING = 1e-9
+"""Damping ratio taken for a mode that no damper reaches, so that its gain stays a number [-]."""
+
 
 def shaft_frequencies(drivetrain: Drivetrain, count: int = 3) -> dict[str, Array]:
     """First free-free torsional frequencies [Hz] of every shaft with its discs and gear bodies.
