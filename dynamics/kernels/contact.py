@@ -16,7 +16,8 @@ individual teeth every contact is looked up on the path and such a table is writ
 """
 
 import math
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numba import njit
@@ -74,6 +75,13 @@ POSITIVE = (
 
 # NaN and infinity keep their meaning; only the order of sums is free
 LOOSE = {"reassoc", "contract", "nsz", "arcp"}
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def inlined(function: Function) -> Function:
+    """Compile what becomes part of its compiled caller; arrays are neither made nor counted in it."""
+    compiled: Function = njit(cache=True, fastmath=LOOSE, forceinline=True, _nrt=False)(function)  # type: ignore[call-overload]
+    return compiled
 
 
 class Flank(NamedTuple):
@@ -97,7 +105,7 @@ class Flank(NamedTuple):
     omega_2: float
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def sliding_direction(ratio: float) -> float:
     """Return the smooth sign of ``ratio``: a cubic inside +-1, exactly +-1 outside."""
     ratio = ratio if ratio < 1.0 else 1.0
@@ -105,7 +113,7 @@ def sliding_direction(ratio: float) -> float:
     return ratio * (1.5 - 0.5 * ratio * ratio)
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def flank_in_phase(
     book: Array, at: int, counts: Integers, starts: Integers, least: Array, m: int, sign: float, within: float,
     theta_1: float, omega_1: float, omega_2: float,
@@ -198,7 +206,7 @@ def list_on_path(
     return column
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def flank_on_path(
     book: Array, at: int, first: int, stride: int, found: int, omega_1: float, omega_2: float
 ) -> Flank:  # fmt: skip
@@ -250,7 +258,7 @@ class _Pass(NamedTuple):
     guard: float
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def _press_contact(table: Array, c: int, stride: int, same: _Pass) -> Pressed:
     """Return what the contact in column ``c`` does; slopes over the rate per damping time.
 
@@ -285,7 +293,7 @@ def _press_contact(table: Array, c: int, stride: int, same: _Pass) -> Pressed:
     )  # fmt: skip
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def press_flank(
     table: Array, flank: Flank, book: Array, at: int, sign: float, reach: float, rate: float, omega_1: float,
     guard: float,
@@ -330,7 +338,7 @@ def press_flank(
     )  # fmt: skip
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def flank_powers(
     table: Array, flank: Flank, book: Array, at: int, sign: float, reach: float, rate: float, omega_1: float
 ) -> tuple[float, float, float]:

@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.book import OLD, SPEED, TAU, TURN
-from dynamics.kernels.contact import LOOSE, POSITIVE, sliding_direction
+from dynamics.kernels.contact import LOOSE, POSITIVE, inlined, sliding_direction
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -130,7 +130,7 @@ def take_state(blocks: Integers, bank: Array, state: Array) -> None:
                 state[s + i] = bank[b + i]
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def add_torques(links: Integers, first: int, through: Array, part: int, book: Array, torque: int) -> None:
     """Add to speeds and turns what the torques in column ``torque`` give by the links from ``first`` on.
 
@@ -175,7 +175,7 @@ def _push(further: Integers, block: int, bank: Array, book: Array) -> None:
             bank[home + i] += bank[g + 4 * WIDTH + i] * t_a + bank[g + 6 * WIDTH + i] * t_b
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def step_modes(
     blocks: Integers, further: Integers, links: Integers, bank: Array, through: Array, book: Array
 ) -> None:

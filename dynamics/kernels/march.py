@@ -44,6 +44,7 @@ from dynamics.kernels.contact import (
     R2,
     PackedMeshes,
     flank_powers,
+    inlined,
 )
 from dynamics.kernels.linear_step import (
     AT_END,
@@ -218,7 +219,7 @@ def march(
     return int(_march(meshes, modes, orders, carried, work, step, substeps, history, samples))
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def _begin(book: Array, ports: Array, port_new: Array, give: Array) -> None:
     """Take over what was carried from the last call, and what the torques give to the meshes."""
     n_meshes = ports.shape[0]
@@ -234,7 +235,7 @@ def _begin(book: Array, ports: Array, port_new: Array, give: Array) -> None:
                 give[place] = book[at + R1] * given_1 - book[at + R2] * given_2
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def _end(book: Array, ports: Array) -> None:
     """Carry on what the next call takes over."""
     for m in range(ports.shape[0]):
@@ -244,7 +245,7 @@ def _end(book: Array, ports: Array) -> None:
         ports[m, 4], ports[m, 5] = book[at + APPROACH], book[at + ANGLE]
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def _guess(book: Array, n_meshes: int, by_slow: Array, first: int) -> None:
     """Begin a step: torques straight on from the last two, speeds and turns with what the slow inputs give."""
     for m in range(n_meshes):
@@ -256,7 +257,7 @@ def _guess(book: Array, n_meshes: int, by_slow: Array, first: int) -> None:
         book[wheel + SPEED], book[wheel + TURN] = by_slow[given + 2], by_slow[given + 3]
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def _agree(book: Array, give: Array, n_meshes: int) -> bool:
     """Bring all torques to the tangents of the meshes in turn, told where these stand.
 

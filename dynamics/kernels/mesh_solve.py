@@ -55,6 +55,7 @@ from dynamics.kernels.contact import (
     Pressed,
     flank_in_phase,
     flank_on_path,
+    inlined,
     list_on_path,
     press_flank,
 )
@@ -66,7 +67,7 @@ LEAST_GUARD = 1e-15
 """Least distance to a kink that is looked at [m]."""
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def look_ahead(book: Array, at: int, step: float) -> None:
     """Set reach and rate of a mesh at the end of the step from its speeds and turns, imposed ones included."""
     r_1, r_2 = book[at + R1], book[at + R2]
@@ -77,7 +78,7 @@ def look_ahead(book: Array, at: int, step: float) -> None:
     book[at + AT_REACH], book[at + AT_RATE] = reach, rate
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def choose_contacts(book: Array, at: int, step: float) -> None:
     """Keep the state at which the contacts of a mesh are chosen for this step."""
     book[at + CHOSEN_ANGLE] = book[at + ANGLE] + book[at + TURN]
@@ -100,14 +101,14 @@ def list_individual(
         )  # fmt: skip
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def can_touch(book: Array, at: int, side: int) -> bool:
     """Return whether a flank comes within reach of its least gap in this step."""
     within = (1.0 - 2.0 * side) * book[at + CHOSEN_REACH] - side * book[at + BACKLASH] + book[at + AHEAD]
     return bool(within > book[at + LEAST_GAP])
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def chosen_flank(
     book: Array, at: int, counts: Integers, starts: Integers, least: Array, m: int, side: int, contacts: Array,
     found: Integers,
@@ -125,7 +126,7 @@ def chosen_flank(
     return flank_on_path(book, at, first, stride, found[m, side], omega_1, omega_2)
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def _press_side(
     book: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
     found: Integers, side: int,
@@ -162,7 +163,7 @@ def _add_back(
     book[at + CURVED] += sums.curved
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def react(
     book: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
     found: Integers,
@@ -189,7 +190,7 @@ def react(
         _add_back(book, at, counts, starts, least, data, m, contacts, found)
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def invert(book: Array, at: int, give: Array, own: int) -> None:
     """Keep the inverse of the Newton matrix of a mesh: one less slope times what a torque gives in one step.
 
@@ -207,7 +208,7 @@ def invert(book: Array, at: int, give: Array, own: int) -> None:
     book[at + INVERSE + 2], book[at + INVERSE + 3] = g_21 * scale, g_11 * scale
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def correct(book: Array, at: int, give: Array, first: int, n_meshes: int) -> float:
     """Bring the torques of a mesh to its tangent, all meshes moving with them; return how far off they were.
 
@@ -228,7 +229,7 @@ def correct(book: Array, at: int, give: Array, first: int, n_meshes: int) -> flo
     return float(abs(e_1))
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def left_open(book: Array, at: int) -> float:
     """Bring the force of a mesh to its tangent; return the torque by which the mesh can be off it [N m].
 

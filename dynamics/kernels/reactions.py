@@ -28,6 +28,7 @@ from dynamics.kernels.contact import (
     flank_in_phase,
     flank_on_path,
     flank_powers,
+    inlined,
     list_on_path,
     press_flank,
     sliding_direction,
@@ -37,7 +38,7 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def _path_slopes(
     table: Array, flank: Flank, law: Array, sign: float, reach: float, rate: float, omega_1: float
 ) -> tuple[float, float, float]:
@@ -89,7 +90,7 @@ def mesh_reactions(
     _mesh_reactions(meshes, theta_1, reach, omega_1, omega_2, contacts, np.empty((2, 0), np.int64), out)
 
 
-@njit(cache=True, fastmath=LOOSE, inline="always")
+@inlined
 def _add_flank(
     table: Array, flank: Flank, law: Array, side: int, reach: float, omega_1: float, omega_2: float, out: Array
 ) -> None:  # fmt: skip
