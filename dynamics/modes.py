@@ -88,8 +88,7 @@ def loop_modes(
         if frequency > highest_frequency:
             break
         reach = approach @ shape
-        # a mode without a damper would be infinite at its resonance: rounding is the damping it has at least
-        damping = max(abs(pole.real), np.finfo(float).eps * abs(pole))
+        damping = max(abs(pole.real), LEAST_DAMPING * abs(pole))
         gain = np.abs(reach * (form.loads[i] @ approach.T)) * mean / (damping * abs(pole))
         energy = _strain_energy(parts, shape, mean * np.abs(reach) ** 2)
         found.append(

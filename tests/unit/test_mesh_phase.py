@@ -36,8 +36,9 @@ def test_the_stated_phase_moves_k_v_at_a_resonance_and_not_the_torque() -> None:
         cold = cold_feedback(rig, point)
         models = mesh_models(rig, point, cold)
         factors.append(respond(rig, point, models, {}, brace_cold(rig, point, cold)).dynamic_factor[1])
-    assert abs(factors[1] - factors[0]) > 0.02
     assert factors[2] == pytest.approx(factors[0], rel=1e-4)
+    # fifty times what a whole pitch may move it
+    assert abs(factors[1] - factors[0]) > 50.0 * 1e-4 * factors[0]
 
 
 def test_approach_beyond_the_tables_is_told() -> None:
