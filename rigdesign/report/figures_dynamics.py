@@ -157,10 +157,12 @@ def _orders(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> 
         end = min(top_speed, ceiling / slope)
         axes.plot([0, end], [0, slope * end], color=INK, linewidth=0.9)
         label = "f_z" if harmonic == 1 else f"{harmonic:g} f_z"
+        # the steep lines end close together: their labels stand in two rows
+        row = 13 if harmonic > 2 and harmonic % 2 else 4
         axes.annotate(
-            label, (end, slope * end), textcoords="offset points", xytext=(-3, 4), ha="right", fontsize=7.5
+            label, (end, slope * end), textcoords="offset points", xytext=(-3, row), ha="right", fontsize=7.5
         )
-    axes.set_ylim(0, 1.08 * ceiling)
+    axes.set_ylim(0, 1.16 * ceiling)
 
 
 def _natural_frequencies(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> None:

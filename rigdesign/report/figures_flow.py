@@ -139,6 +139,7 @@ def _boxes(axes: "Axes", found: Layout, colours: Mapping[str, str]) -> None:
                     text, (box.x + 0.5 * NODE_WIDTH, box.low if below else box.high), ha="center",
                     va="top" if below else "bottom", textcoords="offset points", xytext=(0, -3 if below else 3),
                     fontsize=8, fontweight="bold",
+                    bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0.0, "pad": 1.0},
                 )  # fmt: skip
 
 

@@ -57,12 +57,12 @@ def losses_by_place_figure(losses: list[LossRow], stage: str) -> "Figure":
         height=0.65,
         label="into the body",
     )
-    axes.set_yticks(places, [plain(_words(row.place)) for row in rows])
+    axes.set_yticks(places, [plain(_words(f"{row.place}, {row.kind}")) for row in rows])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     finish(axes, f"power loss at stage {plain(stage)} [W]")
     axes.legend(loc="lower right")
-    figure.subplots_adjust(left=0.26, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
+    figure.subplots_adjust(left=0.32, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
     return figure
 
 

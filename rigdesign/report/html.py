@@ -52,6 +52,7 @@ def environment() -> "Environment":
         words=lambda text: str(text).replace("_", " "),
         signs=signs,
         symbol=symbol,
+        check_families=views.check_families,
     )
     templates.globals.update(
         quantity=numbers.quantity_text,

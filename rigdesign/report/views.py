@@ -44,6 +44,14 @@ def bar_width(utilisation: float) -> float:
     return 100 * min(max(utilisation, 0.0), BAR_END) / BAR_END
 
 
+def check_families(identities: Sequence[str]) -> str:
+    """Checks by the group in their ids, ``dynamics (8), oil.room``: a group of one is written out."""
+    groups: dict[str, list[str]] = {}
+    for identity in identities:
+        groups.setdefault(identity.split(".")[0], []).append(identity)
+    return ", ".join(ids[0] if len(ids) == 1 else f"{group} ({len(ids)})" for group, ids in groups.items())
+
+
 def columns(rows: list[dict[str, Any]]) -> list[str]:
     """Keys of all records in their order of appearance, lists (curves) left out."""
     keys = dict.fromkeys(key for row in rows for key in row)

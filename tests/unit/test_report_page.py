@@ -231,6 +231,12 @@ def test_checks_are_ordered_failing_first_then_by_utilisation():
     assert ordered[-1].verdict == "not applicable"
 
 
+def test_checks_behind_an_assumption_are_counted_by_group():
+    ids = ("dynamics.lift_off.test", "dynamics.lift_off.reference", "oil.room", "dynamics.ramp_peak.test")
+    assert views.check_families(ids) == "dynamics (3), oil.room"
+    assert views.check_families(()) == ""
+
+
 def test_drivers_name_the_assumptions_a_check_rests_on():
     drivers = {check.id: records for check, records in views.drivers(make_result())}
     assert drivers["seal_gap_minimum"][0].value == "0.6 mm"
