@@ -2,7 +2,7 @@
 
 import random
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from rigdesign.case import Case
 from rigdesign.case.marks import item_name, take_off
@@ -21,7 +21,18 @@ def leaves(node: object, path: str = "") -> Iterator[tuple[str, object]]:
         yield path, node
 
 
-def mutated(value: object, texts: list[str], choice: random.Random) -> object:
+def kind_of(path: str) -> str:
+    """What a text is: the last key of its path, numbers of list items left out."""
+    return next(key for key in reversed(path.split(".")) if not key.isdigit())
+
+
+def exchanged(path: str, value: str, texts: Mapping[str, list[str]], choice: random.Random) -> str:
+    """Another text of the same kind, a wrong choice or reference that can be meant; any text if there is none."""
+    alike = [text for text in texts[kind_of(path)] if text != value]
+    return choice.choice(alike or [text for of_kind in texts.values() for text in of_kind])
+
+
+def mutated(path: str, value: object, texts: Mapping[str, list[str]], choice: random.Random) -> object:
     factor = 10.0 ** choice.uniform(-1.0, 1.0)
     if isinstance(value, bool):
         return not value
@@ -30,15 +41,20 @@ def mutated(value: object, texts: list[str], choice: random.Random) -> object:
     if isinstance(value, float):
         return value * factor
     match = QUANTITY.fullmatch(str(value))
-    return f"{float(match[1]) * factor:.6g} {match[2]}" if match else choice.choice(texts)
+    return (
+        f"{float(match[1]) * factor:.6g} {match[2]}" if match else exchanged(path, str(value), texts, choice)
+    )
 
 
 def mutations(case: Case, seed: int) -> Iterator[tuple[str, object]]:
     """Endless (path, new value) of one seed."""
     plain, _, _ = take_off(dict(case.origin.tree))
     found = list(leaves(plain))
-    texts = [value for _, value in found if isinstance(value, str) and not QUANTITY.fullmatch(value)]
+    texts: dict[str, list[str]] = {}
+    for path, value in found:
+        if isinstance(value, str) and not QUANTITY.fullmatch(value):
+            texts.setdefault(kind_of(path), []).append(value)
     choice = random.Random(seed)
     while True:
         path, value = choice.choice(found)
-        yield path, mutated(value, texts, choice)
+        yield path, mutated(path, value, texts, choice)

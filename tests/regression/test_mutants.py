@@ -1,8 +1,9 @@
 """Mutants of the shipped case through the whole chain: whatever a case says, no traceback.
 
 A mutant is the shipped case with one number times 0.1 to 10 (even in its logarithm) or one choice or reference
-exchanged for another text of the file. Each goes the way of `rigdesign check --fidelity quick --json`: load, run,
-document. It ends in a result or in an error of the tool's own tree with a message; anything else is a defect.
+exchanged for another text that stands under the same key. Each goes the way of `rigdesign check --fidelity quick
+--json`: load, run, document. It ends in a result or in an error of the tool's own tree with a message; anything else
+is a defect.
 
 So that many can be run, the base is shortened first: a ramp of two seconds with a motor to match, five speeds of
 the curve, a coupling loop of a tenth of its sharpness. Nothing else differs from the shipped case.

@@ -41,6 +41,8 @@ def limit_of(identity: str) -> str:
         "temperature": f"limits.temperatures.{parts[1]}_maximum; limits.temperatures.tempering_distance_minimum",
         "clearance": f"limits.clearances.{parts[1]}_minimum; gearboxes.test.seals.{parts[-1]}.axial_travel",
         "bearing": "limits.bearing.film_thickness_minimum; limits.bearing.specific_load_maximum",
+        "alignment": f"limits.alignment.{parts[1]}_maximum; drivetrain.couplings.{parts[-1]}.radial_offset_maximum; "
+        f"drivetrain.couplings.{parts[-1]}.angle_maximum",
         "oil": f"limits.oil.{parts[1]}_maximum; limits.oil.{parts[1]}_power_maximum; limits.oil.room_heat_maximum",
     }.get(parts[0], "")
 
