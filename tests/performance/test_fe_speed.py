@@ -117,9 +117,9 @@ def supports(mesh: NamedMesh) -> np.ndarray:
 
 
 MESHES: dict[str, Callable[[], NamedMesh]] = {
-    "tet 100k": lambda: gearbox(1.4),
-    "tet 390k": lambda: gearbox(0.82),
-    "tet 1M": lambda: gearbox(0.54),
+    "tet 107k": lambda: gearbox(1.6),
+    "tet 370k": lambda: gearbox(0.97),
+    "tet 1M": lambda: gearbox(0.66),
     "hex 330k": lambda: hollow_box(58, 5),
 }
 
