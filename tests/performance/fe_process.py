@@ -75,7 +75,7 @@ def main(what: str, folder: Path) -> None:
         )
         marks.append(time.process_time())
         warmer = conditions(mesh, given["films"], given["radiating"], warmer=5.0)
-        again = solve_steady(mesh, conductivity, warmer, first.temperature, reuse=setup)
+        again = solve_steady(mesh, conductivity, warmer, near=first, reuse=setup)
         marks.append(time.process_time())
         values, iterations = first.temperature, [first.linear_iterations, again.linear_iterations]
     else:
