@@ -61,6 +61,7 @@ def environment() -> "Environment":
         margin_unit=numbers.margin_unit,
         bar=views.bar_width,
         columns=views.columns,
+        mesh_errors=views.mesh_errors,
         is_number=views.is_number,
         loss_table=views.loss_table,
         crossing_table=views.crossing_table,

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
+from rigdesign.report.numbers import unit_text
 from rigdesign.results import AssumptionRecord, Check, LossRow, RunResult
 
 VERDICT_ORDER = ("fail", "warn", "pass", "not applicable")
@@ -50,6 +51,25 @@ def check_families(identities: Sequence[str]) -> str:
     for identity in identities:
         groups.setdefault(identity.split(".")[0], []).append(identity)
     return ", ".join(ids[0] if len(ids) == 1 else f"{group} ({len(ids)})" for group, ids in groups.items())
+
+
+def mesh_errors(result: RunResult) -> list[dict[str, Any]]:
+    """What the housing mesh leaves open in every check that rests on it, largest share of the margin first.
+
+    At `reference` with the change that the fine mesh made.
+    """
+    shifts = {entry.id: entry.shift for entry in result.reference_shift}
+    rows = []
+    for check in result.checks:
+        if check.discretisation_error is None or check.value is None:
+            continue
+        share = abs(check.discretisation_error / check.margin) if check.margin else None
+        row = {
+            "check": check.title, "value": check.value, "unit": unit_text(check.unit), "margin": check.margin,
+            "mesh_error": check.discretisation_error, "error_over_margin": share,
+        }  # fmt: skip
+        rows.append(row | ({"shift_on_fine_mesh": shifts[check.id]} if check.id in shifts else {}))
+    return sorted(rows, key=lambda row: -(row["error_over_margin"] or 0.0))
 
 
 def columns(rows: list[dict[str, Any]]) -> list[str]:

@@ -237,6 +237,21 @@ def test_checks_behind_an_assumption_are_counted_by_group():
     assert views.check_families(()) == ""
 
 
+def test_mesh_errors_stand_by_their_share_of_the_margin():
+    given = [
+        make_check("clearance.seal_gap", 0.5, 0.3, comparison=">=", discretisation_error=0.02),
+        make_check("oil.room", 1.0, 3.0),
+        make_check("temperature.housing", 99.0, 100.0, unit="degC", discretisation_error=0.5),
+    ]
+    shift = r.MeshShift(id="temperature.housing", standard=98.8, reference=99.0, shift=0.2, unit="degC")
+    result = replace(make_result(), checks=given, reference_shift=[shift])
+    rows = views.mesh_errors(result)
+    assert [row["check"] for row in rows] == ["temperature.housing", "clearance.seal gap"]
+    assert [row["error_over_margin"] for row in rows] == pytest.approx([0.5, 0.1])
+    assert rows[0]["shift_on_fine_mesh"] == 0.2
+    assert "What the mesh leaves open" in report_html(result)
+
+
 def test_drivers_name_the_assumptions_a_check_rests_on():
     drivers = {check.id: records for check, records in views.drivers(make_result())}
     assert drivers["seal_gap_minimum"][0].value == "0.6 mm"
