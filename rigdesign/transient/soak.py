@@ -14,7 +14,7 @@ from rigdesign.transient.limits import broken, clearance_limits
 TRIALS = 4
 """Runs between a warm-up that is too short and one that is long enough."""
 Trial = Callable[[int], bool]
-"""Whether all limits hold after the warm-up has been left at this of its time steps."""
+"""Whether all limits of clearances hold after the warm-up has been left at this of its time steps."""
 
 
 def soak_of(case: Case, planned: Branch, cold: Branch | None, trial: Trial) -> Soak:
@@ -49,12 +49,13 @@ def soak_of(case: Case, planned: Branch, cold: Branch | None, trial: Trial) -> S
         )  # fmt: skip
     text = first_broken(case, cold)
     if text is None:
-        return _soak(planned, stage, 0.0, "every limit holds from a cold start")
+        return _soak(planned, stage, 0.0, "every limit of a clearance holds from a cold start")
     steps = [i for i, number in enumerate(planned.phase) if number == 0]
     enough = shortest(steps, trial)
     return _soak(
         planned, stage, float(planned.times[enough]),
-        f"from a cold start {text}; shortest of {len(steps)} time steps of the warm-up after which all limits hold",
+        f"from a cold start {text}; shortest of {len(steps)} time steps of the warm-up after which all limits of "
+        "clearances hold",
     )  # fmt: skip
 
 
