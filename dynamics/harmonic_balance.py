@@ -195,83 +195,43 @@ def resample(solution: HarmonicSolution, grid: HarmonicGrid) -> HarmonicSolution
     )  # fmt: skip
 
 
-@dataclass(frozen=True, kw_only=True)
-class Waveform:
-    """One period in time at the mean speed of the drive freedom.
-
-    time : (n,) [s]; angle : (n_meshes, n) pinion angle; approach [m], omega_1, omega_2 [rad/s] : the same
-    shape torque : (n_meshes, n) torque transmitted at the pinion, r_b1 (front - back force) [N m]
-    touching : (n_meshes, n) False where no flank carries; friction_power, damping_power : (n_meshes,) mean
-    [W]
-    """
-
-    time: Array
-    angle: Array
-    approach: Array
-    omega_1: Array
-    omega_2: Array
-    torque: Array
-    touching: NDArray[np.bool_]
-    friction_power: Array
-    damping_power: Array
-
-
-def waveform(model: PortModel, solution: HarmonicSolution, samples: int | None = None) -> Waveform:
-    """Mesh motions and torques over one period, ``samples`` per mesh period (default: those of the grid)."""
-    grid, speed = solution.grid, solution.speed
-    count = grid.cells * (samples or grid.samples)
-    base = speed * 2.0 * np.pi / (grid.cell_angle * grid.cells)
-    time = np.arange(count) * (2.0 * np.pi / base / count)
-    motion, rate = _in_time(solution.ports, base, count)
-    shape = (model.n_meshes, count)
-    angle, approach, omega_1, omega_2, torque = (np.empty(shape) for _ in range(5))
-    touching = np.empty(shape, bool)
-    friction, damping = np.empty(model.n_meshes), np.empty(model.n_meshes)
-    for m, packed in enumerate(model.packed):
-        p, w = int(model.pinions[m]), int(model.wheels[m])
-        radius_1, radius_2 = model.base_radii[m]
-        angle[m] = model.ratios[p] * speed * time + motion[p]
-        approach[m] = radius_1 * motion[p] - radius_2 * motion[w] + model.offsets[m]
-        omega_1[m] = model.ratios[p] * speed + rate[p]
-        omega_2[m] = model.ratios[w] * speed + rate[w]
-        reaction = evaluate_mesh(packed, angle[m], approach[m], omega_1[m], omega_2[m])
-        torque[m] = radius_1 * (reaction.force_front - reaction.force_back)
-        touching[m] = (reaction.force_front > 0.0) | (reaction.force_back > 0.0)
-        friction[m], damping[m] = reaction.friction_power.mean(), reaction.damping_power.mean()
-    return Waveform(
-        time=np.asarray(time, float), angle=angle, approach=approach, omega_1=omega_1, omega_2=omega_2,
-        torque=torque, touching=touching, friction_power=friction, damping_power=damping,
-    )  # fmt: skip
-
-
-def _in_time(ports: Complex, base: float, count: int) -> tuple[Array, Array]:
-    """Windup and its rate (n_bodies, count) from one-sided coefficients."""
+def in_time(ports: Complex, base: float, count: int) -> tuple[Array, Array]:
+    """Windup [rad] and its rate [rad/s], (n_bodies, count), from one-sided coefficients ``ports``."""
     order = np.arange(ports.shape[1])
     motion = np.fft.irfft(ports, count, axis=1) * count
     rate = np.fft.irfft(1j * base * order * ports, count, axis=1) * count
     return motion, rate
 
 
+def motion_of_mesh(
+    model: PortModel, m: int, speed: float, drive_angle: Array, motion: Array, rate: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Angle of the pinion [rad], approach [m] and speeds of both gears [rad/s] of mesh ``m``, each (n,).
+
+    drive_angle : (n,) of the drive freedom at its mean ``speed``; motion, rate : (n_bodies, n) as of `in_time`
+    """
+    p, w = int(model.pinions[m]), int(model.wheels[m])
+    radius_1, radius_2 = model.base_radii[m]
+    return (
+        model.ratios[p] * drive_angle + motion[p],
+        radius_1 * motion[p] - radius_2 * motion[w] + model.offsets[m],
+        model.ratios[p] * speed + rate[p],
+        model.ratios[w] * speed + rate[w],
+    )
+
+
 def _evaluate(model: PortModel, grid: HarmonicGrid, speed: float, base: float, ports: Complex) -> _Reactions:
     count = grid.count
-    time_angle = np.arange(count) * (grid.cell_angle * grid.cells / count)
-    motion, rate = _in_time(ports, base, count)
+    drive_angle = np.arange(count, dtype=np.float64) * (grid.cell_angle * grid.cells / count)
+    motion, rate = in_time(ports, base, count)
     torque = np.zeros((model.n_bodies, count))
     tangents = np.empty((2, model.n_meshes, 2, grid.samples))
     transmitted = np.empty((model.n_meshes, count))
     for m, packed in enumerate(model.packed):
-        p, w = int(model.pinions[m]), int(model.wheels[m])
-        radius_1, radius_2 = model.base_radii[m]
-        reaction = evaluate_mesh(
-            packed,
-            model.ratios[p] * time_angle + motion[p],
-            radius_1 * motion[p] - radius_2 * motion[w] + model.offsets[m],
-            model.ratios[p] * speed + rate[p],
-            model.ratios[w] * speed + rate[w],
-        )
-        torque[p] += reaction.torque_1
-        torque[w] += reaction.torque_2
-        transmitted[m] = radius_1 * (reaction.force_front - reaction.force_back)
+        reaction = evaluate_mesh(packed, *motion_of_mesh(model, m, speed, drive_angle, motion, rate))
+        torque[model.pinions[m]] += reaction.torque_1
+        torque[model.wheels[m]] += reaction.torque_2
+        transmitted[m] = model.base_radii[m, 0] * (reaction.force_front - reaction.force_back)
         for row, value in (
             ((0, m, 0), reaction.torque_1_per_approach),
             ((0, m, 1), reaction.torque_2_per_approach),

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.harmonic_balance import HarmonicSolution, Problem, Waveform, waveform
+from dynamics.harmonic_balance import HarmonicSolution, Problem
 from dynamics.harmonic_walk import LEAST_HARMONICS, HarmonicWalk
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
@@ -21,6 +21,7 @@ from dynamics.periodic_response import Period, PeriodicResponse, periodic_by_tim
 from dynamics.propagator import DEFAULT_CUTOFF, ModalModel, modal_model
 from dynamics.static_loop import NotConverged, PortModel, port_model
 from dynamics.time_march import slow_loads
+from dynamics.waveform import Waveform, waveform
 
 Array = NDArray[np.float64]
 Method = Literal["harmonic_balance", "time_integration"]

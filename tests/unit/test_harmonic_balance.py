@@ -6,13 +6,14 @@ import pytest
 
 from dynamics import harmonic_balance
 from dynamics.drivetrain import Motor, assemble
-from dynamics.harmonic_balance import HarmonicGrid, Problem, resample, solve_periodic, waveform
+from dynamics.harmonic_balance import HarmonicGrid, Problem, resample, solve_periodic
 from dynamics.harmonic_walk import HarmonicWalk, highest_mode, mesh_cells, quasi_static_start
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
 from dynamics.modal_form import modal_form
 from dynamics.response_curve import ResponseCurve, periodic_response
 from dynamics.static_loop import NotConverged, port_model
+from dynamics.waveform import waveform
 from tests.rig_example import prototype, prototype_laws
 
 RPM = math.pi / 30.0
