@@ -338,6 +338,30 @@ def press_flank(
     )  # fmt: skip
 
 
+class Contact(NamedTuple):
+    """One column of a phase table at the place of its flank; slopes over the fraction of a cell."""
+
+    position: float
+    stiffness: float
+    stiffness_slope: float
+    gap: float
+    gap_slope: float
+
+
+@inlined
+def contact_at(table: Array, c: int, stride: int, f: float) -> Contact:
+    """Return the contact in column ``c`` at the fraction ``f`` of its cell."""
+    k_1, k_2, k_3 = table[c + stride], table[c + 2 * stride], table[c + 3 * stride]
+    e_1, e_2, e_3 = table[c + 5 * stride], table[c + 6 * stride], table[c + 7 * stride]
+    return Contact(
+        table[c + ROW_S * stride],
+        table[c] + f * (k_1 + f * (k_2 + f * k_3)),
+        k_1 + f * (2.0 * k_2 + 3.0 * f * k_3),
+        table[c + ROW_E * stride] + f * (e_1 + f * (e_2 + f * e_3)),
+        e_1 + f * (2.0 * e_2 + 3.0 * f * e_3),
+    )
+
+
 @inlined
 def flank_powers(
     table: Array, flank: Flank, book: Array, at: int, sign: float, reach: float, rate: float, omega_1: float
@@ -349,14 +373,10 @@ def flank_powers(
     path_speed = sign * book[at + R1] * omega_1 * flank.per_metre
     first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     for i in range(flank.n):
-        c = first + i
-        k_1, k_2, k_3 = table[c + stride], table[c + 2 * stride], table[c + 3 * stride]
-        e_1, e_2, e_3 = table[c + 5 * stride], table[c + 6 * stride], table[c + 7 * stride]
-        s = table[c + ROW_S * stride]
-        k = table[c] + f * (k_1 + f * (k_2 + f * k_3))
-        depth = reach - (table[c + ROW_E * stride] + f * (e_1 + f * (e_2 + f * e_3)))
+        s, k, _, gap, gap_slope = contact_at(table, first + i, stride, f)
+        depth = reach - gap
         depth = depth if depth > 0.0 else 0.0
-        closing = rate - (e_1 + f * (2.0 * e_2 + 3.0 * f * e_3)) * path_speed
+        closing = rate - gap_slope * path_speed
         grown = depth * per_depth
         grown = grown if grown < 1.0 else 1.0
         force = k * (depth + damp_time * grown * closing)

@@ -22,9 +22,9 @@ from dynamics.kernels.contact import (
     R2,
     ROW_E,
     ROW_K,
-    ROW_S,
     Flank,
     PackedMeshes,
+    contact_at,
     flank_in_phase,
     flank_on_path,
     flank_powers,
@@ -50,16 +50,12 @@ def _path_slopes(
     mu_1, mu_2 = sign * law[MU_1], sign * law[MU_2]
     first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     for i in range(flank.n):
-        c = first + i
-        k_1, k_2, k_3 = table[c + stride], table[c + 2 * stride], table[c + 3 * stride]
-        e_1, e_2, e_3 = table[c + 5 * stride], table[c + 6 * stride], table[c + 7 * stride]
-        s = table[c + ROW_S * stride]
-        k = table[c] + f * (k_1 + f * (k_2 + f * k_3))
-        depth = reach - (table[c + ROW_E * stride] + f * (e_1 + f * (e_2 + f * e_3)))
+        s, k, stiffness_slope, gap, gap_slope = contact_at(table, first + i, stride, f)
+        depth = reach - gap
         depth = depth if depth > 0.0 else 0.0
         k = k if depth > 0.0 else 0.0
-        gap_slope = (e_1 + f * (2.0 * e_2 + 3.0 * f * e_3)) * flank.per_metre
-        stiffness_slope = (k_1 + f * (2.0 * k_2 + 3.0 * f * k_3)) * flank.per_metre
+        gap_slope *= flank.per_metre
+        stiffness_slope *= flank.per_metre
         stiffness_slope *= law[DERIVATIVE]
         rho_1, rho_2 = flank.roll_1 + s, flank.roll_2 - s
         sliding = flank.omega_1 * rho_1 - flank.omega_2 * rho_2
