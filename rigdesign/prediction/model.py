@@ -1,0 +1,115 @@
+"""What is predicted: operating points as run, channels of the rig, and the numbers a channel gives at a point."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Quantity = Literal[
+    "temperature",
+    "oil_outlet_temperature",
+    "motor_power",
+    "drive_torque",
+    "torque",
+    "angle",
+    "natural_frequency",
+    "backlash",
+    "seal_gap",
+]
+Part = Literal["value", "real", "imaginary"]
+
+ORDER_QUANTITIES = frozenset({"torque", "angle"})
+"""Quantities that are read as a mean and complex orders of the turning shaft."""
+
+STANDING_QUANTITIES = frozenset({"natural_frequency", "backlash"})
+"""Quantities of the rig at rest and cold: one number, whatever the operating points."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """One operating point as it was run. What is left out is as in the case. SI, kelvin."""
+
+    name: str
+    speed: float
+    """At the gear where the case counts it [rad/s]."""
+    torque: float
+    """Bracing torque at that gear [N m]."""
+    inlet_temperature: Mapping[str, float] = field(default_factory=dict)
+    """By oil stream, ``gearbox.gear_oil`` or ``gearbox.bearing_oil`` [K]."""
+    flow: Mapping[str, float] = field(default_factory=dict)
+    """By oil stream, as the case counts it: per mesh or per bearing [m3/s]."""
+    ambient_temperature: float | None = None
+    tooth_offset: Mapping[str, int] = field(default_factory=dict)
+    """By mesh, ``gearbox.mesh``: teeth by which the wheel was put on further than in the case."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Channel:
+    """One sensor as the model sees it.
+
+    place : of ``temperature`` a surface or body of a housing, ``test.outer_warm``, or the gearbox alone where
+        ``at`` gives coordinates; of ``oil_outlet_temperature`` a stream, ``test.gear_oil``; of ``torque`` a
+        coupling; of ``angle`` a shaft; of ``natural_frequency`` its number from 1, rig at rest; of ``backlash``
+        a mesh, ``test.main``; of ``seal_gap`` a seal as results name it; of ``motor_power`` and
+        ``drive_torque`` the motor
+    """
+
+    name: str
+    quantity: Quantity
+    place: str = ""
+    at: tuple[float, float, float] | None = None
+    """Coordinates in the housing [m]."""
+    orders: tuple[float, ...] = ()
+    """Of ``torque`` and ``angle``: per turn of the gear that counts; 0 is the mean."""
+
+
+@dataclass(frozen=True, order=True)
+class Feature:
+    """One number: a channel at an operating point, of orders the real or imaginary part.
+
+    The signal is the sum of Re(X_k exp(i k phi)) over its orders k; phi is the angle of the gear that counts,
+    zero where its tooth 0 stands at the pitch point of its first mesh (plus the phase of the case).
+    """
+
+    channel: str
+    setting: str
+    """Empty for a standing quantity."""
+    order: float = 0.0
+    part: Part = "value"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prediction:
+    """Numbers of all features, SI."""
+
+    features: tuple[Feature, ...]
+    values: NDArray[np.float64]
+    """(n_features,)"""
+    error: float = 0.0
+    """Stated error of temperatures against the full model [K]."""
+
+
+def features_of(settings: Iterable[Setting], channels: Iterable[Channel]) -> tuple[Feature, ...]:
+    """Features in their fixed order: settings, then channels, then orders; standing quantities at the end."""
+    channels = tuple(channels)
+    found = [
+        feature
+        for setting in settings
+        for channel in channels
+        if channel.quantity not in STANDING_QUANTITIES
+        for feature in _at(channel, setting.name)
+    ]
+    standing = (channel for channel in channels if channel.quantity in STANDING_QUANTITIES)
+    return (*found, *(Feature(channel.name, "") for channel in standing))
+
+
+def _at(channel: Channel, setting: str) -> list[Feature]:
+    if channel.quantity not in ORDER_QUANTITIES:
+        return [Feature(channel.name, setting)]
+    return [Feature(channel.name, setting, order, part) for order in channel.orders for part in _parts(order)]
+
+
+def _parts(order: float) -> tuple[Part, ...]:
+    return ("real", "imaginary") if order else ("value",)
