@@ -273,7 +273,10 @@ def test_interrupt_ends_the_workers_at_once(tmp_path):
     script = tmp_path / "driver.py"
     script.write_text(DRIVER.format(root=str(ROOT), values="oil.inlet=90:118:2 degC"))
     process = subprocess.Popen(
-        [sys.executable, str(script), str(tmp_path / "out")], stderr=subprocess.DEVNULL
+        [sys.executable, str(script), str(tmp_path / "out")],
+        stderr=subprocess.DEVNULL,
+        # a test run in the background of a shell ignores the interrupt, and so would its children
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     log = tmp_path / "out.log"
     _wait(lambda: _stored(tmp_path / "out") >= 1)
