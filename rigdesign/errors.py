@@ -1,13 +1,14 @@
 """Errors a user can meet, with the exit status of the command that raised them.
 
     RigdesignError              1
-    ├── CaseError               2   the case file or a study path is wrong; carries every fault found
+    ├── FaultyInputError            a file of the user is wrong; carries every fault found
+    │   ├── CaseError           2   the case file or a study path
+    │   └── MeasurementError    5   measured data cannot be used
     ├── UsageError              2   a wrong call
     │   └── OutputError         2   an output folder that cannot be written
     ├── NotConvergedError       3   an iteration did not settle, a speed was not reached
     │   └── NonFiniteResultError 3  a result is NaN or infinite
-    ├── MissingLibraryError     4   a system library is missing
-    └── MeasurementError        5   measured data cannot be used
+    └── MissingLibraryError     4   a system library is missing
 
 A message states name, value, limit and remedy. The solvers raise ValueError and RuntimeError of their own;
 ``rigdesign.run`` turns them into this tree.
@@ -26,9 +27,9 @@ class RigdesignError(Exception):
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing wrong with a case: where, what was given, what is accepted, what to do.
+    """One thing wrong with a case or a measurement: where, what was given, what is accepted, what to do.
 
-    path : dotted path of the key, empty for the file as a whole
+    path : dotted path of the key or place in a table, empty for the case as a whole
     given : the value as written, empty where a key is missing
     problem : what is wrong, with the limit
     remedy : what to write instead
@@ -45,16 +46,14 @@ class Fault:
         return f"{place}{given}: {self.problem}; {self.remedy}"
 
 
-class CaseError(RigdesignError):
-    """A case that cannot be computed; lists all its faults at once.
+class FaultyInputError(RigdesignError):
+    """What is wrong with a file or operation: all its faults at once, or one sentence.
 
     Parameters
     ----------
     faults : what is wrong, or one sentence
     source : file or operation the faults belong to
     """
-
-    exit_code = 2
 
     def __init__(self, faults: str | Sequence[Fault], source: str = "") -> None:
         super().__init__(faults, source)
@@ -69,6 +68,12 @@ class CaseError(RigdesignError):
         if len(self.faults) == 1:
             return head + str(self.faults[0])
         return "\n".join([f"{head}{len(self.faults)} faults", *(f"  {fault}" for fault in self.faults)])
+
+
+class CaseError(FaultyInputError):
+    """A case that cannot be computed; lists all its faults at once."""
+
+    exit_code = 2
 
 
 class UsageError(RigdesignError):
@@ -97,8 +102,8 @@ class MissingLibraryError(RigdesignError):
     exit_code = 4
 
 
-class MeasurementError(RigdesignError):
-    """Measured data that cannot be used."""
+class MeasurementError(FaultyInputError):
+    """Measured data that cannot be used; lists all faults at once."""
 
     exit_code = 5
 
