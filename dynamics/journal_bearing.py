@@ -145,6 +145,7 @@ def solve_bearing(
     heat_capacity: float,
     heat_from_bodies: float = 0.0,
     friction_heat: float | None = None,
+    friction_factor: float = 1.0,
 ) -> BearingState:
     """Solve film and heat balance together.
 
@@ -160,6 +161,7 @@ def solve_bearing(
     heat_from_bodies : heat that shaft and shell give to the film; negative if they cool it [W]
     friction_heat : measured or assumed heat of the film, not negative [W]; it takes the place of the friction
         of the film in the heat balance, the drag is that of the film all the same
+    friction_factor : multiplies the drag of the film, and with it its heat; not negative [-]
 
     Returns
     -------
@@ -173,7 +175,9 @@ def solve_bearing(
     Source: ISO 7902-1 / DIN 31652-1: heat carried by the oil alone, effective film temperature the mean of
     inlet and outlet. Heat exchanged with the bodies is an input here instead of an assumed housing film.
     """
-    _check_operation(load, flow, density, heat_capacity, oil_inlet_temperature, friction_heat)
+    _check_operation(
+        load, flow, density, heat_capacity, oil_inlet_temperature, friction_heat, friction_factor
+    )
     speed = abs(omega)
     curve = characteristic(bearing.width / bearing.diameter)
     heat_per_flow = density * heat_capacity
@@ -183,7 +187,7 @@ def solve_bearing(
         return own + heat_from_bodies
 
     def film_excess(temperature: float) -> float:
-        film = _film(bearing, curve, load, speed, viscosity(temperature))
+        film = _film(bearing, curve, load, speed, viscosity(temperature), friction_factor)
         cooling_flow = _cooling_flow(bearing, flow, film.side_flow)
         if cooling_flow == 0.0:
             return math.inf
@@ -191,7 +195,7 @@ def solve_bearing(
         return oil_inlet_temperature + 0.5 * rise - temperature
 
     temperature = _balance(film_excess, oil_inlet_temperature)
-    film = _film(bearing, curve, load, speed, viscosity(temperature))
+    film = _film(bearing, curve, load, speed, viscosity(temperature), friction_factor)
     return _state(
         bearing,
         film,
@@ -201,6 +205,7 @@ def solve_bearing(
         flow=flow,
         density=density,
         heat_from_bodies=heat_from_bodies,
+        friction_factor=friction_factor,
     )
 
 
@@ -244,16 +249,16 @@ class _Film:
 
 
 def _film(
-    bearing: JournalBearing, curve: Characteristic, load: float, omega: float, viscosity: float
+    bearing: JournalBearing, curve: Characteristic, load: float, omega: float, viscosity: float, factor: float
 ) -> _Film:
-    """Drag = Petroff's torque / sqrt(1 - eps^2) plus the pressure part F (C/4) eps sin(beta)."""
+    """Drag = Petroff's torque / sqrt(1 - eps^2) plus the pressure part F (C/4) eps sin(beta), times the factor."""
     sommerfeld = sommerfeld_number(bearing, load, omega, viscosity)
     eps = curve.eccentricity(sommerfeld)
     attitude = curve.attitude_angle(eps)
     couette = petroff_torque(bearing, omega, viscosity) / math.sqrt(1.0 - eps**2)
     pressure = 0.25 * bearing.diametral_clearance * load * eps * math.sin(attitude) if omega > 0.0 else 0.0
     side_flow = bearing.diameter**3 * bearing.relative_clearance * omega * curve.side_flow(eps)
-    return _Film(load, omega, sommerfeld, eps, attitude, couette + pressure, side_flow)
+    return _Film(load, omega, sommerfeld, eps, attitude, factor * (couette + pressure), side_flow)
 
 
 def _cooling_flow(bearing: JournalBearing, flow: float, side_flow: float) -> float:
@@ -292,6 +297,7 @@ def _state(
     flow: float,
     density: float,
     heat_from_bodies: float,
+    friction_factor: float,
 ) -> BearingState:
     load, omega, eps = film.load, film.omega, film.eccentricity
     standstill = omega == 0.0 and load > 0.0
@@ -312,7 +318,9 @@ def _state(
         friction_coefficient=film.torque / (0.5 * bearing.diameter * load) if load > 0.0 else math.inf,
         drag_torque=film.torque,
         power=film.torque * omega,
-        torsional_damping=film.torque / omega if omega > 0.0 else petroff_torque(bearing, 1.0, viscosity),
+        torsional_damping=film.torque / omega
+        if omega > 0.0
+        else friction_factor * petroff_torque(bearing, 1.0, viscosity),
         petroff_torque=petroff_torque(bearing, omega, viscosity),
         film_temperature=film_temperature,
         outlet_temperature=outlet_temperature,
@@ -363,6 +371,7 @@ def _check_operation(
     heat_capacity: float,
     inlet: float,
     friction_heat: float | None,
+    friction_factor: float,
 ) -> None:
     if not (load >= 0.0 and math.isfinite(load)):
         raise BearingError(
@@ -372,6 +381,11 @@ def _check_operation(
         raise BearingError(
             f"journal bearing: friction_heat = {friction_heat} W: must be finite and not negative; give the "
             "measured loss, or none to let the film make its own"
+        )
+    if not (friction_factor >= 0.0 and math.isfinite(friction_factor)):
+        raise BearingError(
+            f"journal bearing: friction_factor = {friction_factor}: must be finite and not negative; give 1 for "
+            "the friction of the film itself"
         )
     for name, value, unit in (
         ("oil flow", flow, "m3/s"),

@@ -49,6 +49,7 @@ def solve_bearings(rig: Rig, point: OperatingPoint, feedback: Feedback) -> dict[
                 oil.heat_capacity(inlet),
                 feedback.bearing_heat[name],
                 friction_heat=_imposed_heat(rig, name, entry, point),
+                friction_factor=box.loss_factors.bearing,
             )
     return states
 
@@ -59,14 +60,15 @@ def _imposed_heat(rig: Rig, name: str, entry: CaseBearing, point: OperatingPoint
     given = given_power(rig.case, point, box, "bearing", part)
     if given is not None:
         return given
-    return 0.0 if rig.case.losses.basis == "input" else constant_drag(rig, entry, point)
+    return 0.0 if rig.case.losses.basis == "input" else constant_drag(rig, box, entry, point)
 
 
-def constant_drag(rig: Rig, entry: CaseBearing, point: OperatingPoint) -> float | None:
+def constant_drag(rig: Rig, box: str, entry: CaseBearing, point: OperatingPoint) -> float | None:
     """Power of a bearing whose drag the case states as constant damping [W]; None where the film decides."""
     if rig.case.losses.bearing_drag == "film" or entry.torsional_damping is None:
         return None
-    return entry.torsional_damping * rig.shaft_speed(entry.shaft, point.speed) ** 2
+    factor = rig.case.gearboxes[box].loss_factors.bearing
+    return factor * entry.torsional_damping * rig.shaft_speed(entry.shaft, point.speed) ** 2
 
 
 def bearing_loads(rig: Rig, feedback: Feedback) -> dict[str, float]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from dynamics.bracing import Mode, ShiftedGear, brace
 from dynamics.flank import Microgeometry, cumulative_pitch, mesh_law
@@ -153,7 +153,15 @@ def mesh_friction(
         roughness=0.5 * (gears[0].flank_roughness + gears[1].flank_roughness),
         viscosity=oil.dynamic_viscosity(temperature),
     )
-    return friction_coefficient(contact, friction_law(rig, oil))
+    own = friction_coefficient(contact, friction_law(rig, oil))
+    return scaled_friction(own, box.loss_factors.mesh)
+
+
+def scaled_friction(own: FrictionCoefficient, factor: float) -> FrictionCoefficient:
+    """A friction coefficient times a factor that its inputs show unless it is 1."""
+    if factor == 1.0:
+        return own
+    return replace(own, value=factor * own.value, inputs=own.inputs | {"loss_factor": factor})
 
 
 def friction_law(rig: Rig, oil: Oil) -> FrictionLaw:

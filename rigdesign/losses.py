@@ -78,7 +78,7 @@ def rotating_losses(
         losses += _seals(rig, box_name, box, point, feedback)
     if computed:
         losses += _squeezing(rig, point, models)
-    return [taken for loss in losses for taken in _taken(rig, point, loss)]
+    return [taken for loss in losses for taken in _taken(rig, point, _scaled(rig, loss))]
 
 
 def mesh_losses(
@@ -145,7 +145,7 @@ def _bearing_loss(
     rig: Rig, box_name: str, part: str, point: OperatingPoint, state: BearingState
 ) -> PlacedLoss:
     entry = rig.case.gearboxes[box_name].bearings[part]
-    drag = constant_drag(rig, entry, point)
+    drag = constant_drag(rig, box_name, entry, point)
     loss = Loss(
         place=f"{box_name}.{part}",
         kind="bearing",
@@ -258,6 +258,16 @@ def body_split(rig: Rig, name: str) -> HeatSplit:
     if box.housing is not None:
         return box.heat_split
     return HeatSplit(mesh_into_gears=0.0, windage_into_gears=0.0, seal_into_shaft=0.0, seal_into_housing=0.0)
+
+
+def _scaled(rig: Rig, placed: PlacedLoss) -> PlacedLoss:
+    """The loss times the factor of its gearbox; friction of bearings and teeth holds theirs already."""
+    factor = rig.case.gearboxes[placed.gearbox].loss_factors.of(placed.loss.kind)
+    if factor == 1.0 or placed.loss.kind in ("bearing", "mesh"):
+        return placed
+    loss = placed.loss
+    loss = replace(loss, power=factor * loss.power, details=loss.details | {"loss_factor": factor})
+    return replace(placed, loss=loss, into_body=factor * placed.into_body)
 
 
 def _taken(rig: Rig, point: OperatingPoint, placed: PlacedLoss) -> list[PlacedLoss]:

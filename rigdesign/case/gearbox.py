@@ -24,6 +24,7 @@ from rigdesign.case.fields import (
 )
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.housing import Housing
+from rigdesign.case.losses import LossFactors
 
 
 class GearOil(Part):
@@ -144,6 +145,7 @@ class Gearbox(Part):
     bearing_oil: BearingOil
     seals: Mapping[Name, Seals] = {}
     heat_split: HeatSplit
+    loss_factors: LossFactors = LossFactors()
     housing: Housing | None = None
     """Geometry and boundary conditions; a gearbox without one has no temperature field."""
 

@@ -1,13 +1,43 @@
 """How power losses are found: computed, or given by place."""
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from rigdesign.case.fields import Density, Name, Part, Positive, Power
 
 LossKind = Literal["mesh", "bearing", "windage", "seal", "oil_acceleration", "squeeze"]
+
+
+LossFactor = Annotated[float, Field(ge=0.0, le=10.0)]
+"""Multiplies a loss: what it really is, over what its law or the case says."""
+
+
+class LossFactors(Part):
+    """Losses of one gearbox over what their laws, or the case, say: heat in the box and torque on its shafts alike."""
+
+    mesh: LossFactor = 1.0
+    """On the friction coefficient of the teeth."""
+    bearing: LossFactor = 1.0
+    """On the friction of the bearing films, or on their constant drag."""
+    windage: LossFactor = 1.0
+    seal: LossFactor = 1.0
+    jet: LossFactor = 1.0
+    """On the power that brings the oil of the jets up to speed."""
+    squeeze: LossFactor = 1.0
+    """On squeezing, a share of the mesh loss: follows ``mesh`` besides."""
+
+    def of(self, kind: str) -> float:
+        """Factor of a kind of loss as results name it."""
+        return {
+            "mesh": self.mesh,
+            "bearing": self.bearing,
+            "windage": self.windage,
+            "seal": self.seal,
+            "oil_acceleration": self.jet,
+            "squeeze": self.squeeze,
+        }[kind]
 
 
 class GivenLoss(Part):

@@ -150,7 +150,9 @@ def _bearings(case: Case) -> list[dyn.JournalBearing]:
                     name=f"{box_name}.{name}",
                     shaft=bearing.shaft,
                     position=bearing.position,
-                    linear_drag=(bearing.torsional_damping or 0.0) if constant else 0.0,
+                    linear_drag=box.loss_factors.bearing * (bearing.torsional_damping or 0.0)
+                    if constant
+                    else 0.0,
                 )
             )
     return bearings
