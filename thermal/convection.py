@@ -106,14 +106,15 @@ def oil_wetted(value: float = 300.0) -> FilmLaw:
 
 
 def scaled(law: FilmLaw, factor: float) -> FilmLaw:
-    """``law`` times a factor [-], which stands for its scatter; the factor is among its inputs unless it is 1."""
+    """``law`` times a factor [-], which stands for its scatter; among its inputs unless 1, as product if scaled before."""
     positive("film factor", factor, "")
     if factor == 1.0:
         return law
 
     def multiplied(wall: float, fluid: float) -> FilmCoefficient:
         film = law(wall, fluid)
-        return replace(film, value=factor * film.value, inputs=film.inputs | {"film_factor": factor})
+        whole = factor * film.inputs.get("film_factor", 1.0)
+        return replace(film, value=factor * film.value, inputs=film.inputs | {"film_factor": whole})
 
     return multiplied
 

@@ -66,8 +66,12 @@ class _Condition(Part):
     """Surface names; ``*`` stands for any run of characters."""
 
 
+FilmFactor = Annotated[float, Field(gt=0.0, le=10.0)]
+"""Multiplies a film: what it really is, over what its law or the case says."""
+
+
 class _Correlation(_Condition):
-    film_factor: float = Field(default=1.0, gt=0.0, le=10.0)
+    film_factor: FilmFactor = 1.0
     """Multiplies the film: with a range it stands for the scatter of the correlation."""
 
 
@@ -137,6 +141,8 @@ class ConstantFilm(_Condition):
     """For a printed coefficient to room air: what it was read from."""
     fluid_temperature: Temperature | None = None
     """Overrides the temperature of the fluid."""
+    film_factor: FilmFactor = 1.0
+    """Multiplies the coefficient."""
 
 
 class FlankFilm(_Condition):
@@ -148,7 +154,7 @@ class FlankFilm(_Condition):
     ``heat_transfer_coefficient`` on the flanks."""
     wetted_share: float = Field(default=1.0, gt=0.0, le=1.0)
     """Outer share of the tooth height that the oil reaches."""
-    film_factor: float = Field(default=1.0, gt=0.0, le=10.0)
+    film_factor: FilmFactor = 1.0
     """Multiplies the film."""
     heat_transfer_coefficient: HeatTransferCoefficient | None = None
     """Mean over all flanks, for ``constant``."""
@@ -185,6 +191,8 @@ class BearingFilm(_Condition):
     """Bore or journal to the lubricant film: conductance of the film, sink at film temperature."""
 
     law: Literal["bearing_film"]
+    film_factor: FilmFactor = 1.0
+    """Multiplies the conductance between film and wall, not what the film carries or heats."""
 
 
 class ThermalRadiation(_Condition):
@@ -216,6 +224,8 @@ class SeriesExchange(_Condition):
     partner: Text
     coefficients: tuple[HeatTransferCoefficient, HeatTransferCoefficient]
     """Film on the surface, film on the partner."""
+    film_factor: FilmFactor = 1.0
+    """Multiplies the conductance of both in series."""
 
 
 class FixedTemperature(_Condition):
@@ -300,6 +310,10 @@ class Housing(Part):
     where bearings, shafts and gears carry the names of the box."""
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
     boundary: Mapping[Name, Condition] = Field(min_length=1)
+    ambient_film_factor: FilmFactor = 1.0
+    """Multiplies every film to room air, beside the ``film_factor`` of each: draught, a stuffy corner."""
+    bearing_film_factor: FilmFactor = 1.0
+    """Multiplies the conductance between every bearing film and its walls, beside the ``film_factor`` of each."""
     radiation_included: bool
     """True: a Niemann/Winter film to room air already contains radiation, explicit radiation of those surfaces is
     left out of the verdicts; the other reading is computed beside it. Other films hold none: beside them explicit

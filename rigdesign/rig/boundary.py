@@ -158,14 +158,15 @@ def _condition(
             law=_exchange_law(context, condition, surface),
         )
     if isinstance(condition, laws.BearingFilm):
-        return _bearing_film(context, surface)
+        return _bearing_film(context, condition, surface)
     if isinstance(condition, laws.FlankFilm):
         gear = next(gear for gear, rim in rim_surfaces(context.box).items() if rim == surface)
         return gear_flanks(context.rig, context.name, gear, context.point, condition).film(surface, GEAR_OIL)
     kind, temperature = _fluid_of(context, condition)
-    return Film(
-        surface=surface, kind=kind, fluid_temperature=temperature, law=_film_law(context, condition, surface)
-    )
+    law = _film_law(context, condition, surface)
+    if kind == AIR:
+        law = convection.scaled(law, context.housing.ambient_film_factor)
+    return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
 
 
 def _fluid_of(context: _Context, condition: laws.Condition) -> tuple[str, float]:
@@ -190,7 +191,7 @@ def _film_law(context: _Context, condition: laws.Condition, surface: str) -> Fil
         formula = "constant" if taken is None or taken.law is None else taken.law
         usual = None if condition.fluid == "ambient" else convection.OIL_RANGE
         value, source = condition.heat_transfer_coefficient, context.source(condition)
-        return convection.constant(value, source, formula, usual)
+        return convection.scaled(convection.constant(value, source, formula, usual), condition.film_factor)
     raise TypeError(f"no film law for {type(condition).__name__}")
 
 
@@ -205,10 +206,11 @@ def _exchange_law(
         return convection.scaled(across(*turning, gap), condition.film_factor)
     first, second = condition.coefficients
     source = "input of the case"
-    return convection.series(convection.constant(first, source), convection.constant(second, source))
+    films = convection.series(convection.constant(first, source), convection.constant(second, source))
+    return convection.scaled(films, condition.film_factor)
 
 
-def _bearing_film(context: _Context, surface: str) -> Film:
+def _bearing_film(context: _Context, condition: laws.BearingFilm, surface: str) -> Film:
     """Conductance of the film from its mean temperature; the sink is that temperature, no source beside it."""
     shaft = context.shaft(surface).name
     side = "front" if surface.endswith("front") else "rear"
@@ -220,7 +222,10 @@ def _bearing_film(context: _Context, surface: str) -> Film:
         surface=surface,
         kind=f"{BEARING_FILM}:{part}",
         fluid_temperature=state.film_temperature,
-        law=convection.bearing_film(oil.conductivity(state.film_temperature), 1.0 / state.mean_inverse_gap),
+        law=convection.scaled(
+            convection.bearing_film(oil.conductivity(state.film_temperature), 1.0 / state.mean_inverse_gap),
+            context.housing.bearing_film_factor * condition.film_factor,
+        ),
     )
 
 
