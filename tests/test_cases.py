@@ -6,7 +6,7 @@ engineering reason. After a change that moves them for a good reason, run
     rigdesign check cases/uhcf_prototype --json
 
 and carry verdicts and utilisations over; the reasons stay, or are thought over again. The prototype is held at
-standard fidelity, the main rig at quick.
+standard fidelity, the others at quick.
 """
 
 import json
@@ -21,7 +21,7 @@ from rigdesign.results import RunResult
 
 CASES = Path(__file__).parents[1] / "cases"
 PROTOTYPE = CASES / "uhcf_prototype"
-NAMES = ("uhcf_prototype", "uhcf_main")
+NAMES = ("uhcf_prototype", "uhcf_main", "loop_1to1", "loop_hunting")
 EXPECTED = {name: json.loads((CASES / name / "expected.json").read_text(encoding="utf-8")) for name in NAMES}
 UTILISATION_TOLERANCE = 0.03
 
