@@ -109,6 +109,17 @@ def display(value: float, kind: str, unit: str | None = None) -> float:
     return (value - offset) / factor
 
 
+def worth(kind: str, unit: str) -> tuple[float, float]:
+    """Factor and offset that turn a number in ``unit``, as ``KINDS`` spells it, into SI."""
+    table = KINDS[kind]
+    return _worth(table.units[unit], table.si)
+
+
+def same_unit(first: str, second: str) -> bool:
+    """Whether two texts spell one unit: ``N·m``, ``N m``; ``°C``, ``degC``."""
+    return _normal(first) == _normal(second)
+
+
 def show(value: float, kind: str, unit: str | None = None, digits: int = 6) -> str:
     """Text of ``value`` [SI] as number and unit, e.g. ``140 degC``."""
     return f"{display(value, kind, unit):.{digits}g} {unit or KINDS[kind].display_unit}"

@@ -1,0 +1,28 @@
+"""Measurement sets: what sensors of the rig read, as numbers a prediction can be held against.
+
+    load_measurement(folder, case) -> MeasurementSet     sensors, operating points as run, readings
+    features(measurement) -> Data                        means over repeats, noise, data checks
+
+``document`` is the table of contents of measurement.toml.
+"""
+
+from rigdesign.measurement.features import Data, features
+from rigdesign.measurement.loader import load_measurement
+from rigdesign.measurement.model import (
+    Finding,
+    MeasuredChannel,
+    MeasuredPoint,
+    MeasurementSet,
+    SettingSensor,
+)
+
+__all__ = [
+    "Data",
+    "Finding",
+    "MeasuredChannel",
+    "MeasuredPoint",
+    "MeasurementSet",
+    "SettingSensor",
+    "features",
+    "load_measurement",
+]

@@ -1,0 +1,135 @@
+"""measurement.toml: what a user states about a measurement set; every key known, every fault at once."""
+
+from collections.abc import Mapping
+from datetime import date
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from rigdesign.case.fields import Angle, Frequency, Name, Offset, Part, Quantity, Share, Text, fault
+from rigdesign.measurement.quantities import SettingQuantity
+from rigdesign.prediction import model as prediction
+
+Label = Annotated[str, Field(pattern=r"^\S(.*\S)?$", max_length=80)]
+"""Name of a column or point as the table has it."""
+Delay = Annotated[float, Quantity("time", at_least="0 s", at_most="1 s")]
+
+
+class Recording(Part):
+    """Raw time data of one operating point and repeat."""
+
+    point: Label
+    repeat: Annotated[int, Field(ge=1)] = 1
+    file: Text
+    """.tdms, .h5, .hdf5, .mf4 or .csv, beside measurement.toml."""
+    start_turn: Annotated[float, Field(ge=0.0)] | None = None
+    """Turns of the gear that counts between the meeting of both teeth 0 and the angle zero of the recording:
+    without it the phases of fractional orders are not known."""
+
+
+class Tach(Part):
+    """How the angle of the gear that counts follows from a recording."""
+
+    kind: Literal["pulses", "angle"]
+    """pulses: one or more a turn; angle: an encoder's angle."""
+    signal: Label
+    pulses_per_turn: Annotated[int, Field(ge=1)] = 1
+    index: Label | None = None
+    """Signal with one pulse a turn, which says where zero is; needed with several pulses a turn."""
+    unit: Literal["deg", "rad", "mrad"] = "deg"
+    """Of an angle."""
+    wraps: bool = True
+    """Whether the angle starts again at zero every turn."""
+    zero: Angle = 0.0
+    """Angle of the gear that counts at the index pulse, or where the encoder reads zero."""
+
+
+class Data(Part):
+    """Files of the set."""
+
+    table: Text = "data.csv"
+    orders: Text | None = None
+    delimiter: Literal[",", ";", "\t"] = ","
+    decimal: Literal[".", ","] = "."
+    encoding: Literal["utf-8", "cp1252", "utf-16"] = "utf-8"
+    recordings: tuple[Recording, ...] = ()
+    tach: Tach | None = None
+    """Needed for recordings of torque or angle."""
+
+    @model_validator(mode="after")
+    def _signs(self) -> "Data":
+        if self.delimiter == self.decimal:
+            raise fault(
+                "delimiter and decimal are both a comma",
+                'write delimiter = ";" for files with decimal commas',
+            )
+        return self
+
+
+class Point(Part):
+    """What is known of one operating point besides its row."""
+
+    steady: bool = True
+    """Whether temperatures had settled."""
+    reassembled: bool = False
+    """Put together anew since the point before."""
+    tooth_offset: Mapping[Text, int] = {}
+    """By mesh, ``gearbox.mesh``: teeth by which the wheel was put on further than in the case."""
+
+
+class SettingColumn(Part):
+    """A column that says how the points were run."""
+
+    quantity: SettingQuantity
+    place: str = ""
+    """Oil stream of an inlet temperature or flow, ``gearbox.gear_oil``."""
+    unit: Text
+    uncertainty: Text
+    """1 sigma of one reading."""
+
+
+class Transfer(Part):
+    """What sensor and logger let through: a Butterworth low-pass, and a delay."""
+
+    kind: Literal["low_pass"]
+    frequency: Frequency
+    poles: Annotated[int, Field(ge=1, le=8)] = 1
+    delay: Delay = 0.0
+
+
+class ChannelTable(Part):
+    """One sensor."""
+
+    quantity: prediction.Quantity
+    place: str = ""
+    """Where on the rig; see ``rigdesign.prediction.model.Channel``."""
+    at: tuple[Offset, Offset, Offset] | None = None
+    """Coordinates in the housing, for a temperature with the gearbox as its place."""
+    unit: Text
+    uncertainty: Text
+    """1 sigma of one reading; of a torque or angle of its mean and of each real or imaginary part."""
+    offset_uncertainty: Text | None = None
+    """1 sigma, systematic, the same over the set."""
+    scale_uncertainty: Share = 0.0
+    """1 sigma, systematic, relative; of a thermocouple relative to its excess over ambient."""
+    calibrated: date | None = None
+    orders: tuple[Annotated[float, Field(ge=0.0)], ...] | None = None
+    """Per turn of the gear that counts, 0 is the mean; from tooth numbers when left out."""
+    transfer: Transfer | None = None
+    signal: Label | None = None
+    """Name in recordings; that of the channel when left out."""
+
+
+class MeasurementFile(Part):
+    """Content of measurement.toml."""
+
+    schema_version: Literal[1]
+    title: Text
+    baseline: Text | None = None
+    """Healthy set of the same rig, a folder beside this one."""
+    case: Name | None = None
+    """Name of the case the set belongs to; a set of another one is refused."""
+    data: Data = Data()
+    points: Mapping[Label, Point] = {}
+    settings: Mapping[Label, SettingColumn] = Field(min_length=1)
+    channels: Mapping[Label, ChannelTable] = Field(min_length=1)

@@ -1,0 +1,163 @@
+"""Loads a measurement set: measurement.toml, its tables and recordings, held against the case."""
+
+import hashlib
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from rigdesign.case import Case
+from rigdesign.case.faults import faults_of, written
+from rigdesign.errors import Fault, MeasurementError
+from rigdesign.measurement.columns import channels_of, column_faults, sensors_of
+from rigdesign.measurement.document import MeasurementFile
+from rigdesign.measurement.model import Finding, MeasurementSet
+from rigdesign.measurement.order_table import read_orders
+from rigdesign.measurement.places import Places
+from rigdesign.measurement.rows import Rows, points_of
+from rigdesign.measurement.table import read_table
+
+FILE = "measurement.toml"
+
+
+def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
+    """Load a measurement set and hold it against the case.
+
+    Parameters
+    ----------
+    path : folder with measurement.toml, or that file
+
+    Raises
+    ------
+    MeasurementError
+        With every fault found: key or cell, value, limit, remedy; and when no reading is left to use.
+    """
+    file = measurement_file(Path(path))
+    content = _read(file)
+    document = _validated(content, file)
+    places = Places(case)
+    folder = file.parent
+    faults = [*_head_faults(document, file, case), *column_faults(document, places)]
+    try:
+        table = read_table(folder, document.data.table, document.data, with_units=True)
+    except MeasurementError as error:
+        raise MeasurementError([*faults, *error.faults], str(file)) from None
+    rows = Rows(document, table)
+    faults += rows.faults
+    if faults:
+        raise MeasurementError(faults, str(file))
+    channels = channels_of(document, places)
+    sensors = sensors_of(document)
+    points, findings = points_of(document, sensors, rows)
+    readings = rows.scalars(channels, points)
+    findings += rows.findings(channels)
+    try:
+        if document.data.orders is not None:
+            readings |= read_orders(folder, document, channels, rows, readings, findings)
+    except MeasurementError as error:
+        raise MeasurementError(error.faults, str(file)) from None
+    at = {"", *(point.name for point in points)}
+    readings = {feature: values for feature, values in readings.items() if feature.setting in at}
+    found = {feature.channel for feature in readings}
+    findings += [
+        Finding(
+            id="missing_channel", weight="dropped", channels=(name,),
+            text=f"{name}: no column, order or recording holds this channel; add it or remove [channels.{name}]",
+        )
+        for name in channels if name not in found
+    ]  # fmt: skip
+    if not readings:
+        raise MeasurementError(
+            "no channel has a reading; add columns with the names under [channels]", str(file)
+        )
+    return MeasurementSet(
+        title=document.title,
+        folder=folder,
+        case=case,
+        baseline=None if document.baseline is None else (folder / document.baseline).resolve(),
+        channels={name: channel for name, channel in channels.items() if name in found},
+        setting_sensors=sensors,
+        points=points,
+        readings=readings,
+        findings=tuple(findings),
+        hash=_hash(file, document),
+    )
+
+
+def measurement_file(path: Path) -> Path:
+    """measurement.toml of a folder, or the file itself; MeasurementError when there is none."""
+    file = path / FILE if path.is_dir() else path
+    if not file.is_file():
+        what = f"no {FILE} in this folder" if path.is_dir() else "no such file or folder"
+        raise MeasurementError(f"{what}; give the folder of a measurement set", str(path))
+    return file
+
+
+def read_document(file: Path) -> MeasurementFile:
+    """measurement.toml alone, validated; MeasurementError with all its faults."""
+    return _validated(_read(file), file)
+
+
+def _read(file: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(file.read_bytes().decode("utf-8-sig"))
+    except OSError as error:
+        raise MeasurementError(
+            f"cannot be read: {error.strerror}; check the path and its rights", str(file)
+        ) from None
+    except UnicodeDecodeError as error:
+        raise MeasurementError(
+            f"is not UTF-8 text (byte {error.start}); save it as UTF-8", str(file)
+        ) from None
+    except tomllib.TOMLDecodeError as error:
+        raise MeasurementError(
+            f"is not valid TOML or was cut off: {error}; correct it there", str(file)
+        ) from None
+    except RecursionError:
+        raise MeasurementError("is nested too deeply to be read; flatten its tables", str(file)) from None
+
+
+def _validated(content: dict[str, Any], file: Path) -> MeasurementFile:
+    tree = _tuples(content)
+    try:
+        return MeasurementFile.model_validate(tree)
+    except ValidationError as error:
+        raise MeasurementError(faults_of(error, MeasurementFile, tree), str(file)) from None
+
+
+def _tuples(node: Any) -> Any:
+    """The tree with tuples for lists, as strict models want them."""
+    if isinstance(node, dict):
+        return {key: _tuples(value) for key, value in node.items()}
+    return tuple(_tuples(item) for item in node) if isinstance(node, list) else node
+
+
+def _head_faults(document: MeasurementFile, file: Path, case: Case) -> Iterable[Fault]:
+    if document.case is not None and document.case != case.name:
+        yield Fault(
+            "case", written(document.case), f"the set belongs to another rig than case {case.name}",
+            "give its own case, or correct the key",
+        )  # fmt: skip
+    if document.baseline is None:
+        return
+    folder = (file.parent / document.baseline).resolve()
+    if folder == file.parent.resolve():
+        yield Fault("baseline", written(document.baseline), "is this set itself", "name the healthy set")
+    elif not (folder / FILE).is_file():
+        yield Fault(
+            "baseline", written(document.baseline), f"no {FILE} in {folder}",
+            "write the path of the healthy set from this folder",
+        )  # fmt: skip
+
+
+def _hash(file: Path, document: MeasurementFile) -> str:
+    """SHA-256 over measurement.toml and the files it names."""
+    data = document.data
+    names = [data.table, *([data.orders] if data.orders else []), *(entry.file for entry in data.recordings)]
+    digest = hashlib.sha256(file.read_bytes())
+    for name in dict.fromkeys(names):
+        path = file.parent / name
+        digest.update(hashlib.sha256(path.read_bytes()).digest() if path.is_file() else b"")
+    return digest.hexdigest()

@@ -1,0 +1,123 @@
+"""orders.csv: averaged complex orders, one row per point, repeat, channel and order."""
+
+from collections.abc import Mapping, MutableSequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.case.faults import unknown, written
+from rigdesign.errors import Fault, MeasurementError
+from rigdesign.measurement.document import MeasurementFile
+from rigdesign.measurement.model import Finding, MeasuredChannel
+from rigdesign.measurement.quantities import CHANNELS, to_si
+from rigdesign.measurement.rows import Rows
+from rigdesign.measurement.table import MOST_FAULTS, numbers, read_table
+from rigdesign.prediction.model import ORDER_QUANTITIES, Feature
+
+COLUMNS = ("point", "repeat", "channel", "order", "real", "imaginary")
+SAME_ORDER = 1e-4
+"""Most difference between an order of the table and one that is asked for."""
+
+
+def read_orders(
+    folder: Path,
+    document: MeasurementFile,
+    channels: Mapping[str, MeasuredChannel],
+    rows: Rows,
+    known: Mapping[Feature, NDArray[np.float64]],
+    findings: MutableSequence[Finding],
+) -> dict[Feature, NDArray[np.float64]]:
+    """Readings of all order channels by feature [SI].
+
+    A mean is taken from here only where data.csv has no column of the channel (``known``). Orders that no
+    channel asks for are left out with a finding.
+
+    Raises
+    ------
+    MeasurementError
+        A column is missing, a cell is no number, a point, repeat or channel is unknown, a row stands twice.
+    """
+    assert document.data.orders is not None
+    table = read_table(folder, document.data.orders, document.data, with_units=False)
+    missing = [name for name in COLUMNS if name not in table.names]
+    if missing:
+        raise MeasurementError(
+            [
+                Fault(
+                    f"{table.file} line 1",
+                    "",
+                    f"no column {', '.join(missing)}",
+                    f"write {', '.join(COLUMNS)}",
+                )
+            ]
+        )
+    faults: list[Fault] = []
+    values = {}
+    for name in ("repeat", "order", "real", "imaginary"):
+        values[name], wrong = numbers(table, name, document.data.decimal)
+        faults += wrong
+    found: dict[Feature, NDArray[np.float64]] = {}
+    written_at: dict[tuple[Feature, int], int] = {}
+    unused: dict[str, set[float]] = {}
+    order_channels = tuple(name for name, c in channels.items() if c.channel.quantity in ORDER_QUANTITIES)
+    for row, line in enumerate(table.lines):
+        point, name = table.column("point")[row].strip(), table.column("channel")[row].strip()
+        at = f"{table.file} line {line}"
+        if point not in rows.names:
+            faults.append(unknown(f"{at}, point", point, rows.names, f"point in {rows.table.file}"))
+            continue
+        if name not in order_channels:
+            faults.append(unknown(f"{at}, channel", name, order_channels, "channel of torque or angle"))
+            continue
+        order, repeat = values["order"][row], values["repeat"][row]
+        place = rows.place(point, int(repeat)) if repeat == round(repeat) else None
+        if place is None or not order >= 0.0:
+            faults.append(
+                Fault(at, written(f"repeat {repeat:g}, order {order:g}"),
+                      f"no such repeat of {point} in {rows.table.file}, or an order below zero", "correct the row")
+            )  # fmt: skip
+            continue
+        asked = next((k for k in channels[name].channel.orders if abs(k - order) <= SAME_ORDER), None)
+        if asked is None:
+            unused.setdefault(name, set()).add(order)
+            continue
+        kind, unit = CHANNELS[channels[name].channel.quantity].kind, channels[name].unit
+        parts = ("value",) if asked == 0.0 else ("real", "imaginary")
+        for part, column in zip(parts, ("real", "imaginary")):
+            feature = Feature(name, point, asked, part)  # type: ignore[arg-type]
+            if asked == 0.0 and feature in known:
+                continue
+            if (feature, place) in written_at:
+                faults.append(
+                    Fault(
+                        at,
+                        f"{name}, order {order:g}",
+                        f"stands in line {written_at[feature, place]}, too",
+                        "remove one",
+                    )
+                )
+                break
+            written_at[feature, place] = line
+            readings = found.setdefault(feature, np.full(len(rows.rows_of(point)), np.nan))
+            readings[place] = to_si(values[column][row], kind, unit)
+    if faults:
+        raise MeasurementError(faults[:MOST_FAULTS])
+    findings.extend(
+        Finding(id="unused_order", weight="note", channels=(name,),
+                text=f"{name}: {len(orders)} orders of {table.file} are not compared ({_shown(orders)}); name them "
+                f"in channels.{name}.orders to use them")
+        for name, orders in unused.items()
+    )  # fmt: skip
+    if table.cut is not None:
+        findings.append(
+            Finding(id="cut_file", weight="dropped",
+                    text=f"{table.file} line {table.cut}: the file ends inside this row, which is left out; export "
+                    "it again")
+        )  # fmt: skip
+    return found
+
+
+def _shown(orders: set[float]) -> str:
+    first = sorted(orders)[:5]
+    return ", ".join(f"{order:g}" for order in first) + (", …" if len(orders) > len(first) else "")

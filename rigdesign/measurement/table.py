@@ -1,0 +1,177 @@
+"""Tables on disk: names in the first row, units in the second, numbers below; decimal points or commas."""
+
+import csv
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rigdesign.case.faults import written
+from rigdesign.errors import Fault, MeasurementError
+from rigdesign.measurement.document import Data
+
+MISSING = frozenset(("", "nan", "n/a", "na", "-", "--", "#n/a"))
+"""Cells that say that there is no reading."""
+MOST_FAULTS = 20
+"""Cells of one table that are complained of one by one."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table as text.
+
+    names, units : one per column; units are empty texts where the file has none
+    rows : cells, each row as long as ``names``
+    lines : line of the file of each row, from 1
+    cut : line of a last row that ends early and was left out; None for a whole file
+    """
+
+    file: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    lines: tuple[int, ...]
+    cut: int | None = None
+
+    def column(self, name: str) -> tuple[str, ...]:
+        """Cells of a column; KeyError when there is none."""
+        if name not in self.names:
+            raise KeyError(name)
+        return tuple(row[self.names.index(name)] for row in self.rows)
+
+
+def read_table(folder: Path, name: str, data: Data, *, with_units: bool) -> Table:
+    """Read a table of the set.
+
+    Parameters
+    ----------
+    with_units : whether a second row with units must be there; else one is taken where it holds no number
+
+    Raises
+    ------
+    MeasurementError
+        The file is missing, empty, not text, has columns without or of the same name, or rows of other length.
+    """
+    rows = _cells(folder / name, name, data)
+    if len(rows) < 2:
+        raise MeasurementError(
+            [Fault(name, "", "holds no readings", "write names, units and at least one row")]
+        )
+    names = tuple(cell.strip() for cell in rows[0][1])
+    faults = _names(name, names, data)
+    units, body = ("",) * len(names), rows[1:]
+    has_units = not any(_is_number(cell, data.decimal) for cell in body[0][1])
+    if has_units:
+        units = tuple(cell.strip() for cell in body[0][1])
+        units, body = units + ("",) * (len(names) - len(units)), body[1:]
+    elif with_units:
+        faults.append(
+            Fault(f"{name} line 2", written(", ".join(body[0][1])), "a row of units is missing below the names",
+                  "write the unit of every column there, nothing below point and repeat")
+        )  # fmt: skip
+    cut = None
+    if body and len(body[-1][1]) < len(names):
+        cut, body = body[-1][0], body[:-1]
+    for line, cells in body:
+        if len(cells) != len(names):
+            faults.append(
+                Fault(f"{name} line {line}", "", f"has {len(cells)} cells, the names are {len(names)}",
+                      "correct the row; an empty cell is a missing reading")
+            )  # fmt: skip
+    if not body and not faults:
+        faults.append(Fault(name, "", "holds no complete row of readings", "write at least one row"))
+    if faults:
+        raise MeasurementError(faults[:MOST_FAULTS])
+    return Table(
+        name, names, units, tuple(tuple(cells) for _, cells in body), tuple(line for line, _ in body), cut
+    )
+
+
+def number(cell: str, decimal: str) -> float:
+    """The number of a cell, NaN for a missing one; ValueError for anything else."""
+    text = cell.strip()
+    if text.lower() in MISSING:
+        return math.nan
+    if decimal == "," and "." in text:
+        raise ValueError("a point in a file with decimal commas")
+    if decimal == "." and "," in text:
+        raise ValueError("a comma in a file with decimal points")
+    value = float(text.replace(",", ".").replace("\u2212", "-"))
+    if not math.isfinite(value):
+        raise ValueError("not finite")
+    return value
+
+
+def numbers(table: Table, name: str, decimal: str) -> tuple[list[float], list[Fault]]:
+    """A column as numbers, NaN where missing, with a fault for every cell that is none."""
+    values, faults = [], []
+    for line, cell in zip(table.lines, table.column(name)):
+        try:
+            values.append(number(cell, decimal))
+        except ValueError as error:
+            values.append(math.nan)
+            reason = str(error) if "could not convert" not in str(error) else "not a number"
+            faults.append(
+                Fault(f"{table.file} line {line}, {name}", written(cell), reason,
+                      f'write a number (data.decimal = "{decimal}") or leave the cell empty')
+            )  # fmt: skip
+    return values, faults[:MOST_FAULTS]
+
+
+def _cells(path: Path, name: str, data: Data) -> list[tuple[int, list[str]]]:
+    encoding = "utf-8-sig" if data.encoding == "utf-8" else data.encoding
+    try:
+        text = path.read_bytes().decode(encoding)
+    except OSError as error:
+        raise MeasurementError(
+            [
+                Fault(
+                    name,
+                    "",
+                    f"cannot be read: {error.strerror}",
+                    "correct the name in [data] or add the file",
+                )
+            ]
+        ) from None
+    except UnicodeError:
+        raise MeasurementError(
+            [Fault(name, "", f"is not {data.encoding} text", 'save it so, or write data.encoding = "cp1252"')]
+        ) from None
+    if "\0" in text:
+        raise MeasurementError([Fault(name, "", "holds bytes that are no text", "save it as CSV text")])
+    rows = csv.reader(text.splitlines(), delimiter=data.delimiter, strict=False)
+    found: list[tuple[int, list[str]]] = []
+    try:
+        found.extend((rows.line_num, cells) for cells in rows if any(cell.strip() for cell in cells))
+    except csv.Error as error:
+        raise MeasurementError(
+            [Fault(f"{name} line {rows.line_num}", "", f"cannot be read: {error}", "correct it")]
+        ) from None
+    return found
+
+
+def _names(file: str, names: Sequence[str], data: Data) -> list[Fault]:
+    faults = [
+        Fault(f"{file} line 1", "", f"column {number} has no name", "name it or remove it")
+        for number, name in enumerate(names, start=1)
+        if not name
+    ]
+    faults += [
+        Fault(f"{file} line 1", written(name), "two columns have this name", "give each its own name")
+        for name in dict.fromkeys(names)
+        if name and names.count(name) > 1
+    ]
+    if len(names) == 1:
+        other = ";" if data.delimiter == "," else ","
+        faults.append(
+            Fault(f"{file} line 1", written(names[0]), "only one column was found",
+                  f'write data.delimiter = "{other}" if that parts the columns')
+        )  # fmt: skip
+    return faults
+
+
+def _is_number(cell: str, decimal: str) -> bool:
+    try:
+        return not math.isnan(number(cell, decimal))
+    except ValueError:
+        return False
