@@ -5,9 +5,10 @@ they give and make the last digits of a result depend on the machine's load.
 """
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -22,6 +23,7 @@ from rigdesign.coupling import PointResult, governing_point, solve_point
 from rigdesign.discretisation import discretisation
 from rigdesign.dynamic_work import DynamicWork
 from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError, UsageError
+from rigdesign.prediction.model import Channel, Prediction, Setting
 from rigdesign.ramp_run import held_points, schedule_of
 from rigdesign.remesh import MeshesBeside, looping_rig, on_mesh
 from rigdesign.results import AssumptionRecord, Check, Fidelity, Finding, LossRow, RunResult
@@ -72,6 +74,20 @@ def run_case(
         result = with_transient(subject, result, say)
         clock.lap("transient")
         return result
+
+
+def predict(
+    case: Case,
+    settings: Iterable[Setting],
+    channels: Iterable[Channel],
+    *,
+    model: Literal["full", "reduced"] = "full",
+    fidelity: Fidelity = "quick",
+) -> Prediction:
+    """What sensors would read at single operating points; see `rigdesign.prediction.predict`."""
+    from rigdesign.prediction.full import predict as predicted
+
+    return predicted(case, settings, channels, model=model, fidelity=fidelity)
 
 
 def solve_case(

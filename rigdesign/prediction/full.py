@@ -1,0 +1,159 @@
+"""What the sensors of a rig would read: the solve of a check at single operating points."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from dynamics.response_curve import CurvePoint
+from rigdesign.case.model import Case
+from rigdesign.coupling import PointResult, solve_point
+from rigdesign.errors import UsageError
+from rigdesign.loads import MeshModel
+from rigdesign.loads import Setting as Bracing
+from rigdesign.lubrication import OilStream
+from rigdesign.passes import PassResult
+from rigdesign.prediction.model import (
+    STANDING_QUANTITIES,
+    Channel,
+    Prediction,
+    Setting,
+    features_of,
+)
+from rigdesign.prediction.operating import operating_point, rig_at
+from rigdesign.prediction.readings import readings
+from rigdesign.remesh import looping_rig, on_mesh
+from rigdesign.results import Fidelity
+from rigdesign.rig.model import Rig, build_rig
+from rigdesign.run import solver_errors
+from rigdesign.state import OperatingPoint
+from thermal.fe.kernels import one_thread
+from thermal.fe.mesh import FloatArray
+from thermal.growth import SealGrowth
+
+Thermal = Literal["full", "reduced"]
+"""Temperature fields by the finite-element model of a check, or by its projection on a few shapes."""
+
+
+@dataclass(frozen=True)
+class FullPoint:
+    """A settled point of the full model as channels read it."""
+
+    result: PointResult
+
+    @property
+    def point(self) -> OperatingPoint:
+        """Speed and torque."""
+        return self.result.point
+
+    @property
+    def bracing(self) -> Bracing | None:
+        """How the loop is braced."""
+        return self.result.setting
+
+    @property
+    def models(self) -> tuple[MeshModel, ...]:
+        """Warm meshes."""
+        return self.result.last.models
+
+    @property
+    def drags(self) -> Mapping[str, float]:
+        """Torques that brake the shafts [N m]."""
+        return self.result.last.drags
+
+    @property
+    def response(self) -> CurvePoint | None:
+        """Periodic response."""
+        return self.result.last.response
+
+    @property
+    def streams(self) -> Sequence[OilStream]:
+        """Oil streams."""
+        return self.result.last.streams
+
+    def temperature(self, gearbox: str) -> FloatArray:
+        """(n_nodes,) field of a housing [K]."""
+        return self.result.last.fields[gearbox].temperature
+
+    def seals(self, gearbox: str) -> Mapping[str, SealGrowth]:
+        """Hot seals of a housing."""
+        return self.result.last.growth[gearbox].expansion.seals
+
+
+def predict(
+    case: Case,
+    settings: Iterable[Setting],
+    channels: Iterable[Channel],
+    *,
+    model: Thermal = "full",
+    fidelity: Fidelity = "quick",
+) -> Prediction:
+    """What the channels would read at the operating points of a measurement.
+
+    The solve of a point is that of ``run_case``: the full model at a dwell of the schedule gives what a check
+    gives. Every point starts from the one before, as in a check.
+
+    Parameters
+    ----------
+    case : from `load_case`
+    settings, channels : operating points as run, sensors as the model sees them; see `rigdesign.prediction.model`
+    model : the full thermal model, or the reduced one of `Predictor` with its stated error
+    fidelity : size of the models
+
+    Raises
+    ------
+    UsageError
+        A place, stream or quantity the case does not have; two settings or channels of one name.
+    CaseError, NotConvergedError, MissingLibraryError
+        As ``run_case``.
+    """
+    settings, channels = tuple(settings), tuple(channels)
+    if model == "reduced":
+        from rigdesign.prediction.predictor import Predictor
+
+        predictor = Predictor(case, settings, channels, fidelity=fidelity)
+        return Prediction(features=predictor.features, values=predictor.base, error=predictor.error)
+    check_names(settings, channels)
+    with solver_errors(case), threadpool_limits(limits=1), one_thread():
+        rig = build_rig(case, fidelity)
+        values = list(_at_points(rig, settings, channels)) + standing_values(rig, channels)
+    return Prediction(features=features_of(settings, channels), values=np.array(values, dtype=np.float64))
+
+
+def _at_points(rig: Rig, settings: Sequence[Setting], channels: Sequence[Channel]) -> list[float]:
+    reads = readings(rig, channels)
+    looping = looping_rig(rig)
+    before: PassResult | None = None
+    values: list[float] = []
+    for setting in settings if reads else ():
+        here = rig_at(looping, setting)
+        start = None if before is None else before.feedback
+        result = solve_point(here, operating_point(setting), start=start)
+        before = result.last
+        if looping is not rig:
+            here, source = rig_at(rig, setting), here
+            result = on_mesh(here, result, source)
+        settled = FullPoint(result)
+        for _, read in reads:
+            values += read(here, settled)
+    return values
+
+
+def standing_values(rig: Rig, channels: Iterable[Channel]) -> list[float]:
+    """Numbers of the channels of the rig at rest, in their order."""
+    standing = [channel for channel in channels if channel.quantity in STANDING_QUANTITIES]
+    if not standing:
+        return []
+    from rigdesign.prediction.standstill import standing_value
+
+    return [standing_value(rig, channel) for channel in standing]
+
+
+def check_names(settings: Sequence[Setting], channels: Sequence[Channel]) -> None:
+    """Check that settings and channels can be told apart by name (UsageError)."""
+    for kind, names in (("settings", [s.name for s in settings]), ("channels", [c.name for c in channels])):
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise UsageError(f"two {kind} are called {twice[0]!r}; give each a name of its own")

@@ -1,0 +1,136 @@
+"""The rig as it was set at one operating point, and with a changed case: what a change leaves alone is shared.
+
+A case is validated once when it is loaded. A setting replaces numbers of it that were measured, so it is put into
+a copy of the tree without validating the rest of the case again.
+"""
+
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.model import Case
+from rigdesign.errors import UsageError
+from rigdesign.prediction.model import Setting
+from rigdesign.rig.model import Rig, build_rig
+from rigdesign.state import OperatingPoint
+
+STREAMS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
+"""Name of an oil stream -> key of the gearbox that feeds it."""
+HOUSINGS = ("models", "conduction")
+"""Cached parts of a rig that hang on geometry and materials of its housings alone, as ``expansion`` does."""
+UNMOVED = (*HOUSINGS, "geometries", "speed_ratios", "drivetrain", "mesh_forces", "system")
+"""Cached parts of a rig that no setting of an operating point touches."""
+
+
+def operating_point(setting: Setting) -> OperatingPoint:
+    """Speed and torque of a setting; its name stands where a stage of the schedule would."""
+    return OperatingPoint(stage=setting.name, speed=setting.speed, torque=setting.torque)
+
+
+def rig_at(rig: Rig, setting: Setting) -> Rig:
+    """The rig with inlet temperatures, flows, room and tooth offsets of a setting; meshes and matrices shared.
+
+    Raises
+    ------
+    UsageError
+        A stream or mesh that the rig does not have, a value no oil or room can have.
+    """
+    case = case_at(rig.case, setting)
+    if case is rig.case:
+        return rig
+    placed = Rig(case=case, fidelity=rig.fidelity, oils=rig.oils, materials=rig.materials, pairs=rig.pairs)
+    return _sharing(placed, rig, UNMOVED)
+
+
+def case_at(case: Case, setting: Setting) -> Case:
+    """The case with the numbers of a setting; see `rig_at`."""
+    boxes = dict(case.gearboxes)
+    for stream, value in setting.inlet_temperature.items():
+        _check(f"inlet temperature of {stream}", value, 200.0, 700.0, "K")
+        _feed(boxes, stream, "inlet_temperature", value)
+    for stream, value in setting.flow.items():
+        _check(f"flow of {stream}", value, 1e-9, 1.0, "m3/s")
+        _feed(boxes, stream, "flow", value)
+    for mesh, teeth in setting.tooth_offset.items():
+        _turn(boxes, mesh, teeth)
+    update: dict[str, object] = {}
+    if setting.inlet_temperature or setting.flow or setting.tooth_offset:
+        update["gearboxes"] = boxes
+    if setting.ambient_temperature is not None:
+        _check("ambient temperature", setting.ambient_temperature, 200.0, 400.0, "K")
+        update["ambient"] = case.ambient.model_copy(update={"temperature": setting.ambient_temperature})
+    return case.model_copy(update=update) if update else case
+
+
+def like(stated: Rig, case: Case) -> Rig:
+    """The rig of another ``case`` with whatever of the stated rig the other case leaves as it is.
+
+    Raises
+    ------
+    ValueError
+        As `build_rig`.
+    """
+    if case is stated.case:
+        return stated
+    rig = build_rig(case, stated.fidelity)
+    if _same_housings(rig, stated):
+        _sharing(rig, stated, HOUSINGS)
+    if rig.drivetrain == stated.drivetrain:
+        _sharing(rig, stated, ("drivetrain", "system"))
+    return rig
+
+
+def _sharing(rig: Rig, source: Rig, parts: tuple[str, ...]) -> Rig:
+    """Let ``rig`` use what ``source`` computes; computed now, so that no two rigs compute it twice."""
+    for name in parts:
+        rig.__dict__[name] = getattr(source, name)
+    if "models" in parts and not any(model.no_expansion for model in source.models.values()):
+        rig.__dict__["expansion"] = source.expansion
+    return rig
+
+
+def _same_housings(rig: Rig, stated: Rig) -> bool:
+    """Whether meshes, conductivities and stiffnesses of the housings are the same."""
+    if dict(rig.geometries) != dict(stated.geometries) or dict(rig.materials) != dict(stated.materials):
+        return False
+    boxes, others = rig.case.gearboxes, stated.case.gearboxes
+    return all(_made_of(boxes[name]) == _made_of(others[name]) for name in stated.geometries)
+
+
+def _made_of(box: Gearbox) -> tuple[object, ...]:
+    """What a housing is meshed from beside its geometry, and its materials with those of shafts and gears."""
+    housing = box.housing
+    assert housing is not None
+    shafts = [shaft.material for shaft in housing.shafts.values()]
+    gears = [gear.material for gear in box.gears.values()]
+    contact = housing.foot_contact is None
+    return (housing.mesh_file, housing.mesh, housing.material, housing.field.material, contact, shafts, gears)
+
+
+def _feed(boxes: dict[str, Gearbox], stream: str, key: str, value: float) -> None:
+    """Put a number into the oil feed of a stream."""
+    name, _, kind = stream.partition(".")
+    if name not in boxes or kind not in STREAMS:
+        known = ", ".join(f"{box}.{kind}" for box in boxes for kind in STREAMS)
+        raise UsageError(f"setting names oil stream {stream!r}, which the case does not have; it has {known}")
+    entry = getattr(boxes[name], STREAMS[kind])
+    boxes[name] = boxes[name].model_copy(update={STREAMS[kind]: entry.model_copy(update={key: value})})
+
+
+def _turn(boxes: dict[str, Gearbox], mesh: str, teeth: int) -> None:
+    """Put the wheel of a mesh on further by whole teeth."""
+    name, _, own = mesh.partition(".")
+    if name not in boxes or own not in boxes[name].meshes:
+        known = ", ".join(f"{box}.{own}" for box, entry in boxes.items() for own in entry.meshes)
+        raise UsageError(f"setting turns mesh {mesh!r}, which the case does not have; it has {known}")
+    meshes = dict(boxes[name].meshes)
+    stated = getattr(meshes[own], "tooth_offset", None)
+    if stated is None:
+        raise UsageError(f"setting turns mesh {mesh!r}, but meshes of this case have no tooth offset")
+    offset = stated + teeth
+    meshes[own] = meshes[own].model_copy(update={"tooth_offset": offset})
+    boxes[name] = boxes[name].model_copy(update={"meshes": meshes})
+
+
+def _check(what: str, value: float, low: float, high: float, unit: str) -> None:
+    if not low <= value <= high:
+        raise UsageError(
+            f"{what} is {value:g} {unit}, outside {low:g} to {high:g} {unit}; settings are in SI units and kelvin"
+        )

@@ -1,0 +1,175 @@
+"""What the channels of a rig read at a settled operating point."""
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Protocol
+
+import numpy as np
+
+from dynamics.response_curve import CurvePoint
+from rigdesign.errors import UsageError
+from rigdesign.loads import MeshModel
+from rigdesign.loads import Setting as Bracing
+from rigdesign.lubrication import OilStream
+from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
+from rigdesign.prediction.places import place_weights
+from rigdesign.rig.model import Rig
+from rigdesign.state import OperatingPoint
+from thermal.fe.mesh import FloatArray
+from thermal.growth import SealGrowth
+
+
+class Settled(Protocol):
+    """What a channel asks of a settled operating point."""
+
+    @property
+    def point(self) -> OperatingPoint:
+        """Speed and torque."""
+        ...
+
+    @property
+    def bracing(self) -> Bracing | None:
+        """How the loop is braced; None without a drivetrain."""
+        ...
+
+    @property
+    def models(self) -> tuple[MeshModel, ...]:
+        """Warm meshes."""
+        ...
+
+    @property
+    def drags(self) -> Mapping[str, float]:
+        """Torques that brake the shafts [N m]."""
+        ...
+
+    @property
+    def response(self) -> CurvePoint | None:
+        """Periodic response; None without a drivetrain."""
+        ...
+
+    @property
+    def streams(self) -> Sequence[OilStream]:
+        """Oil streams."""
+        ...
+
+    def temperature(self, gearbox: str) -> FloatArray:
+        """(n_nodes,) field of a housing [K]."""
+        ...
+
+    def seals(self, gearbox: str) -> Mapping[str, SealGrowth]:
+        """Hot seals of a housing."""
+        ...
+
+
+Numbers = tuple[float, ...]
+"""Numbers of one channel at one point, in the order of its features."""
+Reading = Callable[[Rig, Settled], Numbers]
+
+
+def readings(rig: Rig, channels: Iterable[Channel]) -> list[tuple[Channel, Reading]]:
+    """How every channel that stands at operating points is read, places found once.
+
+    Raises
+    ------
+    UsageError
+        A place the rig does not have, a quantity its case cannot give.
+    """
+    return [
+        (channel, _reading(rig, channel))
+        for channel in channels
+        if channel.quantity not in STANDING_QUANTITIES
+    ]
+
+
+def _reading(rig: Rig, channel: Channel) -> Reading:
+    if channel.quantity in ORDER_QUANTITIES:
+        return _orders(rig, channel)
+    match channel.quantity:
+        case "temperature":
+            return _temperature(rig, channel)
+        case "oil_outlet_temperature":
+            return _outlet(rig, channel)
+        case "seal_gap":
+            return _seal_gap(rig, channel)
+        case "motor_power" | "drive_torque":
+            return _drive(rig, channel)
+    raise UsageError(f"channel {channel.name!r}: quantity {channel.quantity!r} is not predicted")
+
+
+def _temperature(rig: Rig, channel: Channel) -> Reading:
+    name, (nodes, weights) = place_weights(rig, channel.place, channel.at)
+    return lambda _, settled: (float(weights @ settled.temperature(name)[nodes]),)
+
+
+def _outlet(rig: Rig, channel: Channel) -> Reading:
+    known = [f"{box}.{kind}" for box in rig.case.gearboxes for kind in ("gear_oil", "bearing_oil")]
+    if channel.place not in known:
+        raise UsageError(
+            f"channel {channel.name!r}: {channel.place!r} is no oil stream of this case; it has {', '.join(known)}"
+        )
+    return lambda _, settled: (next(s.outlet for s in settled.streams if s.name == channel.place),)
+
+
+def _drive(rig: Rig, channel: Channel) -> Reading:
+    if rig.case.drivetrain is None:
+        raise UsageError(
+            f"channel {channel.name!r}: {channel.quantity} needs the drivetrain, which this case leaves out"
+        )
+
+    def read(here: Rig, settled: Settled) -> Numbers:
+        assert settled.response is not None
+        torque = settled.response.drive_torque
+        if channel.quantity == "drive_torque":
+            return (torque,)
+        return (torque * here.drive_speed(settled.point.speed),)
+
+    return read
+
+
+def _seal_gap(rig: Rig, channel: Channel) -> Reading:
+    """Hot radial gap, mean over the length: at the angle of ``at``, of the whole circumference without."""
+    stations = {
+        f"{box}.{seal.name}": seal
+        for box, model in rig.models.items()
+        if not model.no_expansion
+        for seal in model.seals
+    }
+    found = [name for name in stations if channel.place in (name, name.split(".", 1)[1])]
+    if len(found) != 1:
+        raise UsageError(
+            f"channel {channel.name!r}: {channel.place!r} is not one seal of this case; it has "
+            f"{', '.join(stations) or 'none'}"
+        )
+    box, own = found[0].split(".", 1)
+    if channel.at is None:
+        return lambda _, settled: (settled.seals(box)[own].mean,)
+    centre = stations[found[0]].centre
+    angle = math.atan2(channel.at[2] - centre[2], channel.at[1] - centre[1])
+
+    def read(_: Rig, settled: Settled) -> Numbers:
+        seal = settled.seals(box)[own]
+        return (float(np.interp(angle, seal.angles, seal.gap, period=2.0 * math.pi)),)
+
+    return read
+
+
+def _orders(rig: Rig, channel: Channel) -> Reading:
+    if rig.case.drivetrain is None:
+        raise UsageError(
+            f"channel {channel.name!r}: {channel.quantity} needs the drivetrain, which this case leaves out"
+        )
+    if not channel.orders:
+        raise UsageError(f"channel {channel.name!r}: {channel.quantity} is read by orders, and none is given")
+
+    def read(here: Rig, settled: Settled) -> Numbers:
+        from rigdesign.prediction.orders import shaft_orders
+
+        assert settled.bracing is not None
+        found = shaft_orders(here, settled.point, settled.models, settled.drags, settled.bracing, [channel])
+        numbers: list[float] = []
+        for order in channel.orders:
+            value = complex(found[channel.name, order])
+            numbers += [value.real, value.imag] if order else [value.real]
+        return tuple(numbers)
+
+    return read
