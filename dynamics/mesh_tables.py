@@ -17,6 +17,7 @@ from scipy.interpolate import PchipInterpolator
 
 from dynamics import kernels
 from dynamics.kernels import PackedMeshes
+from dynamics.kernels.contact import DAMP_TIME
 from dynamics.mesh_law import MeshLaw, check_mesh_law
 
 Array = NDArray[np.float64]
@@ -54,8 +55,9 @@ def pack_meshes(
         individual = has_individual_teeth(law)
         n_phases = phase_count(law) if over_phase and not individual else 0
         front_at = sum(map(len, sizes))
+        stiffness, gap = _cubic(law.stiffness), _cubic(law.gap)
         for sign in (1.0, -1.0) if n_phases else ():
-            size, bounds, rows = _phase_contacts(law, sign, n_phases)
+            size, bounds, rows = _phase_contacts(law, stiffness, gap, sign, n_phases)
             sizes.append(size)
             least.append(bounds)
             data.append(rows)
@@ -68,9 +70,9 @@ def pack_meshes(
             most_contacts(law),
             n_phases, front_at, front_at + n_phases,
         )  # fmt: skip
-        cells.append(np.hstack((_cells(law.stiffness), _cells(law.gap))))
+        cells.append(np.hstack((_cells(stiffness), _cells(gap))))
         shifts.append(np.asarray(law.slice_shift, float))
-        deviations.append(np.vstack((_cells(law.deviation_1), _cells(law.deviation_2))))
+        deviations.append(np.vstack((_deviation_cells(law.deviation_1), _deviation_cells(law.deviation_2))))
         scales.append(np.concatenate((law.scale_1, law.scale_2)).astype(float))
     return PackedMeshes(
         values=values,
@@ -84,6 +86,13 @@ def pack_meshes(
         phase_data=np.concatenate([np.zeros(0), *data]),
         offsets=np.array([law.offset for law in laws], float),
     )
+
+
+def undamped(packed: PackedMeshes) -> PackedMeshes:
+    """Return the tables of the same laws without mesh damping."""
+    values = packed.values.copy()
+    values[:, DAMP_TIME] = 0.0
+    return packed._replace(values=values)
 
 
 def has_individual_teeth(law: MeshLaw) -> bool:
@@ -122,14 +131,22 @@ def _cubic(table: Array) -> PchipInterpolator:
     return PchipInterpolator(np.arange(table.shape[1]), table, axis=1)
 
 
-def _cells(table: Array) -> Array:
+def _cells(cubic: PchipInterpolator) -> Array:
     """Return (rows * cells, 4): coefficients of the monotone cubic over the fraction of each cell."""
-    coefficients: Array = np.moveaxis(_cubic(table).c[::-1], 0, -1)  # (n_cells, rows, 4)
+    coefficients: Array = np.moveaxis(cubic.c[::-1], 0, -1)  # (n_cells, rows, 4)
     return np.ascontiguousarray(coefficients.swapaxes(0, 1).reshape(-1, 4))
 
 
-def _phase_contacts(law: MeshLaw, sign: float, n_phases: int) -> tuple[Integers, Array, Array]:
-    """Return the contacts on the path of one flank, phase cell after phase cell.
+def _deviation_cells(table: Array) -> Array:
+    """Return the same of a table of deviations, which mostly has none."""
+    rows, points = table.shape
+    return _cells(_cubic(table)) if np.any(table) else np.zeros((rows * (points - 1), 4))
+
+
+def _phase_contacts(
+    law: MeshLaw, stiffness: PchipInterpolator, gap: PchipInterpolator, sign: float, n_phases: int
+) -> tuple[Integers, Array, Array]:
+    """Return the contacts on the path of one flank, phase cell after phase cell, from the cubics of the tables.
 
     Their number in each cell (n_phases,); the lower bounds (n,) of their gaps, in increasing order within a cell; and
     N_PHASE rows over the contacts of each cell, flat. More than one in a cell are filled up to whole turns of a
@@ -139,7 +156,6 @@ def _phase_contacts(law: MeshLaw, sign: float, n_phases: int) -> tuple[Integers,
     """
     n_path = law.stiffness.shape[1]
     width = law.base_pitch / n_phases
-    stiffness, gap = _cubic(law.stiffness), _cubic(law.gap)
     # path position of each (cell, slice, pair) at the start of the phase cell, in path steps
     reach = n_path * law.path_step + law.base_pitch
     lag = sign * law.slice_shift

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_force import PackedMeshes, evaluate_mesh, pack_meshes
 from dynamics.mesh_law import MeshLaw
+from dynamics.mesh_tables import undamped
 
 Array = NDArray[np.float64]
 
@@ -117,6 +118,7 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
     approach = np.zeros((len(laws), kept.size))
     for m, law in enumerate(laws):
         approach[m, pinions[m]], approach[m, wheels[m]] = law.base_radius_1, -law.base_radius_2
+    packed = tuple(pack_meshes([law]) for law in laws)
     return PortModel(
         dofs=kept,
         pinions=pinions,
@@ -127,8 +129,8 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
         drags={name: reduce(load) for name, load in system.drag_loads.items()},
         approach=approach,
         ratios=ratios[kept],
-        packed=tuple(pack_meshes([law]) for law in laws),
-        elastic=tuple(pack_meshes([law._replace(damping=0.0)]) for law in laws),
+        packed=packed,
+        elastic=tuple(undamped(tables) for tables in packed),
         laws=tuple(laws),
         base_radii=np.array([(law.base_radius_1, law.base_radius_2) for law in laws]),
         offsets=np.array([law.offset for law in laws]),
