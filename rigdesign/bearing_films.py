@@ -9,6 +9,7 @@ from rigdesign.case.gears import GearMesh
 from rigdesign.errors import named
 from rigdesign.given_losses import given_power
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import bearing_oil
 from rigdesign.state import Feedback, OperatingPoint
 
 GRAVITY = 9.81
@@ -29,9 +30,8 @@ def solve_bearings(rig: Rig, point: OperatingPoint, feedback: Feedback) -> dict[
     states = {}
     loads = bearing_loads(rig, feedback)
     for name, box, entry in rig.bearings():
-        oil = rig.oils[box.bearing_oil.oil]
-        inlet = box.bearing_oil.inlet_temperature
         box_name, part = name.split(".")
+        oil, inlet = bearing_oil(rig, box_name), box.bearing_oil.inlet_temperature
         with named(f"gearboxes.{box_name}.bearings.{part}"):
             states[name] = solve_bearing(
                 JournalBearing(

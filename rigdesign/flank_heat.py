@@ -19,6 +19,7 @@ from rigdesign.case.geometry import conditions_of
 from rigdesign.case.housing import FlankFilm
 from rigdesign.materials import Material
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import gear_oil, jet_velocity, wetted_width, wetting_flow
 from rigdesign.state import Feedback, OperatingPoint
 from thermal.boundary import Film, FilmLaw
 from thermal.convection import constant
@@ -108,10 +109,10 @@ def gear_flanks(rig: Rig, name: str, gear: str, point: OperatingPoint, condition
     wetting = Wetting(
         speed=speed,
         per_turn=len(meshes),
-        flow=len(meshes) * JET_HALVES * box.oil.flow,
+        flow=len(meshes) * JET_HALVES * wetting_flow(box),
         wetted_share=condition.wetted_share,
     )
-    oil = rig.oils[box.oil.oil]
+    oil = gear_oil(rig, name)
     inlet = box.oil.inlet_temperature
     properties = FilmOil(
         conductivity=oil.conductivity,
@@ -120,14 +121,15 @@ def gear_flanks(rig: Rig, name: str, gear: str, point: OperatingPoint, condition
         kinematic_viscosity=oil.kinematic_viscosity,
         highest_temperature=oil.highest_temperature,
     )
+    factor = wetted_width(box) * condition.film_factor
     if condition.correlation == "constant":
         assert condition.heat_transfer_coefficient is not None
-        law = constant(condition.film_factor * condition.heat_transfer_coefficient, "input of the case")
+        law = constant(factor * condition.heat_transfer_coefficient, "input of the case")
     else:
         make = fling_off if condition.correlation == "fling_off" else jet_renewal
-        law = make(ring, wetting, properties, condition.film_factor)
+        law = make(ring, wetting, properties, factor)
     angle = JET_ANGLES[box.oil.jet_direction]
-    rim_speed, jet = speed * pair.working_radii[index], box.oil.jet_velocity
+    rim_speed, jet = speed * pair.working_radii[index], jet_velocity(box)
     impact = rim_speed**2 + jet**2 - 2.0 * rim_speed * jet * math.cos(angle) if speed > 0.0 else 0.0
     disc = next(s.gear for s in rig.geometries[name].shafts if s.name == box.gears[gear].shaft)
     assert disc is not None

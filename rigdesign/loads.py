@@ -25,6 +25,7 @@ from dynamics.tooth_stiffness import PairStiffness, pair_stiffness
 from rigdesign.case.gears import FlankModification, Gear
 from rigdesign.oil import Oil
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import gear_oil
 from rigdesign.state import Feedback, OperatingPoint
 
 LEAST_TORQUE = 1.0
@@ -143,7 +144,7 @@ def mesh_friction(
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
-    oil = rig.oils[box.oil.oil]
+    oil = gear_oil(rig, name.split(".")[0])
     stream = f"{name.split('.')[0]}.gear_oil"
     temperature = 0.5 * (box.oil.inlet_temperature + feedback.oil_outlet[stream])
     contact = ToothPath.of_pair(pair).contact(

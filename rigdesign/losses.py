@@ -17,6 +17,7 @@ from rigdesign.flank_heat import MeshSplit, mesh_split
 from rigdesign.given_losses import given_power
 from rigdesign.loads import MeshModel, first_torques
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import gear_oil, injected_flow, jet_velocity
 from rigdesign.state import Feedback, OperatingPoint
 from thermal.air import air
 
@@ -194,16 +195,16 @@ def chamber_mist(rig: Rig, box_name: str, feedback: Feedback) -> Mist:
 def _oil_jets(
     rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, pairs: Mapping[str, GearPair]
 ) -> Iterator[PlacedLoss]:
-    oil = rig.oils[box.oil.oil]
+    oil = gear_oil(rig, box_name)
     for mesh_name, mesh in box.meshes.items():
         name = f"{box_name}.{mesh_name}"
         omega = rig.shaft_speed(box.gears[mesh.pinion].shaft, point.speed)
         loss = oil_acceleration(
             name,
-            box.oil.flow,
+            injected_flow(box),
             oil.density(box.oil.inlet_temperature),
             omega * pairs[name].working_radii[0],
-            box.oil.jet_velocity,
+            jet_velocity(box),
             JET_ANGLES[box.oil.jet_direction],
         )
         yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0)

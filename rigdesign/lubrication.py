@@ -4,9 +4,12 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from rigdesign.case.gearbox import Gearbox
 from rigdesign.losses import PlacedLoss
 from rigdesign.oil import oil_outlet
+from rigdesign.oil_mixing import Portion, mixed
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import bearing_oil, gear_oil, wall_flow
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -15,9 +18,15 @@ class OilStream:
 
     name: str
     inlet: float
+    """[K]"""
     outlet: float
+    """All that comes back by its drain, mixed: what a thermometer there reads [K]."""
+    chamber: float
+    """As it leaves the walls it wets; the outlet, but for oil that went past them [K]."""
     flow: float
+    """Fed [m3/s]."""
     heat: float
+    """With which the oil of its drain leaves, above the temperatures it was fed with [W]."""
 
 
 def oil_streams(
@@ -27,25 +36,67 @@ def oil_streams(
 
     bearing_heat : heat conducted into each bearing film [W]; wall_heat : heat taken from walls, shafts and
     gears by each stream [W]
+
+    Oil that goes past meshes or walls leaves less for them, which then warms up more; at the drain all mix again.
+    Gear oil that leaks to the bearings takes its heat there.
     """
     streams = []
     for name, box in rig.case.gearboxes.items():
-        gear, bearing = f"{name}.gear_oil", f"{name}.bearing_oil"
         own = [placed for placed in losses if placed.gearbox == name]
         into_bearings = math.fsum(placed.into_bearing_oil for placed in own)
         into_gears = math.fsum(placed.into_oil - placed.into_bearing_oil for placed in own)
         films = math.fsum(heat for part, heat in bearing_heat.items() if part.split(".")[0] == name)
-        for stream, entry, count, loss, heat in (
-            (gear, box.oil, len(box.meshes), into_gears, wall_heat[gear]),
-            (bearing, box.bearing_oil, len(box.bearings), into_bearings, films + wall_heat[bearing]),
-        ):
-            flow = entry.flow * count
-            outlet = entry.outlet_temperature
-            if outlet is None:
-                outlet = oil_outlet(rig.oils[entry.oil], entry.inlet_temperature, flow, loss, heat)
-            streams.append(
-                OilStream(
-                    name=stream, inlet=entry.inlet_temperature, outlet=outlet, flow=flow, heat=loss + heat
-                )
-            )
+        gear, leak = _gear_stream(rig, name, box, into_gears, wall_heat[f"{name}.gear_oil"])
+        films += wall_heat[f"{name}.bearing_oil"]
+        streams += [gear, _bearing_stream(rig, name, box, into_bearings, films, leak)]
     return streams
+
+
+def _gear_stream(
+    rig: Rig, name: str, box: Gearbox, loss: float, heat: float
+) -> tuple[OilStream, Portion | None]:
+    """The stream of the gears, and what of it leaks to the bearings."""
+    oil, inlet, paths = gear_oil(rig, name), box.oil.inlet_temperature, box.oil_paths
+    flow = box.oil.flow * len(box.meshes)
+    along = wall_flow(box)
+    to_walls = 1.0 - paths.short_circuit / (1.0 - paths.bypass)
+    outlet = box.oil.outlet_temperature
+    if outlet is None:
+        chamber = oil_outlet(oil, inlet, along, to_walls * loss, heat)
+    elif along == flow:
+        chamber = outlet
+    else:
+        carried = Portion(oil=oil, inlet=inlet, flow=flow).heat_at(outlet)
+        chamber = oil_outlet(oil, inlet, along, carried - (1.0 - to_walls) * loss)
+    leak = None
+    leaving = loss + heat
+    if paths.leak_warm_cold:
+        leak = Portion(oil=oil, inlet=inlet, flow=paths.leak_warm_cold * flow).warmed(chamber)
+        leaving -= leak.heat
+    if outlet is None:
+        back = (1.0 - paths.leak_warm_cold) * flow
+        outlet = chamber if along == flow else oil_outlet(oil, inlet, back, leaving)
+    stream = OilStream(
+        name=f"{name}.gear_oil", inlet=inlet, outlet=outlet, chamber=chamber, flow=flow, heat=leaving
+    )
+    return stream, leak
+
+
+def _bearing_stream(
+    rig: Rig, name: str, box: Gearbox, loss: float, heat: float, leak: Portion | None
+) -> OilStream:
+    """The stream of the bearings, with what leaks into it from the gears."""
+    oil, inlet = bearing_oil(rig, name), box.bearing_oil.inlet_temperature
+    flow = box.bearing_oil.flow * len(box.bearings)
+    taken = loss + heat
+    outlet = box.bearing_oil.outlet_temperature
+    if leak is None:
+        outlet = oil_outlet(oil, inlet, flow, loss, heat) if outlet is None else outlet
+    else:
+        taken += leak.heat
+        outlet = (
+            mixed((Portion(oil=oil, inlet=inlet, flow=flow), leak), loss + heat) if outlet is None else outlet
+        )
+    return OilStream(
+        name=f"{name}.bearing_oil", inlet=inlet, outlet=outlet, chamber=outlet, flow=flow, heat=taken
+    )

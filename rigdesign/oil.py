@@ -7,7 +7,7 @@ with c = 0.7 (ASTM D341) or 0.8 (DIN 51563). The solvers get numbers or the boun
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal, Self
 
@@ -16,6 +16,10 @@ ZERO_CELSIUS = 273.15
 WALTHER_CONSTANT = {"ASTM D341": 0.7, "DIN 51563": 0.8}
 VISCOSITY_RANGE = (2e-6, 2e-2)
 """Kinematic viscosity within which Walther's line is trusted [m2/s]."""
+
+
+AIR_CONDUCTIVITY = 0.030
+"""Of air at about 80 degC [W/(m K)]."""
 
 
 class OilError(ValueError):
@@ -33,6 +37,7 @@ class Oil:
     lubricant_factor : X_L of the friction laws [-]
     pressure_viscosity : coefficient at about 80 degC [1/Pa]
     highest_temperature : bulk oil temperature it stands for long [K]
+    viscosity_factor : multiplies the viscosity of the line [-]
     """
 
     name: str
@@ -48,6 +53,7 @@ class Oil:
     lubricant_factor: float = 1.0
     pressure_viscosity: float = 1.8e-8
     highest_temperature: float = 373.15
+    viscosity_factor: float = 1.0
     source: str
     confidence: Confidence
 
@@ -61,6 +67,7 @@ class Oil:
             "lubricant_factor",
             "pressure_viscosity",
             "highest_temperature",
+            "viscosity_factor",
         ):
             value = getattr(self, name)
             if not value > 0.0:
@@ -126,7 +133,38 @@ class Oil:
         """nu [m2/s] at a temperature [K]."""
         exponent = self.walther_m - self.walther_n * math.log10(temperature)
         value: float = 10.0 ** (10.0**exponent) - self.walther_constant
-        return value * 1e-6
+        return value * 1e-6 * self.viscosity_factor
+
+    def in_state(
+        self, *, air_content: float = 0.0, viscosity_factor: float = 1.0, heat_capacity_factor: float = 1.0
+    ) -> "Oil":
+        """This oil with free air in it, or with other properties than its data sheet has.
+
+        air_content : volume share a of small bubbles, 0 to 0.3. Density falls as 1 - a, the mass of the air is
+            left out, and with it the heat capacity of a volume; the dynamic viscosity rises as 1 + 1.5 a (Hayward
+            1961, bubbly hydraulic oil), the conductivity falls as Maxwell (1873) has it for spheres of air
+        viscosity_factor, heat_capacity_factor : multiply those of the data sheet
+
+        Raises OilError outside of 0 to 0.3, or for factors that are not above 0.
+        """
+        if not 0.0 <= air_content <= 0.3:
+            raise OilError(
+                f"oil {self.name!r}: air_content = {air_content:.3g}: must lie within 0 to 0.3, beyond that it "
+                "is foam; let the oil settle"
+            )
+        if (air_content, viscosity_factor, heat_capacity_factor) == (0.0, 1.0, 1.0):
+            return self
+        rest = 1.0 - air_content
+        air = AIR_CONDUCTIVITY / self.conductivity_40
+        conducts = (2.0 + air - 2.0 * air_content * (1.0 - air)) / (2.0 + air + air_content * (1.0 - air))
+        return replace(
+            self,
+            density_15=rest * self.density_15,
+            conductivity_40=conducts * self.conductivity_40,
+            heat_capacity_40=heat_capacity_factor * self.heat_capacity_40,
+            heat_capacity_slope=heat_capacity_factor * self.heat_capacity_slope,
+            viscosity_factor=self.viscosity_factor * viscosity_factor * (1.0 + 1.5 * air_content) / rest,
+        )
 
     def dynamic_viscosity(self, temperature: float) -> float:
         """eta = rho nu [Pa s] at a temperature [K]."""

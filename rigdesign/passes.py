@@ -1,6 +1,6 @@
 """One pass round the loop at an operating point: warm gears, loads, losses, oil, temperatures, growth."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from dynamics.journal_bearing import BearingState
@@ -12,6 +12,7 @@ from rigdesign.loads import MeshModel, Setting, mesh_models, respond
 from rigdesign.losses import PlacedLoss, mesh_losses, rotating_losses
 from rigdesign.lubrication import OilStream, oil_streams
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import bearing_oil, gear_oil, wall_flow
 from rigdesign.state import Feedback, OperatingPoint
 from rigdesign.temperatures import (
     TOLERANCE,
@@ -47,6 +48,26 @@ class PassResult:
     """Heat the solids gave to each oil stream [W], before relaxation."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class Parts:
+    """The dear parts of a pass, each as the function that computes it.
+
+    `rigdesign.prediction` puts others in their place: what is known already, fields and growth projected on few
+    shapes.
+    """
+
+    models: Callable[..., tuple[MeshModel, ...]] = mesh_models
+    bearings: Callable[..., dict[str, BearingState]] = solve_bearings
+    response: Callable[..., CurvePoint] = respond
+    field: Callable[..., HousingField] = solve_housing
+    growth: Callable[..., HousingGrowth] = expand_housing
+    bulk: Callable[[Rig, HousingField, str], float] = body_mean
+
+
+SOLVED = Parts()
+"""Every part solved in full."""
+
+
 def one_pass(
     rig: Rig,
     point: OperatingPoint,
@@ -55,25 +76,25 @@ def one_pass(
     before: PassResult | None = None,
     *,
     fine: bool = True,
+    parts: Parts = SOLVED,
 ) -> PassResult:
     """Compute one pass; ``before`` gives the fields to start from.
 
+    parts : what computes its dear parts
     fine : expand the housings and solve the fields to the last digit; else the growth of ``before`` is carried on
         and the heat of the fields closes to 1e-4, which saves time while the temperatures still move a lot. A pass
         that ends the loop must be fine.
     """
-    models = mesh_models(rig, point, feedback)
-    bearings = solve_bearings(rig, point, feedback)
+    models = parts.models(rig, point, feedback)
+    bearings = parts.bearings(rig, point, feedback)
     turning = rotating_losses(rig, point, feedback, models, bearings)
     drags = drag_torques(turning, rig, point.speed)
-    response = None if setting is None else respond(rig, point, models, drags, setting)
+    response = None if setting is None else parts.response(rig, point, models, drags, setting)
     losses = (*turning, *mesh_losses(rig, point, models, response, feedback))
     starts: Mapping[str, HousingField] = {} if before is None else before.fields
     tolerance = TOLERANCE if fine else ROUGH
     fields = {
-        name: solve_housing(
-            rig, name, point, feedback, bearings, losses, starts.get(name), tolerance=tolerance
-        )
+        name: parts.field(rig, name, point, feedback, bearings, losses, starts.get(name), tolerance=tolerance)
         for name in rig.models
     }
     bearing_heat = dict.fromkeys(bearings, 0.0)
@@ -91,25 +112,25 @@ def one_pass(
         losses=losses,
         streams=tuple(oil_streams(rig, losses, feedback.bearing_heat, feedback.wall_heat)),
         fields=fields,
-        growth=_growth(rig, fields, before, fine),
+        growth=_growth(rig, fields, before, fine, parts),
         bearing_heat=bearing_heat,
         wall_heat=wall_heat,
     )
 
 
 def _growth(
-    rig: Rig, fields: Mapping[str, HousingField], before: PassResult | None, fine: bool
+    rig: Rig, fields: Mapping[str, HousingField], before: PassResult | None, fine: bool, parts: Parts
 ) -> dict[str, HousingGrowth]:
     if before is not None and not fine:
         return dict(before.growth)
     return {
-        name: expand_housing(rig, field, None if before is None else before.growth[name])
+        name: parts.growth(rig, field, None if before is None else before.growth[name])
         for name, field in fields.items()
         if not rig.models[name].no_expansion
     }
 
 
-def feedback_of(rig: Rig, done: PassResult) -> Feedback:
+def feedback_of(rig: Rig, done: PassResult, parts: Parts = SOLVED) -> Feedback:
     """What a pass hands to the next; heats are relaxed by what the oil can take up (`relaxed_heat`)."""
     old = done.feedback
     gear_temperature: dict[str, float] = {}
@@ -118,11 +139,11 @@ def feedback_of(rig: Rig, done: PassResult) -> Feedback:
     tooth_growth = dict.fromkeys(rig.pairs, 0.0)
     for name, box in rig.case.gearboxes.items():
         streams = {stream.name: stream for stream in done.streams}
-        bulk = streams[f"{name}.gear_oil"].outlet
+        bulk = streams[f"{name}.gear_oil"].chamber
         gear_temperature |= {f"{name}.{gear}": bulk for gear in box.gears}
         if name in done.fields:
             gear_temperature |= {
-                f"{name}.{gear}": body_mean(rig, done.fields[name], f"gear_{entry.shaft}")
+                f"{name}.{gear}": parts.bulk(rig, done.fields[name], f"gear_{entry.shaft}")
                 for gear, entry in box.gears.items()
                 if f"gear_{entry.shaft}" in rig.models[name].mesh.bodies
             }
@@ -130,7 +151,7 @@ def feedback_of(rig: Rig, done: PassResult) -> Feedback:
             centre_distance |= done.growth[name].centre_distance
             tooth_growth |= done.growth[name].tooth_growth
         else:
-            centre_distance |= uniform_growth(rig, name, streams[f"{name}.bearing_oil"].outlet)
+            centre_distance |= uniform_growth(rig, name, streams[f"{name}.bearing_oil"].chamber)
     clearance |= hot_clearances(rig, done.point.speed, done.growth)
     torque = old.mesh_torque
     if done.response is not None:
@@ -148,7 +169,7 @@ def feedback_of(rig: Rig, done: PassResult) -> Feedback:
             name: relaxed(old.wall_heat[name], heat, _stream_slope(rig, done, name))
             for name, heat in done.wall_heat.items()
         },
-        oil_outlet={stream.name: stream.outlet for stream in done.streams},
+        oil_outlet={stream.name: stream.chamber for stream in done.streams},
         mesh_torque=torque,
         tooth_growth=tooth_growth,
     )
@@ -180,19 +201,20 @@ def _bearing_capacity(rig: Rig, name: str) -> float:
     """Heat capacity flow rho c Q of the oil of one bearing [W/K]."""
     box = rig.case.gearboxes[name.split(".")[0]]
     entry = box.bearing_oil
-    oil = rig.oils[entry.oil]
+    oil = bearing_oil(rig, name.split(".")[0])
     return oil.density(entry.inlet_temperature) * oil.heat_capacity(entry.inlet_temperature) * entry.flow
 
 
 def _stream_capacity(rig: Rig, name: str) -> float:
-    """Heat capacity flow of a whole oil stream of a gearbox [W/K]."""
+    """Heat capacity flow of an oil stream of a gearbox along its walls [W/K]."""
     box_name, kind = name.split(".")
     box = rig.case.gearboxes[box_name]
-    entry, count = (box.oil, len(box.meshes)) if kind == "gear_oil" else (box.bearing_oil, len(box.bearings))
-    oil = rig.oils[entry.oil]
-    return (
-        oil.density(entry.inlet_temperature) * oil.heat_capacity(entry.inlet_temperature) * entry.flow * count
-    )
+    if kind == "gear_oil":
+        oil, inlet, flow = gear_oil(rig, box_name), box.oil.inlet_temperature, wall_flow(box)
+    else:
+        oil, inlet = bearing_oil(rig, box_name), box.bearing_oil.inlet_temperature
+        flow = box.bearing_oil.flow * len(box.bearings)
+    return oil.density(inlet) * oil.heat_capacity(inlet) * flow
 
 
 def _film_slope(rig: Rig, done: PassResult, name: str) -> float:

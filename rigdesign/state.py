@@ -34,7 +34,7 @@ class Feedback:
     wall_heat: Values
     """Heat that walls, shafts and gears give to each oil stream [W]."""
     oil_outlet: Values
-    """Outlet temperature of each oil stream [K]: it wets the walls and thins the tooth film."""
+    """Temperature with which each oil stream leaves its chamber [K]: it wets the walls and thins the tooth film."""
     mesh_torque: Values
     """Mean torque of each mesh at its pinion [N m], positive where the pinion drives: it loads the bearings."""
     tooth_growth: Values

@@ -106,7 +106,7 @@ def oil_wetted(value: float = 300.0) -> FilmLaw:
 
 
 def scaled(law: FilmLaw, factor: float) -> FilmLaw:
-    """``law`` times a factor [-], which stands for its scatter; among its inputs unless 1, as product if scaled before."""
+    """``law`` times a factor [-], which stands for its scatter; the product of all factors is among its inputs."""
     positive("film factor", factor, "")
     if factor == 1.0:
         return law

@@ -12,6 +12,7 @@ from rigdesign.losses import PlacedLoss
 from rigdesign.rig.films import plate_film, shaft_film
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import bearing_oil
 from rigdesign.state import Feedback, OperatingPoint
 from thermal import convection
 from thermal.boundary import (
@@ -217,7 +218,7 @@ def _bearing_film(context: _Context, condition: laws.BearingFilm, surface: str) 
     entry = bearing_on(context.box, shaft, side)
     part = next(name for name, bearing in context.box.bearings.items() if bearing is entry)
     state = context.bearings[f"{context.name}.{part}"]
-    oil = context.rig.oils[context.box.bearing_oil.oil]
+    oil = bearing_oil(context.rig, context.name)
     return Film(
         surface=surface,
         kind=f"{BEARING_FILM}:{part}",

@@ -18,6 +18,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.losses import PlacedLoss
 from rigdesign.rig.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import bearing_oil, gear_oil, injected_flow, wall_flow
 from rigdesign.stage_losses import StageLosses
 from rigdesign.transient.still_air import at_least, still
 from thermal.boundary import Film, FilmCoefficient, FilmLaw
@@ -29,6 +30,7 @@ OIL_ONLY = ("oil_acceleration", "squeeze")
 MOVED = 1.0
 """Step [K] of the outlet by which the share of the inlet in each film is read."""
 FEED = "feed"
+LEAK = "gear oil leaked"
 
 
 @dataclass(frozen=True)
@@ -112,13 +114,16 @@ def _gear_network(
     oil: bool,
 ) -> StreamNetwork:
     box = rig.case.gearboxes[name]
-    lubricant, inlet = rig.oils[box.oil.oil], box.oil.inlet_temperature
+    lubricant, inlet = gear_oil(rig, name), box.oil.inlet_temperature
     outlet = state.feedback.oil_outlet[f"{name}.{GEAR_OIL}"]
     feed = f"{GEAR_OIL} {FEED}"
     stream = _films(GEAR_OIL, feed, inlet, wetted, oil)
     own = [placed for placed in losses if placed.gearbox == name]
     power = math.fsum(placed.into_oil - placed.into_bearing_oil for placed in own)
-    flow = lubricant.density(inlet) * box.oil.flow * len(box.meshes)
+    # oil that goes from the meshes straight to the outlet takes its part of their heat along
+    flow = lubricant.density(inlet) * wall_flow(box)
+    if oil and box.oil_paths.short_circuit:
+        power *= wall_flow(box) / (injected_flow(box) * len(box.meshes))
     return StreamNetwork(
         specific_heat=lubricant.heat_capacity(0.5 * (inlet + outlet)),
         volumes=(Volume(name=GEAR_OIL, power=power),),
@@ -142,7 +147,7 @@ def _bearing_network(
     oil: bool,
 ) -> StreamNetwork:
     box = rig.case.gearboxes[name]
-    lubricant, inlet = rig.oils[box.bearing_oil.oil], box.bearing_oil.inlet_temperature
+    lubricant, inlet = bearing_oil(rig, name), box.bearing_oil.inlet_temperature
     density, feed = lubricant.density(inlet), f"{BEARING_OIL} {FEED}"
     own = [placed for placed in losses if placed.gearbox == name]
     friction = dict.fromkeys(box.bearings, 0.0)
@@ -160,6 +165,7 @@ def _bearing_network(
     # a film is balanced with the heat capacity of the oil as fed, the stream with that of its mean temperature
     as_fed = density * lubricant.heat_capacity(inlet) / specific_heat
     flows = {part: min(each, as_fed * cooling_flow(box, part, state, name)) for part in box.bearings}
+    leak = _leak(rig, name, state, specific_heat) if oil else None
     return StreamNetwork(
         specific_heat=specific_heat,
         volumes=(
@@ -169,14 +175,30 @@ def _bearing_network(
         films=tuple(film for part in parts for film in part.films),
         supplies=(
             Supply(name=feed, temperature=inlet),
+            *(() if leak is None else (Supply(name=LEAK, temperature=leak[0]),)),
             *(supply for part in parts for supply in part.supplies),
         ),
-        streams=_bearing_streams(feed, flows, each) if oil else (),
+        streams=_bearing_streams(feed, flows, each, 0.0 if leak is None else leak[1]) if oil else (),
     )
 
 
-def _bearing_streams(feed: str, flows: dict[str, float], each: float) -> tuple[Stream, ...]:
-    """Every bearing is fed ``each`` [kg/s]; part of it passes the film, all of it ends in the oil of the bearings."""
+def _leak(rig: Rig, name: str, state: StageLosses, specific_heat: float) -> tuple[float, float] | None:
+    """Gear oil that leaks to the bearings: temperature [K] at the held stage, and flow [kg/s] of bearing oil alike."""
+    box = rig.case.gearboxes[name]
+    share = box.oil_paths.leak_warm_cold
+    if not share:
+        return None
+    lubricant = gear_oil(rig, name)
+    warm, mixed = (state.feedback.oil_outlet[f"{name}.{kind}"] for kind in (GEAR_OIL, BEARING_OIL))
+    flow = share * lubricant.density(box.oil.inlet_temperature) * box.oil.flow * len(box.meshes)
+    return warm, flow * lubricant.heat_capacity(0.5 * (warm + mixed)) / specific_heat
+
+
+def _bearing_streams(feed: str, flows: dict[str, float], each: float, leak: float) -> tuple[Stream, ...]:
+    """Every bearing is fed ``each`` [kg/s]; part of it passes the film, all of it ends in the oil of the bearings.
+
+    leak : of gear oil into it [kg/s]
+    """
     streams: list[Stream] = []
     for part, flow in flows.items():
         if flow > 0.0:
@@ -186,6 +208,8 @@ def _bearing_streams(feed: str, flows: dict[str, float], each: float) -> tuple[S
     past = math.fsum(each - flow for flow in flows.values())
     if past > 1e-9 * each:
         streams.append(Stream(source=feed, target=BEARING_OIL, mass_flow=past, kind="past the films"))
+    if leak:
+        streams.append(Stream(source=LEAK, target=BEARING_OIL, mass_flow=leak, kind="leak"))
     total = math.fsum(s.mass_flow for s in streams if s.target == BEARING_OIL)
     return (*streams, Stream(source=BEARING_OIL, target=None, mass_flow=total))
 

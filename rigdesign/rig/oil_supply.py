@@ -1,0 +1,52 @@
+"""Oil of a gearbox as it is: its state, and what of it reaches meshes, walls and bearings."""
+
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.oil import Oil
+from rigdesign.rig.model import Rig
+
+
+def gear_oil(rig: Rig, name: str) -> Oil:
+    """Oil injected in the gearbox ``name``, in its state there."""
+    box = rig.case.gearboxes[name]
+    return _in_state(rig.oils[box.oil.oil], box)
+
+
+def bearing_oil(rig: Rig, name: str) -> Oil:
+    """Oil of the bearings of the gearbox ``name``, in its state there."""
+    box = rig.case.gearboxes[name]
+    return _in_state(rig.oils[box.bearing_oil.oil], box)
+
+
+def _in_state(oil: Oil, box: Gearbox) -> Oil:
+    state = box.oil_state
+    return oil.in_state(
+        air_content=state.air_content,
+        viscosity_factor=state.viscosity_factor,
+        heat_capacity_factor=state.heat_capacity_factor,
+    )
+
+
+def injected_flow(box: Gearbox) -> float:
+    """Flow of the jets of one mesh [m3/s]: what is fed less what goes round the meshes."""
+    return (1.0 - box.oil_paths.bypass) * box.oil.flow
+
+
+def jet_velocity(box: Gearbox) -> float:
+    """Velocity of the oil in the jets [m/s]: that of the case with its flow through all of them."""
+    return (1.0 - box.oil_paths.bypass) / (1.0 - box.oil.blocked_jets) * box.oil.jet_velocity
+
+
+def wetting_flow(box: Gearbox) -> float:
+    """Flow of one mesh over the share of the face width its open jets reach [m3/s]: all of it lands there."""
+    return injected_flow(box) / (1.0 - box.oil.blocked_jets)
+
+
+def wetted_width(box: Gearbox) -> float:
+    """Share of the face width that the open jets reach."""
+    return 1.0 - box.oil.blocked_jets
+
+
+def wall_flow(box: Gearbox) -> float:
+    """Gear oil that passes walls, shafts and gear bodies on its way out, of all meshes [m3/s]."""
+    paths = box.oil_paths
+    return (1.0 - paths.bypass - paths.short_circuit) * box.oil.flow * len(box.meshes)
