@@ -139,7 +139,7 @@ def _channel(name: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
 def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
     known = places.of(entry.quantity)
     what = f"place of a channel of {entry.quantity.replace('_', ' ')}"
-    if entry.at is not None and entry.quantity != "temperature":
+    if entry.at is not None and entry.quantity not in ("temperature", "seal_gap"):
         yield Fault(
             f"{at.removesuffix('.place')}.at", "", f"{entry.quantity} has no coordinates", "remove the key"
         )

@@ -16,6 +16,7 @@ from rigdesign.measurement.document import MeasurementFile
 from rigdesign.measurement.model import Finding, MeasurementSet
 from rigdesign.measurement.order_table import read_orders
 from rigdesign.measurement.places import Places
+from rigdesign.measurement.recorded import read_recordings
 from rigdesign.measurement.rows import Rows, points_of
 from rigdesign.measurement.table import read_table
 
@@ -56,6 +57,8 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     try:
         if document.data.orders is not None:
             readings |= read_orders(folder, document, channels, rows, readings, findings)
+        if document.data.recordings:
+            readings |= read_recordings(folder, document, places, channels, points, rows, readings, findings)
     except MeasurementError as error:
         raise MeasurementError(error.faults, str(file)) from None
     at = {"", *(point.name for point in points)}
