@@ -1,5 +1,6 @@
 """Flank micro-geometry and deviations, and the mesh law of a gear pair that they make."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import pi, tan
 from typing import Literal
@@ -37,6 +38,9 @@ class Microgeometry:
     """C_alpha at both ends of the active path, parabolic, zero in its middle [m]."""
     lead_crowning: float = 0.0
     """C_beta at both ends of the face, parabolic, zero in its middle [m]."""
+    profile_slope: float = 0.0
+    """f_Halpha over the active profile, positive where the tip stands out: the gap is half of it less at the tip
+    and half of it more at the root [m]."""
     helix_slope: float = 0.0
     """Change of the gap over the face width, from -b/2 to b/2 [m]."""
     profile_twist: float = 0.0
@@ -47,8 +51,10 @@ class Microgeometry:
     """Eccentricity f_e of the teeth, about half the run-out F_r [m]."""
     run_out_phase: float = 0.0
     """Rotation of the gear at which the eccentric teeth stand furthest along the line of action, [rad]."""
+    profile_slopes: tuple[float, ...] = ()
+    """Slope of the profile of each tooth beyond ``profile_slope``, (z,) [m]."""
     tooth_stiffness: tuple[float, ...] = ()
-    """Stiffness scale of each tooth, (z,) [-]."""
+    """Scale of the stiffness of the tooth pairs that each tooth is in, (z,) [-]; 0 for a tooth that is missing."""
 
 
 def cumulative_pitch(single_deviations: ArrayLike) -> tuple[float, ...]:
@@ -56,6 +62,18 @@ def cumulative_pitch(single_deviations: ArrayLike) -> tuple[float, ...]:
     single = np.asarray(single_deviations, dtype=float)
     cumulative = np.cumsum(single - single.mean())
     return tuple(float(value) for value in cumulative - cumulative.mean())
+
+
+def pitch_waves(teeth: int, waves: Iterable[tuple[int, float, float]]) -> tuple[float, ...]:
+    """Cumulative pitch of waves over the turn: sum of amplitude cos(order angle - phase) at the angle of each tooth.
+
+    waves : order per turn [-], amplitude along the line of action [m], phase [rad]. Returns (teeth,) [m].
+    """
+    angle = 2.0 * pi * np.arange(teeth) / teeth
+    place = np.zeros(teeth)
+    for order, amplitude, phase in waves:
+        place += amplitude * np.cos(order * angle - phase)
+    return tuple(float(value) for value in place)
 
 
 def mesh_law(
@@ -122,8 +140,10 @@ def mesh_law(
         stiffness=np.tile(stiffness.at(path) * width / slices, (slices, 1)),
         gap=gap,
         slice_shift=face * tan(pair.base_helix_angle),
-        deviation_1=_deviations(micro[0], pair.teeth[0], turns, 0),
-        deviation_2=_deviations(micro[1], pair.teeth[1], turns, tooth_offset_2),
+        deviation_1=_deviations(micro[0], pair.teeth[0], turns, 0, _along_profile(pair, 0, path)),
+        deviation_2=_deviations(
+            micro[1], pair.teeth[1], turns, tooth_offset_2, _along_profile(pair, 1, path)
+        ),
         scale_1=scales[0],
         scale_2=scales[1],
         backlash=max(pair.backlash_along_path, 0.0),
@@ -146,10 +166,11 @@ def flank_modification(pair: GearPair, gear: Microgeometry, index: int, path: Ar
     end stays, since it is the corner that touches there.
     """
     limits = pair.path
-    towards_tip = 1.0 if index == 0 else -1.0
     inside = np.clip(path, limits.start, limits.end)
-    profile = towards_tip * (inside - 0.5 * (limits.start + limits.end)) / (0.5 * limits.length)
+    profile = _along_profile(pair, index, path)
     removed = gear.profile_crowning * profile**2
+    if gear.profile_slope:
+        removed = removed - 0.5 * gear.profile_slope * profile
     if gear.tip_relief:
         to_tip = limits.end - inside if index == 0 else inside - limits.start
         share = np.maximum(1.0 - to_tip / gear.tip_relief_length, 0.0)
@@ -157,6 +178,26 @@ def flank_modification(pair: GearPair, gear: Microgeometry, index: int, path: Ar
     lead = 2.0 * face[:, None] / pair.face_widths[index]
     across = gear.lead_crowning * lead**2 + 0.5 * gear.helix_slope * lead
     return np.asarray(removed[None, :] + across + gear.profile_twist * lead * profile[None, :])
+
+
+def _along_profile(pair: GearPair, index: int, path: Array) -> Array:
+    """Place on the active profile of gear ``index`` for places on the path: -1 at its root, 1 at its tip."""
+    limits = pair.path
+    towards_tip = 1.0 if index == 0 else -1.0
+    inside = np.clip(path, limits.start, limits.end)
+    return np.asarray(towards_tip * (inside - 0.5 * (limits.start + limits.end)) / (0.5 * limits.length))
+
+
+def alike_teeth(law: MeshLaw, pinion: bool = True, wheel: bool = True) -> MeshLaw:
+    """The law with the teeth of pinion, wheel or both alike: the mean of their deviations and of their stiffness."""
+    shift, scale = np.zeros(law.stiffness.shape[1]), 1.0
+    changed: dict[str, Array] = {}
+    for chosen, name in ((pinion, "1"), (wheel, "2")):
+        if chosen:
+            deviation, scales = getattr(law, f"deviation_{name}"), getattr(law, f"scale_{name}")
+            shift, scale = shift + deviation.mean(axis=0), scale * float(scales.mean())
+            changed |= {f"deviation_{name}": np.zeros((1, shift.size)), f"scale_{name}": np.ones(1)}
+    return law._replace(gap=law.gap + shift, stiffness=law.stiffness * scale, **changed)
 
 
 def reach_beyond(law: MeshLaw, approach: Array) -> str:
@@ -192,17 +233,21 @@ def _law_radius(pair: GearPair, index: int) -> float:
     return pair.base_pitch * pair.teeth[index] / (2.0 * pi)
 
 
-def _deviations(gear: Microgeometry, teeth: int, turns: Array, first_tooth: int) -> Array:
+def _deviations(gear: Microgeometry, teeth: int, turns: Array, first_tooth: int, profile: Array) -> Array:
     """Gap added by each tooth, (teeth, n_path) or (1, n_path) [m].
 
     ``turns`` (n_path,): teeth passed since rotation zero, times 2 pi; tooth j reaches it a tooth later.
+    ``profile`` (n_path,): from -1 at the root of the gear to 1 at its tip.
     """
-    if not gear.pitch_deviations and not gear.run_out:
+    if not gear.pitch_deviations and not gear.run_out and not gear.profile_slopes:
         return np.zeros((1, len(turns)))
     place = np.array(gear.pitch_deviations or (0.0,) * teeth)[:, None]
     tooth = (np.arange(teeth) - first_tooth)[:, None]
     rotation = (turns[None, :] + 2.0 * pi * tooth) / teeth
-    return -place - gear.run_out * np.cos(rotation - gear.run_out_phase)
+    added = -place - gear.run_out * np.cos(rotation - gear.run_out_phase)
+    if gear.profile_slopes:
+        added = added - 0.5 * np.array(gear.profile_slopes)[:, None] * profile
+    return np.asarray(added)
 
 
 def _default_slices(pair: GearPair, micro: tuple[Microgeometry, Microgeometry], misalignment: float) -> int:
@@ -215,7 +260,7 @@ def _default_slices(pair: GearPair, micro: tuple[Microgeometry, Microgeometry], 
 
 
 def _check(gear: Microgeometry, teeth: int) -> None:
-    for name in ("pitch_deviations", "tooth_stiffness"):
+    for name in ("pitch_deviations", "profile_slopes", "tooth_stiffness"):
         values = getattr(gear, name)
         if values and len(values) != teeth:
             raise ValueError(
@@ -226,5 +271,8 @@ def _check(gear: Microgeometry, teeth: int) -> None:
             f"tip_relief_length = {gear.tip_relief_length} m must be positive with tip_relief = "
             f"{gear.tip_relief} m; give the path length of the relief"
         )
-    if any(not value > 0.0 for value in gear.tooth_stiffness):
-        raise ValueError("tooth_stiffness must be positive for every tooth; use a small scale for a crack")
+    scales = gear.tooth_stiffness
+    if scales and not (min(scales) >= 0.0 and max(scales) > 0.0):
+        raise ValueError(
+            "tooth_stiffness must not be negative for any tooth and not be zero for all; use 0 for a missing tooth"
+        )

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.bracing import Mode, ShiftedGear, brace
-from dynamics.flank import Microgeometry, cumulative_pitch, mesh_law
+from dynamics.flank import Microgeometry, cumulative_pitch, mesh_law, pitch_waves
 from dynamics.gear import GearPair
 from dynamics.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.losses import ToothPath
@@ -27,6 +27,7 @@ from rigdesign.oil import Oil
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_oil
 from rigdesign.state import Feedback, OperatingPoint
+from rigdesign.unlike_teeth import periodic_laws
 
 LEAST_TORQUE = 1.0
 """Pinion torque [N m] below which stiffness and friction are taken at this torque."""
@@ -86,6 +87,8 @@ def _mesh_model(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, 
         shape = shape.scaled_to(mesh_stiffness(rig.pairs[name], torque, options))
     else:
         shape = shape.scaled(0.8)
+    if entry.stiffness_factor != 1.0:
+        shape = shape.scaled(entry.stiffness_factor)
     law = mesh_law(
         pair,
         stiffness=shape,
@@ -96,6 +99,7 @@ def _mesh_model(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, 
         offset=feedback.tooth_growth[name] * math.tan(pair.base_helix_angle)
         + flank_growth(rig.pairs[name], pair),
         phase=mesh_phase(rig, name),
+        tooth_offset_2=entry.tooth_offset % gears[1].teeth,
     )
     return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law)
 
@@ -155,7 +159,7 @@ def mesh_friction(
         viscosity=oil.dynamic_viscosity(temperature),
     )
     own = friction_coefficient(contact, friction_law(rig, oil))
-    return scaled_friction(own, box.loss_factors.mesh)
+    return scaled_friction(own, box.loss_factors.mesh * entry.friction_factor)
 
 
 def scaled_friction(own: FrictionCoefficient, factor: float) -> FrictionCoefficient:
@@ -189,12 +193,34 @@ def microgeometry(gear: Gear, pair: GearPair, index: int) -> Microgeometry:
         tip_relief_length=_relief_path(flank, pair, index),
         profile_crowning=flank.profile_crowning,
         lead_crowning=flank.lead_crowning,
+        profile_slope=flank.profile_slope,
         helix_slope=flank.helix_slope,
         profile_twist=0.25 * flank.twist,
-        pitch_deviations=cumulative_pitch(flank.single_pitch) if flank.single_pitch else (),
+        pitch_deviations=_tooth_places(gear),
         run_out=0.5 * flank.run_out,
         run_out_phase=flank.run_out_phase,
+        profile_slopes=flank.profile_slope_scatter,
+        tooth_stiffness=_tooth_stiffness(gear),
     )
+
+
+def _tooth_places(gear: Gear) -> tuple[float, ...]:
+    """Place of each tooth ahead of its ideal one [m], from single pitch and waves; empty for an ideal pitch."""
+    flank = gear.flank
+    single = cumulative_pitch(flank.single_pitch) if flank.single_pitch else ()
+    if not flank.pitch_waves:
+        return single
+    waves = pitch_waves(gear.teeth, ((wave.order, wave.amplitude, wave.phase) for wave in flank.pitch_waves))
+    return tuple(map(sum, zip(single, waves))) if single else waves
+
+
+def _tooth_stiffness(gear: Gear) -> tuple[float, ...]:
+    """Stiffness share of each tooth [-]; empty for equal teeth."""
+    weak, shares = gear.flank.weak_tooth, gear.flank.tooth_stiffness
+    if weak.stiffness == 1.0:
+        return shares
+    shares = shares or (1.0,) * gear.teeth
+    return tuple(share * (weak.stiffness if i == weak.tooth else 1.0) for i, share in enumerate(shares))
 
 
 def _relief_path(flank: FlankModification, pair: GearPair, index: int) -> float:
@@ -208,9 +234,19 @@ def laws_of(models: Sequence[MeshModel]) -> list[MeshLaw]:
     return [model.law for model in models]
 
 
+def locked_share(rig: Rig) -> float:
+    """Torque that is locked in, as a share of the stated one: bracing drifts with the temperature of the gear oil."""
+    power = rig.case.drivetrain
+    if power is None or power.bracing.temperature_drift == 0.0:
+        return 1.0
+    box = rig.case.gearboxes[power.torque_at.split(".")[0]]
+    warmer = box.oil.inlet_temperature - rig.case.ambient.reference_temperature
+    return 1.0 + power.bracing.temperature_drift * warmer
+
+
 def signed_torque(rig: Rig, point: OperatingPoint) -> float:
     """Torque asked of the control mesh at its pinion [N m]; positive on the front flank."""
-    return rig.torque_ratio * point.torque
+    return rig.torque_ratio * point.torque * locked_share(rig)
 
 
 def first_torques(rig: Rig, point: OperatingPoint) -> Mapping[str, float]:
@@ -285,7 +321,7 @@ def respond(
     controlled = setting.mode == "torque_controlled"
     curve = periodic_response(
         rig.system,
-        shifted_laws(rig, models, setting),
+        periodic_laws(rig, shifted_laws(rig, models, setting)),
         [rig.pinion_speed(point.speed)],
         signed_torque(rig, point) if controlled else None,
         twist=None if controlled else setting.twist,

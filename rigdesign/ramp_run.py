@@ -14,7 +14,7 @@ from rigdesign.bearing_films import solve_bearings
 from rigdesign.case.schedule import StageValues
 from rigdesign.drags import drag_shafts, drag_torques
 from rigdesign.errors import NotConvergedError
-from rigdesign.loads import Setting, shifted_laws
+from rigdesign.loads import Setting, locked_share, shifted_laws
 from rigdesign.losses import rotating_losses
 from rigdesign.passes import PassResult
 from rigdesign.rig.model import Rig
@@ -83,7 +83,7 @@ def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -
         RunCommand(
             time=command.time,
             speed=_speed_command(rig, schedule, command),
-            torque=np.maximum(command.torque, LEAST_TORQUE) if controlled else None,
+            torque=np.maximum(command.torque * locked_share(rig), LEAST_TORQUE) if controlled else None,
             twist=None if controlled else np.full_like(command.time, setting.twist),
         ),
         torque_limit=torque_limits(rig)[command.stage],

@@ -11,11 +11,12 @@ from dynamics.iso_rating import RatingOptions, dynamic_factor
 from dynamics.mesh_law import MeshLaw
 from dynamics.response_curve import ResponseCurve, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
-from rigdesign.loads import laws_of, mesh_models, signed_torque
+from rigdesign.loads import laws_of, locked_share, mesh_models, signed_torque
 from rigdesign.passes import PassResult
 from rigdesign.ramp_run import held_points
 from rigdesign.results import DynamicFactorPoint
 from rigdesign.rig.model import Rig
+from rigdesign.unlike_teeth import periodic_laws
 
 QUICK_SPEEDS = 24
 """Speeds of a curve at quick fidelity, or where every speed is solved over a whole revolution."""
@@ -111,7 +112,7 @@ def speed_ranges(rig: Rig) -> dict[float, tuple[float, float]]:
     high = (1.0 + away) * max(point.speed for point in held)
     ranges = {_key(signed_torque(rig, point)): (min(first, low), max(last, high)) for point in held}
     for stage in rig.case.schedule.resolved():
-        torque = _key(rig.torque_ratio * stage.torque_end)
+        torque = _key(rig.torque_ratio * stage.torque_end * locked_share(rig))
         low, high = sorted((stage.speed_start, stage.speed_end))
         low, high = max(low, first), min(high, last)
         if stage.kind in ("run_up", "run_down") and abs(stage.torque_end) > light and low < high:
@@ -152,7 +153,7 @@ def _curve(
 ) -> ResponseCurve:
     assert rig.system is not None
     solve = partial(
-        periodic_response, rig.system, laws, torque=torque, drag_torques=warm.drags,
+        periodic_response, rig.system, periodic_laws(rig, laws), torque=torque, drag_torques=warm.drags,
         period=rig.case.numerics.response_period,
     )  # fmt: skip
     return refined_response(solve, speeds, rounds=ROUNDS) if refined and resolved(rig) else solve(speeds)

@@ -6,6 +6,7 @@ from typing import Literal
 from pydantic import Field
 
 from rigdesign.case.fields import (
+    Angle,
     Gap,
     Inertia,
     Length,
@@ -46,6 +47,16 @@ class Shaft(Part):
     material: Name
 
 
+class HarmonicTorque(Part):
+    """Torque that swings with the turn of a shaft: torque cos(order angle - phase)."""
+
+    order: float = Field(gt=0.0, le=1000.0)
+    """Per turn of that shaft; the angle is zero where all shafts stand at zero."""
+    torque: Torque
+    """Amplitude."""
+    phase: Angle = 0.0
+
+
 class Coupling(Part):
     """Torsion spring and damper between the ends of two shafts."""
 
@@ -54,6 +65,8 @@ class Coupling(Part):
     torsional_stiffness: TorsionalStiffness
     torsional_damping: TorsionalDamping
     """Massless; its flanges and a torque flange are discs of the shafts."""
+    excitation: tuple[HarmonicTorque, ...] = ()
+    """Torques between its two ends, drawing the first ahead: what it makes of axes out of line turns up at order 2."""
     radial_offset_maximum: Length | None = None
     """What its maker allows between the axes, cold and hot."""
     angle_maximum: Tilt | None = None
@@ -72,6 +85,8 @@ class Motor(Part):
     torque_limit: Torque
     """At every speed; hold the power against a limit of its own under ``limits.bought_parts``."""
     inertia: Inertia
+    ripple: tuple[HarmonicTorque, ...] = ()
+    """Of its torque, about the mean."""
 
 
 class Bracing(Part):
@@ -86,6 +101,9 @@ class Bracing(Part):
     """The partner of the shifted half floats axially and takes half of the shift."""
     spline_friction_coefficient: float = Field(default=0.0, ge=0.0, le=1.0)
     spline_pitch_radius: Length | None = None
+    temperature_drift: float = Field(default=0.0, ge=-0.02, le=0.02)
+    """Change of the locked torque, as a share, for each kelvin by which the gear oil that enters the gearbox of
+    ``torque_at`` is warmer than ``ambient.reference_temperature``."""
 
 
 class Drivetrain(Part):

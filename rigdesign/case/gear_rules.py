@@ -47,12 +47,33 @@ def _shafts_of(case: "Case", box: "Gearbox") -> list[str]:
 
 
 def _gear(at: str, gear: "Gear") -> Iterator[Fault]:
-    pitch = gear.flank.single_pitch
-    if pitch and len(pitch) != gear.teeth:
+    flank = gear.flank
+    for key in ("single_pitch", "profile_slope_scatter", "tooth_stiffness"):
+        entries = getattr(flank, key)
+        if entries and len(entries) != gear.teeth:
+            yield Fault(
+                f"{at}.flank.{key}", f"{len(entries)} entries", f"the gear has {gear.teeth} teeth",
+                "write one entry per tooth, or none",
+            )  # fmt: skip
+    scales = flank.tooth_stiffness
+    if scales and not (min(scales) >= 0.0 and 0.0 < max(scales) <= 10.0):
         yield Fault(
-            f"{at}.flank.single_pitch", f"{len(pitch)} entries", f"the gear has {gear.teeth} teeth",
-            "write one deviation per tooth, or none",
+            f"{at}.flank.tooth_stiffness", f"{min(scales):g} to {max(scales):g}",
+            "are no shares of the stiffness of a sound tooth, limits 0 and 10, not all of them 0",
+            "write 1 for a sound tooth, less for a weak one, 0 for a missing one",
         )  # fmt: skip
+    if flank.weak_tooth.tooth >= gear.teeth:
+        yield Fault(
+            f"{at}.flank.weak_tooth.tooth", str(flank.weak_tooth.tooth),
+            f"the gear has {gear.teeth} teeth, counted from 0", f"write 0 to {gear.teeth - 1}",
+        )  # fmt: skip
+    for index, wave in enumerate(flank.pitch_waves):
+        if 2 * wave.order > gear.teeth:
+            yield Fault(
+                f"{at}.flank.pitch_waves.{index}.order", str(wave.order),
+                f"{gear.teeth} teeth show no wave above order {gear.teeth // 2}",
+                f"write 1 to {gear.teeth // 2}, or single_pitch",
+            )  # fmt: skip
 
 
 def _mesh(at: str, mesh: "GearMesh", box: "Gearbox") -> Iterator[Fault]:

@@ -49,6 +49,27 @@ class Spline(Part):
     torsional_damping: TorsionalDamping = 0.0
 
 
+class PitchWave(Part):
+    """Cumulative pitch that comes back several times a turn: amplitude cos(order angle - phase)."""
+
+    order: int = Field(ge=1, le=1000)
+    """Waves per turn of the gear; 1 is near to a run-out, without its change along the flank."""
+    amplitude: Small
+    """How far the teeth stand ahead and behind, along the line of action."""
+    phase: Angle = 0.0
+    """Angle of the wave at tooth 0."""
+
+
+class WeakTooth(Part):
+    """One tooth that gives way: cracked, or missing."""
+
+    tooth: int = Field(default=0, ge=0, le=1999)
+    """Which one, counted from 0."""
+    stiffness: float = Field(default=1.0, ge=0.0, le=1.0)
+    """Of the tooth pairs it is in, as a share of that of the others; 0 for a missing tooth, whose neighbours carry
+    what it would."""
+
+
 class FlankModification(Part):
     """Micro-geometry and deviations of one gear; everything is zero unless stated."""
 
@@ -60,6 +81,10 @@ class FlankModification(Part):
     """C_a: relief at the tip edge."""
     tip_relief_length: Gap = 0.0
     """Radial height over which the tip relief grows."""
+    profile_slope: Offset = 0.0
+    """f_Halpha over the active profile, positive where the tip stands out of the flank."""
+    profile_slope_scatter: tuple[Offset, ...] = ()
+    """What the profile slope of each tooth has beyond ``profile_slope``, one entry per tooth; empty for equal teeth."""
     helix_slope: Offset = 0.0
     """f_Hbeta over the face width, positive where the rear end is relieved."""
     twist: Offset = 0.0
@@ -70,6 +95,12 @@ class FlankModification(Part):
     """Angle of the tooth with the largest run-out."""
     single_pitch: tuple[Offset, ...] = ()
     """Pitch deviation of each tooth, one entry per tooth; empty for an ideal pitch."""
+    pitch_waves: tuple[PitchWave, ...] = ()
+    """Waves of the cumulative pitch, on top of ``single_pitch``."""
+    tooth_stiffness: tuple[float, ...] = ()
+    """Stiffness of the pairs each tooth is in, as a share of that of a sound one, one entry per tooth."""
+    weak_tooth: WeakTooth = WeakTooth()
+    """One weak tooth, on top of ``tooth_stiffness``."""
 
 
 class Gear(Part):
@@ -96,6 +127,8 @@ class Gear(Part):
     flank: FlankModification = FlankModification()
     inertia: Inertia | None = None
     """Polar inertia of the gear body; that of the bored disc when left out."""
+    inertia_factor: float = Field(default=1.0, ge=0.1, le=10.0)
+    """Times the inertia, stated or of the disc."""
     spline: Spline | None = None
     """Connection with the shaft; a gear without one is rigid with its shaft."""
 
@@ -119,6 +152,12 @@ class GearMesh(Part):
     """Two opposite helices; face widths are those of the modelled half that carries the torque."""
     damping: LinearDamping
     """Damping along the line of action at the mean mesh stiffness."""
+    stiffness_factor: float = Field(default=1.0, ge=0.1, le=10.0)
+    """Times the stiffness of the tooth pairs, however that is found."""
+    friction_factor: float = Field(default=1.0, ge=0.0, le=10.0)
+    """Times the friction coefficient, in the loop and for the heat, on top of ``loss_factors.mesh`` of the gearbox."""
+    tooth_offset: int = Field(default=0, ge=0, le=1999)
+    """Teeth by which the wheel is put on further: tooth 0 of the pinion meets this tooth of the wheel."""
     application_factor: float = Field(default=1.0, ge=1.0, le=5.0)
     """K_A of ISO 6336."""
     face_load_factor: float = Field(default=1.0, ge=1.0, le=10.0)

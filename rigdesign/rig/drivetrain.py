@@ -90,7 +90,7 @@ def _gear_bodies(
                     name=f"{box_name}.{name}",
                     shaft=gear.shaft,
                     position=gear.position,
-                    inertia=inertia,
+                    inertia=gear.inertia_factor * inertia,
                     stiffness=RIGID_SEAT if gear.spline is None else gear.spline.torsional_stiffness,
                     damping=0.0 if gear.spline is None else gear.spline.torsional_damping,
                 )
