@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from dynamics.journal_bearing import BearingState
 from rigdesign.losses import PlacedLoss
-from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
+from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, STORED, boundary_conditions
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 from thermal.condition_checks import Condition
@@ -100,6 +100,11 @@ def heat_into_films(field: HousingField) -> dict[str, float]:
 def heat_to_room(field: HousingField) -> float:
     """Heat to room air and walls of the room [W]."""
     return -math.fsum(row.power for row in field.solution.balance.rows if row.kind in ("air", "radiation"))
+
+
+def heat_stored(field: HousingField) -> float:
+    """Heat that bodies which are not steady yet take up [W]."""
+    return -math.fsum(row.power for row in field.solution.balance.rows if row.kind == STORED)
 
 
 def body_mean(rig: Rig, field: HousingField, body: str) -> float:

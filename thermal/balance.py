@@ -18,6 +18,7 @@ from thermal.boundary import (
     Radiation,
     SurfaceSource,
 )
+from thermal.capacity import StoredHeat
 from thermal.condition_checks import Condition
 from thermal.conduction_setup import ConductionSetup
 from thermal.contact import Contact
@@ -132,9 +133,28 @@ def heat_balance(
                         piece=int(elements.components[elements.mesh.bodies[condition.body][0]]),
                     )
                 )
+            case StoredHeat():
+                rows.extend(_stored_rows(setup, condition, temperature))
             case Adiabatic():
                 pass
     return HeatBalance(tuple(rows))
+
+
+def _stored_rows(setup: ConductionSetup, condition: StoredHeat, temperature: FloatArray) -> list[HeatRow]:
+    """What every body takes up per time, as heat that leaves it."""
+    elements, capacity = setup.elements, setup.heat_capacity(condition.capacity)
+    rise = temperature - condition.start
+    return [
+        HeatRow(
+            surface=body,
+            kind=condition.kind,
+            power=-capacity.stored(rise, body) / condition.time,
+            area=0.0,
+            mean_temperature=elements.body_mean(temperature, body),
+            piece=int(elements.components[cells[0]]),
+        )
+        for body, cells in elements.mesh.bodies.items()
+    ]
 
 
 def held_by(elements: FiniteElements, conditions: Sequence[Condition]) -> FloatArray:

@@ -61,6 +61,34 @@ class Storage:
         return self.rate * np.append(self.capacity.matrix @ rise[:n], self.volumes * rise[n:])
 
 
+@dataclass(frozen=True, kw_only=True)
+class StoredHeat:
+    """Bodies that have not got steady yet: a condition on all of them beside those of the surfaces.
+
+    Every body takes up rho c (T - start)/time per volume: the whole warm-up as one implicit step. The field lies
+    between the start (no time) and the steady one (long time), with tau/(tau + time) of a rise still missing for a
+    time constant tau; the true course, exp(-time/tau), is nearer to steady. Raises ConditionError for a time that is
+    not positive.
+    """
+
+    capacity: Mapping[str, float]
+    """Body -> density times specific heat [J/(m3 K)]."""
+    start: float
+    """Temperature of all bodies at the start [K]."""
+    time: float
+    """Since then [s]."""
+    kind: str = "stored"
+    """Row name in the heat balance."""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.time) and self.time > 0.0):
+            raise ConditionError(
+                f"stored heat: time = {self.time} s must be above 0; leave it out when steady"
+            )
+        if not (math.isfinite(self.start) and self.start > 0.0):
+            raise ConditionError(f"stored heat: start = {self.start} K must be above 0 K; give kelvin")
+
+
 def check_capacity(bodies: Collection[str], capacity: Mapping[str, float]) -> None:
     """Check that every body has a positive heat capacity [J/(m3 K)] and no other is named (ConditionError)."""
     missing, unknown = sorted(set(bodies) - set(capacity)), sorted(set(capacity) - set(bodies))

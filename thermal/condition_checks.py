@@ -18,20 +18,21 @@ from thermal.boundary import (
     SurfaceSource,
 )
 from thermal.boundary import ConditionError as ConditionError
+from thermal.capacity import StoredHeat
 from thermal.conductivity import Conductivity
 from thermal.contact import Contact
 from thermal.enclosure import Enclosure, check_enclosure
 from thermal.fe.elements import FiniteElements
 from thermal.streams import StreamNetwork, check_networks
 
-Condition = BoundaryCondition | Contact | Enclosure | StreamNetwork
+Condition = BoundaryCondition | Contact | Enclosure | StreamNetwork | StoredHeat
 """Everything that the conduction problem takes."""
 
 
 def surfaces_of(condition: Condition) -> tuple[str, ...]:
-    """Surfaces a condition acts on; none for a body source."""
+    """Surfaces a condition acts on; none for a body source and for stored heat."""
     match condition:
-        case BodySource():
+        case BodySource() | StoredHeat():
             return ()
         case Exchange() | Contact():
             return (condition.surface_a, condition.surface_b)

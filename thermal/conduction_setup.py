@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from thermal.boundary import Adiabatic
+from thermal.capacity import HeatCapacity
 from thermal.condition_checks import Condition, check_conductivity, surfaces_of
 from thermal.conductivity import Conductivity, VariableConduction
 from thermal.contact import Contact, Joint, covered, join
@@ -48,6 +49,7 @@ class ConductionSetup:
             size = size + self.variable.fine_values(usual)
         self.size = np.add.reduceat(np.abs(size), self.elements.fine.indptr[:-1])
         """(n_nodes,) sum of the sizes of each row's entries [W/K], for the rounding error of the residual."""
+        self._capacities: dict[tuple[tuple[str, float], ...], HeatCapacity] = {}
         self._joints: dict[tuple[str, str, float | None, float], Joint] = {}
 
     def matches(self, mesh: NamedMesh, conductivity: Mapping[str, Conductivity]) -> bool:
@@ -61,6 +63,13 @@ class ConductionSetup:
         }
         contacts = (c for c in conditions if isinstance(c, Contact))
         return tuple(text for c in contacts for text in covered(c, self.joint(c), others))
+
+    def heat_capacity(self, capacity: Mapping[str, float]) -> HeatCapacity:
+        """Capacity matrices for body -> density times specific heat [J/(m3 K)], assembled once."""
+        key = tuple(sorted(capacity.items()))
+        if key not in self._capacities:
+            self._capacities[key] = HeatCapacity(self.elements, capacity)
+        return self._capacities[key]
 
     def joint(self, contact: Contact) -> Joint:
         """Common part of the surfaces of a contact, found once."""

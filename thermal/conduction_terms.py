@@ -22,7 +22,7 @@ import numpy as np
 from scipy import sparse
 
 from thermal.boundary import BodySource, Exchange, Film, PrescribedTemperature, Radiation, SurfaceSource
-from thermal.capacity import Storage
+from thermal.capacity import Storage, StoredHeat
 from thermal.condition_checks import Condition, ConditionError, check_heat_paths
 from thermal.conduction_setup import ConductionSetup
 from thermal.contact import Contact
@@ -112,7 +112,10 @@ class ConductionProblem:
         self.networks = [c for c in conditions if isinstance(c, StreamNetwork)]
         self.volumes = VolumeTerms(elements, self.networks)
         self.storage: Storage | None = None
+        """Of a time step."""
         self.n_nodes = n = len(elements.mesh.points)
+        self.stores = tuple(self._stored(c) for c in conditions if isinstance(c, StoredHeat))
+        """All that is stored, that of a time step last."""
         self.fixed = np.zeros(n, dtype=np.bool_)
         self.held = np.zeros(n)
         self.prescribed = [c for c in conditions if isinstance(c, PrescribedTemperature)]
@@ -134,10 +137,20 @@ class ConductionProblem:
                 self.source += source.power / share.sum() * share
                 self.source_turnover += abs(source.power)
 
+    def _stored(self, condition: StoredHeat) -> Storage:
+        m = len(self.volumes)
+        return Storage(
+            self.setup.heat_capacity(condition.capacity),
+            np.zeros(m),
+            1.0 / condition.time,
+            np.full(self.n_nodes + m, condition.start),
+        )
+
     def storing(self, storage: Storage) -> "ConductionProblem":
         """The same problem with heat stored over a time step."""
         problem = copy.copy(self)
         problem.storage = storage
+        problem.stores = (*self.stores, storage)
         return problem
 
     def start(self, initial: FloatArray | float | None) -> FloatArray:
@@ -182,8 +195,8 @@ class ConductionProblem:
         films, fluid, size = self.volumes.heat_out(temperature, volumes)
         out = np.append(nodes + films, fluid)
         turned += size
-        if self.storage is not None:
-            stored = self.storage.heat_out(field)
+        for storage in self.stores:
+            stored = storage.heat_out(field)
             out += stored
             turned += self._stored_turnover(stored)
         for condition in self.prescribed:
@@ -210,9 +223,9 @@ class ConductionProblem:
         joints = self.contacts.matrix(field[: self.n_nodes])
         if joints is not None:
             size += float((abs(joints) @ temperature).sum())
-        if self.storage is not None:
-            size += self.storage.rate * float((self.storage.capacity.matrix @ temperature).sum())
-            size += self.storage.rate * float(self.storage.volumes @ np.abs(field[self.n_nodes :]))
+        for storage in self.stores:
+            size += storage.rate * float((storage.capacity.matrix @ temperature).sum())
+            size += storage.rate * float(storage.volumes @ np.abs(field[self.n_nodes :]))
         size += float(self.volumes.rate @ np.abs(field[self.n_nodes :]))
         return 4.0 * float(np.finfo(np.float64).eps) * size
 
@@ -235,8 +248,8 @@ class ConductionProblem:
             slope = self.setup.variable.slope(temperature)
         for name, local in self._local_slopes(field).items():
             self.surfaces[name].add_mass(values, local)
-        if self.storage is not None:
-            values += self.storage.rate * self.storage.capacity.fine
+        for storage in self.stores:
+            values += storage.rate * storage.capacity.fine
         matrix = self.elements.fine.matrix(values)
         joints = self.contacts.matrix(temperature)
         if joints is not None:
@@ -318,9 +331,9 @@ class ConductionProblem:
         slopes = self._local_slopes(field)
         for name, slope in slopes.items():
             self.surfaces[name].add_coarse_mass(values, slope)
-        if self.storage is not None:
-            values += self.storage.rate * self.storage.capacity.coarse
-        else:
+        for storage in self.stores:
+            values += storage.rate * storage.capacity.coarse
+        if not self.stores:
             self._shift_exchanges(values, slopes, temperature)
         coarse = self.elements.coarse.matrix(values)
         joints = self.contacts.matrix(temperature)

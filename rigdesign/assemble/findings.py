@@ -14,6 +14,7 @@ from rigdesign.results import Finding
 from rigdesign.rig.boundary import printed_films
 from rigdesign.rig.films import printed_law
 from rigdesign.temperatures import HousingField
+from rigdesign.units import show
 from thermal.audit import assumed_difference, audit_conditions, radiation_too_small
 from thermal.boundary import Film, Radiation
 
@@ -35,6 +36,7 @@ def warnings_of(subject: Subject) -> list[Finding]:
         *(Finding(id="damping", text=text) for text in _damping(subject)),
         *(Finding(id="sampling", text=text) for text in _sampling(subject)),
         *(Finding(id="film", text=text) for text in _films(subject)),
+        *(Finding(id="not_steady", text=text) for text in _warming(subject)),
         *(Finding(id="heat_audit", text=text) for text in _audits(subject)),
     ]
     return list(dict.fromkeys(found))
@@ -121,8 +123,17 @@ def _oils(subject: Subject) -> Iterator[str]:
                 box_name, kind = stream.name.split(".")
                 if box_name == name:
                     entry = box.oil if kind == "gear_oil" else box.bearing_oil
-                    for text in subject.rig.oils[entry.oil].warnings(stream.outlet):
+                    for text in subject.rig.oils[entry.oil].warnings(max(stream.outlet, stream.chamber)):
                         yield f"{stream.name}, stage {point.point.stage}: {text}"
+
+
+def _warming(subject: Subject) -> Iterator[str]:
+    time = subject.case.ambient.warming_time
+    if time is not None:
+        yield (
+            f"ambient.warming_time = {show(time, 'time')}: temperatures and clearances are those of a rig that still "
+            "warms up; leave it out for the steady state that the limits are meant for"
+        )
 
 
 def _damping(subject: Subject) -> Iterator[str]:

@@ -24,7 +24,7 @@ from rigdesign.results import (
     ThermalResult,
 )
 from rigdesign.rig.model import Rig
-from rigdesign.temperatures import HousingField, heat_to_room, solve_housing
+from rigdesign.temperatures import HousingField, heat_stored, heat_to_room, solve_housing
 from thermal.balance import HeatRow as SolvedRow
 from thermal.expansion import Expansion
 from thermal.flux import heat_flux
@@ -81,13 +81,16 @@ def cooler(rig: Rig, last: PassResult) -> dict[str, float | str]:
     carried = math.fsum(max(heat, 0.0) for heat in circuits.values())
     heater = math.fsum(max(-heat, 0.0) for heat in circuits.values())
     room = math.fsum(heat_to_room(field) for field in last.fields.values())
+    stored = math.fsum(heat_stored(field) for field in last.fields.values())
+    warming = {} if rig.case.ambient.warming_time is None else {"stored_W": stored}
     return {
         "stage": last.point.stage,
         "losses_W": lost,
         "heater_W": heater,
         "cooler_W": carried,
         "room_W": room,
-        "open_W": lost + heater - carried - room,
+        **warming,
+        "open_W": lost + heater - carried - room - stored,
         "flow_l_min": L_MIN * math.fsum(stream.flow for stream in last.streams),
     }
 

@@ -14,6 +14,7 @@ from rigdesign.case.fields import (
     Stress,
     Temperature,
     Text,
+    Time,
     fault,
 )
 
@@ -26,6 +27,9 @@ class Ambient(Part):
     """Walls that the rig radiates to; the air temperature when left out."""
     reference_temperature: Temperature = 293.15
     """At which drawings and measures of the case hold; 20 degC by ISO 1."""
+    warming_time: Time | None = None
+    """How long an operating point had run from a rig as cold as the room; steady when left out. The housings then
+    still take up heat: the whole warm-up as one implicit step, right at its start and at its end."""
 
 
 class CustomOil(Part):

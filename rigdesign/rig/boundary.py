@@ -26,11 +26,15 @@ from thermal.boundary import (
     Radiation,
     SurfaceSource,
 )
+from thermal.capacity import StoredHeat
 from thermal.condition_checks import Condition
 from thermal.housing_geometry import SIDES, HousingGeometry, ShaftGeometry
 
 GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"
 """Kinds of films: what takes the heat up, as the heat balance names it."""
+
+STORED = "stored"
+"""Kind of the rows of the bodies that still warm up."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +131,15 @@ def boundary_conditions(
         if isinstance(found, Film):
             found = replace(found, law=behind_shell(rig, name, surface, found.law))
         conditions.append(found)
-    return [*conditions, *_sources(context, losses)]
+    return [*conditions, *_sources(context, losses), *_stored(rig, name)]
+
+
+def _stored(rig: Rig, name: str) -> Iterator[StoredHeat]:
+    """What the bodies still take up where the case says that its points were not steady."""
+    room = rig.case.ambient
+    if room.warming_time is not None:
+        capacity = {body: m.density * m.heat_capacity for body, m in rig.body_materials(name).items()}
+        yield StoredHeat(capacity=capacity, start=room.temperature, time=room.warming_time, kind=STORED)
 
 
 def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, laws.TakenFrom]]:

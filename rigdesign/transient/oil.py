@@ -22,6 +22,7 @@ from rigdesign.rig.oil_supply import bearing_oil, gear_oil, injected_flow, wall_
 from rigdesign.stage_losses import StageLosses
 from rigdesign.transient.still_air import at_least, still
 from thermal.boundary import Film, FilmCoefficient, FilmLaw
+from thermal.capacity import StoredHeat
 from thermal.condition_checks import Condition
 from thermal.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
 
@@ -76,10 +77,11 @@ def oil_conditions(rig: Rig, name: str, state: StageLosses, *, oil: bool) -> tup
 def _steady(rig: Rig, name: str, state: StageLosses, losses: Sequence[PlacedLoss]) -> list[Condition]:
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
-    return boundary_conditions(
+    conditions = boundary_conditions(
         rig, name, state.point, state.feedback, state.bearings, losses,
         radiation_included=housing.radiation_included,
     )  # fmt: skip
+    return [condition for condition in conditions if not isinstance(condition, StoredHeat)]
 
 
 def _warmer(state: StageLosses) -> StageLosses:
