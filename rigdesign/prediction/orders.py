@@ -16,9 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.deviation_response import (
+    CYCLE_STEPS,
     DeviationResponse,
     HarmonicTorque,
     OrderLoads,
+    ideal_laws,
     mean_windup,
     motion_orders,
 )
@@ -27,11 +29,9 @@ from dynamics.initial_state import pinion_ratios
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_force import evaluate_mesh
 from dynamics.mesh_law import MeshLaw
-from dynamics.mesh_tables import has_individual_teeth
 from dynamics.periodic_response import PeriodicResponse, periodic_by_time
 from dynamics.response_curve import CurvePoint, periodic_response
 from dynamics.static_loop import NotConverged
-from dynamics.tooth_excitation import mean_teeth
 from rigdesign.loads import MeshModel, Setting, shifted_laws, signed_torque
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig
@@ -40,7 +40,7 @@ from rigdesign.state import OperatingPoint
 Array = NDArray[np.float64]
 Orders = dict[tuple[str, float], complex]
 
-LONGEST_MARCH = 6.0
+LONGEST_MARCH = 20.0
 """Simulated time after which an exact march that does not settle ends [s]."""
 
 
@@ -63,6 +63,7 @@ def shaft_orders(
     ripples: Sequence[Ripple] = (),
     base: CurvePoint | None = None,
     exact: bool = False,
+    steps: int = CYCLE_STEPS,
 ) -> Orders:
     """Orders of the channels that read torque or angle; other channels are passed over.
 
@@ -74,6 +75,7 @@ def shaft_orders(
     base : response of the same point with all teeth alike (``ideal_response``), where it is known
     exact : march in time over the hunting cycle, contacts opening and closing, instead of the linear response about
         the motion with all teeth alike. It takes no ripples
+    steps : corrections of the response for what the contacts do beyond first order; 0: the linear response alone
 
     Returns (channel, order) -> complex amplitude [N m], [rad]; the mean (order 0) is real.
 
@@ -88,7 +90,8 @@ def shaft_orders(
     read = [channel for channel in channels if channel.quantity in ("torque", "angle")]
     if not any(channel.orders for channel in read):
         return {}
-    places = {channel.name: _place(rig, channel) for channel in read}
+    parts = joints(rig.drivetrain)
+    places = {channel.name: _place(rig, parts, channel) for channel in read}
     count = _Count.of(rig, models)
     orders = sorted({order for channel in read for order in channel.orders})
     if exact:
@@ -106,7 +109,8 @@ def shaft_orders(
             for ripple in ripples
         ]  # fmt: skip
         start = base or ideal_response(rig, point, models, drags, setting)
-        state = _linear(rig, models, setting, start, [order * count.turns for order in orders], torques)
+        turned = [order * count.turns for order in orders]
+        state = _deviating(rig, models, setting, start, turned, torques, steps)
     by_order = dict(zip(orders, state.loads))
     found: Orders = {}
     for channel in read:
@@ -129,9 +133,7 @@ def ideal_response(
     """
     assert rig.system is not None
     controlled = setting.mode == "torque_controlled"
-    laws = [
-        mean_teeth(law) if has_individual_teeth(law) else law for law in shifted_laws(rig, models, setting)
-    ]
+    laws = ideal_laws(shifted_laws(rig, models, setting))
     curve = periodic_response(
         rig.system,
         laws,
@@ -187,16 +189,18 @@ class _State:
     speeds: Array
 
 
-def _linear(
+def _deviating(
     rig: Rig, models: Sequence[MeshModel], setting: Setting, base: CurvePoint, orders: Sequence[float],
-    torques: Sequence[HarmonicTorque],
+    torques: Sequence[HarmonicTorque], steps: int,
 ) -> _State:  # fmt: skip
     assert rig.system is not None
     laws = shifted_laws(rig, models, setting)
-    response = DeviationResponse(rig.system, laws, base, twist_held=setting.mode != "torque_controlled")
+    held = setting.mode != "torque_controlled"
+    response = DeviationResponse(rig.system, laws, base, twist_held=held, steps=steps)
+    mean, *loads = response.loads([0.0, *orders], torques)
     return _State(
-        loads=response.loads(orders, torques),
-        mean=dict(zip(response.bodies.tolist(), response.torque[:, 0].real.tolist())),
+        loads=loads,
+        mean=dict(zip(mean.dofs.tolist(), mean.torque.real.tolist())),
         twist=base.twist,
         drive=base.drive_torque,
         speeds=base.speed * pinion_ratios(rig.system, laws),
@@ -288,12 +292,12 @@ class _OfShaft:
         return complex(motion_orders(system, loads, (self.dof,))[0])
 
 
-def _place(rig: Rig, channel: Channel) -> _InCoupling | _OfShaft:
+def _place(rig: Rig, parts: Sequence[Joint], channel: Channel) -> _InCoupling | _OfShaft:
     """Where a channel reads; ValueError for a place the drivetrain does not have."""
     drivetrain, system = rig.drivetrain, rig.system
     assert drivetrain is not None and system is not None
     if channel.quantity == "torque":
-        for joint in joints(drivetrain):
+        for joint in parts:
             if joint.kind == "coupling" and joint.name == channel.place:
                 return _InCoupling(joint, drivetrain.bracing_coupling == joint.name)
         known = ", ".join(coupling.name for coupling in drivetrain.couplings) or "none"
