@@ -485,10 +485,10 @@ class Box:
             )
             return [
                 *zones,
-                ("journal", side, bearings[side]["width"], bearings[side]["diameter"], r),
+                ("journal", side, bearings[side]["width"], bearings[side]["diameter"], 2 * r),
                 ("cold", side, h[f"cold_length_{side}"], seal, 2 * r),
-                ("seal", side, h["partition_thickness"], seal, r),
-                ("warm", side, land, seat, r),
+                ("seal", side, h["partition_thickness"], seal, 2 * r),
+                ("warm", side, land, seat, 2 * r),
             ]
 
         middle = [("gear", "", width, seat, 1)] if gear else []

@@ -42,8 +42,8 @@ CONSTANTS: Mapping[str, Constant] = {
     # losses
     "friction": Constant(1.0, 0.06), "friction_load": Constant(0.20, 0.02, True, 1.5, 0.02),
     "friction_speed": Constant(0.0, 0.03, True, 1.5, -0.03), "friction_viscosity": Constant(0.05, 0.01, True, 1.5),
-    "film_fill": Constant(0.95, 0.04), "clearance_test": Constant(1.0, 0.03), "clearance_reference": Constant(1.0, 0.03),
-    "film_weight": Constant(0.60, 0.05), "rim_drag": Constant(0.060, 0.08), "mist_density": Constant(1.0, 0.08),
+    "film_fill": Constant(0.97, 0.04), "clearance_test": Constant(1.0, 0.03), "clearance_reference": Constant(1.0, 0.03),
+    "film_weight": Constant(0.60, 0.05), "rim_drag": Constant(0.055, 0.08), "mist_density": Constant(1.0, 0.08),
     "mist_exponent": Constant(0.0, 0.05, True, 2.0, 0.05), "jet_carried": Constant(0.97, 0.03),
     "squeeze": Constant(1.0, 0.10), "seal_drag": Constant(1.0, 0.10), "into_gears": Constant(1.0, 0.06),
     "pinion_share": Constant(1.0, 0.04),

@@ -48,7 +48,7 @@ EFFECTS: Mapping[str, Effect] = {
     "ambient": Effect("K", -8.0, 8.0, "state", "true room temperature less the one read", field=True),
     # ---------------------------------------------------------------- outside the catalogue
     "draught_one_side": Effect("W/(m2 K)", 0.0, 40.0, "outer wall, right", "fan on the right-hand wall", False, True),
-    "hot_neighbour": Effect("K", 0.0, 80.0, "outer wall, left", "hot machine beside the left-hand wall", False, True),
+    "hot_neighbour": Effect("K", 0.0, 200.0, "outer wall, left", "hot machine beside the left-hand wall", False, True),
     "coupling_heat": Effect("W", 0.0, 400.0, "shaft, rear", "heat through the coupling into the pinion shaft", False, True),
     "stratified_chamber": Effect("K", 0.0, 40.0, "chamber", "oil mist warmer at the top of the chamber", False, True),
     "oil_on_end_wall": Effect("W/(m2 K)", 0.0, 200.0, "end wall, rear", "cold oil running down the outside of the rear end wall", False, True),

@@ -106,7 +106,7 @@ class Solved:
     film_heat: np.ndarray
     """From solid to fluid [W]."""
     imbalance: float
-    """Sources and entries less exits, films outside and storage, over their sum."""
+    """Sources and entries less exits, films outside and storage, over sources and heat outside."""
 
 
 def solve(network: Network, loads: Loads, guess: np.ndarray, previous: np.ndarray | None = None,
@@ -157,14 +157,16 @@ def solve(network: Network, loads: Loads, guess: np.ndarray, previous: np.ndarra
     )
     # a cold reference keeps the numbers of the balance small
     shift = float(np.mean(guess))
-    temperature = shift + splu(matrix, permc_spec="COLAMD").solve(right - matrix @ np.full(n, shift))
+    temperature = shift + splu(
+        matrix, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.01
+    ).solve(right - matrix @ np.full(n, shift))
     fluid = np.where(closed, temperature[np.maximum(fj, 0)] + loads.offset, loads.outside)
     heat = exchange * (temperature[fi] - fluid)
     exits = sum(c * temperature[a] for a, b, c in streams if a >= 0 and b < 0)
     kept = float(np.sum(stored * (temperature - previous))) if previous is not None else 0.0
     gained = float(np.sum(loads.source) + np.sum(loads.entry))
     lost = float(np.sum(heat[~closed])) + exits + kept
-    scale = float(np.sum(np.abs(loads.source)) + np.sum(np.abs(heat[~closed])) + abs(np.sum(loads.entry)))
+    scale = float(np.sum(np.abs(loads.source)) + np.sum(np.abs(heat[~closed])))
     return Solved(
         temperature=temperature, surface=temperature[fi] - heat * inner, film_heat=heat,
         imbalance=(gained - lost) / max(scale, 1.0),

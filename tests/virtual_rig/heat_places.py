@@ -10,7 +10,7 @@ REACH = 2e-3
 """How far a point may lie off its face [m]."""
 
 
-class OffTheRig(ValueError):
+class OffTheRigError(ValueError):
     """A point that is on no outer face."""
 
 
@@ -38,7 +38,7 @@ def body_temperatures(box: Box, temperature: np.ndarray, surface: np.ndarray) ->
 
 
 def temperature_at(box: Box, surface: np.ndarray, at: tuple[float, float, float]) -> float:
-    """Temperature of the outer face at a point [K]; OffTheRig (ValueError) away from every face."""
+    """Temperature of the outer face at a point [K]; OffTheRigError (ValueError) away from every face."""
     face = face_of(box, at)
     u, v = at[face.axes[0]], at[face.axes[1]]
     for centre_u, centre_v, half, radii, films in face.patches:
@@ -56,7 +56,7 @@ def face_of(box: Box, at: tuple[float, float, float]) -> Face:
         )
         if abs(at[face.normal] - face.level) <= REACH and inside:
             return face
-    raise OffTheRig(f"{at}: on no outer face of the housing and not on the field")
+    raise OffTheRigError(f"{at}: on no outer face of the housing and not on the field")
 
 
 def scattered(box: Box, at: tuple[float, float, float], rng: np.random.Generator, spread: float = 3e-3,

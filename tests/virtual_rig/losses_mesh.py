@@ -21,6 +21,8 @@ class Path:
     pitch_radius: float
     """Working pitch radius of the pinion."""
     tip_radii: tuple[float, float]
+    depths: tuple[float, float]
+    """Tip less root radius of pinion and wheel."""
     angle: float
     """Working transverse pressure angle [rad]."""
     ratio: float
@@ -62,10 +64,13 @@ def path_of_contact(box: Mapping[str, Any], mesh: Mapping[str, Any]) -> Path:
     if "contact_ratio" in mesh:
         tips = _cut(tips, base, line, pitch * mesh["contact_ratio"], mesh.get("tip_cut", "both"))
     centre = base[0] * math.tan(working)
+    dedendum = mesh.get("rack", {}).get("dedendum", 1.25)
+    roots = [m_t * z / 2.0 - module * (dedendum - x) for z, x in zip((z1, z2), shifts, strict=True)]
     return Path(
         start=line - math.sqrt(tips[1] ** 2 - base[1] ** 2) - centre,
         end=math.sqrt(tips[0] ** 2 - base[0] ** 2) - centre, pitch=pitch, base_radius=base[0],
-        pitch_radius=a * z1 / (z1 + z2), tip_radii=(tips[0], tips[1]), angle=working, ratio=z2 / z1,
+        pitch_radius=a * z1 / (z1 + z2), tip_radii=(tips[0], tips[1]),
+        depths=(tips[0] - roots[0], tips[1] - roots[1]), angle=working, ratio=z2 / z1,
         width=min(gear["face_width"] for gear in gears), helical=beta > 0.0,
     )  # fmt: skip
 

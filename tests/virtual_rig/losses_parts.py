@@ -7,16 +7,21 @@ import numpy as np
 
 
 @cache
-def _short_bearing() -> tuple[np.ndarray, np.ndarray]:
+def _carried(slenderness: float) -> tuple[np.ndarray, np.ndarray]:
+    """ln of W / (eta omega R B (R/c)^2) over eccentricity: short and long bearing in series."""
     eps = np.concatenate([np.linspace(1e-4, 0.9, 400), 1.0 - np.geomspace(0.1, 1e-4, 200)[1:]])
-    left = (1.0 - eps**2) ** 2 / (math.pi * eps * np.sqrt(math.pi**2 * (1.0 - eps**2) + 16.0 * eps**2))
-    return np.log(left[::-1]), eps[::-1]
+    short = slenderness**2 * eps * np.sqrt(16.0 * eps**2 + math.pi**2 * (1.0 - eps**2)) / (1.0 - eps**2) ** 2
+    long = 6.0 * eps * np.sqrt(math.pi**2 - eps**2 * (math.pi**2 - 4.0)) / ((2.0 + eps**2) * (1.0 - eps**2))
+    return np.log(short * long / (short + long)), eps
 
 
-def eccentricity(sommerfeld: float) -> float:
-    """Relative eccentricity from S (B/D)^2 with S = eta n D B / F (R/c)^2 (Ocvirk's short bearing)."""
-    logs, eps = _short_bearing()
-    return float(np.interp(math.log(sommerfeld), logs, eps))
+def eccentricity(load: float, slenderness: float) -> float:
+    """Relative eccentricity from W / (eta omega R B (R/c)^2) and B/D.
+
+    Ocvirk's short bearing and half of Sommerfeld's long one, loads added as in series: right at both ends.
+    """
+    logs, eps = _carried(round(slenderness, 6))
+    return float(np.interp(math.log(load), logs, eps))
 
 
 def bearing_power(eta: float, speed: float, diameter: float, width: float, clearance: float, load: float,
@@ -28,8 +33,8 @@ def bearing_power(eta: float, speed: float, diameter: float, width: float, clear
     if speed <= 0.0:
         return 0.0
     radius = diameter / 2.0
-    number = eta * speed / (2.0 * math.pi) * diameter * width / max(load, 1.0) * (radius / clearance) ** 2
-    eps = eccentricity(number * (width / diameter) ** 2)
+    capacity = eta * speed * radius * width * (radius / clearance) ** 2
+    eps = eccentricity(max(load, 1.0) / capacity, width / diameter)
     petroff = 2.0 * math.pi * eta * speed * radius**3 * width / clearance
     attitude = math.atan2(math.pi * math.sqrt(1.0 - eps * eps), 4.0 * eps)
     turned = 0.5 * clearance * eps * load * math.sin(attitude)

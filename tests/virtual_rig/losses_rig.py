@@ -16,6 +16,8 @@ from tests.virtual_rig.losses_parts import (
 )
 from tests.virtual_rig.oil_data import OilData, oil_of
 
+TOOTH_DEPTH = 2.25e-3
+"""Depth of the teeth that the rim drag counts for [m]; spaces twice as deep pump twice as much mist."""
 WEIGHT = 20.0
 """Load of a journal bearing without torque [N]."""
 
@@ -190,7 +192,8 @@ class LossModel:
             entry = box.entry["gears"][gear]
             speed = box.speed[entry["shaft"]]
             tip = mesh.path.tip_radii[index]
-            powers.append(windage_power(speed, tip, entry["face_width"], self.mist(box), self.c["rim_drag"]))
+            drag = self.c["rim_drag"] * mesh.path.depths[index] / TOOTH_DEPTH
+            powers.append(windage_power(speed, tip, entry["face_width"], self.mist(box), drag))
         factor = 1.0 + self.size("windage_loss", box.name)
         return powers[0] * factor, powers[1] * factor
 
