@@ -1,8 +1,8 @@
-"""The command line: `rigdesign check | study | validate | schema | doctor`.
+"""The command line: `rigdesign check | study | compare | validate | new | schema | doctor`.
 
-Exit status: 0 all checks pass (study: complete; validate: no gate missed), 1 a check fails or a gate is
-missed, 2 usage or case error, 3 no convergence, 4 a system library is missing. Heavy imports happen inside
-the commands, so that `--help` answers at once.
+Exit status: 0 all checks pass (study: complete; compare: any verdict; validate: no gate missed), 1 a check fails
+or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is missing, 5 measured data cannot
+be used. Heavy imports happen inside the commands, so that `--help` answers at once.
 """
 
 import json
@@ -120,6 +120,85 @@ def study(
             loaded, variations, out, fidelity=fidelity, workers=workers, retry=retry, progress=progress
         )
     print_study(outcome, out)
+    return 0
+
+
+@app.command
+def compare(
+    case: Path,
+    measurement: Path,
+    *,
+    out: Path | None = None,
+    model: Literal["full", "reduced"] = "full",
+    fidelity: Fidelity = "quick",
+    json: bool = False,
+) -> int:
+    """Hold a measurement set against the simulation and say where they disagree; changes no model.
+
+    Parameters
+    ----------
+    case
+        Case folder or its case.toml.
+    measurement
+        Folder with measurement.toml.
+    out
+        Folder for compare.json and compare.html.
+    model
+        Thermal model: full, or reduced with its stated error.
+    fidelity
+        Size of the models: quick, standard or reference.
+    json
+        Print compare.json on stdout; everything else goes to stderr.
+    """
+    from rigdesign.case import load_case
+    from rigdesign.measurement import features, load_measurement
+    from rigdesign.measurement.compare import compare as hold_against
+    from rigdesign.measurement.compare import comparison_document
+    from rigdesign.prediction import predict
+    from rigdesign.report import prepare_output
+    from rigdesign.report.measurement_page import write_comparison
+    from rigdesign.terminal import Progress, print_comparison
+
+    loaded = load_case(case)
+    measured = load_measurement(measurement, loaded)
+    data = features(measured)
+    if out is not None:
+        prepare_output(out)
+    with Progress() as progress:
+        progress(f"predicting {len(data.settings)} operating points")
+        channels = [entry.channel for entry in data.channels.values()]
+        prediction = predict(loaded, data.settings, channels, model=model, fidelity=fidelity)
+        comparison = hold_against(measured, data, prediction)
+        if out is not None:
+            progress("writing report")
+            write_comparison(comparison, out, model=model, fidelity=fidelity)
+    if json:
+        _print_json(comparison_document(comparison, model=model, fidelity=fidelity))
+    else:
+        print_comparison(comparison, out)
+    return 0
+
+
+new = App(name="new", help="Write the start of a file to fill in.")
+app.command(new)
+
+
+@new.command(name="measurement")
+def new_measurement(case: Path, *, out: Path) -> int:
+    """Write measurement.toml and an empty data.csv with the channels the case offers.
+
+    Parameters
+    ----------
+    case
+        Case folder or its case.toml.
+    out
+        Folder of the set; files in it are not overwritten.
+    """
+    from rigdesign.case import load_case
+    from rigdesign.measurement.template import write_template
+
+    for path in write_template(load_case(case), out):
+        print(path)
     return 0
 
 

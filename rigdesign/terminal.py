@@ -15,6 +15,7 @@ from rich.text import Text
 from rigdesign.results import Check, RunResult
 
 if TYPE_CHECKING:
+    from rigdesign.measurement.compare import Comparison
     from rigdesign.ranges_result import RangesResult
     from rigdesign.system import Finding
     from rigdesign.validation import ValidationRow
@@ -138,6 +139,19 @@ def print_study(outcome: Any, out: Path) -> None:
     for point in outcome.failed:
         console.print(Text("failed: ", "bold red") + Text(point))
     console.print(f"{outcome.completed} points computed, {outcome.reused} found done: {out / 'results.csv'}")
+
+
+def print_comparison(comparison: "Comparison", out: Path | None) -> None:
+    """The verdict, what the data checks say, and where the pages are."""
+    from rigdesign.measurement.compare import headline
+
+    console = Console(highlight=False, soft_wrap=True)
+    console.print(Text(headline(comparison), "bold"))
+    for finding in comparison.findings:
+        style = {"dropped": "red", "suspect": "yellow"}.get(finding.weight, "dim")
+        console.print(Text(f"{finding.weight:8s}", style) + Text(finding.text))
+    if out is not None:
+        console.print(f"{out / 'compare.html'}")
 
 
 def print_findings(findings: Sequence["Finding"]) -> None:

@@ -128,7 +128,7 @@ class MeasurementFile(Part):
     baseline: Text | None = None
     """Healthy set of the same rig, a folder beside this one."""
     case: Name | None = None
-    """Name of the case the set belongs to; a set of another one is refused."""
+    """Name of the case the set belongs to; a set of another one is suspected."""
     data: Data = Data()
     points: Mapping[Label, Point] = {}
     settings: Mapping[Label, SettingColumn] = Field(min_length=1)

@@ -40,7 +40,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     document = _validated(content, file)
     places = Places(case)
     folder = file.parent
-    faults = [*_head_faults(document, file, case), *column_faults(document, places)]
+    faults = [*_head_faults(document, file), *column_faults(document, places)]
     try:
         table = read_table(folder, document.data.table, document.data, with_units=True)
     except MeasurementError as error:
@@ -54,6 +54,14 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     points, findings = points_of(document, sensors, rows)
     readings = rows.scalars(channels, points)
     findings += rows.findings(channels)
+    if document.case is not None and document.case != case.name:
+        findings.append(
+            Finding(
+                id="other_case", weight="suspect",
+                text=f"the set belongs to case {document.case}, compared is {case.name}; give its own case or correct "
+                "the key 'case'",
+            )
+        )  # fmt: skip
     try:
         if document.data.orders is not None:
             readings |= read_orders(folder, document, channels, rows, readings, findings)
@@ -137,12 +145,7 @@ def _tuples(node: Any) -> Any:
     return tuple(_tuples(item) for item in node) if isinstance(node, list) else node
 
 
-def _head_faults(document: MeasurementFile, file: Path, case: Case) -> Iterable[Fault]:
-    if document.case is not None and document.case != case.name:
-        yield Fault(
-            "case", written(document.case), f"the set belongs to another rig than case {case.name}",
-            "give its own case, or correct the key",
-        )  # fmt: skip
+def _head_faults(document: MeasurementFile, file: Path) -> Iterable[Fault]:
     if document.baseline is None:
         return
     folder = (file.parent / document.baseline).resolve()
