@@ -6,7 +6,7 @@ lines and stay outside the matrices (`dynamics.mesh_law`). Any number of shafts,
 allowed; whether the loops can close is checked in `dynamics.power_loop`.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, TypeVar
 
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from dynamics.linear_system import LinearSystem
 from dynamics.power_loop import check_loops
 from dynamics.shaft import Disc, DrivetrainError, Section, Shaft, ShaftChain, discretise
+from dynamics.shaft_torque import ShaftTorque, ShaftTorques
 
 __all__ = [
     "Coupling",
@@ -30,6 +31,7 @@ __all__ = [
     "Motor",
     "Section",
     "Shaft",
+    "ShaftTorque",
     "assemble",
     "joints",
 ]
@@ -58,7 +60,8 @@ class GearBody:
 class Coupling:
     """Massless spring and damper between two shaft ends: stiffness [N m/rad], damping [N m s/rad].
 
-    Flange masses (a torque flange, say) are discs on the shafts.
+    Flange masses (a torque flange, say) are discs on the shafts. ``excitation`` acts between its ends, positive where
+    it draws the first shaft ahead, and counts the turns of the first shaft.
     """
 
     name: str
@@ -66,6 +69,7 @@ class Coupling:
     ends: tuple[End, End] = ("right", "left")
     stiffness: float
     damping: float = 0.0
+    excitation: tuple[ShaftTorque, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,7 +111,7 @@ class MeshConnection:
 class Motor:
     """Drive on a shaft: torque acts at ``position`` [m], on a rotor of its own if ``stiffness`` is given.
 
-    inertia : rotor [kg m2], added to the station when there is no stiffness.
+    inertia : rotor [kg m2], added to the station when there is no stiffness. ripple : of its torque about the mean.
     """
 
     shaft: str
@@ -115,6 +119,7 @@ class Motor:
     inertia: float = 0.0
     stiffness: float | None = None
     damping: float = 0.0
+    ripple: tuple[ShaftTorque, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,7 +208,21 @@ def assemble(drivetrain: Drivetrain) -> LinearSystem:
         drive_dof=builder.drive,
         twist_load=twist_load,
         drag_loads={name: -np.eye(1, n, dof)[0] for name, dof in places.items()},
+        shaft_torques=tuple(_shaft_torques(drivetrain, builder)),
     )
+
+
+def _shaft_torques(drivetrain: Drivetrain, builder: "_Builder") -> Iterator[ShaftTorques]:
+    """Ripple of the motor and excitation of the couplings, each part that has any."""
+    if drivetrain.motor.ripple:
+        load = np.eye(1, builder.size, builder.drive)[0]
+        yield ShaftTorques(name="motor", load=load, dof=builder.drive, parts=drivetrain.motor.ripple)
+    for coupling in drivetrain.couplings:
+        if coupling.excitation:
+            a, b = (builder.end(name, end) for name, end in zip(coupling.shafts, coupling.ends))
+            load = np.zeros(builder.size)
+            load[a], load[b] = 1.0, -1.0
+            yield ShaftTorques(name=coupling.name, load=load, dof=a, parts=coupling.excitation)
 
 
 def joints(drivetrain: Drivetrain) -> tuple[Joint, ...]:

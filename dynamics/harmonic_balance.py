@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from dynamics.mesh_force import evaluate_mesh
 from dynamics.modal_form import ModalForm
+from dynamics.shaft_torque import ShaftTorques, harmonic_loads
 from dynamics.static_loop import NotConverged, PortModel
 
 STALL_LIMIT = 2e-3
@@ -90,6 +91,8 @@ class Problem:
     """Everything that stays the same over speed.
 
     torque : mean torque asked of ``control_mesh`` [N m], or None when ``twist`` [rad] is held instead
+    shaft_torques : torques that swing with the turn of a shaft; ratios : (n,) speed of each freedom of the drivetrain
+        per speed of the drive freedom
     """
 
     model: PortModel
@@ -97,6 +100,23 @@ class Problem:
     torque: float | None
     twist: float | None = None
     control_mesh: int = 0
+    shaft_torques: tuple[ShaftTorques, ...] = ()
+    ratios: Array | None = None
+
+    def driven(self, grid: HarmonicGrid, base: float) -> Complex:
+        """Windup of the mesh bodies (n_bodies, top + 1) that the swinging torques would make without the meshes."""
+        n_bodies = self.model.n_bodies
+        motion = np.zeros((n_bodies, grid.top + 1), complex)
+        if self.ratios is None:
+            return motion
+        loads = harmonic_loads(self.shaft_torques, self.ratios, grid.cell_angle * grid.cells / (2.0 * np.pi))
+        for harmonic, load in loads.items():
+            if harmonic <= grid.top:
+                loaded = np.flatnonzero(load)
+                dofs = np.concatenate((self.model.dofs[:n_bodies], loaded))
+                gain = self.form.receptance(np.array([harmonic * base]), dofs)[0, :n_bodies, n_bodies:]
+                motion[:, harmonic] = 0.5 * gain @ load[loaded]
+        return motion
 
     @property
     def approach_scale(self) -> float:
@@ -133,6 +153,7 @@ def solve_periodic(
     receptance = problem.form.receptance(np.asarray(omega, float), model.dofs[:n_bodies])
     drag = model.drag(speed, drag_torques)
     newton = _Newton(problem, grid, base, receptance)
+    driven = problem.driven(grid, base)[:, 1:]
     ports, twist, drive = start.ports.copy(), start.twist, start.drive
     rest = np.zeros(n_bodies + 1)
     rest[:n_bodies] = ports[:, 0].real
@@ -145,7 +166,7 @@ def solve_periodic(
         ports[:, 0] = rest[:n_bodies]
         reactions = _evaluate(model, grid, speed, base, ports)
         torque = reactions.torque if excitation is None else reactions.torque + excitation
-        miss = np.einsum("kij,jk->ik", receptance, torque[:, 1:]) - ports[:, 1:]
+        miss = np.einsum("kij,jk->ik", receptance, torque[:, 1:]) + driven - ports[:, 1:]
         load = np.append(torque[:, 0].real, 0.0)
         balance = model.stiffness @ rest - load - model.twist * twist - drag
         balance[-1] -= drive

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.modal_form import ModalForm, modal_form
+from dynamics.shaft_torque import ShaftTorques
 
 Array = NDArray[np.float64]
 
@@ -28,6 +29,7 @@ class LinearSystem:
     twist_load : (n,) torque on each freedom per radian of bracing twist (zero sum) [N m/rad]
     drag_loads : name -> (n,) share of a drag torque that acts on each freedom, summing to -1 (drag opposes
         rotation); one entry per loss place that brakes (bearing, windage, seal)
+    shaft_torques : torques that swing with the turn of a shaft
     """
 
     inertia: Array
@@ -39,6 +41,7 @@ class LinearSystem:
     drive_dof: int
     twist_load: Array
     drag_loads: dict[str, Array]
+    shaft_torques: tuple[ShaftTorques, ...] = ()
 
     @cached_property
     def form(self) -> ModalForm:

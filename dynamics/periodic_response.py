@@ -9,7 +9,7 @@ twist is corrected in the same way until the first mesh carries the asked mean t
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, gcd, lcm, pi
 from typing import Literal
 
@@ -20,6 +20,7 @@ from dynamics.initial_state import pinion_ratios, wound_state
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
 from dynamics.propagator import DEFAULT_CUTOFF, ModalModel, modal_model
+from dynamics.shaft_torque import waves_within
 from dynamics.time_march import Block, DriveState, TimeMarch, slow_loads
 
 Array = NDArray[np.float64]
@@ -190,12 +191,14 @@ def periodic_by_time(
             start.drive_torque,
         )
     march = TimeMarch(
-        system, laws, wound, step=length / steps, substeps=steps, drags=tuple(drags), drive_torque=drive,
-        drag_torques=tuple(drags.values()), model=model,
+        system, laws, wound, step=length / steps, substeps=1 if system.shaft_torques else steps, drags=tuple(drags),
+        drive_torque=drive, drag_torques=tuple(drags.values()), model=model,
     )  # fmt: skip
     tables = np.array([[value, value] for value in drags.values()]).reshape(len(drags), 2)
     per_block = max(1, ceil(2e-3 / length))
-    search = _Search(march, system, ratios, speed, torque, stiffness, drive, wound.twist, tolerance)
+    search = _Search(
+        march, system, ratios, speed, torque, stiffness, drive, wound.twist, tolerance, turns, steps
+    )
     blocks = max(4, ceil(longest_time / (per_block * length)))
     done = 0
     before, block = march.accounts(), None
@@ -259,12 +262,16 @@ class _Search:
 
     def __init__(
         self, march: TimeMarch, system: LinearSystem, ratios: Array, speed: float, torque: float | None,
-        stiffness: float, drive: float, twist: float, tolerance: float,
+        stiffness: float, drive: float, twist: float, tolerance: float, turns: float, steps: int,
     ) -> None:  # fmt: skip
         self.march, self.speed, self.torque, self.tolerance = march, speed, torque, tolerance
         self.drive, self.twist, self.balanced_drive = drive, twist, drive
         self.steady, self.residual = False, float("inf")
-        self._stiffness = stiffness
+        self._stiffness, self._steps = stiffness, steps
+        self._torques = [
+            replace(own, parts=tuple(p for p in own.parts if waves_within(p.order, ratios[own.dof], turns)))
+            for own in system.shaft_torques
+        ]
         self._ratios = ratios
         self._inertia = float(system.inertia @ ratios**2) / ratios[system.drive_dof]
         self._last: Array | None = None
@@ -274,10 +281,14 @@ class _Search:
 
     def block(self, periods: int, length: float, tables: Array) -> Block:
         march = self.march
-        given = np.zeros((periods, 4))
+        steps = self._steps
+        samples = periods * steps // march.substeps
+        given = np.zeros((samples, 4 + len(self._torques)))
         given[:, 0], given[:, 1] = self.drive, self.twist
-        steps = march.substeps
         turned = march.pinion_angle()
+        angle = turned + self.speed * march.step * march.substeps * np.arange(1, samples + 1)
+        for i, torques in enumerate(self._torques):
+            given[:, 4 + i] = torques.at(self._ratios[torques.dof] * angle)
         result = march.advance(given, drag_tables=tables)
         span = periods * length
         mean_speed = (march.pinion_angle() - turned) / span

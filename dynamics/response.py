@@ -66,8 +66,9 @@ class DragCurve:
 class EnergyBook:
     """Where the work went, integrated at the internal steps [J].
 
-    input_work : of the motor; bracing_work : of the twist; friction, mesh_damping : (n_meshes,)
-    joint_damping : joints and linear bearing damping; drag : by name; change : of kinetic and elastic energy
+    input_work : of the motor and of all torques that swing with a shaft; bracing_work : of the twist
+    friction, mesh_damping : (n_meshes,); joint_damping : joints and linear bearing damping; drag : by name
+    change : of kinetic and elastic energy
     """
 
     input_work: float
@@ -226,16 +227,22 @@ def run_schedule(
     torques: list[Array] = []
     radius = np.array([law.base_radius_1 for law in laws])[:, None]
     limit_at = np.empty(n_samples)
+    turned = np.zeros(1)
     for first, count, limit in _chunks(command.time, limits, n_samples, sample_rate, per_slot):
         limit_at[first : first + count] = limit
         control = replace(control, torque_limit=limit)
         at = command.time[0] + np.arange(first, first + count + 1) / sample_rate
         target = np.interp(at, command.time, command.speed) * drive_ratio
-        given = np.zeros((count, 4))
+        given = np.zeros((count, 4 + len(system.shaft_torques)))
         given[:, 0] = inertia * np.diff(target) * sample_rate
         if command.twist is not None:
             given[:, 1] = np.interp(at[1:], command.time, command.twist)
         given[:, 2] = target[1:]
+        turned = (
+            turned[-1] + np.concatenate(([0.0], np.cumsum(0.5 * (target[1:] + target[:-1])))) / sample_rate
+        )
+        for i, torques in enumerate(system.shaft_torques):
+            given[:, 4 + i] = torques.at(ratios[torques.dof] / drive_ratio * turned[1:])
         if command.torque is not None:
             asked = np.interp(at[1:], command.time, command.torque)
             given[:, 3] = asked
@@ -274,7 +281,7 @@ def run_schedule(
         energy=None
         if not keep_accounts
         else EnergyBook(
-            input_work=float(accounts.slow_work[0]),
+            input_work=float(accounts.slow_work[0] + accounts.slow_work[2 + len(names) :].sum()),
             bracing_work=float(accounts.slow_work[1]),
             friction=accounts.friction,
             mesh_damping=accounts.mesh_damping,

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from dynamics.harmonic_balance import HarmonicSolution, Problem
 from dynamics.harmonic_walk import LEAST_HARMONICS, HarmonicWalk
+from dynamics.initial_state import pinion_ratios
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
 from dynamics.periodic_response import Period, PeriodicResponse, periodic_by_time
@@ -140,12 +141,15 @@ def periodic_response(
         raise ValueError(
             f"control_mesh = {control_mesh}: time integration controls mesh 0; use harmonic balance alone"
         )
+    ratios = pinion_ratios(system, laws)
     problem = Problem(
         model=port_model(system, laws),
         form=system.form,
         torque=torque,
         twist=twist,
         control_mesh=control_mesh,
+        shaft_torques=system.shaft_torques,
+        ratios=ratios / ratios[system.drive_dof] if system.shaft_torques else None,
     )
     walk = HarmonicWalk(problem, period, cutoff, tolerance)
     given = [float(speed) for speed in speeds]

@@ -95,15 +95,16 @@ class Accounts(NamedTuple):
     mesh_damping: Array
     """(n_meshes,)"""
     slow_work: Array
-    """(n_slow,) work done on the drivetrain by motor, bracing and drags (drags negative)."""
+    """(n_slow,) work done on the drivetrain by motor, bracing, drags (negative) and swinging torques."""
     joint_damping: float
 
 
 class TimeMarch:
     """A drivetrain that is advanced in time; the only object of the dynamics that changes.
 
-    Slow inputs are the motor torque (on ``system.drive_dof``), the bracing twist (on ``system.twist_load``)
-    and one torque for each name in ``drags``, acting through ``system.drag_loads``.
+    Slow inputs are the motor torque (on ``system.drive_dof``), the bracing twist (on ``system.twist_load``),
+    one torque for each name in ``drags``, acting through ``system.drag_loads``, and one for each entry of
+    ``system.shaft_torques``.
     """
 
     def __init__(
@@ -139,7 +140,8 @@ class TimeMarch:
         self._marched = 0
         self._names = system.dofs
         self._record_all = record_all
-        n_meshes, n_slow = len(self.laws), 2 + len(self.drags)
+        n_meshes, n_slow = len(self.laws), 2 + len(self.drags) + len(system.shaft_torques)
+        self._n_slow = n_slow
         self._laws_packed = [pack_meshes([law]) for law in self.laws]
         loads = slow_loads(system, drags)
         n_power = 2 * n_meshes + n_slow + 1 if accounts else 0
@@ -158,7 +160,8 @@ class TimeMarch:
             powers[2 * mesh : 2 * mesh + 2] = (reaction.friction_power[0], reaction.damping_power[0])[
                 :n_power
             ]
-        slow = np.array([drive_torque, start.twist, *(drag_torques or [0.0] * len(self.drags))], float)
+        slow = np.zeros(n_slow)
+        slow[: 2 + len(drag_torques)] = drive_torque, start.twist, *drag_torques
         speeds = loads.T @ start.speeds
         if accounts:
             powers[2 * n_meshes : -1] = slow * speeds
@@ -195,15 +198,16 @@ class TimeMarch:
 
         Parameters
         ----------
-        given : (n_samples, 4) commands at the end of each sample: motor torque (feed-forward) [N m],
-            twist [rad], speed of the drive freedom [rad/s], torque of the first mesh [N m]
+        given : (n_samples, 4 + n_shaft_torques) commands at the end of each sample: motor torque (feed-forward)
+            [N m], twist [rad], speed of the drive freedom [rad/s], torque of the first mesh [N m], then the value of
+            each entry of ``system.shaft_torques`` [N m]
         offsets : (n_samples, n_meshes) approach imposed on each mesh [m], in place of the offsets of the laws
         drag_tables : (n_drags, n_table) drag torque over speed, from 0 to ``drag_speeds`` [N m]
         drag_speeds : (n_drags,) last speed of each table [rad/s]
 
         Raises MarchDiverged if the motion leaves the finite numbers.
         """
-        n_meshes, n_slow = len(self.laws), 2 + len(self.drags)
+        n_meshes, n_slow = len(self.laws), self._n_slow
         n_samples = len(given)
         sample_time = self.step * self.substeps
         control = np.zeros(6)
@@ -282,7 +286,7 @@ class TimeMarch:
         """Return work and losses since the start; zeros if the march keeps no accounts."""
         n = len(self.laws)
         if len(self._carried.work) == 0:
-            return Accounts(np.zeros(n), np.zeros(n), np.zeros(2 + len(self.drags)), 0.0)
+            return Accounts(np.zeros(n), np.zeros(n), np.zeros(self._n_slow), 0.0)
         work = self._carried.work
         return Accounts(
             work[0 : 2 * n : 2].copy(), work[1 : 2 * n : 2].copy(), work[2 * n : -1].copy(), float(work[-1])
@@ -348,7 +352,10 @@ class TimeMarch:
 
 
 def slow_loads(system: LinearSystem, drags: Sequence[str]) -> Array:
-    """Return the loads (n, 2 + n_drags) of motor, twist and named drags; ValueError for unknown names."""
+    """Return the loads (n, 2 + n_drags + n_shaft_torques) of motor, twist, named drags and swinging torques.
+
+    Raises ValueError for unknown names.
+    """
     drive = np.zeros(len(system.inertia))
     drive[system.drive_dof] = 1.0
     unknown = [name for name in drags if name not in system.drag_loads]
@@ -356,4 +363,7 @@ def slow_loads(system: LinearSystem, drags: Sequence[str]) -> Array:
         raise ValueError(
             f"no drag load named {', '.join(unknown)}; known: {', '.join(system.drag_loads) or 'none'}"
         )
-    return np.column_stack((drive, system.twist_load, *(system.drag_loads[name] for name in drags)))
+    swinging = (torques.load for torques in system.shaft_torques)
+    return np.column_stack(
+        (drive, system.twist_load, *(system.drag_loads[name] for name in drags), *swinging)
+    )

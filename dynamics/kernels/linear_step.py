@@ -98,6 +98,13 @@ def slow_targets(
         target[2 + i] = value * sliding_direction(speed)
 
 
+@njit(cache=True)  # type: ignore[untyped-decorator]
+def given_targets(given: Array, ahead: int, target: Array) -> None:
+    """Fill the slow inputs behind the first ``ahead`` ones with what is given for the end of a sample."""
+    for k in range(ahead, target.shape[0]):
+        target[k] = given[4 + k - ahead]
+
+
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def hold_slow(responses: Array, slow: Array, target: Array, substeps: int, total: Array) -> None:
     """Add to ``total`` (n,) what the slow inputs, linear over the sample, give by ``responses`` (2 n_slow, n)."""

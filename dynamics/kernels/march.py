@@ -51,6 +51,7 @@ from dynamics.kernels.linear_step import (
     DiscreteModes,
     add_torques,
     end_rows,
+    given_targets,
     hold_slow,
     put_state,
     slow_targets,
@@ -83,7 +84,8 @@ class Orders(NamedTuple):
     """What a march is told, values at the end of each sample."""
 
     given: Array
-    """(n_samples, 4) motor torque, twist, speed of the drive, torque of the first mesh."""
+    """(n_samples, 4 + n_given) motor torque, twist, speed of the drive, torque of the first mesh, then the slow inputs
+    behind the drags."""
     offsets: Array
     """(n_samples, n_meshes) imposed approach."""
     control: Array
@@ -102,7 +104,7 @@ class Carried(NamedTuple):
     ports: Array
     """(n_meshes, 6) tau_1, tau_2, both one step earlier, approach, pinion angle."""
     slow: Array
-    """(n_slow,) motor torque, twist, drags."""
+    """(n_slow,) motor torque, twist, drags, torques that are given."""
     offset: Array
     """(n_meshes,) imposed approach."""
     memory: Array
@@ -304,6 +306,7 @@ def _march(
             orders.given[sample], orders.control, orders.drags, orders.per_drag_step, carried.memory,
             carried.speeds, mean_torque, work.target,
         )  # fmt: skip
+        given_targets(orders.given[sample], 2 + orders.drags.shape[0], work.target)
         by_slow[:] = 0.0
         hold_slow(modes.slow_outputs, slow, work.target, substeps, by_slow)
         for m in range(n_meshes):

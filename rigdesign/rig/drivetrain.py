@@ -1,10 +1,11 @@
 """The power circuit of a case as a drivetrain of the dynamics package."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from dynamics import drivetrain as dyn
 from dynamics.gear import GearPair
+from rigdesign.case.drivetrain import HarmonicTorque
 from rigdesign.case.model import Case
 from rigdesign.materials import Material
 
@@ -40,6 +41,7 @@ def build_drivetrain(
                 ends=(ENDS[coupling.ends[0]], ENDS[coupling.ends[1]]),
                 stiffness=coupling.torsional_stiffness,
                 damping=coupling.torsional_damping,
+                excitation=_swinging(coupling.excitation),
             )
             for name, coupling in power.couplings.items()
         ),
@@ -134,7 +136,16 @@ def _motor(case: Case) -> dyn.Motor:
     motor = case.drivetrain.motor
     length = math.fsum(section.length for section in case.drivetrain.shafts[motor.shaft].sections)
     return dyn.Motor(
-        shaft=motor.shaft, position=0.0 if motor.end == "start" else length, inertia=motor.inertia
+        shaft=motor.shaft,
+        position=0.0 if motor.end == "start" else length,
+        inertia=motor.inertia,
+        ripple=_swinging(motor.ripple),
+    )
+
+
+def _swinging(torques: Sequence[HarmonicTorque]) -> tuple[dyn.ShaftTorque, ...]:
+    return tuple(
+        dyn.ShaftTorque(order=torque.order, torque=torque.torque, phase=torque.phase) for torque in torques
     )
 
 
