@@ -6,40 +6,16 @@ surface temperature follows from the heat through half of it. ``refine`` divides
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from tests.virtual_rig.heat_base import add_field
 from tests.virtual_rig.heat_network import OUTSIDE, Network
-
-STEEL = {
-    "structural_steel": (50.0, 7850.0 * 475.0),
-    "case_hardened_steel": (42.0, 7830.0 * 475.0),
-    "grey_iron": (48.0, 7200.0 * 480.0),
-    "ductile_iron": (36.0, 7100.0 * 500.0),
-    "aluminium": (170.0, 2700.0 * 900.0),
-}
-"""Conductivity at 100 degC [W/(m K)] and heat capacity by volume [J/(m3 K)]."""
-OIL_FILM = 150.0
-"""Heat capacity of the oil a mixing cell holds [J/K]: about 70 g."""
-SIDES = ("front", "rear")
-
-
-@dataclass
-class Face:
-    """Outer face for reading temperatures: films on a grid, and patches inside it."""
-
-    axes: tuple[int, int]
-    """Coordinates (0 x, 1 y, 2 z) that run over the grid."""
-    normal: int
-    level: float
-    u: np.ndarray
-    v: np.ndarray
-    films: np.ndarray
-    """(n_u, n_v) film numbers; -1 inside a patch."""
-    patches: list[tuple[float, float, float, np.ndarray, np.ndarray]] = field(default_factory=list)
-    """Centre u, v, half side, ring radii (n_rings,), films (n_rings, n_sectors)."""
+from tests.virtual_rig.heat_parts import OIL_FILM, SIDES, STEEL, Face, middle_of
+from tests.virtual_rig.heat_rotors import add_shaft
 
 
 @dataclass(frozen=True)
@@ -84,9 +60,9 @@ class Box:
         self._oil_cells()
         self._belts()
         self._transverse()
-        self._field()
+        add_field(self)
         for shaft in self.shafts:
-            self._shaft(shaft)
+            add_shaft(self, shaft)
         self._hidden_ways()
         self.net.finish()
 
@@ -117,12 +93,12 @@ class Box:
         wall, floor, top = h["wall_thickness"], h["floor_thickness"], h["top_thickness"]
         at = {s: h["shafts"][s]["lateral_position"] for s in self.shafts}
         order = sorted(self.shafts, key=lambda s: at[s])
-        gap = min((at[b] - at[a] for a, b in zip(order, order[1:], strict=False)), default=0.1)
+        gap = min((at[b] - at[a] for a, b in pairwise(order)), default=0.1)
         half = 0.32 * gap
         marks = [-self.width / 2.0 + wall, *(at[s] + sign * half for s in order for sign in (-1, 1)),
                  self.width / 2.0 - wall]  # fmt: skip
         y, first_y = [np.array([marks[0]])], {}
-        for index, (low, high) in enumerate(zip(marks, marks[1:], strict=False)):
+        for index, (low, high) in enumerate(pairwise(marks)):
             edge = index in (0, len(marks) - 2)
             if index % 2:
                 first_y[order[index // 2]] = sum(len(part) for part in y) - 1
@@ -134,12 +110,13 @@ class Box:
         self.lines = Lines(np.concatenate(x), np.concatenate(y), np.concatenate(z), parts, half, squares)
         self.t = {"left": wall, "right": wall, "top": top, "floor": floor}
 
-    def _solid(self, body: str, volume: float, steel: tuple[float, float]) -> int:
+    def solid(self, body: str, volume: float, steel: tuple[float, float]) -> int:
+        """New cell of a body; its number."""
         number = self.net.cell(steel[0], steel[1] * volume)
         self.bodies.setdefault(body, []).append(number)
         return number
 
-    def _wet(self, surface: str, solid: int, fluid: int, area: float, reach: float, group: str,
+    def wet(self, surface: str, solid: int, fluid: int, area: float, reach: float, group: str,
              height: float = 0.0) -> int:  # fmt: skip
         if area <= 0.0:
             return -1
@@ -179,12 +156,12 @@ class Box:
             films = np.full(cells.shape, -1)
             for i in range(len(dx)):
                 for j in range(len(d)):
-                    cells[i, j] = cell = self._solid("housing", dx[i] * d[j] * t, self.steel)
+                    cells[i, j] = cell = self.solid("housing", dx[i] * d[j] * t, self.steel)
                     if wall != "floor":
                         height = (
                             (0.5 * (cross[j] + cross[j + 1]) / self.height - 0.5) if wall != "top" else 0.5
                         )
-                        films[i, j] = self._wet(
+                        films[i, j] = self.wet(
                             self._outer_name(i),
                             cell,
                             OUTSIDE,
@@ -199,7 +176,7 @@ class Box:
             if wall != "floor":
                 axis = 2 if wall in ("left", "right") else 1
                 level = {"left": -self.width / 2.0, "right": self.width / 2.0, "top": self.height}[wall]
-                self.faces[wall] = Face((0, axis), 3 - axis, level, _middle(x), _middle(cross), films)
+                self.faces[wall] = Face((0, axis), 3 - axis, level, middle_of(x), middle_of(cross), films)
         for side, index in (("left", 0), ("right", -1)):
             for end, row in (("floor", 0), ("top", -1)):
                 self._corner(self.belt[side][:, row], self.belt[end][:, index], side, end, dx)
@@ -228,17 +205,17 @@ class Box:
             height = {"top": 0.5, "floor": -0.5}.get(wall, height)
             if part == "warm":
                 if wall == "floor":
-                    self._wet("chamber_floor", cell, self.oil["sump"], area, reach, "sump", height)
+                    self.wet("chamber_floor", cell, self.oil["sump"], area, reach, "sump", height)
                 elif wall == "top":
-                    self._wet("chamber_top", cell, self.oil["top"], area, reach, "chamber", height)
+                    self.wet("chamber_top", cell, self.oil["top"], area, reach, "chamber", height)
                 else:
                     oil = self.rows[wall][len(cross) - 2 - j]
-                    self._wet("chamber_wall", cell, oil, area, reach, "chamber", height)
+                    self.wet("chamber_wall", cell, oil, area, reach, "chamber", height)
                 continue
             side = part.removeprefix("cold_")
             oil = self.oil[f"drain_{side}" if wall == "floor" else f"splash_{side}"]
             name = f"cold_floor_{side}" if wall == "floor" else f"cold_wall_{side}"
-            self._wet(name, cell, oil, area, reach, "cold_floor" if wall == "floor" else "cold", height)
+            self.wet(name, cell, oil, area, reach, "cold_floor" if wall == "floor" else "cold", height)
 
     def _grid(self, cells: np.ndarray, du: np.ndarray, dv: np.ndarray, t: float) -> None:
         for i, j in np.ndindex(cells.shape):
@@ -269,27 +246,28 @@ class Box:
             for i, j in np.ndindex(cells.shape):
                 if (i, j) in holes:
                     continue
-                cells[i, j] = cell = self._solid("housing", dy[i] * dz[j] * t, self.steel)
+                cells[i, j] = cell = self.solid("housing", dy[i] * dz[j] * t, self.steel)
                 height = 0.5 * (z[j] + z[j + 1]) / self.height - 0.5
                 films[i, j] = self._both_sides(plate, cell, dy[i] * dz[j], outer_y[i] * outer_z[j], t, height)
             self._grid(cells, dy, dz, t)
             self._edges(cells, row, dy, dz, t)
             if plate.startswith("end"):
                 level = 0.0 if plate == "end_front" else self.length
-                self.faces[plate] = Face((1, 2), 0, level, _middle(y), _middle(z), films)
+                self.faces[plate] = Face((1, 2), 0, level, middle_of(y), middle_of(z), films)
             for shaft in self.shafts:
                 self._patch(plate, shaft, cells, t, dy, dz)
 
     def _both_sides(self, plate: str, cell: int, inner: float, outer: float, t: float, height: float) -> int:
+        """New film of a surface; its number, -1 without area."""
         kind, side = plate.split("_")
         if kind == "end":
-            self._wet(f"cold_wall_{side}", cell, self.oil[f"end_{side}"], inner, t / 2.0, "cold_end", height)
-            return self._wet(f"outer_cold_{side}", cell, OUTSIDE, outer, t / 2.0, f"out_{plate}", height)
+            self.wet(f"cold_wall_{side}", cell, self.oil[f"end_{side}"], inner, t / 2.0, "cold_end", height)
+            return self.wet(f"outer_cold_{side}", cell, OUTSIDE, outer, t / 2.0, f"out_{plate}", height)
         levels = len(self.rows[plate])
         row = min(max(int((0.5 - height) * levels), 0), levels - 1)
         oil = self.rows[plate][row]
-        self._wet(f"partition_warm_{side}", cell, oil, inner, t / 2.0, "chamber", height)
-        self._wet(f"partition_cold_{side}", cell, self.oil[f"splash_{side}"], inner, t / 2.0, "cold", height)
+        self.wet(f"partition_warm_{side}", cell, oil, inner, t / 2.0, "chamber", height)
+        self.wet(f"partition_cold_{side}", cell, self.oil[f"splash_{side}"], inner, t / 2.0, "cold", height)
         return -1
 
     def _edges(self, cells: np.ndarray, row: int, dy: np.ndarray, dz: np.ndarray, t: float) -> None:
@@ -329,7 +307,7 @@ class Box:
         shell = plate.startswith("end")
         for a, b in np.ndindex(ring.shape):
             area = 0.5 * angle * (radii[a + 1] ** 2 - radii[a] ** 2)
-            ring[a, b] = self._solid("housing", area * t, self.steel)
+            ring[a, b] = self.solid("housing", area * t, self.steel)
             films[a, b] = self._both_sides(plate, ring[a, b], area, area, t, 0.0)
         for a, b in np.ndindex(ring.shape):
             along = angle * middle[a] / 2.0
@@ -373,66 +351,11 @@ class Box:
                 name = self.bearing(shaft, side)
                 width = self.box["bearings"][name]["width"]
                 oil, area = self.oil[f"film_{name}"], angle * bore * width
-                self._wet(f"bearing_bore_{shaft}_{side}", cell, oil, area, reach, "bearing")
+                self.wet(f"bearing_bore_{shaft}_{side}", cell, oil, area, reach, "bearing")
             else:
-                self._wet(
+                self.wet(
                     f"seal_bore_{shaft}_{side}", cell, self.oil["mist"], angle * bore * t, reach, "seal_bore"
                 )
-
-    # ---------------------------------------------------------------- clamping field
-
-    def _field(self) -> None:
-        plate = self.house.get("field")
-        floor = self.belt["floor"]
-        fx, fy = self.lines.x, np.concatenate([[-self.width / 2], self.lines.y[1:-1], [self.width / 2]])
-        if plate is None:
-            return
-        r = self.refine
-        steel = STEEL[plate["material"]]
-        parts = self.lines.parts
-        inner_x = [fx[0], fx[1], fx[parts["cold_front"][1]], 0.5 * self.length, fx[parts["cold_rear"][0]],
-                   fx[-2], fx[-1]]  # fmt: skip
-        inner_y = [-self.width / 2, -self.width / 4, 0.0, self.width / 4, self.width / 2]
-        x = _apron(inner_x, self.length / 2.0, plate["length"], r)
-        y = _apron(inner_y, 0.0, plate["width"], r)
-        z = -plate["thickness"] * np.concatenate([[0.0], np.cumsum(np.array([0.2, 0.33, 0.47]))])
-        z = -np.interp(np.linspace(0, 3, 3 * r + 1), np.arange(4), -z)
-        dx, dy, dz = np.diff(x), np.diff(y), -np.diff(z)
-        cells = np.empty((len(dx), len(dy), len(dz)), dtype=int)
-        films = np.full(cells.shape[:2], -1)
-        for i, j, k in np.ndindex(cells.shape):
-            cells[i, j, k] = self._solid("field", dx[i] * dy[j] * dz[k], steel)
-        for i, j, k in np.ndindex(cells.shape):
-            here = cells[i, j, k]
-            if i + 1 < len(dx):
-                self.net.join(here, cells[i + 1, j, k], dx[i] / 2, dx[i + 1] / 2, dy[j] * dz[k])
-            if j + 1 < len(dy):
-                self.net.join(here, cells[i, j + 1, k], dy[j] / 2, dy[j + 1] / 2, dx[i] * dz[k])
-            if k + 1 < len(dz):
-                self.net.join(here, cells[i, j, k + 1], dz[k] / 2, dz[k + 1] / 2, dx[i] * dy[j])
-            for edge, area, reach in (
-                (i in (0, len(dx) - 1), dy[j] * dz[k], dx[i] / 2),
-                (j in (0, len(dy) - 1), dx[i] * dz[k], dy[j] / 2),
-            ):
-                if edge:
-                    self._wet("field_sides", here, OUTSIDE, area, reach, "field_sides")
-            if k == len(dz) - 1:
-                self._wet("field_bottom", here, OUTSIDE, dx[i] * dy[j], dz[k] / 2, "field_bottom")
-        for i, j in np.ndindex(cells.shape[:2]):
-            covered = 0.0
-            for a in range(floor.shape[0]):
-                wide = _overlap(x[i], x[i + 1], fx[a], fx[a + 1])
-                for b in range(floor.shape[1]) if wide > 0.0 else ():
-                    area = wide * _overlap(y[j], y[j + 1], fy[b], fy[b + 1])
-                    if area > 1e-12:
-                        covered += area
-                        self.net.join(
-                            floor[a, b], cells[i, j, 0], self.t["floor"] / 2, dz[0] / 2, area, "foot"
-                        )
-            free = dx[i] * dy[j] - covered
-            if free > 1e-9:
-                films[i, j] = self._wet("field_top", cells[i, j, 0], OUTSIDE, free, dz[0] / 2, "field_top")
-        self.faces["field_top"] = Face((0, 1), 2, 0.0, _middle(x), _middle(y), films)
 
     def _hidden_ways(self) -> None:
         """Ways that carry nothing on a healthy rig: a feed gallery in the partitions, barrier air at their seals."""
@@ -441,131 +364,5 @@ class Box:
         ]
         films = [self.oil[f"film_{bearing}"] for bearing in self.box["bearings"]]
         for index, cell in enumerate(bores):
-            self._wet("gallery", cell, films[index % len(films)], 1.0 / len(bores), 0.0, "gallery")
-            self._wet("barrier", cell, OUTSIDE, 1.0 / len(bores), 0.0, "barrier")
-
-    # ---------------------------------------------------------------- shafts and gears
-
-    def _shaft(self, shaft: str) -> None:
-        entry = self.house["shafts"][shaft]
-        steel = STEEL[entry.get("material", "case_hardened_steel")]
-        gear = next((n for n, g in self.box["gears"].items() if g["shaft"] == shaft), None)
-        seat = self.box["gears"][gear]["bore_diameter"] if gear else entry["seal_diameter"]
-        previous: tuple[int, float, float] | None = None
-        for zone, side, length, diameter, count in self._zones(shaft, entry, seat, gear):
-            area, radius = math.pi * diameter**2 / 4.0, diameter / 2.0
-            for _ in range(count):
-                step = length / count
-                cell = self._solid(f"shaft_{shaft}", area * step, steel)
-                if previous is not None:
-                    self.net.join(previous[0], cell, previous[1], step / 2.0, min(area, previous[2]))
-                elif zone == "outside":
-                    self._wet(f"shaft_{shaft}_end_front", cell, OUTSIDE, area, step / 2.0, "shaft_end")
-                previous = (cell, step / 2.0, area)
-                self._shaft_film(shaft, zone, side, cell, math.pi * diameter * step, radius / 4.0)
-                if zone == "gear":
-                    self._gear(shaft, str(gear), cell, seat)
-        if previous is not None and entry.get("overhang_rear", 0.0) > 0.0:
-            self._wet(f"shaft_{shaft}_end_rear", previous[0], OUTSIDE, previous[2], previous[1], "shaft_end")
-        if previous is not None:
-            self.ends[shaft] = previous[0]
-
-    def _zones(self, shaft: str, entry: Mapping[str, Any], seat: float, gear: str | None) -> list[tuple]:
-        h, r = self.house, self.refine
-        width = self.box["gears"][gear]["face_width"] if gear else 0.0
-        land = (h["warm_length"] - width) / 2.0
-        outside, seal = entry["outside_diameter"], entry["seal_diameter"]
-        bearings = {side: self.box["bearings"][self.bearing(shaft, side)] for side in SIDES}
-
-        def half(side: str) -> list[tuple]:
-            over = entry.get(f"overhang_{side}", 0.0)
-            gap = h["end_wall_thickness"] - bearings[side]["width"]
-            zones = (
-                [("outside", side, over, outside, 2 * r), ("end_seal", side, gap, outside, 1)] if over else []
-            )
-            return [
-                *zones,
-                ("journal", side, bearings[side]["width"], bearings[side]["diameter"], 2 * r),
-                ("cold", side, h[f"cold_length_{side}"], seal, 2 * r),
-                ("seal", side, h["partition_thickness"], seal, 2 * r),
-                ("warm", side, land, seat, 2 * r),
-            ]
-
-        middle = [("gear", "", width, seat, 1)] if gear else []
-        return [*half("front"), *middle, *reversed(half("rear"))]
-
-    def _shaft_film(self, shaft: str, zone: str, side: str, cell: int, area: float, reach: float) -> None:
-        name = f"shaft_{shaft}_{zone}_{side}".removesuffix("_")
-        if zone == "outside":
-            self._wet(name, cell, OUTSIDE, area, reach, "shaft_out")
-        elif zone == "end_seal":
-            self._wet(name, cell, self.oil[f"end_{side}"], area, reach, "end_seal")
-        elif zone == "journal":
-            oil = self.oil[f"film_{self.bearing(shaft, side)}"]
-            self._wet(f"shaft_{shaft}_journal_{side}", cell, oil, area, reach, "journal")
-        elif zone == "cold":
-            self._wet(name, cell, self.oil[f"splash_{side}"], area, reach, "shaft_cold")
-        elif zone == "warm":
-            self._wet(f"shaft_{shaft}_warm", cell, self.oil["mist"], area, reach, "shaft_warm")
-        elif zone == "seal":
-            self.seal_cells.setdefault(shaft, []).append(cell)
-            targets = self.bore[f"partition_{side}", shaft]
-            for target in targets:
-                share = area / len(targets)
-                self.net.join(cell, target, reach, 0.0, share, "seal_gap")
-
-    def _gear(self, shaft: str, gear: str, seat_cell: int, seat: float) -> None:
-        entry = self.box["gears"][gear]
-        mesh = next(m for m in self.box["meshes"].values() if gear in (m["pinion"], m["wheel"]))
-        steel = STEEL[entry.get("material", "case_hardened_steel")]
-        tip = mesh["normal_module"] / math.cos(mesh.get("helix_angle", 0.0)) * entry["teeth"] / 2.0
-        width = entry["face_width"]
-        radii = np.linspace(seat / 2.0, tip, 4 * self.refine + 1)
-        previous = None
-        for low, high in zip(radii, radii[1:], strict=False):
-            area = math.pi * (high**2 - low**2)
-            cell = self._solid(f"gear_{shaft}", area * width, steel)
-            middle = math.sqrt(low * high)
-            face = 2.0 * math.pi * low * width
-            if previous is None:
-                self.net.join(seat_cell, cell, seat / 8.0, low * math.log(middle / low), face, "seat")
-            else:
-                self.net.join(
-                    previous[0], cell, low * math.log(low / previous[1]), low * math.log(middle / low), face
-                )
-            for side in SIDES:
-                self._wet(
-                    f"gear_{shaft}_side_{side}",
-                    cell,
-                    self.oil["mist"],
-                    area,
-                    width / 4.0,
-                    f"gear_side_{gear}",
-                )
-            previous = (cell, middle)
-        assert previous is not None
-        reach = tip * math.log(tip / previous[1])
-        self._wet(
-            f"gear_{shaft}_rim", previous[0], self.oil["jet"], 2.0 * math.pi * tip * width, reach, "rim"
-        )
-        self.rim[gear] = previous[0]
-
-
-def _middle(lines: np.ndarray) -> np.ndarray:
-    return 0.5 * (lines[1:] + lines[:-1])
-
-
-def _overlap(a: float, b: float, c: float, d: float) -> float:
-    return max(0.0, min(b, d) - max(a, c))
-
-
-def _apron(inner: list[float], centre: float, total: float, refine: int) -> np.ndarray:
-    """Lines of the field: those under the box and three widening steps to each edge."""
-    low, high = centre - total / 2.0, centre + total / 2.0
-    marks = np.array([0.0, 0.22, 0.55, 1.0])
-    left = inner[0] + marks[:0:-1] * (low - inner[0])
-    right = inner[-1] + marks[1:] * (high - inner[-1])
-    lines = np.concatenate([left, inner, right])
-    return np.interp(
-        np.linspace(0, len(lines) - 1, (len(lines) - 1) * refine + 1), np.arange(len(lines)), lines
-    )
+            self.wet("gallery", cell, films[index % len(films)], 1.0 / len(bores), 0.0, "gallery")
+            self.wet("barrier", cell, OUTSIDE, 1.0 / len(bores), 0.0, "barrier")

@@ -19,15 +19,16 @@ class Constant:
     """Relative (or absolute) move of the mean there."""
 
 
+# fmt: off
 CONSTANTS: Mapping[str, Constant] = {
-    # conduction
     "k_housing": Constant(1.0, 0.05), "k_field": Constant(1.0, 0.08), "k_shafts": Constant(1.0, 0.05),
     "k_slope": Constant(-4.5e-4, 0.10), "shell_contact": Constant(4.0e4, 0.10), "foot_contact": Constant(4.0e3, 0.10),
     "seat_contact": Constant(2.0e4, 0.10),
     # films inside at full speed and the flow of the case [W/(m2 K)], and their exponents
     "film_chamber": Constant(320.0, 0.08), "film_sump": Constant(280.0, 0.10), "film_cold": Constant(290.0, 0.08),
     "film_cold_end": Constant(320.0, 0.10), "film_cold_floor": Constant(270.0, 0.10),
-    "film_seal_bore": Constant(260.0, 0.10), "film_rim": Constant(650.0, 0.08), "film_shaft_cold": Constant(1.0, 0.08),
+    "film_seal_bore": Constant(260.0, 0.10), "film_rim": Constant(650.0, 0.08),
+    "film_shaft_cold": Constant(1.0, 0.08),
     "film_disc": Constant(0.70, 0.08), "film_drum": Constant(0.9, 0.08), "film_seal_gap": Constant(110.0, 0.10),
     "nusselt_bearing": Constant(4.0, 0.07),
     "exponent_chamber": Constant(0.12, 0.04, True, 2.0, 0.05), "exponent_cold": Constant(0.10, 0.04, True, 2.0, 0.04),
@@ -42,7 +43,8 @@ CONSTANTS: Mapping[str, Constant] = {
     # losses
     "friction": Constant(1.0, 0.06), "friction_load": Constant(0.20, 0.02, True, 1.5, 0.02),
     "friction_speed": Constant(0.0, 0.03, True, 1.5, -0.03), "friction_viscosity": Constant(0.05, 0.01, True, 1.5),
-    "film_fill": Constant(0.97, 0.04), "clearance_test": Constant(1.0, 0.03), "clearance_reference": Constant(1.0, 0.03),
+    "film_fill": Constant(0.97, 0.04), "clearance_test": Constant(1.0, 0.03),
+    "clearance_reference": Constant(1.0, 0.03),
     "film_weight": Constant(0.60, 0.05), "rim_drag": Constant(0.055, 0.08), "mist_density": Constant(1.0, 0.08),
     "mist_exponent": Constant(0.0, 0.05, True, 2.0, 0.05), "jet_carried": Constant(0.97, 0.03),
     "squeeze": Constant(1.0, 0.10), "seal_drag": Constant(1.0, 0.10), "into_gears": Constant(1.0, 0.06),
@@ -51,11 +53,13 @@ CONSTANTS: Mapping[str, Constant] = {
     "oil_viscosity": Constant(1.0, 0.04), "oil_index": Constant(1.0, 0.02), "oil_heat_capacity": Constant(1.0, 0.02),
     "oil_density": Constant(1.0, 0.01), "oil_conductivity": Constant(1.0, 0.04),
     "mist_share": Constant(0.15, 0.10), "straight_to_sump": Constant(0.25, 0.10),
-    "spray_front": Constant(0.5, 0.03, True, 2.0, 0.05), "feed_front": Constant(1.0, 0.04), "feed_pinion": Constant(1.0, 0.04),
+    "spray_front": Constant(0.5, 0.03, True, 2.0, 0.05), "feed_front": Constant(1.0, 0.04),
+    "feed_pinion": Constant(1.0, 0.04),
     "layers": Constant(4.0, 1.5, True, 1.5, 6.0),
-    # reference gearbox and boxes without a field: heat through their walls per root of power [W/K]
+    # gearboxes without a field: heat from each oil through the walls [W/K]
     "wall_loss_test": Constant(0.8, 0.10), "wall_loss_reference": Constant(0.8, 0.10),
-}  # fmt: skip
+}
+# fmt: on
 """``layers``: how much warmer the oil at the top of the chamber wall is than at the bottom [K];
 ``room_layers``: the same of the room air over the height of the box [K]; ``draught``: [m/s]."""
 

@@ -20,51 +20,181 @@ class Effect:
     """Only on a gearbox with housing."""
 
 
-EFFECTS: Mapping[str, Effect] = {
-    "mesh_loss": Effect("1", -0.5, 1.0, "loss", "relative change of the friction coefficient of the mesh"),
-    "bearing_loss": Effect("1", -0.4, 1.0, "loss", "relative change of the drag of all bearings"),
-    "windage_loss": Effect("1", -0.8, 3.0, "loss", "relative change of disc and tooth drag in mist"),
-    "seal_loss": Effect("W", 0.0, 800.0, "loss", "rubbing seals: power at the speed of the case, proportional to speed"),
-    "jet_loss": Effect("1", -0.8, 2.0, "loss", "relative change of the momentum the jets take"),
-    "squeeze_loss": Effect("1", 0.0, 3.0, "loss", "squeezing in shares of the mesh loss of the healthy share 0.05: 1 adds 5 %"),
-    "loss_split": Effect("1", -0.6, 0.9, "split", "relative change of the share of the mesh loss that enters the gears", field=True),
-    "film:chamber_oil": Effect("1", -0.8, 2.0, "film", "relative change of the film on the walls of the chamber", field=True),
-    "film:chamber_sump": Effect("1", -0.8, 2.0, "film", "relative change of the film on the floor of the chamber", field=True),
-    "film:cold_oil": Effect("1", -0.8, 2.0, "film", "relative change of the film in the cold sections", field=True),
-    "film:gear_rims": Effect("1", -0.8, 2.0, "film", "relative change of the film on the flanks", field=True),
-    "film:gear_sides": Effect("1", -0.8, 2.0, "film", "relative change of the film on the sides of the gears", field=True),
-    "ambient_film": Effect("1", -0.5, 2.0, "film", "relative change of convection to room air, housing and field", field=True),
-    "emissivity": Effect("1", -0.8, 0.6, "film", "relative change of the emissivity of the housing", field=True),
-    "bearing_film": Effect("1", -0.8, 2.0, "film", "relative change of the conductance of the bearing films", field=True),
-    "shell_contact": Effect("m2 K/W", 0.0, 5e-3, "contact", "resistance between shell and housing on the area of the bore", field=True),
-    "foot_contact": Effect("m2 K/W", 0.0, 2e-2, "contact", "resistance between foot and clamping field", field=True),
-    "leak_warm_cold": Effect("1", 0.0, 0.3, "flow", "share of the gear oil that leaves with the bearing oil"),
-    "bypass": Effect("1", 0.0, 0.5, "flow", "share of the gear oil that goes straight to the outlet"),
-    "blocked_jet": Effect("1", 0.0, 0.75, "flow", "share of the jets that is closed at the same flow"),
-    "aeration": Effect("1", 0.0, 0.2, "oil", "share of air in the volume of the oil of gears and bearings"),
-    "oil_viscosity": Effect("1", -0.4, 0.6, "oil", "relative change of the viscosity"),
-    "oil_heat_capacity": Effect("1", -0.2, 0.2, "oil", "relative change of the heat capacity"),
-    "not_steady": Effect("1/h", 0.0, 2.0, "state", "one over the time each point has run from ambient", field=True),
-    "ambient": Effect("K", -8.0, 8.0, "state", "true room temperature less the one read", field=True),
-    # ---------------------------------------------------------------- outside the catalogue
-    "draught_one_side": Effect("W/(m2 K)", 0.0, 40.0, "outer wall, right", "fan on the right-hand wall", False, True),
-    "hot_neighbour": Effect("K", 0.0, 200.0, "outer wall, left", "hot machine beside the left-hand wall", False, True),
-    "coupling_heat": Effect("W", 0.0, 400.0, "shaft, rear", "heat through the coupling into the pinion shaft", False, True),
-    "stratified_chamber": Effect("K", 0.0, 40.0, "chamber", "oil mist warmer at the top of the chamber", False, True),
-    "oil_on_end_wall": Effect("W/(m2 K)", 0.0, 200.0, "end wall, rear", "cold oil running down the outside of the rear end wall", False, True),
-    "pump_heat": Effect("W", 0.0, 800.0, "sump", "heat of a pump in the sump that the motor does not pay", False),
-    "leak_one_side": Effect("1", 0.0, 0.25, "cold section, front", "gear oil into the front cold section, lost before the outlet", False, True),
-    "insulating_deposit": Effect("m2 K/W", 0.0, 0.2, "outer wall, top", "paint or dust on top of the housing", False, True),
-    "frame_bolted": Effect("W/K", 0.0, 20.0, "end wall, front", "steel frame bolted to the front end wall, cold at its far end", False, True),
-    "feed_gallery": Effect("W/K", 0.0, 40.0, "cold section", "bearing oil fed through the hot partition", False, True),
-    "barrier_air": Effect("W/K", 0.0, 15.0, "seals", "barrier air blown into the partition seals, at room temperature", False, True),
-    "one_bearing": Effect("W", 0.0, 800.0, "bearing, wheel rear", "one tight bearing: power at the speed of the case, as its square", False),
-    "spline_fretting": Effect("W", 0.0, 400.0, "gear seat, pinion", "fretting seat: power at speed and torque of the case, as T n", False, True),
-    "lamp_on_top": Effect("W/m2", 0.0, 800.0, "outer wall, top", "radiant heater above the housing", False, True),
-    "floor_heating": Effect("W/m2", -150.0, 250.0, "field", "heat flux of a heated or cooled foundation under the field", False, True),
-    "heated_inlet": Effect("W", -400.0, 600.0, "gear oil inlet", "heat lost or gained between inlet sensor and jets", False),
-}  # fmt: skip
-"""By kind, or ``film:entry``. A place follows: ``mesh_loss:test.main``, ``film:test.chamber_oil``, the rest ``kind:gearbox``."""
+# fmt: off
+CATALOGUE: Mapping[str, Effect] = {
+    "mesh_loss": Effect(
+        "1", -0.5, 1.0, "loss",
+        "relative change of the friction coefficient of the mesh",
+    ),
+    "bearing_loss": Effect(
+        "1", -0.4, 1.0, "loss",
+        "relative change of the drag of all bearings",
+    ),
+    "windage_loss": Effect(
+        "1", -0.8, 3.0, "loss",
+        "relative change of disc and tooth drag in mist",
+    ),
+    "seal_loss": Effect(
+        "W", 0.0, 800.0, "loss",
+        "rubbing seals: power at the speed of the case, proportional to speed",
+    ),
+    "jet_loss": Effect(
+        "1", -0.8, 2.0, "loss",
+        "relative change of the momentum the jets take",
+    ),
+    "squeeze_loss": Effect(
+        "1", 0.0, 3.0, "loss",
+        "squeezing over the healthy 5 % of the mesh loss: 1 adds another 5 %",
+    ),
+    "loss_split": Effect(
+        "1", -0.6, 0.9, "split",
+        "relative change of the share of the mesh loss that enters the gears", field=True,
+    ),
+    "film:chamber_oil": Effect(
+        "1", -0.8, 2.0, "film",
+        "relative change of the film on the walls of the chamber", field=True,
+    ),
+    "film:chamber_sump": Effect(
+        "1", -0.8, 2.0, "film",
+        "relative change of the film on the floor of the chamber", field=True,
+    ),
+    "film:cold_oil": Effect(
+        "1", -0.8, 2.0, "film",
+        "relative change of the film in the cold sections", field=True,
+    ),
+    "film:gear_rims": Effect(
+        "1", -0.8, 2.0, "film",
+        "relative change of the film on the flanks", field=True,
+    ),
+    "film:gear_sides": Effect(
+        "1", -0.8, 2.0, "film",
+        "relative change of the film on the sides of the gears", field=True,
+    ),
+    "ambient_film": Effect(
+        "1", -0.5, 2.0, "film",
+        "relative change of convection to room air, housing and field", field=True,
+    ),
+    "emissivity": Effect(
+        "1", -0.8, 0.6, "film",
+        "relative change of the emissivity of the housing", field=True,
+    ),
+    "bearing_film": Effect(
+        "1", -0.8, 2.0, "film",
+        "relative change of the conductance of the bearing films", field=True,
+    ),
+    "shell_contact": Effect(
+        "m2 K/W", 0.0, 5e-3, "contact",
+        "resistance between shell and housing on the area of the bore", field=True,
+    ),
+    "foot_contact": Effect(
+        "m2 K/W", 0.0, 2e-2, "contact",
+        "resistance between foot and clamping field", field=True,
+    ),
+    "leak_warm_cold": Effect(
+        "1", 0.0, 0.3, "flow",
+        "share of the gear oil that leaves with the bearing oil",
+    ),
+    "bypass": Effect(
+        "1", 0.0, 0.5, "flow",
+        "share of the gear oil that goes straight to the outlet",
+    ),
+    "blocked_jet": Effect(
+        "1", 0.0, 0.75, "flow",
+        "share of the jets that is closed at the same flow",
+    ),
+    "aeration": Effect(
+        "1", 0.0, 0.2, "oil",
+        "share of air in the volume of the oil of gears and bearings",
+    ),
+    "oil_viscosity": Effect(
+        "1", -0.4, 0.6, "oil",
+        "relative change of the viscosity",
+    ),
+    "oil_heat_capacity": Effect(
+        "1", -0.2, 0.2, "oil",
+        "relative change of the heat capacity",
+    ),
+    "not_steady": Effect(
+        "1/h", 0.0, 2.0, "state",
+        "one over the time each point has run from ambient", field=True,
+    ),
+    "ambient": Effect(
+        "K", -8.0, 8.0, "state",
+        "true room temperature less the one read", field=True,
+    ),
+}
+"""What a catalogue of effects of a gearbox has."""
+OUTSIDE: Mapping[str, Effect] = {
+    "draught_one_side": Effect(
+        "W/(m2 K)", 0.0, 40.0, "outer wall, right",
+        "fan on the right-hand wall", catalogue=False, field=True,
+    ),
+    "hot_neighbour": Effect(
+        "K", 0.0, 200.0, "outer wall, left",
+        "hot machine beside the left-hand wall", catalogue=False, field=True,
+    ),
+    "coupling_heat": Effect(
+        "W", 0.0, 400.0, "shaft, rear",
+        "heat through the coupling into the pinion shaft", catalogue=False, field=True,
+    ),
+    "stratified_chamber": Effect(
+        "K", 0.0, 40.0, "chamber",
+        "oil mist warmer at the top of the chamber", catalogue=False, field=True,
+    ),
+    "oil_on_end_wall": Effect(
+        "W/(m2 K)", 0.0, 200.0, "end wall, rear",
+        "cold oil running down the outside of the rear end wall", catalogue=False, field=True,
+    ),
+    "pump_heat": Effect(
+        "W", 0.0, 800.0, "sump",
+        "heat of a pump in the sump that the motor does not pay", catalogue=False,
+    ),
+    "leak_one_side": Effect(
+        "1", 0.0, 0.25, "cold section, front",
+        "gear oil into the front cold section, lost before the outlet", catalogue=False, field=True,
+    ),
+    "insulating_deposit": Effect(
+        "m2 K/W", 0.0, 0.2, "outer wall, top",
+        "paint or dust on top of the housing", catalogue=False, field=True,
+    ),
+    "frame_bolted": Effect(
+        "W/K", 0.0, 20.0, "end wall, front",
+        "steel frame bolted to the front end wall, cold at its far end", catalogue=False, field=True,
+    ),
+    "feed_gallery": Effect(
+        "W/K", 0.0, 40.0, "cold section",
+        "bearing oil fed through the hot partition", catalogue=False, field=True,
+    ),
+    "barrier_air": Effect(
+        "W/K", 0.0, 15.0, "seals",
+        "barrier air blown into the partition seals, at room temperature", catalogue=False, field=True,
+    ),
+    "one_bearing": Effect(
+        "W", 0.0, 800.0, "bearing, wheel rear",
+        "one tight bearing: power at the speed of the case, as its square", catalogue=False,
+    ),
+    "spline_fretting": Effect(
+        "W", 0.0, 400.0, "gear seat, pinion",
+        "fretting seat: power at speed and torque of the case, as T n", catalogue=False, field=True,
+    ),
+    "lamp_on_top": Effect(
+        "W/m2", 0.0, 800.0, "outer wall, top",
+        "radiant heater above the housing", catalogue=False, field=True,
+    ),
+    "floor_heating": Effect(
+        "W/m2", -150.0, 250.0, "field",
+        "heat flux of a heated or cooled foundation under the field", catalogue=False, field=True,
+    ),
+    "heated_inlet": Effect(
+        "W", -400.0, 600.0, "gear oil inlet",
+        "heat lost or gained between inlet sensor and jets", catalogue=False,
+    ),
+}
+"""What it has not; ``family`` says where a locator should point."""
+# fmt: on
+EFFECTS: Mapping[str, Effect] = {**CATALOGUE, **OUTSIDE}
+"""By kind, or ``film:entry``. Names add the place: ``mesh_loss:test.main``, ``film:test.chamber_oil``, else
+``kind:gearbox``."""
 
 
 def effect_of(name: str) -> tuple[Effect, str, str]:

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from tests.virtual_rig.heat_box import Box, Face
+from tests.virtual_rig.heat_box import Box
+from tests.virtual_rig.heat_parts import Face
 
 REACH = 2e-3
 """How far a point may lie off its face [m]."""
