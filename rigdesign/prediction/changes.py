@@ -27,6 +27,12 @@ def changed_case(case: Case, changes: Changes) -> Case:
     return changed_together(case, {path: _written(plain, path, value) for path, value in changes.items()})
 
 
+def written(case: Case, path: str, value: object) -> object:
+    """A value of ``Changes`` as the file of this case would hold it."""
+    plain, _, _ = take_off(dict(case.origin.tree))
+    return _written(plain, path, value)
+
+
 def _written(plain: Mapping[str, object], path: str, value: object) -> object:
     """The value as a file holds it."""
     if isinstance(value, bool) or not isinstance(value, int | float) or "*" in path:

@@ -1,0 +1,55 @@
+"""Amplitudes of what is not an effect: dimensionless, fitted to healthy sets of an independent simulator.
+
+They are relative spreads and ratios to the level of a series, so that what one rig taught serves another; how well
+they transfer is part of the score (README, diagnosis).
+"""
+
+from dataclasses import asdict, dataclass, replace
+
+
+@dataclass(frozen=True, kw_only=True)
+class Amplitudes:
+    """Standard deviation of each kind of cause, relative."""
+
+    constant: float = 1.0
+    """On the healthy spreads of the catalogue's parameters."""
+    tooth: float = 1.0
+    """On the healthy errors of the teeth, from their quality grade."""
+    exponent: float = 0.15
+    """Of a loss law over speed and torque [-]."""
+    link: float = 0.25
+    """Of every local conductance: its logarithm."""
+    link_speed: float = 0.10
+    """Of the same per factor e of speed."""
+    source: float = 0.03
+    """Heat that enters elsewhere than the model says, over all losses of the point."""
+    channel: float = 0.02
+    """Smooth error of one channel over its level: place of a sensor, what the mesh does not resolve."""
+    channel_speed: float = 0.01
+    """The same per factor e of speed."""
+    point: float = 0.01
+    """Error of one number by itself over its level."""
+    series_mean: float = 0.01
+    """Mean torque."""
+    series_mesh: float = 0.25
+    """Orders of the meshes over their own level: coherent over the points."""
+    series_mesh_point: float = 0.15
+    """The same, point by point."""
+    series_shaft: float = 0.01
+    """Orders of the shafts and sidebands over the level of the mesh orders: coherent."""
+    series_shaft_point: float = 0.01
+    """The same, point by point."""
+    frequency: float = 0.02
+    """Natural frequencies."""
+    sensor: float = 1.0
+    """On the systematic uncertainties that the measurement states."""
+    input: float = 1.0
+    """On those of the settings."""
+
+    def as_dict(self) -> dict[str, float]:
+        """By name."""
+        return asdict(self)
+
+    def with_values(self, values: dict[str, float]) -> "Amplitudes":
+        """Some of them changed."""
+        return replace(self, **values)

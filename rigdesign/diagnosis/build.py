@@ -1,0 +1,134 @@
+"""Makes the library of a rig: runs of the model for every effect, derivatives for everything else."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from rigdesign.beside import Beside
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.columns import Array
+from rigdesign.diagnosis.effects import Changes, Effect
+from rigdesign.diagnosis.library import Library, Response
+from rigdesign.errors import RigdesignError
+from rigdesign.prediction import Predictor
+from rigdesign.prediction.model import Channel, Setting
+
+Progress = Callable[[str], None]
+
+SHARES = (-1.0, -0.4, -0.12, 0.12, 0.4, 1.0)
+"""Runs of a nonlinear effect, as shares of its bounds."""
+
+LINEAR_SHARE = 0.1
+"""Run of an effect that the numbers answer to in proportion."""
+
+EXPONENT = 0.1
+"""Change of an exponent from which its derivative is taken."""
+
+POWER = Channel(name="losses of the rig", quantity="motor_power", place="motor")
+"""Read beside the channels of the measurement: all losses together."""
+
+
+def build_library(
+    case: Case,
+    settings: Sequence[Setting],
+    channels: Sequence[Channel],
+    effects: Sequence[Effect],
+    say: Progress = lambda message: None,
+) -> Library:
+    """Run the model at the plan for everything that may be off; on all cores.
+
+    Raises what the model raises at the base state; an effect that the model refuses at some size is kept up to the
+    sizes it can compute.
+    """
+    say(f"model of {len(settings)} operating points and {len(channels)} sensors")
+    predictor = Predictor(case, tuple(settings), (*channels, POWER))
+    base = predictor.base
+    work = [_Response(predictor, case, effect, base) for effect in effects]
+    say(f"responses to {len(effects)} effects")
+    with Beside(work) as beside:
+        found = beside.results()
+    responses = {effect.name: one for effect, one in zip(effects, found, strict=True) if one is not None}
+    say("local conductances, sources, settings")
+    own = np.array([feature.channel != POWER.name for feature in predictor.features])
+    powers = {
+        feature.setting: float(value)
+        for feature, value in zip(predictor.features, base, strict=True)
+        if feature.channel == POWER.name
+    }
+    wet, dry = predictor.sources()
+    return Library(
+        features=tuple(feature for feature, keep in zip(predictor.features, own, strict=True) if keep),
+        settings=tuple(settings),
+        base=base[own],
+        inputs={key: values[own] for key, values in predictor.inputs().items()},
+        responses={
+            name: Response(coordinates=one.coordinates, answers=one.answers[:, own])
+            for name, one in responses.items()
+        },
+        exponents={name: values[own] for name, values in _exponents(predictor, case, base)},
+        links={name: values[own] for name, values in predictor.links().items()},
+        sources={name: values[own] for name, values in wet.items()},
+        dry_sources={name: values[own] for name, values in dry.items()},
+        powers=powers,
+        error=predictor.error,
+    )
+
+
+class _Response:
+    """The runs of one effect; a class, so that another core can be handed it."""
+
+    def __init__(self, predictor: Predictor, case: Case, effect: Effect, base: Array) -> None:
+        self._predictor, self._case, self._effect, self._base = predictor, case, effect, base
+
+    def __call__(self) -> Response | None:
+        coordinates = [np.zeros(len(self._effect.parameters))]
+        answers = [np.zeros_like(self._base)]
+        for place in run_places(self._effect):
+            changes = self._effect.changes(self._case, tuple(float(value) for value in place))
+            try:
+                answer = self._predictor.values(changes) - self._base
+            except RigdesignError:
+                continue
+            coordinates.append(place)
+            answers.append(answer)
+        if len(coordinates) < 1 + len(self._effect.parameters):
+            return None
+        return Response(coordinates=np.array(coordinates), answers=np.array(answers))
+
+
+def run_places(effect: Effect) -> list[Array]:
+    """Coordinates at which an effect is run."""
+    bounds = [parameter.bounds for parameter in effect.parameters]
+    if effect.linear or len(bounds) > 1:
+        steps = [LINEAR_SHARE * max(abs(low), abs(high)) for low, high in bounds]
+        return list(np.diag(steps))
+    low, high = bounds[0]
+    shares = (share * (high if share > 0.0 else -low) for share in SHARES)
+    return [np.array([share]) for share in shares if share != 0.0]
+
+
+_EXPONENT_LAWS = {"mesh": ("speed", "torque"), "bearing": ("speed",), "windage": ("speed",)}
+
+
+def _exponents(predictor: Predictor, case: Case, base: Array) -> Iterator[tuple[str, Array]]:
+    """Derivatives by the exponents of the loss laws, about the mean point."""
+    for name, box in case.gearboxes.items():
+        for kind, laws in _EXPONENT_LAWS.items():
+            now: float = getattr(box.loss_factors, kind)
+            for law in laws:
+                ratios = _ratios(predictor.settings, law)
+                changes: list[Changes] = [
+                    {f"gearboxes.{name}.loss_factors.{kind}": now * float(ratio**EXPONENT)}
+                    for ratio in ratios
+                ]
+                yield f"{kind} loss of {name} over {law}", (predictor.values(changes) - base) / EXPONENT
+
+
+def _ratios(settings: Sequence[Setting], law: str) -> Array:
+    values = np.array([max(abs(getattr(setting, law)), 1e-3) for setting in settings])
+    return np.asarray(values / np.exp(np.log(values).mean()))
+
+
+def channels_of(entries: Mapping[str, Channel]) -> tuple[Channel, ...]:
+    """Channels in the order of their names: a library does not depend on the order of a file."""
+    return tuple(entries[name] for name in sorted(entries))

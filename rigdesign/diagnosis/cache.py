@@ -1,0 +1,81 @@
+"""Libraries kept on disk by rig, sensors and plan, so that the next set of the same rig is quick.
+
+A library is found again by the hash of the case, its channels and its effects; of the plans stored for them, one
+whose points are near those asked for (`library.near`) serves. The folder is RIGDESIGN_CACHE_DIR or the user's cache
+folder; deleting it loses time only.
+"""
+
+import hashlib
+import json
+import os
+import pickle
+from collections.abc import Callable, Sequence
+from dataclasses import astuple
+from pathlib import Path
+
+from rigdesign import __version__
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.library import Library, near
+from rigdesign.prediction.model import Channel, Setting
+
+SCHEMA = 1
+"""Of the stored libraries; raise it with any change of what they hold."""
+
+
+def cache_folder() -> Path:
+    """Where libraries are kept."""
+    given = os.environ.get("RIGDESIGN_CACHE_DIR")
+    if given:
+        return Path(given)
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "rigdesign"
+
+
+def library_of(
+    case: Case,
+    settings: Sequence[Setting],
+    channels: Sequence[Channel],
+    effects: Sequence[Effect],
+    build: Callable[[], Library],
+) -> Library:
+    """The stored library of a plan near ``settings``, or the one ``build`` makes, stored."""
+    folder = cache_folder() / "diagnosis" / _key(case, channels, effects)
+    for file in sorted(folder.glob("*.pickle")) if folder.is_dir() else ():
+        found = _read(file)
+        if found is not None and near(found.settings, tuple(settings)):
+            return found.moved(tuple(settings))
+    made = build()
+    _write(folder, made)
+    return made
+
+
+def _key(case: Case, channels: Sequence[Channel], effects: Sequence[Effect]) -> str:
+    content = {
+        "schema": SCHEMA,
+        "version": __version__,
+        "case": case.hash,
+        "channels": [astuple(channel) for channel in channels],
+        "effects": [effect.name for effect in effects],
+    }
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
+
+
+def _read(file: Path) -> Library | None:
+    """A file that is cut or from another version is as good as none."""
+    try:
+        found = pickle.loads(file.read_bytes())
+    except (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, IndexError):
+        return None
+    return found if isinstance(found, Library) else None
+
+
+def _write(folder: Path, library: Library) -> None:
+    """Beside, then renamed; a folder that cannot be written to costs time, not the result."""
+    content = pickle.dumps(library, protocol=5)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        beside = folder / f".{os.getpid()}.part"
+        beside.write_bytes(content)
+        beside.replace(folder / f"{hashlib.sha256(content).hexdigest()[:16]}.pickle")
+    except OSError:
+        return

@@ -1,0 +1,137 @@
+"""Amplitudes of a healthy rig's covariance from healthy sets, by marginal likelihood.
+
+The covariance is a sum over kinds of cause, C = N + sum_k a_k^2 S_k; of many healthy sets of one plan and one set of
+sensors only the sum of r r' counts. The amplitudes maximise the likelihood of all groups together, held by a wide
+prior around their starting values.
+
+Source: type II maximum likelihood, Rasmussen and Williams 2006, ch. 5.4; the gradient is eq. (5.9).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize
+
+from rigdesign.diagnosis.amplitudes import Amplitudes
+from rigdesign.diagnosis.columns import Array
+from rigdesign.diagnosis.covariance import Whitened
+from rigdesign.diagnosis.healthy import own_spread
+from rigdesign.diagnosis.subject import Comparison
+
+PRIOR = 1.5
+"""Standard deviation of the logarithm of an amplitude around its starting value."""
+
+WIDEN_ABOVE = 1.3
+"""Mean square of a healthy set's answer along an effect [variances] above which the covariance is widened there."""
+
+OWN_KINDS = ("point", "series_mesh_point", "series_shaft_point", "frequency")
+"""Amplitudes of what each number is off by itself."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Group:
+    """Healthy sets of one rig with the same sensors and plan.
+
+    noise : (n, n) without any amplitude; parts : amplitude -> (n, n); products : (n, n) sum of r r'; count : of sets
+    """
+
+    noise: Array
+    parts: Mapping[str, Array]
+    products: Array
+    count: int
+
+    @classmethod
+    def of(cls, sets: Sequence[Comparison]) -> "Group":
+        """Sets with the same features in the same order."""
+        first = sets[0]
+        parts: dict[str, Array] = {}
+        for column in first.columns():
+            values = column.spread * column.values
+            parts[column.kind] = parts.get(column.kind, 0.0) + np.outer(values, values)
+        nothing = Amplitudes(**dict.fromkeys(OWN_KINDS, 0.0))
+        for kind in OWN_KINDS:
+            alone = nothing.with_values({kind: 1.0})
+            own = own_spread(first.library, first.channels, first.mesh_orders, alone)
+            if own.any():
+                parts[kind] = np.diag(own**2)
+        return cls(
+            noise=np.mean([one.base_noise(nothing) for one in sets], axis=0),
+            parts=parts,
+            products=np.sum([np.outer(one.residual, one.residual) for one in sets], axis=0),
+            count=len(sets),
+        )
+
+
+def fit_amplitudes(
+    groups: Sequence[Group], start: Amplitudes, fixed: frozenset[str] = frozenset()
+) -> Amplitudes:
+    """The amplitudes that make the healthy sets most likely.
+
+    fixed : amplitudes that stay as they are: sensors and inputs are what the measurement states
+    """
+    names = sorted({kind for group in groups for kind in group.parts} - fixed)
+    first = start.as_dict()
+    centre = np.log([first[name] for name in names])
+
+    def misfit(logs: Array) -> tuple[float, Array]:
+        amplitudes = first | dict(zip(names, np.exp(logs), strict=True))
+        value = 0.5 * float(np.sum(((logs - centre) / PRIOR) ** 2))
+        slope = (logs - centre) / PRIOR**2
+        for group in groups:
+            one, by_amplitude = _misfit(group, amplitudes, names)
+            value += one
+            slope = slope + by_amplitude
+        return value, slope
+
+    found = minimize(
+        misfit, centre, jac=True, method="L-BFGS-B", bounds=[(c - 5.0, c + 5.0) for c in centre],
+        options={"maxiter": 60},
+    )  # fmt: skip
+    return start.with_values(dict(zip(names, (float(value) for value in np.exp(found.x)), strict=True)))
+
+
+def _misfit(group: Group, amplitudes: Mapping[str, float], names: Sequence[str]) -> tuple[float, Array]:
+    """-ln likelihood of a group and its derivative by the logarithms of the named amplitudes."""
+    matrix = group.noise + sum(amplitudes[kind] ** 2 * part for kind, part in group.parts.items())
+    lower = np.linalg.cholesky(matrix)
+    inverse = np.linalg.inv(lower)
+    precision = inverse.T @ inverse
+    weighed = precision @ group.products @ precision
+    value = group.count * float(np.log(np.diagonal(lower)).sum()) + 0.5 * float(
+        np.sum(precision * group.products)
+    )
+    slopes = [
+        amplitudes[name] ** 2 * float(np.sum((group.count * precision - weighed) * group.parts[name]))
+        if name in group.parts
+        else 0.0
+        for name in names
+    ]
+    return value, np.array(slopes)
+
+
+def missing_spread(spaces: Sequence[Whitened], slopes: Sequence[Mapping[str, Array]]) -> dict[str, float]:
+    """Spread [coordinate] that healthy sets show along each kind of effect beyond the covariance.
+
+    spaces : healthy residuals; slopes : of each, kind -> (n, k) whitened columns of all its effects
+
+    The mean square of z = a'r / |a| is one where the covariance is right. Where it is above `WIDEN_ABOVE`, the
+    coordinate spreads by (z^2 - 1)^(1/2) / |a| more than the covariance knows; of all effects of a kind the median.
+    """
+    found: dict[str, list[tuple[float, float]]] = {}
+    for space, columns in zip(spaces, slopes, strict=True):
+        for kind, white in columns.items():
+            lengths = np.linalg.norm(white, axis=0)
+            seen = lengths > 1e-9
+            scores = (white.T @ space.residual)[seen] / lengths[seen]
+            found.setdefault(kind, []).extend(
+                (float(score) ** 2, float(length))
+                for score, length in zip(scores, lengths[seen], strict=True)
+            )
+    spreads = {}
+    for kind, pairs in found.items():
+        squares = np.array([square for square, _ in pairs])
+        if squares.mean() > WIDEN_ABOVE:
+            lengths = np.array([length for _, length in pairs])
+            spreads[kind] = float(np.sqrt(squares.mean() - 1.0) / np.median(lengths))
+    return spreads

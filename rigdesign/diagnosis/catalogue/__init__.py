@@ -1,0 +1,14 @@
+"""Effects that the model can express: each changes the case and is simulated by it, never by a formula here."""
+
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue.heat import heat_effects
+from rigdesign.diagnosis.catalogue.loop import loop_effects
+from rigdesign.diagnosis.effects import Effect
+
+
+def effects_of(case: Case) -> tuple[Effect, ...]:
+    """All entries for this case, in a fixed order; names are unique."""
+    found = (*loop_effects(case), *heat_effects(case))
+    names = [effect.name for effect in found]
+    assert len(set(names)) == len(names)
+    return found

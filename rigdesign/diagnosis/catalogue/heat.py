@@ -1,0 +1,239 @@
+"""Catalogue of the heat: losses, how they divide, films, contacts, flows, oil, and a rig not yet steady.
+
+Bounds are starting values of rig practice (design of the workflow, section 4); a healthy spread is what handbooks
+and suppliers leave open.
+"""
+
+from collections.abc import Iterator, Mapping
+
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.housing import ConstantFilm, Housing, ThermalRadiation
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, Scaled, factor, share
+from rigdesign.diagnosis.effects import Changes, Effect, Family, Parameter
+
+LOSSES: Mapping[str, tuple[str, str, float, float, float]] = {
+    "mesh_loss": ("mesh", "friction of the teeth", 0.6, 1.6, 0.12),
+    "bearing_loss": ("bearing", "friction of the bearing films", 0.5, 2.0, 0.12),
+    "windage_loss": ("windage", "windage of the gears", 0.3, 3.0, 0.25),
+    "seal_loss": ("seal", "friction of the seals", 0.3, 3.0, 0.25),
+    "jet_loss": ("jet", "oil brought up to speed by the gears", 0.3, 3.0, 0.20),
+    "squeeze_loss": ("squeeze", "oil squeezed out of the mesh", 0.2, 5.0, 0.25),
+}
+"""Kind of effect -> key of the case, words, bounds, healthy spread of its logarithm."""
+
+LOSS_SIGNATURES = {
+    "mesh_loss": "grows with torque and speed: oil rise, gears and drive torque together",
+    "bearing_loss": "grows with n^1.6 to n^2 at any torque: bearing oil, shells and drive torque",
+    "windage_loss": "grows with n^2.5 to n^3 at any torque: gear oil and drive torque",
+    "seal_loss": "grows with n^2 at any torque: shaft and seal bores, little drive torque",
+    "jet_loss": "grows with flow and n^2: gear oil and drive torque",
+    "squeeze_loss": "grows with torque and speed, straight into the oil",
+}
+
+
+def heat_effects(case: Case) -> Iterator[Effect]:
+    """Entries for every gearbox of the case."""
+    for name, box in case.gearboxes.items():
+        yield from _losses(name, box)
+        yield from _flows(name, box)
+        yield from _oil(name, box)
+        if box.housing is not None:
+            yield from _split(name, box)
+            yield from _films(name, box.housing)
+            yield from _contacts(name, box, box.housing)
+
+
+def _losses(name: str, box: Gearbox) -> Iterator[Effect]:
+    for kind, (key, words, low, high, healthy) in LOSSES.items():
+        now: float = getattr(box.loss_factors, key)
+        yield Effect(
+            name=f"{kind}:{name}",
+            title=f"{words} in the {box.title}",
+            family="loss",
+            signature=LOSS_SIGNATURES[kind],
+            parameters=(factor("factor", low, high),),
+            change=Scaled(((f"gearboxes.{name}.loss_factors.{key}", now),)),
+            healthy=healthy,
+        )
+
+
+FLOWS = {
+    "leak_warm_cold": (
+        "gear oil that leaks into the bearing oil",
+        0.15,
+        "warm outlet falls, cold rises, sum kept",
+    ),
+    "bypass": (
+        "gear oil that goes round the meshes",
+        0.30,
+        "gears and walls warmer, outlet mixed, less jet loss",
+    ),
+    "short_circuit": (
+        "gear oil that leaves past the walls",
+        0.30,
+        "walls answer less to the oil, outlet nearly kept",
+    ),
+}
+"""Key under oil_paths -> words, largest share, signature."""
+
+
+def _flows(name: str, box: Gearbox) -> Iterator[Effect]:
+    for key, (words, most, signature) in FLOWS.items():
+        yield Effect(
+            name=f"{key}:{name}",
+            title=f"{words} of {name}",
+            family="flow",
+            signature=signature,
+            parameters=(share("share", most),),
+            change=Added(f"gearboxes.{name}.oil_paths.{key}", getattr(box.oil_paths, key)),
+        )
+    yield Effect(
+        name=f"blocked_jet:{name}",
+        title=f"blocked jets of {name}",
+        family="flow",
+        signature="gears warmer, jet loss higher at the same flow",
+        parameters=(share("share", 0.6),),
+        change=Added(f"gearboxes.{name}.oil.blocked_jets", box.oil.blocked_jets),
+    )
+
+
+def _oil(name: str, box: Gearbox) -> Iterator[Effect]:
+    at, state = f"gearboxes.{name}.oil_state", box.oil_state
+    yield Effect(
+        name=f"aeration:{name}",
+        title=f"air in the oil of {name}",
+        family="oil",
+        signature="every oil rise of the gearbox larger, losses nearly kept",
+        parameters=(share("air content", 0.2),),
+        change=Added(f"{at}.air_content", state.air_content),
+    )
+    yield Effect(
+        name=f"oil_viscosity:{name}",
+        title=f"viscosity of the oil of {name}",
+        family="oil",
+        signature="bearing losses and tooth friction together, more when cold",
+        parameters=(factor("factor", 0.7, 1.4),),
+        change=Scaled(((f"{at}.viscosity_factor", state.viscosity_factor),)),
+        healthy=0.06,
+    )
+    yield Effect(
+        name=f"oil_heat_capacity:{name}",
+        title=f"heat capacity of the oil of {name}",
+        family="oil",
+        signature="every oil rise of the gearbox by one factor, drive torque kept",
+        parameters=(factor("factor", 0.8, 1.25),),
+        change=Scaled(((f"{at}.heat_capacity_factor", state.heat_capacity_factor),)),
+        healthy=0.03,
+    )
+
+
+def _split(name: str, box: Gearbox) -> Iterator[Effect]:
+    into = box.heat_split.mesh_into_gears
+    if into is None:
+        return
+    yield Effect(
+        name=f"loss_split:{name}",
+        title=f"share of the mesh heat that enters the gears of the {box.title}",
+        family="split",
+        signature="moves the gears, leaves oil rise and drive torque",
+        parameters=(factor("factor", 0.3, min(2.0, 1.0 / into) if into else 2.0),),
+        change=Scaled(((f"gearboxes.{name}.heat_split.mesh_into_gears", into),), 1.0),
+        healthy=0.25,
+    )
+
+
+def _films(name: str, housing: Housing) -> Iterator[Effect]:
+    at = f"gearboxes.{name}.housing"
+    for entry, condition in housing.boundary.items():
+        fluid = getattr(condition, "fluid", None)
+        if isinstance(condition, ThermalRadiation) or fluid is None or fluid == "ambient":
+            continue
+        low, high = (0.3, 3.0) if isinstance(condition, ConstantFilm) else (0.2, 5.0)
+        yield Effect(
+            name=f"film:{name}.{entry}",
+            title=f"oil film {entry.replace('_', ' ')} of {name}",
+            family="film",
+            signature="moves the bodies it wets against the oil, leaves drive torque",
+            parameters=(factor("factor", low, high),),
+            change=Scaled(((f"{at}.boundary.{entry}.film_factor", getattr(condition, "film_factor", 1.0)),)),
+            healthy=0.25,
+        )
+    yield _film(
+        f"ambient_film:{name}", "film to room air", f"{at}.ambient_film_factor", housing.ambient_film_factor
+    )
+    yield _film(
+        f"bearing_film:{name}",
+        "film in the bearings",
+        f"{at}.bearing_film_factor",
+        housing.bearing_film_factor,
+    )
+    grey = tuple(
+        (f"{at}.boundary.{entry}.emissivity", condition.emissivity)
+        for entry, condition in housing.boundary.items()
+        if isinstance(condition, ThermalRadiation)
+    )
+    if grey:
+        yield Effect(
+            name=f"emissivity:{name}",
+            title=f"emissivity of the outside of {name}",
+            family="film",
+            signature="moves housing and field as dT^4 does",
+            parameters=(factor("factor", 0.3, 1.6),),
+            change=Scaled(grey, 1.0),
+            healthy=0.12,
+        )
+
+
+def _film(name: str, title: str, path: str, now: float) -> Effect:
+    outside = name.startswith("ambient")
+    return Effect(
+        name=name,
+        title=f"{title} of {name.split(':')[1]}",
+        family="film",
+        signature="moves the whole housing as dT does" if outside else "moves shells and journals",
+        parameters=(factor("factor", 0.5, 3.0) if outside else factor("factor", 0.2, 3.0),),
+        change=Scaled(((path, now),)),
+        healthy=0.15 if outside else 0.25,
+    )
+
+
+class _Resistance:
+    """Puts a resistance [m2 K/W] in the way, on top of what the case has."""
+
+    def __init__(self, paths: Mapping[str, float | None]) -> None:
+        self._paths = paths
+
+    def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
+        more = values[0]
+        return {
+            path: 1.0 / (more + (0.0 if now is None else 1.0 / now))
+            for path, now in self._paths.items()
+            if more > 0.0
+        }
+
+
+def _contacts(name: str, box: Gearbox, housing: Housing) -> Iterator[Effect]:
+    shells = {
+        f"gearboxes.{name}.bearings.{bearing}.shell_conductance": entry.shell_conductance
+        for bearing, entry in box.bearings.items()
+    }
+    yield _contact(f"shell_contact:{name}", "joint between bearing shells and housing", 0.02, shells)
+    joint = housing.foot_contact
+    if joint is not None and joint.conductance is not None:
+        foot: dict[str, float | None] = {
+            f"gearboxes.{name}.housing.foot_contact.conductance": joint.conductance
+        }
+        yield _contact(f"foot_contact:{name}", "joint between foot and field", 0.02, foot)
+
+
+def _contact(name: str, title: str, most: float, paths: Mapping[str, float | None]) -> Effect:
+    family: Family = "contact"
+    return Effect(
+        name=name,
+        title=f"{title} of {name.split(':')[1]}",
+        family=family,
+        signature="a step of temperature at one joint",
+        parameters=(Parameter(name="resistance", unit="m2 K/W", low=0.0, high=most, source=PRACTICE),),
+        change=_Resistance(paths),
+    )

@@ -1,0 +1,309 @@
+"""Catalogue of the power circuit: teeth, joints, inertias, excitation from motor and couplings, bracing.
+
+Excitations are written by their parts along cosine and sine, so that an unknown phase costs nothing. Bounds are
+starting values of rig practice (design of the workflow, section 4); what a healthy gear has follows from its quality
+grade (ISO 1328-1).
+"""
+
+from collections.abc import Iterator, Mapping
+from math import atan2, cos, hypot, pi, sin
+
+from dynamics.standards.iso1328_1_2013 import tolerances
+from rigdesign.case.drivetrain import HarmonicTorque
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.gears import Gear, GearMesh
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, Scaled, factor
+from rigdesign.diagnosis.effects import Changes, Effect, Family, Parameter
+
+MICROMETRE = 1e-6
+
+
+def loop_effects(case: Case) -> Iterator[Effect]:
+    """Entries for every gear, mesh, coupling and the motor; none for a rig without a drivetrain."""
+    if case.drivetrain is None:
+        return
+    for box_name, box in case.gearboxes.items():
+        for name in box.gears:
+            yield from _teeth(box_name, box, name)
+        for name, mesh in box.meshes.items():
+            yield from _mesh(f"gearboxes.{box_name}.meshes.{name}", f"{box_name}.{name}", mesh)
+        for name, gear in box.gears.items():
+            yield from _body(f"gearboxes.{box_name}.gears.{name}", f"{box_name}.{name}", gear)
+    yield from _joints(case)
+    yield from _drive(case)
+
+
+def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
+    gear, at, label = box.gears[name], f"gearboxes.{box_name}.gears.{name}.flank", f"{box_name}.{name}"
+    spread = _healthy_teeth(box, name)
+    yield Effect(
+        name=f"run_out:{label}",
+        title=f"run-out of {label} (eccentricity)",
+        family="excitation",
+        signature="order 1 of its shaft from low speed on, sidebands of the mesh orders",
+        parameters=_amplitudes("eccentricity", 50.0 * MICROMETRE),
+        change=_RunOut(at),
+        healthy=spread["run_out"],
+        linear=True,
+    )
+    for order in (2, 3, 4):
+        yield Effect(
+            name=f"cumulative_pitch:{label}/{order}",
+            title=f"pitch of {label} with {order} waves a turn",
+            family="excitation",
+            signature=f"order {order} of its shaft, sidebands of the mesh orders at that distance",
+            parameters=_amplitudes("amplitude", 40.0 * MICROMETRE),
+            change=_PitchWave(at, order),
+            healthy=spread["pitch_wave"],
+            linear=True,
+        )
+    yield Effect(
+        name=f"single_pitch:{label}",
+        title=f"pitch of one tooth of {label}",
+        family="excitation",
+        signature="all orders of its shaft alike, the more the less torque",
+        parameters=(_length("deviation", -60.0, 60.0),),
+        change=_SinglePitch(at, gear.teeth),
+        any_tooth=gear.teeth,
+        linear=True,
+    )
+    yield Effect(
+        name=f"weak_tooth:{label}",
+        title=f"one tooth of {label} that gives way",
+        family="tooth",
+        signature="all orders of its shaft, growing with torque",
+        parameters=(Parameter(name="softening", unit="", low=0.0, high=0.8, source=PRACTICE),),
+        change=_WeakTooth(at),
+        any_tooth=gear.teeth,
+    )
+    yield Effect(
+        name=f"profile_slope:{label}",
+        title=f"profile slope of {label}",
+        family="tooth",
+        signature="mesh orders only, changing with torque",
+        parameters=(_length("slope", -25.0, 25.0),),
+        change=Added(f"{at}.profile_slope", gear.flank.profile_slope),
+        healthy=spread["slope"],
+    )
+    if gear.flank.tip_relief_length > 0.0:
+        yield Effect(
+            name=f"tip_relief:{label}",
+            title=f"tip relief of {label}",
+            family="tooth",
+            signature="mesh orders only, changing with torque",
+            parameters=(_length("relief", -1e6 * gear.flank.tip_relief, 25.0),),
+            change=Added(f"{at}.tip_relief", gear.flank.tip_relief),
+            healthy=3.0 * MICROMETRE,
+        )
+
+
+def _healthy_teeth(box: Gearbox, name: str) -> Mapping[str, float]:
+    """Spreads of one part of run-out, of a pitch wave, and of the profile slope [m].
+
+    Gears are made to lie within the tolerance of their grade; half of it is taken as two standard deviations of the
+    whole, a wave of the cumulative pitch as a third of the run-out.
+    """
+    mesh = box.meshes[box.first_meshes()[name][0]]
+    gear = box.gears[name]
+    normal = 1e3 * mesh.normal_module
+    limits = tolerances(
+        gear.teeth, gear.teeth * normal / cos(mesh.helix_angle), normal, 1e3 * gear.face_width, gear.quality_grade,
+        mesh.helix_angle,
+    )  # fmt: skip
+    run_out = 0.25 * 0.5 * 0.9 * limits.F_pT * MICROMETRE
+    return {"run_out": run_out, "pitch_wave": run_out / 3.0, "slope": 0.25 * limits.f_HalphaT * MICROMETRE}
+
+
+def _length(name: str, low: float, high: float) -> Parameter:
+    """A length between bounds in micrometres; its coordinate is in metres."""
+    return Parameter(name=name, unit="m", low=low * MICROMETRE, high=high * MICROMETRE, source=PRACTICE)
+
+
+def _amplitudes(name: str, most: float, unit: str = "m") -> tuple[Parameter, Parameter]:
+    first, second = (
+        Parameter(name=f"{name} along {part}", unit=unit, low=-most, high=most, source=PRACTICE)
+        for part in ("cosine", "sine")
+    )
+    return first, second
+
+
+def _joined(now: tuple[float, float], more: tuple[float, float]) -> tuple[float, float]:
+    """Amplitude and phase of a harmonic (amplitude, phase) with parts along cosine and sine added."""
+    along, across = now[0] * cos(now[1]) + more[0], now[0] * sin(now[1]) + more[1]
+    return hypot(along, across), atan2(across, along) % (2.0 * pi)
+
+
+class _RunOut:
+    def __init__(self, at: str) -> None:
+        self._at = at
+
+    def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
+        box, gear = self._at.split(".")[1], self._at.split(".")[3]
+        flank = case.gearboxes[box].gears[gear].flank
+        size, phase = _joined((0.5 * flank.run_out, flank.run_out_phase), (values[0], values[1]))
+        return {f"{self._at}.run_out": 2.0 * size, f"{self._at}.run_out_phase": phase}
+
+
+class _PitchWave:
+    def __init__(self, at: str, order: int) -> None:
+        self._at, self._order = at, order
+
+    def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
+        box, gear = self._at.split(".")[1], self._at.split(".")[3]
+        waves = [
+            {"order": wave.order, "amplitude": _metres(wave.amplitude), "phase": _radians(wave.phase)}
+            for wave in case.gearboxes[box].gears[gear].flank.pitch_waves
+        ]
+        size, phase = _joined((0.0, 0.0), (values[0], values[1]))
+        more = {"order": self._order, "amplitude": _metres(size), "phase": _radians(phase)}
+        return {f"{self._at}.pitch_waves": [*waves, more]}
+
+
+def _metres(value: float) -> str:
+    return f"{value!r} m"
+
+
+def _radians(value: float) -> str:
+    return f"{value!r} rad"
+
+
+class _SinglePitch:
+    """One tooth stands ahead: its pitch is long, the next one short."""
+
+    def __init__(self, at: str, teeth: int) -> None:
+        self._at, self._teeth = at, teeth
+
+    def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
+        box, gear = self._at.split(".")[1], self._at.split(".")[3]
+        now = case.gearboxes[box].gears[gear].flank.single_pitch or (0.0,) * self._teeth
+        tooth = int(values[1]) if len(values) > 1 else 0
+        pitch = list(now)
+        pitch[tooth] += values[0]
+        pitch[(tooth + 1) % self._teeth] -= values[0]
+        return {f"{self._at}.single_pitch": [_metres(value) for value in pitch]}
+
+
+class _WeakTooth:
+    def __init__(self, at: str) -> None:
+        self._at = at
+
+    def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
+        tooth = int(values[1]) if len(values) > 1 else 0
+        return {f"{self._at}.weak_tooth.tooth": tooth, f"{self._at}.weak_tooth.stiffness": 1.0 - values[0]}
+
+
+def _mesh(at: str, label: str, mesh: GearMesh) -> Iterator[Effect]:
+    yield _scaled(
+        f"mesh_stiffness:{label}", f"stiffness of the mesh {label}", "stiffness", f"{at}.stiffness_factor",
+        mesh.stiffness_factor, (0.6, 1.5), 0.07, "mesh orders, resonance speeds of the mesh",
+    )  # fmt: skip
+    yield _scaled(
+        f"mesh_damping:{label}", f"damping of the mesh {label}", "damping", f"{at}.damping", mesh.damping,
+        (0.2, 5.0), 0.25, "height of mesh orders near resonance",
+    )  # fmt: skip
+
+
+def _body(at: str, label: str, gear: Gear) -> Iterator[Effect]:
+    yield _scaled(
+        f"inertia:{label}", f"inertia of {label}", "inertia", f"{at}.inertia_factor",
+        gear.inertia_factor, (0.7, 1.4), 0.04, "torsional modes that move this gear",
+    )  # fmt: skip
+    if gear.spline is not None:
+        yield _scaled(
+            f"spline_stiffness:{label}", f"stiffness of the spline of {label}", "stiffness",
+            f"{at}.spline.torsional_stiffness", gear.spline.torsional_stiffness, (0.1, 5.0), 0.10,
+            "torsional modes that twist this spline",
+        )  # fmt: skip
+
+
+def _scaled(
+    name: str,
+    title: str,
+    family: Family,
+    path: str,
+    now: float,
+    bounds: tuple[float, float],
+    healthy: float,
+    signature: str,
+) -> Effect:
+    return Effect(
+        name=name,
+        title=title,
+        family=family,
+        signature=signature,
+        parameters=(factor("factor", *bounds),),
+        change=Scaled(((path, now),)),
+        healthy=healthy,
+    )
+
+
+def _joints(case: Case) -> Iterator[Effect]:
+    assert case.drivetrain is not None
+    for name, coupling in case.drivetrain.couplings.items():
+        at = f"drivetrain.couplings.{name}"
+        yield _scaled(
+            f"coupling_stiffness:{name}", f"stiffness of the coupling {name}", "stiffness",
+            f"{at}.torsional_stiffness", coupling.torsional_stiffness, (0.2, 5.0), 0.08,
+            "low torsional modes and the torque that run-out makes",
+        )  # fmt: skip
+        yield _scaled(
+            f"coupling_damping:{name}", f"damping of the coupling {name}", "damping",
+            f"{at}.torsional_damping", coupling.torsional_damping, (0.2, 5.0), 0.25,
+            "height of the low torsional modes",
+        )  # fmt: skip
+        yield Effect(
+            name=f"coupling_order_2:{name}",
+            title=f"axes out of line at the coupling {name}",
+            family="excitation",
+            signature="order 2 of its shaft, the same at any torque",
+            parameters=_amplitudes("torque", 20.0, "N m"),
+            change=_Harmonic(f"{at}.excitation", coupling.excitation, 2.0),
+            linear=True,
+        )
+
+
+class _Harmonic:
+    """Adds a harmonic torque to a list of them."""
+
+    def __init__(self, path: str, now: tuple[HarmonicTorque, ...], order: float) -> None:
+        self._path, self._now, self._order = path, now, order
+
+    def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
+        size, phase = _joined((0.0, 0.0), (values[0], values[1]))
+        rows = [(one.order, one.torque, one.phase) for one in self._now]
+        return {
+            self._path: [
+                {"order": order, "torque": f"{torque!r} N m", "phase": _radians(angle)}
+                for order, torque, angle in (*rows, (self._order, size, phase))
+            ]
+        }
+
+
+def _drive(case: Case) -> Iterator[Effect]:
+    assert case.drivetrain is not None
+    motor, bracing = case.drivetrain.motor, case.drivetrain.bracing
+    for order in (1, 2, 6):
+        yield Effect(
+            name=f"motor_ripple/{order}",
+            title=f"torque ripple of the motor, {order} a turn",
+            family="excitation",
+            signature=f"order {order} of the motor, the same at any torque",
+            parameters=_amplitudes("torque", 20.0, "N m"),
+            change=_Harmonic("drivetrain.motor.ripple", motor.ripple, float(order)),
+            linear=True,
+        )
+    if motor.inertia > 0.0:
+        yield _scaled(
+            "inertia:motor", "inertia of the motor", "inertia", "drivetrain.motor.inertia", motor.inertia,
+            (0.5, 2.0), 0.05, "the lowest torsional modes",
+        )  # fmt: skip
+    yield Effect(
+        name="bracing_drift",
+        title="bracing torque that drifts with the oil temperature",
+        family="state",
+        signature="mean torque and all that follows it change with the oil temperature",
+        parameters=(Parameter(name="drift", unit="1/K", low=-0.003, high=0.003, source=PRACTICE),),
+        change=Added("drivetrain.bracing.temperature_drift", bracing.temperature_drift),
+        linear=True,
+    )

@@ -1,0 +1,41 @@
+"""Columns: how every number of a comparison answers to one thing that may be off by some spread.
+
+A column is a derivative (n_features,) with the spread its cause has in a healthy rig. Amplitudes scale the spreads
+of a whole kind of columns; they are dimensionless, so that what one rig taught serves another.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Column:
+    """One cause that is no effect: an uncertain constant, a sensor, an input, a local conductance."""
+
+    name: str
+    kind: str
+    """Names the amplitude that scales its spread."""
+    values: Array
+    """(n_features,) change of the features per unit of the cause."""
+    spread: float
+    """Standard deviation of the cause in a healthy rig, before the amplitude."""
+    effect: str = ""
+    """Effect of the catalogue that moves the same thing; its spread is left out while that effect is tested."""
+
+
+def stacked(columns: Sequence[Column], amplitudes: Mapping[str, float]) -> Array:
+    """(n_features, n_columns) of the columns times their standard deviations; amplitude 1 where none is given."""
+    if not columns:
+        raise ValueError("no columns to stack; a comparison has at least its noise and its inputs")
+    scaled = [amplitudes.get(column.kind, 1.0) * column.spread * column.values for column in columns]
+    return np.stack(scaled, axis=1)
+
+
+def kinds(columns: Sequence[Column]) -> tuple[str, ...]:
+    """The kinds that occur, in their first order."""
+    return tuple(dict.fromkeys(column.kind for column in columns))

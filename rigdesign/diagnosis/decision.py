@@ -1,0 +1,218 @@
+"""From evidence to a verdict: a name, a group of aliases, or an honest refusal.
+
+The order of the questions is that of the workflow's step 8. Thresholds are frozen with the calibration
+(`rigdesign.diagnosis.defaults`).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.special import logsumexp
+
+from rigdesign.diagnosis.evidence import Evidence
+
+Verdict = Literal[
+    "named",
+    "alias_group",
+    "unknown_located",
+    "within_noise",
+    "too_small",
+    "input_error_suspected",
+    "data_insufficient",
+]
+
+PRIOR = {"none": 0.50, "physical": 0.22, "sensor": 0.08, "anonymous": 0.10, "pair": 0.10, "input": 0.03}
+"""Prior weight of each family of explanations, split evenly among its members."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Thresholds:
+    """Numbers the verdict hangs on.
+
+    named : inclusion probability of a name; input : mass of input errors; catalogue : share of the best gain that
+    the best explanation of the catalogue must reach; misfit : standard deviations of the whitened square after the
+    best fit above which nothing known fits; group : most members of an alias group
+    """
+
+    named: float = 0.9
+    input: float = 0.5
+    catalogue: float = 0.85
+    misfit: float = 5.0
+    group: int = 3
+
+
+@dataclass(frozen=True, kw_only=True)
+class Posterior:
+    """Masses of all hypotheses, nothing included.
+
+    masses : by name of the hypothesis; inclusion : by part, over all hypotheses that claim it
+    """
+
+    masses: Mapping[str, float]
+    inclusion: Mapping[str, float]
+    families: Mapping[str, float]
+    best: Evidence | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Decision:
+    """The verdict with the parts it rests on.
+
+    named : effects of a name, or the members of an alias group; reason : in one sentence
+    """
+
+    verdict: Verdict
+    named: tuple[str, ...]
+    reason: str
+
+
+def posterior(
+    evidence: Sequence[Evidence], members: Mapping[str, int], priors: Mapping[str, float] = PRIOR
+) -> Posterior:
+    """Masses from log Bayes factors and prior weights.
+
+    members : how many explanations each family has, those that were not worth weighing included: its prior weight
+        is split evenly among them
+    """
+    logs = [float(np.log(priors["none"]))]
+    logs += [
+        one.log_bayes + float(np.log(priors[one.hypothesis.family] / members[one.hypothesis.family]))
+        for one in evidence
+    ]
+    total = float(logsumexp(logs))
+    masses = {"none": float(np.exp(logs[0] - total))}
+    inclusion: dict[str, float] = {}
+    families = {"none": masses["none"]}
+    best, highest = None, logs[0]
+    for one, log in zip(evidence, logs[1:], strict=True):
+        mass = float(np.exp(log - total))
+        masses[one.hypothesis.name] = mass
+        families[one.hypothesis.family] = families.get(one.hypothesis.family, 0.0) + mass
+        for part in dict.fromkeys(one.hypothesis.parts):
+            inclusion[part] = inclusion.get(part, 0.0) + mass
+        if log > highest:
+            best, highest = one, log
+    return Posterior(masses=masses, inclusion=inclusion, families=families, best=best)
+
+
+def decide(
+    evidence: Sequence[Evidence],
+    weights: Posterior,
+    *,
+    chi_square: float,
+    count: int,
+    effects: frozenset[str],
+    detectable: Mapping[str, bool],
+    thresholds: Thresholds,
+) -> Decision:
+    """The verdict.
+
+    Parameters
+    ----------
+    chi_square, count : whitened square of the residual and number of readings
+    effects : names that may be named: catalogue and sensors, not the anonymous ones
+    detectable : effect -> whether these sensors could see it within its bounds at all
+    """
+    if weights.families.get("input", 0.0) > thresholds.input:
+        named = _parts_of_family(evidence, weights, "input")
+        return Decision(
+            verdict="input_error_suspected",
+            named=named,
+            reason=f"the data fit the rig once {named[0]} is undone",
+        )
+    best = weights.best
+    if best is None:
+        return _silent(weights, evidence, chi_square, count, thresholds, detectable)
+    left = chi_square - best.gain
+    excess = (left - count) / (2.0 * count) ** 0.5
+    if excess > thresholds.misfit:
+        return Decision(
+            verdict="unknown_located",
+            named=(),
+            reason=f"the best explanation leaves {excess:.1f} standard deviations more than a healthy rig does",
+        )
+    known = [one for one in evidence if set(one.hypothesis.parts) <= effects]
+    most = max(one.gain for one in evidence)
+    reached = max((one.gain for one in known), default=0.0)
+    if weights.masses["none"] < 0.5 and reached < thresholds.catalogue * most:
+        return Decision(
+            verdict="unknown_located",
+            named=(),
+            reason=f"an effect outside the catalogue explains more: the catalogue reaches {reached / most:.0%} of it",
+        )
+    named = tuple(
+        part
+        for part, mass in sorted(weights.inclusion.items(), key=lambda item: -item[1])
+        if part in effects and mass >= thresholds.named
+    )
+    if named:
+        return Decision(
+            verdict="named", named=named, reason=f"{named[0]} is in every explanation that counts"
+        )
+    if weights.masses["none"] < 1.0 - thresholds.named:
+        group = _smallest_group(evidence, weights, effects, thresholds)
+        if group:
+            return Decision(
+                verdict="alias_group",
+                named=group,
+                reason="one of them is at work; these data cannot tell which",
+            )
+        return Decision(
+            verdict="unknown_located", named=(), reason="something is at work that no few effects account for"
+        )
+    return _silent(weights, evidence, chi_square, count, thresholds, detectable)
+
+
+def _smallest_group(
+    evidence: Sequence[Evidence], weights: Posterior, effects: frozenset[str], thresholds: Thresholds
+) -> tuple[str, ...]:
+    """Smallest set of effects of which at least one is at work with the asked probability; empty if none is small."""
+    parts = [
+        part for part, _ in sorted(weights.inclusion.items(), key=lambda item: -item[1]) if part in effects
+    ]
+    chosen: list[str] = []
+    for part in parts[: thresholds.group]:
+        chosen.append(part)
+        mass = sum(
+            weights.masses[one.hypothesis.name]
+            for one in evidence
+            if not set(one.hypothesis.parts).isdisjoint(chosen)
+        )
+        if len(chosen) > 1 and mass >= thresholds.named:
+            return tuple(chosen)
+    return ()
+
+
+def _silent(
+    weights: Posterior,
+    evidence: Sequence[Evidence],
+    chi_square: float,
+    count: int,
+    thresholds: Thresholds,
+    detectable: Mapping[str, bool],
+) -> Decision:
+    if not any(detectable.values()):
+        return Decision(
+            verdict="data_insufficient",
+            named=(),
+            reason="no effect of the catalogue could be seen with these sensors and points",
+        )
+    if (chi_square - count) / (2.0 * count) ** 0.5 > thresholds.misfit:
+        return Decision(
+            verdict="unknown_located",
+            named=(),
+            reason="the residual is larger than a healthy rig's, nothing explains it",
+        )
+    if weights.masses["none"] >= 0.5:
+        return Decision(verdict="within_noise", named=(), reason="a healthy rig leaves as much")
+    return Decision(
+        verdict="too_small", named=(), reason="something may be at work, too small to be told from its rivals"
+    )
+
+
+def _parts_of_family(evidence: Sequence[Evidence], weights: Posterior, family: str) -> tuple[str, ...]:
+    members = [one for one in evidence if one.hypothesis.family == family]
+    best = max(members, key=lambda one: weights.masses[one.hypothesis.name])
+    return best.hypothesis.parts

@@ -1,0 +1,97 @@
+"""What an effect is: parameters with bounds, the change it makes to the case, its signature in words."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import exp, log
+from typing import Literal
+
+from rigdesign.case.model import Case
+
+Family = Literal[
+    "excitation",
+    "tooth",
+    "stiffness",
+    "inertia",
+    "damping",
+    "loss",
+    "split",
+    "film",
+    "contact",
+    "flow",
+    "oil",
+    "state",
+]
+"""Kind of thing that is off: it names the amplitude of what cannot be told from it."""
+
+EASY: frozenset[Family] = frozenset({"excitation", "loss", "flow"})
+"""Families whose size alone moves the numbers; the others are confused with uncertain constants."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameter:
+    """One number of an effect.
+
+    The coordinate of a parameter is zero without the effect: the logarithm of a factor, the value of the rest.
+    """
+
+    name: str
+    unit: str
+    """As the case file writes it; empty for a factor or share."""
+    low: float
+    high: float
+    """Bounds of the value, in the unit."""
+    source: str
+    """Of the bounds."""
+    factor: bool = False
+    """A factor: neutral at one, its coordinate is the logarithm. Else neutral at zero."""
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Of the coordinate."""
+        return (log(self.low), log(self.high)) if self.factor else (self.low, self.high)
+
+    def value(self, coordinate: float) -> float:
+        """Value at a coordinate."""
+        return exp(coordinate) if self.factor else coordinate
+
+
+Changes = Mapping[str, object]
+"""Path of the case -> what the file would hold there."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Effect:
+    """One entry of the catalogue."""
+
+    name: str
+    """``kind:place``."""
+    title: str
+    family: Family
+    signature: str
+    """How it shows, in words."""
+    parameters: tuple[Parameter, ...]
+    """One, or amplitude along cosine and sine of an excitation with free phase."""
+    change: Callable[[Case, tuple[float, ...]], Changes] = field(repr=False)
+    """Change of the case at the values of the parameters."""
+    healthy: float = 0.0
+    """Standard deviation of the coordinate in a healthy rig; zero for what a healthy rig does not have."""
+    any_tooth: int = 0
+    """Teeth of the gear of which any one may be meant; the change is made for tooth 0 unless one more value, the
+    number of the tooth, says otherwise."""
+    linear: bool = False
+    """The numbers answer in proportion: one small step is enough."""
+
+    def changes(self, case: Case, coordinates: tuple[float, ...]) -> Changes:
+        """Change of the case at coordinates."""
+        values = tuple(p.value(u) for p, u in zip(self.parameters, coordinates, strict=True))
+        return self.change(case, values)
+
+    @property
+    def claim(self) -> str:
+        """What is named: the entry without its order, ``cumulative_pitch:test.pinion`` of ``.../2``."""
+        return self.name.split("/")[0]
+
+    @property
+    def kind(self) -> str:
+        """The part of the name before its place."""
+        return self.claim.split(":")[0]

@@ -1,0 +1,271 @@
+"""Evidence of one hypothesis after the other: how much better each explains the residual than nothing does.
+
+    ln B = ln p(residual | effect) - ln p(residual | healthy),  sizes integrated over a prior from the bounds
+
+The prior of a size is a mixture of normals around neutral with spreads from the bound down to a five-hundredth of
+it, so that a small effect is not punished for the width of its bound. What the covariance lets the same thing
+spread by itself is taken out while its effect is tested (`covariance.Release`).
+
+Source: design of the workflow, step 6; the integrals are those of Bayesian model comparison (Kass, Raftery,
+J. Am. Stat. Assoc. 90, 1995, 773).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.special import logsumexp
+
+from rigdesign.diagnosis.columns import Array
+from rigdesign.diagnosis.covariance import Release, Whitened
+
+SPREADS = (0.6, 0.2, 0.06, 0.02, 0.006, 0.002)
+"""Standard deviations of the mixture, relative to the bound."""
+
+GRID = 121
+"""Points of the quadrature over one size, denser towards neutral."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curve:
+    """Answer of the numbers to one size, from runs of the model.
+
+    coordinates : (m,) sorted, zero among them; answers : (m, n) change of the features, whitened
+    """
+
+    coordinates: Array
+    answers: Array
+    bounds: tuple[float, float]
+
+    @property
+    def half(self) -> float:
+        """The wider side of the bounds."""
+        return max(abs(self.bounds[0]), abs(self.bounds[1]))
+
+    def at(self, coordinates: Array) -> Array:
+        """(k, n) answers between the runs."""
+        if len(self.coordinates) == 2:
+            (low, high), (first, last) = self.coordinates, self.answers
+            return np.asarray(first + (coordinates[:, None] - low) / (high - low) * (last - first))
+        return np.asarray(CubicSpline(self.coordinates, self.answers)(coordinates))
+
+    def slope(self, coordinate: float) -> Array:
+        """(n,) derivative by the coordinate."""
+        step = 1e-3 * self.half
+        low, high = max(coordinate - step, self.bounds[0]), min(coordinate + step, self.bounds[1])
+        before, after = self.at(np.array([low, high]))
+        return np.asarray((after - before) / (high - low))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hypothesis:
+    """One explanation of the residual.
+
+    Either a curve (one size), or whitened columns (n, k) with equal spread and a half bound each; `mean` shifts the
+    residual itself for swaps and wrong units.
+    """
+
+    name: str
+    family: str
+    parts: tuple[str, ...]
+    """What it claims, effects by the name of their entry; anonymous and input parts included."""
+    curve: Curve | None = None
+    columns: Array | None = None
+    half: float = 1.0
+    own: tuple[str, ...] = ()
+    """Effects whose own spread is released."""
+    residual: Array | None = field(default=None, repr=False)
+    """Whitened residual under the hypothesis, where the data themselves are wrong."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evidence:
+    """What a hypothesis is worth.
+
+    log_bayes : against no effect; coordinates : at the best fit; deviations : of the coordinates there (with a flat
+    prior); gain : fall of the whitened square at the best fit; column : (n, k) whitened slope there
+    """
+
+    hypothesis: Hypothesis
+    log_bayes: float
+    coordinates: tuple[float, ...]
+    deviations: tuple[float, ...]
+    gain: float
+    columns: Array = field(repr=False)
+    answer: Array = field(repr=False)
+    """(n,) whitened answer at the best fit."""
+
+
+def release_of(space: Whitened, own: Sequence[str]) -> Release:
+    """The space without the spreads of these effects."""
+    places = sorted({place for effect in own for place in space.covariance.own(effect)})
+    return Release.of(space.columns[:, places])
+
+
+def weigh(space: Whitened, hypothesis: Hypothesis) -> Evidence:
+    """Evidence of one hypothesis."""
+    if hypothesis.residual is not None:
+        return _weigh_data(space, hypothesis)
+    if hypothesis.curve is not None:
+        return _weigh_curve(space, hypothesis, hypothesis.curve)
+    assert hypothesis.columns is not None
+    return _weigh_columns(space, hypothesis, hypothesis.columns)
+
+
+def mixture_density(coordinates: Array, half: float) -> Array:
+    """(k,) logarithm of the prior density of a size, not cut at its bounds."""
+    spreads = np.array(SPREADS) * half
+    terms = -0.5 * (coordinates[:, None] / spreads) ** 2 - np.log(spreads * np.sqrt(2.0 * np.pi))
+    return np.asarray(logsumexp(terms, axis=1) - np.log(len(SPREADS)))
+
+
+def graded(bounds: tuple[float, float], count: int = GRID) -> tuple[Array, Array]:
+    """Coordinates (k,) between bounds, dense around zero, with their quadrature weights (k,)."""
+    half = max(abs(bounds[0]), abs(bounds[1]))
+    least = SPREADS[-1] * half / 4.0
+    ends = [np.arcsinh(bound / least) for bound in bounds]
+    nodes = np.linspace(float(ends[0]), float(ends[1]), count)
+    step = (ends[1] - ends[0]) / (count - 1)
+    weights = least * np.cosh(nodes) * step
+    weights[[0, -1]] *= 0.5
+    return least * np.sinh(nodes), weights
+
+
+def _weigh_data(space: Whitened, hypothesis: Hypothesis) -> Evidence:
+    """Data that are wrong as they stand: another residual under the same covariance."""
+    assert hypothesis.residual is not None
+    gain = space.chi_square - float(hypothesis.residual @ hypothesis.residual)
+    nothing = np.zeros((len(space.residual), 0))
+    return Evidence(
+        hypothesis=hypothesis,
+        log_bayes=0.5 * gain,
+        coordinates=(),
+        deviations=(),
+        gain=gain,
+        columns=nothing,
+        answer=space.residual - hypothesis.residual,
+    )
+
+
+def _weigh_curve(space: Whitened, hypothesis: Hypothesis, curve: Curve) -> Evidence:
+    release = release_of(space, hypothesis.own)
+    grid, weights = graded(curve.bounds)
+    left = (space.residual - curve.at(grid)).T
+    squares = np.einsum("nk,nk->k", left, left)
+    if release.directions.shape[1]:
+        projected = release.directions.T @ left
+        squares = squares + np.einsum("ik,ij,jk->k", projected, release.weights, projected)
+    fit = -0.5 * (squares - space.chi_square) - 0.5 * release.log_determinant
+    prior = mixture_density(grid, curve.half)
+    prior = prior - logsumexp(prior + np.log(weights))
+    log_bayes = float(logsumexp(fit + prior + np.log(weights)))
+    best = _refined(space, release, curve, float(grid[int(np.argmin(squares))]))
+    slope = curve.slope(best)
+    answer = curve.at(np.array([best]))[0]
+    after = space.residual - answer
+    stiffness = float(release.product(slope, slope))
+    before = float(release.product(space.residual, space.residual))
+    return Evidence(
+        hypothesis=hypothesis,
+        log_bayes=log_bayes,
+        coordinates=(best,),
+        deviations=(stiffness**-0.5 if stiffness > 0.0 else float("inf"),),
+        gain=before - float(release.product(after, after)),
+        columns=slope[:, None],
+        answer=answer,
+    )
+
+
+def _refined(space: Whitened, release: Release, curve: Curve, start: float) -> float:
+    """Best size by Gauss-Newton steps on the curve, kept within its bounds."""
+    size = start
+    for _ in range(20):
+        slope = curve.slope(size)
+        left = space.residual - curve.at(np.array([size]))[0]
+        stiffness = float(release.product(slope, slope))
+        if stiffness <= 0.0:
+            break
+        after = float(np.clip(size + float(release.product(slope, left)) / stiffness, *curve.bounds))
+        if abs(after - size) <= 1e-6 * curve.half:
+            return after
+        size = after
+    return size
+
+
+def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> Evidence:
+    release = release_of(space, hypothesis.own)
+    gram = np.atleast_2d(release.product(columns, columns))
+    load = np.atleast_1d(release.product(columns, space.residual))
+    spreads = np.outer(np.array(SPREADS) * hypothesis.half, np.ones(len(load)))
+    shift = 0.5 * (space.chi_square - float(release.product(space.residual, space.residual)))
+    log_bayes = _mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
+    inverse = np.linalg.pinv(gram, hermitian=True)
+    best = np.clip(inverse @ load, -hypothesis.half, hypothesis.half)
+    return Evidence(
+        hypothesis=hypothesis,
+        log_bayes=log_bayes,
+        coordinates=tuple(float(value) for value in best),
+        deviations=tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0))),
+        gain=float(2.0 * best @ load - best @ gram @ best),
+        columns=columns,
+        answer=columns @ best,
+    )
+
+
+def _mixed(gram: Array, load: Array, spreads: Array) -> float:
+    """Mean over (m, k) spreads S of ln B of columns with normal sizes,
+
+    ln B = .5 b'(G + S^-2)^-1 b - .5 ln|I + S G S|.
+    """
+    system = np.eye(len(load)) + spreads[:, :, None] * gram * spreads[:, None, :]
+    half_load = spreads * load
+    _, logarithm = np.linalg.slogdet(system)
+    solved = np.linalg.solve(system, half_load[:, :, None])[:, :, 0]
+    logs = 0.5 * np.einsum("mk,mk->m", half_load, solved) - 0.5 * logarithm
+    return float(logsumexp(logs) - np.log(len(logs)))
+
+
+def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
+    """Two explanations at once, in closed form around the best fit of the first.
+
+    The first is taken at its own best size with the slope there; of the second the slope at its best size. The
+    spreads of both are integrated over the same mixtures as alone.
+    """
+    name = f"{first.hypothesis.name} + {second.hypothesis.name}"
+    own = (*first.hypothesis.own, *second.hypothesis.own)
+    release = release_of(space, own)
+    base = first.answer - first.columns @ np.array(first.coordinates)
+    columns = np.hstack([first.columns, second.columns])
+    left = space.residual - base
+    gram = release.product(columns, columns)
+    load = release.product(columns, left)
+    sizes = [first.columns.shape[1], second.columns.shape[1]]
+    halves = [_half(first.hypothesis), _half(second.hypothesis)]
+    mixed = [np.repeat([one * halves[0], other * halves[1]], sizes) for one in SPREADS for other in SPREADS]
+    shift = 0.5 * (space.chi_square - float(release.product(left, left)))
+    log_bayes = _mixed(gram, load, np.array(mixed)) + shift - 0.5 * release.log_determinant
+    inverse = np.linalg.pinv(gram, hermitian=True)
+    best = inverse @ load
+    before = float(release.product(space.residual, space.residual))
+    after = left - columns @ best
+    hypothesis = Hypothesis(
+        name=name,
+        family="pair",
+        parts=(*first.hypothesis.parts, *second.hypothesis.parts),
+        columns=columns,
+        own=own,
+    )
+    return Evidence(
+        hypothesis=hypothesis,
+        log_bayes=log_bayes,
+        coordinates=tuple(float(value) for value in best),
+        deviations=tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0))),
+        gain=before - float(release.product(after, after)),
+        columns=columns,
+        answer=base + columns @ best,
+    )
+
+
+def _half(hypothesis: Hypothesis) -> float:
+    return hypothesis.half if hypothesis.curve is None else hypothesis.curve.half

@@ -1,0 +1,124 @@
+"""One look at a residual: every explanation weighed, the best of them joined in pairs, a verdict."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigdesign.diagnosis.covariance import Whitened
+from rigdesign.diagnosis.decision import PRIOR, Decision, Posterior, Thresholds, decide, posterior
+from rigdesign.diagnosis.detectability import Detectability, detectabilities
+from rigdesign.diagnosis.evidence import Evidence, Hypothesis, weigh, weigh_pair
+
+LEADERS = 12
+"""Explanations that are joined with every other one."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Explanations:
+    """All hypotheses of a comparison, by family."""
+
+    physical: Sequence[Hypothesis]
+    sensor: Sequence[Hypothesis]
+    anonymous: Sequence[Hypothesis]
+    data: Sequence[Hypothesis]
+
+    @property
+    def members(self) -> dict[str, int]:
+        """Number of explanations by family; a pair joins something of the catalogue with anything."""
+        known = len(self.physical) + len(self.sensor)
+        return {
+            "physical": len(self.physical),
+            "sensor": len(self.sensor),
+            "anonymous": len(self.anonymous),
+            "input": len(self.data),
+            "pair": known * (known - 1) // 2 + known * len(self.anonymous),
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Examination:
+    """What was found.
+
+    evidence : of every hypothesis, best first; detectability : by effect, known before any name
+    """
+
+    evidence: tuple[Evidence, ...]
+    weights: Posterior
+    decision: Decision
+    detectability: tuple[Detectability, ...]
+    chi_square: float
+    count: int
+
+
+def examine(
+    space: Whitened,
+    explanations: Explanations,
+    thresholds: Thresholds,
+    priors: Mapping[str, float] = PRIOR,
+    *,
+    table: Sequence[Detectability] | None = None,
+) -> Examination:
+    """Weigh everything and decide.
+
+    table : detectability where it is known already; it depends on covariance and explanations alone
+    """
+    known = (*explanations.physical, *explanations.sensor)
+    if table is None:
+        table = detectabilities(space, known, explanations.anonymous)
+    singles = [weigh(space, one) for one in (*known, *explanations.anonymous)]
+    data = [weigh(space, one) for one in explanations.data]
+    pairs = _pairs(space, singles)
+    evidence = sorted((*singles, *data, *pairs), key=lambda one: -one.log_bayes)
+    weights = posterior(evidence, explanations.members, priors)
+    decision = decide(
+        evidence,
+        weights,
+        chi_square=space.chi_square,
+        count=len(space.residual),
+        effects=frozenset(part for one in known for part in one.parts),
+        detectable={row.effect: row.detectable <= row.bound for row in table},
+        thresholds=thresholds,
+    )
+    return Examination(
+        evidence=tuple(evidence),
+        weights=weights,
+        decision=decision,
+        detectability=tuple(table),
+        chi_square=space.chi_square,
+        count=len(space.residual),
+    )
+
+
+def _pairs(space: Whitened, singles: Sequence[Evidence]) -> list[Evidence]:
+    """The leading effects of the catalogue joined with everything else; anonymous partners included."""
+    named = [one for one in singles if one.hypothesis.family != "anonymous"]
+    leaders = sorted(named, key=lambda one: -one.log_bayes)[:LEADERS]
+    done: set[frozenset[str]] = set()
+    pairs = []
+    for first in leaders:
+        partners = _promising(space, first, singles)
+        for second in partners:
+            key = frozenset((first.hypothesis.name, second.hypothesis.name))
+            if len(key) == 2 and key not in done:
+                done.add(key)
+                pairs.append(weigh_pair(space, first, second))
+    return pairs
+
+
+PARTNERS = 24
+"""Partners of a leader that explain most of what it leaves."""
+
+
+def _promising(space: Whitened, first: Evidence, singles: Sequence[Evidence]) -> list[Evidence]:
+    """Those whose columns, less what the leader spans, hold most of what it leaves."""
+    others = [one for one in singles if one.hypothesis.name != first.hypothesis.name and one.columns.shape[1]]
+    left = space.residual - first.answer
+    columns = np.hstack([one.columns for one in others])
+    if first.columns.shape[1]:
+        own, _ = np.linalg.qr(first.columns)
+        columns = columns - own @ (own.T @ columns)
+    explained = (columns.T @ left) ** 2 / np.maximum(np.einsum("nk,nk->k", columns, columns), 1e-300)
+    ends = np.cumsum([one.columns.shape[1] for one in others])
+    shares = np.add.reduceat(explained, np.concatenate([[0], ends[:-1]]))
+    return [others[place] for place in np.argsort(-shares, kind="stable")[:PARTNERS]]

@@ -1,0 +1,45 @@
+"""Single readings that fit nothing around them: rejected one at a time and listed, never silently."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from rigdesign.diagnosis.columns import Array
+
+LIMIT = 5.5
+"""Leave-one-out deviation [standard deviations] above which a reading is left out."""
+
+
+@dataclass(frozen=True)
+class Outlier:
+    """Place of a reading in the table and its leave-one-out deviation [standard deviations]."""
+
+    place: int
+    deviation: float
+
+
+def reject(
+    matrix: Array, residual: Array, *, limit: float = LIMIT, most: float = 0.05
+) -> tuple[Outlier, ...]:
+    """Readings that the others contradict.
+
+    matrix : (n, n) covariance; residual : (n,). Of the precision matrix P, the deviation of one reading from what
+    the others say is (P r)_i / sqrt(P_ii) (leave-one-out prediction of a Gaussian, Rasmussen and Williams, 2006,
+    eq. 5.12).
+
+    most : share of the readings that may go; if more would have to, nothing is an outlier and none is rejected
+    """
+    kept = np.arange(len(residual))
+    found: list[Outlier] = []
+    while True:
+        factor = cho_factor(matrix[np.ix_(kept, kept)], lower=True)
+        precision = cho_solve(factor, np.eye(len(kept)))
+        deviations = precision @ residual[kept] / np.sqrt(np.diagonal(precision))
+        worst = int(np.argmax(np.abs(deviations)))
+        if abs(deviations[worst]) <= limit:
+            return tuple(found)
+        if len(found) + 1 > max(1.0, most * len(residual)):
+            return ()
+        found.append(Outlier(int(kept[worst]), float(deviations[worst])))
+        kept = np.delete(kept, worst)

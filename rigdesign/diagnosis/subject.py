@@ -1,0 +1,228 @@
+"""What is to be explained: readings less prediction, and the covariance of what a healthy rig leaves.
+
+With a healthy baseline of the same rig the same algebra asks what is left given that set: what both share (the model's
+errors, the sensors) is known from the first, and what remains is noise and a share of the change itself, by which
+a wrong model answers wrongly to a right cause.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigdesign.diagnosis.amplitudes import Amplitudes
+from rigdesign.diagnosis.columns import Array, Column
+from rigdesign.diagnosis.covariance import Covariance, Whitened
+from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.healthy import healthy_columns, own_spread
+from rigdesign.diagnosis.library import Library
+from rigdesign.diagnosis.sensors import SensorError, Stated, input_errors, sensor_errors, setting_scatter
+from rigdesign.measurement import Data
+from rigdesign.prediction.model import Channel, Feature
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """One set held against the library of its rig, on the numbers that are usable.
+
+    values, noise : (n,)
+    """
+
+    features: tuple[Feature, ...]
+    values: Array
+    noise: Array
+    library: Library
+    channels: Mapping[str, Channel]
+    effects: tuple[Effect, ...]
+    errors: tuple[SensorError, ...]
+    scatter: Array
+    """(n, n) covariance from the random error of the settings read."""
+    mesh_orders: frozenset[float]
+
+    @property
+    def residual(self) -> Array:
+        """Readings less prediction."""
+        return np.asarray(self.values - self.library.base)
+
+    def rows(self, keep: Sequence[int]) -> "Comparison":
+        """The comparison cut to some of its numbers, in their order."""
+        places = np.array(keep, dtype=np.intp)
+        features = tuple(self.features[place] for place in places)
+        return Comparison(
+            features=features,
+            values=self.values[places],
+            noise=self.noise[places],
+            library=self.library.rows(features),
+            channels=self.channels,
+            effects=self.effects,
+            errors=tuple(
+                SensorError(
+                    name=error.name, title=error.title, kind=error.kind,
+                    values=error.values[places], unit=error.unit, spread=error.spread,
+                )
+                for error in self.errors
+            ),
+            scatter=self.scatter[np.ix_(places, places)],
+            mesh_orders=self.mesh_orders,
+        )  # fmt: skip
+
+    def base_noise(self, amplitudes: Amplitudes) -> Array:
+        """(n, n) covariance of noise, settings read and what each number is off by itself."""
+        own = own_spread(self.library, self.channels, self.mesh_orders, amplitudes)
+        return np.asarray(
+            np.diag(self.noise**2 + own**2 + self.library.error**2 * self._thermal) + self.scatter
+        )
+
+    def columns(self) -> tuple[Column, ...]:
+        """Columns of the model, of sensors and of settings."""
+        model = healthy_columns(self.library, self.effects, self.channels, self.mesh_orders)
+        return (*model, *(error.column() for error in self.errors))
+
+    def covariance(self, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None) -> Covariance:
+        """Of a healthy rig; ``widening``: kind of effect -> spread [coordinate] that calibration found missing."""
+        columns = (*self.columns(), *self._widened(widening or {}))
+        return Covariance(base=self.base_noise(amplitudes), columns=columns, amplitudes=amplitudes.as_dict())
+
+    @property
+    def _thermal(self) -> Array:
+        quantities = (self.channels[feature.channel].quantity for feature in self.features)
+        return np.array(["temperature" in quantity for quantity in quantities], dtype=np.float64)
+
+    def _widened(self, widening: Mapping[str, float]) -> list[Column]:
+        return [
+            Column(
+                name=f"{effect.name} widened/{number}",
+                kind="widening",
+                values=values,
+                spread=widening[effect.kind],
+            )
+            for effect in self.effects
+            if effect.kind in widening and effect.name in self.library.responses
+            for number, values in enumerate(self.library.responses[effect.name].slope().T)
+        ]
+
+
+def compare(
+    data: Data,
+    library: Library,
+    effects: Sequence[Effect],
+    stated: Mapping[tuple[str, str], Stated],
+    mesh_orders: frozenset[float],
+) -> Comparison:
+    """Hold the usable numbers of a set against its library.
+
+    stated : systematic uncertainties of the settings, by (kind, place)
+    """
+    usable = [
+        row
+        for row, feature in enumerate(data.features)
+        if data.usable[row] and feature in set(library.features)
+    ]
+    features = tuple(data.features[row] for row in usable)
+    cut = library.rows(features)
+    channels = {name: entry.channel for name, entry in data.channels.items()}
+    own = {
+        name: Stated(offset=entry.offset_sd, scale=entry.scale_sd) for name, entry in data.channels.items()
+    }
+    noise = {setting.name: noise for setting, noise in zip(data.settings, data.setting_noise, strict=True)}
+    return Comparison(
+        features=features,
+        values=data.values[usable],
+        noise=data.noise[usable],
+        library=cut,
+        channels=channels,
+        effects=tuple(effects),
+        errors=(*sensor_errors(cut, channels, own), *input_errors(cut, data.settings, stated)),
+        scatter=setting_scatter(cut, noise),
+        mesh_orders=mesh_orders,
+    )
+
+
+def plain(
+    subject: Comparison, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None
+) -> Whitened:
+    """The residual of one set against the model."""
+    return Whitened.of(subject.covariance(amplitudes, widening), subject.residual)
+
+
+RESPONSE_ERROR = 0.2
+"""Share of an observed change by which the model's answer to its cause may be off, coherent over a series."""
+
+DRIFT = 0.02
+"""Share of the model's and sensors' errors that changes between two sets of one assembly."""
+
+
+def differenced(
+    subject: Comparison,
+    baseline: Comparison,
+    amplitudes: Amplitudes,
+    *,
+    response_error: float = RESPONSE_ERROR,
+    drift: float = DRIFT,
+) -> Whitened:
+    """The residual of a set given a healthy set of the same rig.
+
+    What both share is the covariance of the columns at either set's numbers; noise, the settings' scatter and a
+    drift of the shared part are each set's own.
+    """
+    here, there = subject.covariance(amplitudes), baseline.covariance(amplitudes)
+    after, before = here.deviations, _matched(there, here)
+    own = own_spread(subject.library, subject.channels, subject.mesh_orders, amplitudes)
+    other = own_spread(baseline.library, baseline.channels, baseline.mesh_orders, amplitudes)
+    twins = _same_numbers(subject, baseline)
+    cross = after @ before.T + own[:, None] * twins * other[None, :]
+    known = before @ before.T + np.diag(other**2)
+    noise_before = np.diag(baseline.noise**2) + baseline.scatter
+    expected, covariance = _given(
+        known, cross, after @ after.T + np.diag(own**2), noise_before, baseline.residual
+    )
+    change = subject.residual - expected
+    alone = np.diag(subject.noise**2) + subject.scatter + drift**2 * (after @ after.T + np.diag(own**2))
+    answer = _answer_error(subject, change, response_error)
+    total = Covariance(base=covariance + alone + answer, columns=(), amplitudes={})
+    return Whitened.of(total, change)
+
+
+def _matched(there: Covariance, here: Covariance) -> Array:
+    """Deviations of the other set in the order of the columns of this one; zero where it has none."""
+    place = {column.name: number for number, column in enumerate(there.columns)}
+    deviations = there.deviations
+    rows = [
+        deviations[:, place[column.name]] if column.name in place else np.zeros(len(deviations))
+        for column in here.columns
+    ]
+    return np.stack(rows, axis=1)
+
+
+def _same_numbers(subject: Comparison, baseline: Comparison) -> Array:
+    """(n, m) one where two numbers are the same channel, order and operating point (by its place in the plan)."""
+    first = {setting.name: i for i, setting in enumerate(subject.library.settings)}
+    second = {setting.name: i for i, setting in enumerate(baseline.library.settings)}
+    keys = [(f.channel, first.get(f.setting, -1), f.order, f.part) for f in subject.features]
+    others = {
+        (f.channel, second.get(f.setting, -1), f.order, f.part): j for j, f in enumerate(baseline.features)
+    }
+    found = np.zeros((len(keys), len(baseline.features)))
+    for row, key in enumerate(keys):
+        if key in others:
+            found[row, others[key]] = 1.0
+    return found
+
+
+def _given(known: Array, cross: Array, own: Array, noise: Array, residual: Array) -> tuple[Array, Array]:
+    """Mean (n,) and covariance (n, n) of the shared part given another set's residual (m,)."""
+    solved = np.linalg.solve(known + noise, np.column_stack([residual, cross.T]))
+    return np.asarray(cross @ solved[:, 0]), np.asarray(own - cross @ solved[:, 1:])
+
+
+def _answer_error(subject: Comparison, change: Array, share: float) -> Array:
+    """(n, n): every series may answer by a share more or less than the model says, and each number by itself."""
+    series: dict[tuple[str, float], list[int]] = {}
+    for row, feature in enumerate(subject.features):
+        series.setdefault((feature.channel, feature.order), []).append(row)
+    total = np.diag((0.5 * share * change) ** 2)
+    for rows in series.values():
+        part = np.zeros(len(change))
+        part[rows] = share * change[rows]
+        total += np.outer(part, part)
+    return total

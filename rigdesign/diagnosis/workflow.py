@@ -1,0 +1,277 @@
+"""The workflow of a diagnosis on numbers in memory: from readings and library to a verdict with its proof.
+
+readings -> single outliers out -> points held out -> evidence -> verdict, again for what is left
+         -> joint fit with intervals -> gap on the held-out points -> alternatives
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from rigdesign.diagnosis.anonymous import anonymous
+from rigdesign.diagnosis.columns import Array, Column
+from rigdesign.diagnosis.covariance import Covariance, Whitened
+from rigdesign.diagnosis.decision import Decision
+from rigdesign.diagnosis.defaults import DEFAULT, Calibration
+from rigdesign.diagnosis.detectability import Detectability, aliases
+from rigdesign.diagnosis.evidence import Evidence
+from rigdesign.diagnosis.examine import Examination, Explanations, examine
+from rigdesign.diagnosis.heldout import Gap, gap, held_out
+from rigdesign.diagnosis.hypotheses import physical, sensor, without_a_name, wrong_data
+from rigdesign.diagnosis.intervals import JointFit, fit_together
+from rigdesign.diagnosis.outliers import reject
+from rigdesign.diagnosis.subject import Comparison, differenced, plain
+
+MOST_EFFECTS = 4
+"""Effects that are looked for one after the other."""
+
+LEAST_RUNNING_POINTS = 3
+"""Operating points below which nothing is named."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """A set to be explained, with a healthy one of the same rig if there is one.
+
+    teeth_a_turn : of the gear that counts; seed : fixes the held-out points, the hash of the measurement
+    repeated : the noise is known from repeats
+    """
+
+    subject: Comparison
+    baseline: Comparison | None
+    teeth_a_turn: int
+    seed: str
+    repeated: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Alternative:
+    """An explanation that was weighed, with its posterior mass."""
+
+    name: str
+    parts: tuple[str, ...]
+    posterior: float
+    gain: float
+    coordinates: tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Diagnosis:
+    """What the data say.
+
+    named : names, or members of an alias group; fit : of named effects; rejected : outliers with their feature
+    """
+
+    decision: Decision
+    strength: Literal["proven", "indicative"]
+    named: tuple[str, ...]
+    found: tuple[Evidence, ...]
+    fit: JointFit | None
+    gap: Gap | None
+    alternatives: tuple[Alternative, ...]
+    detectability: tuple[Detectability, ...]
+    aliases: tuple[tuple[str, str, float], ...]
+    rejected: tuple[tuple[int, float], ...]
+    held_out_points: tuple[str, ...]
+    examinations: tuple[Examination, ...] = field(repr=False)
+    covariance: Covariance = field(repr=False)
+    """Of all numbers that were kept, held-out ones included."""
+    answer: Array = field(repr=False)
+    """(n,) what the named effects add to the prediction, in the units of the features."""
+    kept: tuple[int, ...] = field(repr=False)
+    """Rows of the subject that were kept."""
+    residual: Array = field(repr=False)
+    """(n,) what was to be explained at the kept rows: against the model, or given the baseline."""
+
+
+def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
+    """Find what the model lacks, or say that these data cannot tell."""
+    everything = _space(problem, problem.subject, calibration)
+    outliers = reject(everything.covariance.matrix, everything.raw)
+    gone = {outlier.place for outlier in outliers}
+    kept = [row for row in range(len(problem.subject.features)) if row not in gone]
+    subject = problem.subject.rows(kept)
+    whole = _space(problem, subject, calibration) if gone else everything
+    points = held_out([setting.name for setting in subject.library.settings], problem.seed)
+    seen = subject.rows([row for row, one in enumerate(subject.features) if one.setting not in points])
+    space = _space(problem, seen, calibration)
+    explanations = _explanations(problem, seen, space)
+    examinations, found = _search(problem, seen, space, explanations, calibration)
+    decision = _refused(subject) or examinations[0].decision
+    if decision.verdict != "named":
+        found = ()
+    fit = _fitted(problem, space, found, calibration) if found else None
+    answer = _answer(problem, subject, found, fit) if fit is not None else np.zeros(len(kept))
+    return Diagnosis(
+        decision=decision,
+        strength="proven" if problem.repeated and points else "indicative",
+        named=tuple(dict.fromkeys(part for one in found for part in one.hypothesis.parts)) or decision.named,
+        found=found,
+        fit=fit,
+        gap=_proof(whole, subject, points, answer) if points else None,
+        alternatives=_alternatives(examinations[0]),
+        detectability=examinations[0].detectability,
+        aliases=tuple(aliases(space, explanations.physical)),
+        rejected=tuple((outlier.place, outlier.deviation) for outlier in outliers),
+        held_out_points=points,
+        examinations=tuple(examinations),
+        covariance=whole.covariance,
+        answer=answer,
+        kept=tuple(kept),
+        residual=whole.raw,
+    )
+
+
+def _space(problem: Problem, subject: Comparison, calibration: Calibration) -> Whitened:
+    if problem.baseline is None:
+        return plain(subject, calibration.amplitudes, calibration.widening)
+    return differenced(
+        subject,
+        problem.baseline,
+        calibration.amplitudes,
+        response_error=calibration.response_error,
+        drift=calibration.drift,
+    )
+
+
+def _explanations(problem: Problem, subject: Comparison, space: Whitened) -> Explanations:
+    covariance = space.covariance
+    expected = subject.values - space.raw
+    return Explanations(
+        physical=physical(
+            covariance, subject.features, subject.effects, subject.library.responses, problem.teeth_a_turn
+        ),
+        sensor=sensor(covariance, subject.errors),
+        anonymous=without_a_name(covariance, anonymous(subject.library, subject.channels)),
+        data=wrong_data(covariance, subject.features, subject.channels, subject.values, expected),
+    )
+
+
+def _search(
+    problem: Problem,
+    subject: Comparison,
+    space: Whitened,
+    explanations: Explanations,
+    calibration: Calibration,
+) -> tuple[list[Examination], tuple[Evidence, ...]]:
+    """Examine, take what is named into the model, examine what is left."""
+    examinations = [examine(space, explanations, calibration.thresholds)]
+    found: list[Evidence] = []
+    while examinations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
+        new = _best_of(examinations[-1])
+        if not new:
+            break
+        found += new
+        after = _with_named(space, found)
+        claimed = {part for one in found for part in one.hypothesis.parts}
+        rest = _explanations(problem, subject, after)
+        left = Explanations(
+            physical=[one for one in rest.physical if claimed.isdisjoint(one.parts)],
+            sensor=[one for one in rest.sensor if claimed.isdisjoint(one.parts)],
+            anonymous=rest.anonymous,
+            data=[],
+        )
+        examinations.append(examine(after, left, calibration.thresholds))
+    return examinations, tuple(found)
+
+
+def _best_of(examination: Examination) -> list[Evidence]:
+    """For every named effect its best explanation by itself."""
+    found = []
+    for name in examination.decision.named:
+        own = [one for one in examination.evidence if one.hypothesis.parts == (name,)]
+        if own:
+            found.append(own[0])
+    return found
+
+
+def _with_named(space: Whitened, found: Sequence[Evidence]) -> Whitened:
+    """The space with the named effects in the model, their sizes left free."""
+    lower = space.covariance.lower
+    columns = [
+        Column(
+            name=f"named {one.hypothesis.name}/{number}",
+            kind="named",
+            values=lower @ slope,
+            spread=_half(one),
+        )
+        for one in found
+        for number, slope in enumerate(one.columns.T)
+    ]
+    residual = space.raw - lower @ sum((one.answer for one in found), np.zeros(len(space.residual)))
+    return Whitened.of(space.covariance.with_extra(columns), residual)
+
+
+def _half(one: Evidence) -> float:
+    curve = one.hypothesis.curve
+    return one.hypothesis.half if curve is None else curve.half
+
+
+def _refused(subject: Comparison) -> Decision | None:
+    """Too little to name anything from, whatever the numbers say."""
+    points = {feature.setting for feature in subject.features if feature.setting}
+    if len(points) >= LEAST_RUNNING_POINTS:
+        return None
+    return Decision(
+        verdict="data_insufficient",
+        named=(),
+        reason=f"{len(points)} operating points, at least {LEAST_RUNNING_POINTS} are needed to tell effects apart",
+    )
+
+
+def _fitted(
+    problem: Problem, space: Whitened, found: Sequence[Evidence], calibration: Calibration
+) -> JointFit:
+    return fit_together(space, found, calibration.signature_error, [_bounds(one) for one in found])
+
+
+def _bounds(one: Evidence) -> list[tuple[float, float]]:
+    curve = one.hypothesis.curve
+    if curve is not None:
+        return [curve.bounds]
+    return [(-one.hypothesis.half, one.hypothesis.half)] * one.columns.shape[1]
+
+
+def _answer(problem: Problem, subject: Comparison, found: Sequence[Evidence], fit: JointFit) -> Array:
+    """(n,) what the named effects at their fitted sizes add at all kept numbers."""
+    identity = Covariance(base=np.eye(len(subject.features)), columns=(), amplitudes={})
+    space = Whitened(covariance=identity, residual=subject.residual)
+    everything = _explanations(problem, subject, space)
+    by_name = {one.name: one for one in (*everything.physical, *everything.sensor)}
+    answer = np.zeros(len(subject.features))
+    for one, size in zip(found, fit.coordinates, strict=True):
+        hypothesis = by_name[one.hypothesis.name]
+        if hypothesis.curve is not None:
+            answer += hypothesis.curve.at(np.array(size))[0]
+        elif hypothesis.columns is not None:
+            answer += hypothesis.columns @ np.array(size)
+    return answer
+
+
+def _proof(whole: Whitened, subject: Comparison, points: tuple[str, ...], answer: Array) -> Gap:
+    rows = np.array([row for row, one in enumerate(subject.features) if one.setting in points])
+    matrix = whole.covariance.matrix[np.ix_(rows, rows)]
+    return gap(
+        Covariance(base=matrix, columns=(), amplitudes={}),
+        whole.raw[rows],
+        answer[rows],
+        subject.noise[rows],
+        points,
+    )
+
+
+def _alternatives(examination: Examination, count: int = 12) -> tuple[Alternative, ...]:
+    masses: Mapping[str, float] = examination.weights.masses
+    ordered = sorted(examination.evidence, key=lambda one: -masses[one.hypothesis.name])
+    return tuple(
+        Alternative(
+            name=one.hypothesis.name,
+            parts=one.hypothesis.parts,
+            posterior=masses[one.hypothesis.name],
+            gain=one.gain,
+            coordinates=one.coordinates,
+        )
+        for one in ordered[:count]
+    )

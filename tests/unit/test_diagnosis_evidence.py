@@ -1,0 +1,143 @@
+"""Evidence and verdict on linear toys whose answer is known in closed form."""
+
+import numpy as np
+import pytest
+
+from rigdesign.diagnosis.columns import Column
+from rigdesign.diagnosis.covariance import Covariance, Release, Whitened
+from rigdesign.diagnosis.decision import Thresholds
+from rigdesign.diagnosis.evidence import Curve, Hypothesis, graded, mixture_density, weigh
+from rigdesign.diagnosis.examine import Explanations, examine
+
+N = 120
+
+
+def toy(seed, *, own=0.0):
+    """Noise one, six smooth nuisances; eight effects, the first of which spreads by itself."""
+    rng = np.random.default_rng(seed)
+    effects = rng.normal(size=(N, 8))
+    columns = [
+        Column(name=f"nuisance {i}", kind="link", values=rng.normal(size=N), spread=2.0) for i in range(6)
+    ]
+    if own:
+        columns.append(
+            Column(name="effect 0", kind="constant", values=effects[:, 0], spread=own, effect="effect 0")
+        )
+    return rng, effects, Covariance.of_noise(np.ones(N), columns, {})
+
+
+def explanations(covariance, effects, rng, *, half=5.0):
+    physical = [
+        Hypothesis(
+            name=f"effect {i}",
+            family="physical",
+            parts=(f"effect {i}",),
+            columns=covariance.whiten(effects[:, [i]]),
+            half=half,
+            own=(f"effect {i}",),
+        )
+        for i in range(effects.shape[1])
+    ]
+    unknown = [
+        Hypothesis(
+            name=f"unknown: {i}",
+            family="anonymous",
+            parts=(f"unknown: {i}",),
+            columns=covariance.whiten(rng.normal(size=(N, 1))),
+            half=1.0,
+        )
+        for i in range(30)
+    ]
+    return Explanations(physical=physical, sensor=[], anonymous=unknown, data=[])
+
+
+def draw(rng, covariance):
+    return np.linalg.cholesky(covariance.matrix) @ rng.normal(size=N)
+
+
+def test_release_takes_a_column_out_of_the_covariance():
+    rng, _, covariance = toy(1, own=0.7)
+    plain = Covariance(base=covariance.base, columns=covariance.columns[:-1], amplitudes={})
+    residual = rng.normal(size=N)
+    space = Whitened.of(covariance, residual)
+    release = space.without("effect 0")
+    bare = Whitened.of(plain, residual)
+    assert release.product(space.residual, space.residual) == pytest.approx(bare.chi_square, rel=1e-10)
+    assert release.log_determinant == pytest.approx(
+        plain.log_determinant - covariance.log_determinant, rel=1e-10
+    )
+    assert Release.of(np.zeros((N, 0))).product(residual, residual) == pytest.approx(residual @ residual)
+
+
+def test_quadrature_of_a_straight_curve_equals_the_closed_form():
+    rng, effects, covariance = toy(2)
+    space = Whitened.of(covariance, draw(rng, covariance) + 0.4 * effects[:, 2])
+    white = covariance.whiten(effects[:, 2])
+    half = 2.0
+    closed = Hypothesis(name="e", family="physical", parts=("e",), columns=white[:, None], half=half)
+    coordinates = np.linspace(-4.0 * half, 4.0 * half, 9)
+    curve = Curve(
+        coordinates=coordinates, answers=coordinates[:, None] * white, bounds=(-4.0 * half, 4.0 * half)
+    )
+    grid, weights = graded((-4.0 * half, 4.0 * half))
+    assert np.sum(weights * np.exp(mixture_density(grid, half))) == pytest.approx(1.0, abs=2e-3)
+    # the same prior: a curve's spreads follow its bounds, those here are four times the half
+    straight = Hypothesis(name="e", family="physical", parts=("e",), columns=white[:, None], half=4.0 * half)
+    one = weigh(space, straight)
+    other = weigh(space, Hypothesis(name="e", family="physical", parts=("e",), curve=curve))
+    assert other.coordinates[0] == pytest.approx(one.coordinates[0], rel=1e-6)
+    assert other.log_bayes == pytest.approx(one.log_bayes, abs=0.1)
+    assert weigh(space, closed).log_bayes > other.log_bayes - 2.0
+
+
+def test_nothing_is_named_in_healthy_sets():
+    verdicts = []
+    for seed in range(60):
+        rng, effects, covariance = toy(seed, own=0.3)
+        found = explanations(covariance, effects, rng)
+        space = Whitened.of(covariance, draw(rng, covariance))
+        verdicts.append(examine(space, found, Thresholds()).decision.verdict)
+    assert verdicts.count("within_noise") + verdicts.count("too_small") == 60
+
+
+def test_a_clear_effect_is_named_with_its_size():
+    right = 0
+    for seed in range(30):
+        rng, effects, covariance = toy(seed)
+        found = explanations(covariance, effects, rng)
+        space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
+        result = examine(space, found, Thresholds())
+        right += result.decision.verdict == "named" and result.decision.named == ("effect 3",)
+        best = next(one for one in result.evidence if one.hypothesis.name == "effect 3")
+        assert best.coordinates[0] == pytest.approx(1.2, abs=5.0 * best.deviations[0])
+    assert right == 30
+
+
+def test_two_effects_are_both_named():
+    right = 0
+    for seed in range(20):
+        rng, effects, covariance = toy(seed)
+        found = explanations(covariance, effects, rng)
+        residual = draw(rng, covariance) + 1.2 * effects[:, 3] - 1.5 * effects[:, 6]
+        result = examine(Whitened.of(covariance, residual), found, Thresholds())
+        right += set(result.decision.named) == {"effect 3", "effect 6"}
+    assert right == 20
+
+
+def test_twins_end_as_an_alias_group():
+    rng, effects, covariance = toy(5)
+    effects[:, 4] = effects[:, 3] + 1e-4 * rng.normal(size=N)
+    found = explanations(covariance, effects, rng)
+    space = Whitened.of(covariance, draw(rng, covariance) + 1.5 * effects[:, 3])
+    decision = examine(space, found, Thresholds()).decision
+    assert decision.verdict == "alias_group"
+    assert set(decision.named) == {"effect 3", "effect 4"}
+
+
+def test_what_is_not_in_the_catalogue_stays_unknown():
+    for seed in range(20):
+        rng, effects, covariance = toy(seed)
+        found = explanations(covariance, effects, rng)
+        stranger = 1.5 * rng.normal(size=N)
+        space = Whitened.of(covariance, draw(rng, covariance) + stranger)
+        assert examine(space, found, Thresholds()).decision.verdict == "unknown_located"
