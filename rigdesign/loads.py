@@ -92,7 +92,7 @@ def _mesh_model(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, 
     law = mesh_law(
         pair,
         stiffness=shape,
-        micro=(microgeometry(gears[0], pair, 0), microgeometry(gears[1], pair, 1)),
+        micro=(microgeometry(gears[0], pair, 0), microgeometry(gears[1], pair, 1, entry.tooth_offset)),
         n_slices=_slices(rig, pair),
         damping=entry.damping,
         friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
@@ -185,8 +185,12 @@ def friction_law(rig: Rig, oil: Oil) -> FrictionLaw:
     return Schlenk(lubricant_factor=factor)
 
 
-def microgeometry(gear: Gear, pair: GearPair, index: int) -> Microgeometry:
-    """Modifications and deviations of one gear as the mesh law reads them."""
+def microgeometry(gear: Gear, pair: GearPair, index: int, tooth_offset: int = 0) -> Microgeometry:
+    """Modifications and deviations of one gear as the mesh law reads them.
+
+    The law counts an eccentricity from the shaft; here it belongs to the teeth, and goes with them where the gear is
+    put on its shaft ``tooth_offset`` teeth further.
+    """
     flank = gear.flank
     return Microgeometry(
         tip_relief=flank.tip_relief,
@@ -198,7 +202,7 @@ def microgeometry(gear: Gear, pair: GearPair, index: int) -> Microgeometry:
         profile_twist=0.25 * flank.twist,
         pitch_deviations=_tooth_places(gear),
         run_out=0.5 * flank.run_out,
-        run_out_phase=flank.run_out_phase,
+        run_out_phase=flank.run_out_phase - 2.0 * math.pi * tooth_offset / gear.teeth,
         profile_slopes=flank.profile_slope_scatter,
         tooth_stiffness=_tooth_stiffness(gear),
     )

@@ -10,11 +10,14 @@ from dynamics.modes import sampling_audit
 from dynamics.response_curve import CurvePoint
 from rigdesign.assemble.curves import iso_factor, resolved
 from rigdesign.checks.subject import Subject
+from rigdesign.loads import laws_of
 from rigdesign.results import Finding
 from rigdesign.rig.boundary import printed_films
 from rigdesign.rig.films import printed_law
+from rigdesign.shaft_torques import torques_left_out
 from rigdesign.temperatures import HousingField
 from rigdesign.units import show
+from rigdesign.unlike_teeth import averaged_gears
 from thermal.audit import assumed_difference, audit_conditions, radiation_too_small
 from thermal.boundary import Film, Radiation
 
@@ -30,6 +33,7 @@ def warnings_of(subject: Subject) -> list[Finding]:
         *(Finding(id="iso_6336_1", text=text) for text in _iso(subject)),
         *(Finding(id="shaft", text=t.finding) for t in subject.rig.shaft_torsions if t.finding),
         *(Finding(id="response", text=text) for text in _response(subject)),
+        *(Finding(id="unlike_teeth", text=text) for text in _unlike(subject)),
         *(Finding(id="time_run", text=text) for text in _time_run(subject)),
         *(Finding(id="loss", text=text) for text in _losses(subject)),
         *(Finding(id="oil", text=text) for text in _oils(subject)),
@@ -89,6 +93,21 @@ def _response(subject: Subject) -> Iterator[str]:
         yield (
             f"K_V over speed: {len(speeds)} speeds, {np.diff(speeds).max() * RPM:.0f} rpm apart, do not resolve "
             "narrow resonances; use standard fidelity and response_period = mesh before a verdict rests on them"
+        )
+
+
+def _unlike(subject: Subject) -> Iterator[str]:
+    """What single teeth and swinging torques add beyond the period of the periodic response."""
+    rig = subject.rig
+    if rig.drivetrain is None or not subject.points:
+        return
+    laws = laws_of(subject.points[-1].last.models)
+    missing = [f"{gear}: its teeth differ" for gear in averaged_gears(rig, laws)]
+    missing += [f"{name}: its torque swings" for name in torques_left_out(rig, laws)]
+    for what in missing:
+        yield (
+            f"{what}, which a response over response_period = {rig.case.numerics.response_period} does not show: "
+            "K_V and root stress leave it out, the time run has it; write response_period = hunting_cycle"
         )
 
 
