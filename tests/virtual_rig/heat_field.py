@@ -179,7 +179,7 @@ class FieldModel:
         if fretting:
             paid["fretting"] = fretting
         top = net.group_of["out_top"]
-        np.add.at(source, net.fi[top], self.size("lamp_on_top") * self.emissivity["out"] * net.fa[top])
+        np.add.at(source, net.fi[top], self.size("lamp_on_top") * self.films.emissivity["out"] * net.fa[top])
         bottom = net.group_of.get("field_bottom", np.array([], dtype=int))
         np.add.at(source, net.fi[bottom], self.size("floor_heating") * net.fa[bottom])
 
