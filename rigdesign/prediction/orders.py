@@ -2,15 +2,16 @@
 
 Conventions. The signal is the sum of Re(X_k exp(i k phi)) over its orders k, per turn of the gear that counts; phi is
 the mean angle of that gear, zero where its tooth 0 stands at the pitch point of its first mesh (plus the phase of the
-case). The torque in a coupling is positive where its first shaft is ahead of its second in the running direction. The
-angle of a shaft is that of the end that no coupling takes (of its start, if both or none are free), positive in its
-running direction, less its uniform rotation; its mean counts as zero.
+case). The torque in a coupling is what it transmits, positive where its first shaft is ahead of its second in the
+running direction. The angle of a shaft is that of the end that no coupling takes (of its start, if both or none are
+free), positive in its running direction, less its uniform rotation; its mean counts as zero.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from math import pi
-from typing import NamedTuple
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,34 +23,21 @@ from dynamics.deviation_response import (
     OrderLoads,
     ideal_laws,
     mean_windup,
-    motion_orders,
 )
-from dynamics.drivetrain import Joint, joints
 from dynamics.initial_state import pinion_ratios
 from dynamics.linear_system import LinearSystem
-from dynamics.mesh_force import evaluate_mesh
-from dynamics.mesh_law import MeshLaw
-from dynamics.periodic_response import PeriodicResponse, periodic_by_time
 from dynamics.response_curve import CurvePoint, periodic_response
 from dynamics.static_loop import NotConverged
+from rigdesign.errors import UsageError
 from rigdesign.loads import MeshModel, Setting, shifted_laws, signed_torque
-from rigdesign.prediction.model import Channel
+from rigdesign.prediction.exact_orders import ExactMotion, exact_motion
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
+from rigdesign.prediction.order_places import Swing, place_of
 from rigdesign.rig.model import Rig
 from rigdesign.state import OperatingPoint
 
 Array = NDArray[np.float64]
 Orders = dict[tuple[str, float], complex]
-
-LONGEST_MARCH = 20.0
-"""Simulated time after which an exact march that does not settle ends [s]."""
-
-
-class Ripple(NamedTuple):
-    """Torque Re(amplitude exp(i order phi)) on one freedom; order and phi of the gear that counts."""
-
-    freedom: int
-    order: float
-    amplitude: complex
 
 
 def shaft_orders(
@@ -60,83 +48,149 @@ def shaft_orders(
     setting: Setting,
     channels: Sequence[Channel],
     *,
-    ripples: Sequence[Ripple] = (),
     base: CurvePoint | None = None,
     exact: bool = False,
     steps: int = CYCLE_STEPS,
 ) -> Orders:
-    """Orders of the channels that read torque or angle; other channels are passed over.
-
-    Parameters
-    ----------
-    models : warm meshes with the deviations of their teeth; drags : brake torques by place of the drivetrain [N m]
-    setting : as in `rigdesign.loads.respond`
-    ripples : harmonic torques of motor or couplings on freedoms of ``rig.system``
-    base : response of the same point with all teeth alike (``ideal_response``), where it is known
-    exact : march in time over the hunting cycle, contacts opening and closing, instead of the linear response about
-        the motion with all teeth alike. It takes no ripples
-    steps : corrections of the response for what the contacts do beyond first order; 0: the linear response alone
+    """Orders of the channels that read torque or angle; other channels are passed over. See `PointOrders`.
 
     Returns (channel, order) -> complex amplitude [N m], [rad]; the mean (order 0) is real.
-
-    Raises
-    ------
-    NotConverged
-        The motion with all teeth alike, or the march, does not settle.
-    ValueError
-        An unknown coupling or shaft, an order that is negative or above what is solved, ripples with ``exact``.
     """
-    assert rig.system is not None and rig.drivetrain is not None
-    read = [channel for channel in channels if channel.quantity in ("torque", "angle")]
-    if not any(channel.orders for channel in read):
+    read = [channel for channel in channels if channel.quantity in ORDER_QUANTITIES and channel.orders]
+    if not read:
         return {}
-    parts = joints(rig.drivetrain)
-    places = {channel.name: _place(rig, parts, channel) for channel in read}
-    count = _Count.of(rig, models)
-    orders = sorted({order for channel in read for order in channel.orders})
-    if exact:
-        if ripples:
-            raise ValueError(
-                "exact = True: the march takes no ripples; leave them out or ask for the linear response"
+    found = PointOrders(rig, point, models, drags, setting, base=base, exact=exact, steps=steps)
+    found.prepare(order for channel in read for order in channel.orders)
+    return {(channel.name, order): value for channel in read for order, value in found.read(channel).items()}
+
+
+class PointOrders:
+    """All orders of one settled operating point, solved as channels ask for them."""
+
+    def __init__(
+        self,
+        rig: Rig,
+        point: OperatingPoint,
+        models: Sequence[MeshModel],
+        drags: Mapping[str, float],
+        setting: Setting,
+        *,
+        base: CurvePoint | None = None,
+        exact: bool = False,
+        steps: int = CYCLE_STEPS,
+    ) -> None:
+        """Take a point; nothing is solved yet.
+
+        Parameters
+        ----------
+        models : warm meshes with the deviations of their teeth; drags : brake torques by place of the drivetrain
+            [N m]; setting : as in `rigdesign.loads.respond`
+        base : response of the same point with all teeth alike and no torque that swings (`ideal_response`), where
+            it is known
+        exact : follow all contacts over the hunting cycle instead (seconds, not milliseconds)
+        steps : corrections for what the contacts do beyond first order; 0 is the linear response about the motion
+            with all teeth alike
+        """
+        assert rig.system is not None and rig.drivetrain is not None
+        self.rig, self.point, self.models, self.drags, self.setting = (
+            rig,
+            point,
+            tuple(models),
+            drags,
+            setting,
+        )
+        self.system: LinearSystem = rig.system
+        self.laws = shifted_laws(rig, models, setting)
+        self._base, self.exact, self.steps = base, exact, steps
+        self._loads: dict[float, OrderLoads] = {}
+
+    @cached_property
+    def count(self) -> "_Count":
+        """The gear that counts."""
+        return _Count.of(self.rig, self.models)
+
+    @cached_property
+    def ratios(self) -> Array:
+        """Speed of each freedom per speed of the first pinion (n,)."""
+        return pinion_ratios(self.system, self.laws)
+
+    @cached_property
+    def solved(self) -> "_Solved":
+        """The motion. Raises NotConverged."""
+        if self.exact:
+            return _Exact(exact_motion(self.rig, self.point, self.laws, self.drags, self.setting))
+        base = self._base or ideal_response(self.rig, self.point, self.models, self.drags, self.setting)
+        held = self.setting.mode != "torque_controlled"
+        return _Deviating(
+            DeviationResponse(self.system, self.laws, base, twist_held=held, steps=self.steps), base
+        )
+
+    @cached_property
+    def swings(self) -> tuple[Swing, ...]:
+        """Torques that swing with a shaft, in turns of the first pinion and the phase of its mean angle."""
+        return tuple(
+            Swing(
+                name=torques.name,
+                order=(order := part.order * float(self.ratios[torques.dof])),
+                amplitude=part.torque * complex(np.exp(-1j * (part.phase + order * self.solved.ahead))),
+                load=torques.load,
             )
-        state = _marched(rig, point, models, drags, setting, [order * count.turns for order in orders])
-    else:
-        torques = [
-            HarmonicTorque(
-                dof=ripple.freedom, order=ripple.order * count.turns,
-                amplitude=ripple.amplitude * count.turned(ripple.order),
-            )
-            for ripple in ripples
-        ]  # fmt: skip
-        start = base or ideal_response(rig, point, models, drags, setting)
-        turned = [order * count.turns for order in orders]
-        state = _deviating(rig, models, setting, start, turned, torques, steps)
-    by_order = dict(zip(orders, state.loads))
-    found: Orders = {}
-    for channel in read:
-        place = places[channel.name]
+            for torques in self.system.shaft_torques
+            for part in torques.parts
+        )
+
+    def prepare(self, orders: Iterable[float]) -> None:
+        """Solve what is missing of some orders, per turn of the gear that counts, at once."""
+        missing = sorted({float(order) for order in orders} - self._loads.keys())
+        if missing:
+            turned = [order * self.count.turns for order in missing]
+            self._loads |= dict(zip(missing, self.solved.loads(turned, self.swings)))
+
+    def read(self, channel: Channel) -> dict[float, complex]:
+        """Amplitudes of a channel by order. UsageError for an unknown place or a channel without orders."""
+        if channel.quantity not in ORDER_QUANTITIES:
+            raise UsageError(f"channel {channel.name!r}: {channel.quantity} has no orders")
+        place = place_of(self.rig, channel)
+        self.prepare(channel.orders)
+        found = {}
         for order in channel.orders:
             if order == 0.0:
-                found[channel.name, order] = complex(place.mean(rig, state, drags))
-            else:
-                value = place.amplitude(rig.system, by_order[order])
-                found[channel.name, order] = value / count.turned(order)
-    return found
+                found[order] = complex(place.mean(self._windup, self.solved.twist))
+                continue
+            loads = self._loads[order]
+            swings = [
+                swing for swing in self.swings if abs(swing.order - loads.order) < SAME_ORDER * loads.order
+            ]
+            found[order] = place.amplitude(self.system, loads, swings) / self.count.turned(order)
+        return found
+
+    @cached_property
+    def _windup(self) -> Array:
+        """Mean windup of all freedoms [rad]."""
+        self.prepare([0.0])
+        mean = self._loads[0.0]
+        return mean_windup(
+            self.system, dict(zip(mean.dofs.tolist(), mean.torque.real.tolist())), twist=self.solved.twist,
+            drive=self.solved.drive, speed=self.solved.speed * self.ratios, drags=self.drags,
+        )  # fmt: skip
+
+
+SAME_ORDER = 1e-6
+"""Relative difference below which two orders are the same."""
 
 
 def ideal_response(
     rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], drags: Mapping[str, float], setting: Setting
 ) -> CurvePoint:
-    """Response with all teeth of a gear alike, over one mesh period: what the linear response starts from.
+    """Response with all teeth of a gear alike and no torque that swings, over one mesh period.
 
     Raises NotConverged.
     """
     assert rig.system is not None
     controlled = setting.mode == "torque_controlled"
-    laws = ideal_laws(shifted_laws(rig, models, setting))
     curve = periodic_response(
-        rig.system,
-        laws,
+        _still(rig.system),
+        ideal_laws(shifted_laws(rig, models, setting)),
         [rig.pinion_speed(point.speed)],
         signed_torque(rig, point) if controlled else None,
         twist=None if controlled else setting.twist,
@@ -147,19 +201,29 @@ def ideal_response(
     return curve.points[0]
 
 
+def _still(system: LinearSystem) -> LinearSystem:
+    """The system without torques that swing; its modes stay known."""
+    if not system.shaft_torques:
+        return system
+    still = replace(system, shaft_torques=())
+    still.__dict__["form"] = system.form
+    return still
+
+
 @dataclass(frozen=True)
 class _Count:
     """The gear that counts, against the pinion of the first mesh."""
 
     turns: float
-    """Of the gear that counts per turn of the pinion [-]."""
+    """Of the pinion per turn of the gear that counts, inverted: order of the pinion per order of that gear [-]."""
     ahead: float
     """Its angle beyond that of tooth 0 at the pitch point where pair 0 meets [rad]."""
 
     @staticmethod
     def of(rig: Rig, models: Sequence[MeshModel]) -> "_Count":
-        law = models[0].law
-        if rig.torque_ratio == 1.0 and _counts_at_pinion(rig):
+        power, law = rig.case.drivetrain, models[0].law
+        assert power is not None
+        if power.torque_at == rig.mesh_gears(rig.control_mesh)[0]:
             return _Count(1.0, 0.0)
         return _Count(law.teeth_1 / law.teeth_2, law.tooth_offset_2 * 2.0 * pi / law.teeth_2)
 
@@ -168,156 +232,63 @@ class _Count:
         return complex(np.exp(1j * order * self.ahead))
 
 
-def _counts_at_pinion(rig: Rig) -> bool:
-    power = rig.case.drivetrain
-    assert power is not None
-    return power.torque_at == rig.mesh_gears(rig.control_mesh)[0]
+class _Solved(Protocol):
+    """A motion: bracing twist [rad], motor torque [N m], speed of the first pinion [rad/s], and phi [rad] of that
+    pinion where all shafts stand at zero."""
 
-
-@dataclass(frozen=True, kw_only=True)
-class _State:
-    """Loads on the drivetrain, order by order, and what is constant.
-
-    mean : mean torque of the meshes by freedom [N m]; twist : bracing [rad]; drive : motor torque [N m]
-    speeds : (n,) of all freedoms [rad/s]
-    """
-
-    loads: Sequence[OrderLoads]
-    mean: Mapping[int, float]
     twist: float
     drive: float
-    speeds: Array
+    speed: float
+    ahead: float
+
+    def loads(self, orders: Sequence[float], swings: Sequence[Swing]) -> Sequence[OrderLoads]:
+        """Loads on the drivetrain at orders of the first pinion."""
 
 
-def _deviating(
-    rig: Rig, models: Sequence[MeshModel], setting: Setting, base: CurvePoint, orders: Sequence[float],
-    torques: Sequence[HarmonicTorque], steps: int,
-) -> _State:  # fmt: skip
-    assert rig.system is not None
-    laws = shifted_laws(rig, models, setting)
-    held = setting.mode != "torque_controlled"
-    response = DeviationResponse(rig.system, laws, base, twist_held=held, steps=steps)
-    mean, *loads = response.loads([0.0, *orders], torques)
-    return _State(
-        loads=loads,
-        mean=dict(zip(mean.dofs.tolist(), mean.torque.real.tolist())),
-        twist=base.twist,
-        drive=base.drive_torque,
-        speeds=base.speed * pinion_ratios(rig.system, laws),
-    )
+class _Deviating:
+    """About the motion with all teeth alike."""
 
+    def __init__(self, response: DeviationResponse, base: CurvePoint) -> None:
+        self.response = response
+        self.twist, self.drive, self.speed = base.twist, base.drive_torque, base.speed
+        self.ahead = response.loop.start if base.method == "harmonic_balance" else 0.0
 
-def _marched(
-    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], drags: Mapping[str, float], setting: Setting,
-    orders: Sequence[float],
-) -> _State:  # fmt: skip
-    """The same from a march in time over the hunting cycle; an order that is none of its harmonics is zero."""
-    system = rig.system
-    assert system is not None
-    laws = shifted_laws(rig, models, setting)
-    controlled = setting.mode == "torque_controlled"
-    found = periodic_by_time(
-        system, laws, speed=rig.pinion_speed(point.speed),
-        torque=signed_torque(rig, point) if controlled else None,
-        twist=None if controlled else setting.twist,
-        period="hunting_cycle", drag_torques=drags, longest_time=LONGEST_MARCH,
-    )  # fmt: skip
-    if not found.steady:
-        raise NotConverged(f"march at stage {point.stage!r}: {'; '.join(found.warnings)}")
-    torque = _body_torques(system, laws, found)
-    turns = found.period * found.speed / (2.0 * pi)
-    start = float(np.mean(found.angle_1[0] - found.speed * found.time))
-    phi = start + found.speed * found.time
-    dofs = np.array(list(torque), np.int64)
-    waves = np.array(list(torque.values()))
-    loads = []
-    for order in orders:
-        whole = abs(order * turns - round(order * turns)) < 1e-6
-        part = waves @ np.exp(-1j * order * phi) / phi.size if whole else np.zeros(len(waves), complex)
-        loads.append(
-            OrderLoads(
-                order=order, omega=order * found.speed, dofs=dofs, torque=part * (2.0 if order else 1.0)
+    def loads(self, orders: Sequence[float], swings: Sequence[Swing]) -> Sequence[OrderLoads]:
+        torques = [
+            HarmonicTorque(
+                dof=int(dof), order=swing.order, amplitude=swing.amplitude * float(swing.load[dof])
             )
+            for swing in swings
+            for dof in np.flatnonzero(swing.load)
+        ]
+        return self.response.loads(orders, torques)
+
+
+class _Exact:
+    """All contacts over the hunting cycle."""
+
+    def __init__(self, motion: ExactMotion) -> None:
+        self.motion = motion
+        self.twist, self.drive, self.speed, self.ahead = (
+            motion.twist,
+            motion.drive,
+            motion.speed,
+            motion.ahead,
         )
-    return _State(
-        loads=loads,
-        mean={dof: float(wave.mean()) for dof, wave in torque.items()},
-        twist=found.twist,
-        drive=found.drive_torque,
-        speeds=found.speed * pinion_ratios(system, laws),
-    )
 
+    def loads(self, orders: Sequence[float], swings: Sequence[Swing]) -> Sequence[OrderLoads]:
+        return [self._with(self.motion.loads(order), swings) for order in orders]
 
-def _body_torques(system: LinearSystem, laws: Sequence[MeshLaw], found: PeriodicResponse) -> dict[int, Array]:
-    """Torque of the meshes on each gear body over the period, by freedom."""
-    torque: dict[int, Array] = {}
-    for m, (law, ports) in enumerate(zip(laws, system.mesh_ports.tolist())):
-        omega_2 = (law.base_radius_1 * found.omega_1[m] - found.approach_rate[m]) / law.base_radius_2
-        reaction = evaluate_mesh(law, found.angle_1[m], found.approach[m], found.omega_1[m], omega_2)
-        for dof, wave in zip(ports, (reaction.torque_1, reaction.torque_2)):
-            torque[dof] = torque.get(dof, 0.0) + wave
-    return torque
-
-
-@dataclass(frozen=True)
-class _InCoupling:
-    """Torque in a coupling."""
-
-    joint: Joint
-    twisted: bool
-
-    def mean(self, rig: Rig, state: _State, drags: Mapping[str, float]) -> float:
-        assert rig.system is not None
-        windup = mean_windup(
-            rig.system, state.mean, twist=state.twist, drive=state.drive, speed=state.speeds, drags=drags
+    @staticmethod
+    def _with(loads: OrderLoads, swings: Sequence[Swing]) -> OrderLoads:
+        """Loads of the meshes and of the torques that swing at this order."""
+        here = [swing for swing in swings if abs(swing.order - loads.order) < SAME_ORDER * swing.order]
+        if not here:
+            return loads
+        whole = np.sum([swing.amplitude * swing.load for swing in here], axis=0)
+        dofs = np.flatnonzero(whole)
+        return replace(
+            loads,
+            dofs=np.concatenate([loads.dofs, dofs]),
+            torque=np.concatenate([loads.torque, whole[dofs]]),
         )
-        turned = float(windup[self.joint.dof_a] - windup[self.joint.dof_b])
-        return self.joint.stiffness * (turned - (state.twist if self.twisted else 0.0))
-
-    def amplitude(self, system: LinearSystem, loads: OrderLoads) -> complex:
-        first, second = motion_orders(system, loads, (self.joint.dof_a, self.joint.dof_b))
-        return complex((self.joint.stiffness + 1j * loads.omega * self.joint.damping) * (first - second))
-
-
-@dataclass(frozen=True)
-class _OfShaft:
-    """Angle of a place of a shaft."""
-
-    dof: int
-
-    def mean(self, rig: Rig, state: _State, drags: Mapping[str, float]) -> float:
-        return 0.0
-
-    def amplitude(self, system: LinearSystem, loads: OrderLoads) -> complex:
-        return complex(motion_orders(system, loads, (self.dof,))[0])
-
-
-def _place(rig: Rig, parts: Sequence[Joint], channel: Channel) -> _InCoupling | _OfShaft:
-    """Where a channel reads; ValueError for a place the drivetrain does not have."""
-    drivetrain, system = rig.drivetrain, rig.system
-    assert drivetrain is not None and system is not None
-    if channel.quantity == "torque":
-        for joint in parts:
-            if joint.kind == "coupling" and joint.name == channel.place:
-                return _InCoupling(joint, drivetrain.bracing_coupling == joint.name)
-        known = ", ".join(coupling.name for coupling in drivetrain.couplings) or "none"
-        raise ValueError(
-            f"channel {channel.name!r}: place = {channel.place!r}: is no coupling; there are {known}"
-        )
-    stations = [
-        i
-        for i, name in enumerate(system.dofs)
-        if name.rpartition("/")[0] == channel.place and name.endswith(" mm")
-    ]
-    if not stations:
-        known = ", ".join(shaft.name for shaft in drivetrain.shafts)
-        raise ValueError(
-            f"channel {channel.name!r}: place = {channel.place!r}: is no shaft; there are {known}"
-        )
-    taken = {
-        end
-        for coupling in drivetrain.couplings
-        for shaft, end in zip(coupling.shafts, coupling.ends)
-        if shaft == channel.place
-    }
-    return _OfShaft(stations[-1] if taken == {"left"} else stations[0])

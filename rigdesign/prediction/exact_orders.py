@@ -1,0 +1,121 @@
+"""The motion over the whole hunting cycle, all contacts opening and closing: what the fast way is held to."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.deviation_response import OrderLoads
+from dynamics.harmonic_walk import mesh_cells
+from dynamics.mesh_force import evaluate_mesh
+from dynamics.mesh_law import MeshLaw
+from dynamics.periodic_response import periodic_by_time
+from dynamics.response_curve import periodic_response
+from dynamics.static_loop import NotConverged, port_model
+from rigdesign.loads import Setting, signed_torque
+from rigdesign.rig.model import Rig
+from rigdesign.state import OperatingPoint
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+MOST_CELLS = 1000
+"""Mesh periods in a cycle up to which the harmonic balance is used; beyond it the loop is marched."""
+LONGEST_MARCH = 20.0
+"""Simulated time after which a march that does not settle ends [s]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExactMotion:
+    """Torques of the meshes over one cycle.
+
+    speed : of the first pinion [rad/s]; turns : of it in the cycle; phi : (n,) its mean angle [rad]
+    dofs : (n_bodies,) freedoms of the gears; torque : (n_bodies, n) on them [N m]
+    twist [rad], drive [N m]; ahead : phi where all shafts stand at zero [rad]
+    """
+
+    speed: float
+    turns: float
+    phi: Array
+    dofs: Integers
+    torque: Array
+    twist: float
+    drive: float
+    ahead: float
+
+    def loads(self, order: float) -> OrderLoads:
+        """Loads at an order of the first pinion; zero if the cycle does not hold it."""
+        whole = abs(order * self.turns - round(order * self.turns)) < 1e-6
+        wave = np.exp(-1j * order * self.phi) / self.phi.size if whole else np.zeros(self.phi.size, complex)
+        return OrderLoads(
+            order=order, omega=order * self.speed, dofs=self.dofs,
+            torque=np.asarray(self.torque @ wave * (2.0 if order else 1.0), complex),
+        )  # fmt: skip
+
+
+def exact_motion(
+    rig: Rig,
+    point: OperatingPoint,
+    laws: Sequence[MeshLaw],
+    drags: Mapping[str, float],
+    setting: Setting,
+    *,
+    march: bool | None = None,
+) -> ExactMotion:
+    """Solve over the hunting cycle: harmonic balance up to MOST_CELLS mesh periods, else the march in time.
+
+    march : take the one or the other
+    Raises NotConverged if neither settles.
+    """
+    assert rig.system is not None
+    controlled = setting.mode == "torque_controlled"
+    torque, twist = (signed_torque(rig, point), None) if controlled else (None, setting.twist)
+    speed = rig.pinion_speed(point.speed)
+    if march is None:
+        march = mesh_cells(port_model(rig.system, laws), "hunting_cycle", 0)[0] > MOST_CELLS
+    if not march:
+        curve = periodic_response(
+            rig.system, laws, [speed], torque, twist=twist, period="hunting_cycle", drag_torques=drags,
+            methods=("harmonic_balance",),
+        )  # fmt: skip
+        if curve.points:
+            found = curve.points[0]
+            wave = found.wave
+            return _over_cycle(
+                rig, laws, speed, wave.time, (wave.angle, wave.approach, wave.omega_1, wave.omega_2),
+                twist=found.twist, drive=found.drive_torque, from_zero=True,
+            )  # fmt: skip
+    marched = periodic_by_time(
+        rig.system, laws, speed=speed, torque=torque, twist=twist, period="hunting_cycle", drag_torques=drags,
+        longest_time=LONGEST_MARCH,
+    )  # fmt: skip
+    if not marched.steady:
+        raise NotConverged(f"march over the hunting cycle at {point.stage!r}: {'; '.join(marched.warnings)}")
+    radius_1, radius_2 = np.array([(law.base_radius_1, law.base_radius_2) for law in laws]).T[..., None]
+    omega_2 = (radius_1 * marched.omega_1 - marched.approach_rate) / radius_2
+    return _over_cycle(
+        rig, laws, speed, marched.time, (marched.angle_1, marched.approach, marched.omega_1, omega_2),
+        twist=marched.twist, drive=marched.drive_torque, from_zero=False,
+    )  # fmt: skip
+
+
+def _over_cycle(
+    rig: Rig, laws: Sequence[MeshLaw], speed: float, time: Array, motion: tuple[Array, Array, Array, Array], *,
+    twist: float, drive: float, from_zero: bool,
+) -> ExactMotion:  # fmt: skip
+    """Torques on the gear bodies along a motion (each (n_meshes, n)) that begins at zero angle or anywhere."""
+    assert rig.system is not None
+    torque: dict[int, Array] = {}
+    for m, (law, ports) in enumerate(zip(laws, rig.system.mesh_ports.tolist())):
+        reaction = evaluate_mesh(law, *(values[m] for values in motion))
+        for dof, wave in zip(ports, (reaction.torque_1, reaction.torque_2)):
+            torque[dof] = torque[dof] + wave if dof in torque else wave
+    start = float(np.mean(motion[0][0] - speed * time))
+    step = float(time[1] - time[0])
+    return ExactMotion(
+        speed=speed, turns=speed * step * time.size / (2.0 * pi), phi=start + speed * time,
+        dofs=np.array(list(torque), np.int64), torque=np.array(list(torque.values())), twist=twist, drive=drive,
+        ahead=start if from_zero else 0.0,
+    )  # fmt: skip

@@ -1,0 +1,55 @@
+"""Shipped loops with deviations, settled without heat, for the tests of orders."""
+
+from dataclasses import dataclass
+from functools import cache
+from math import pi
+
+from rigdesign import load_case
+from rigdesign.case import Case
+from rigdesign.cold import cold_feedback
+from rigdesign.loads import MeshModel, Setting, brace_cold, mesh_models
+from rigdesign.prediction.model import Channel
+from rigdesign.rig.model import Rig, build_rig
+from rigdesign.state import OperatingPoint
+
+DRAGS = {"test.pinion": 0.4, "reference.wheel": 0.6}
+
+
+@cache
+def shipped(name: str) -> Case:
+    return load_case(f"cases/{name}")
+
+
+def changed(name: str, **values: object) -> Case:
+    """The case with values by path; dots of a path stand as double underscores."""
+    case = shipped(name)
+    for path, value in values.items():
+        case = case.with_value(path.replace("__", "."), value)
+    return case
+
+
+@dataclass(frozen=True)
+class Settled:
+    rig: Rig
+    point: OperatingPoint
+    models: tuple[MeshModel, ...]
+    setting: Setting
+
+    @property
+    def arguments(self):
+        return self.rig, self.point, self.models, DRAGS, self.setting
+
+
+def settled(case: Case, rpm: float, torque: float) -> Settled:
+    rig = build_rig(case, "quick")
+    point = OperatingPoint(stage="test", speed=rpm * pi / 30.0, torque=torque)
+    cold = cold_feedback(rig, point)
+    return Settled(rig, point, mesh_models(rig, point, cold), brace_cold(rig, point, cold))
+
+
+def channels(*orders: float) -> tuple[Channel, ...]:
+    return (
+        Channel(name="wheel side", quantity="torque", place="wheel_side", orders=orders),
+        Channel(name="pinion side", quantity="torque", place="pinion_side", orders=orders),
+        Channel(name="turn", quantity="angle", place="test_wheel", orders=orders),
+    )
