@@ -12,8 +12,9 @@ from rigdesign.measurement.bands import Bands
 from rigdesign.measurement.features import Data
 from rigdesign.measurement.locate import VARIABLES, Located, locate
 from rigdesign.measurement.model import Finding, MeasurementSet
+from rigdesign.measurement.propagation import setting_spread
 from rigdesign.measurement.quantities import CHANNELS
-from rigdesign.measurement.swaps import swap_findings
+from rigdesign.measurement.suspects import swap_findings, unit_findings
 from rigdesign.prediction.model import Feature, Prediction, Setting
 from rigdesign.report.results_json import to_plain
 
@@ -29,7 +30,8 @@ class Comparison:
     """Measured beside simulated.
 
     simulated, residual, spread : (n_features,) SI in the order of ``data.features``, NaN where nothing is
-        measured; residual = measured - simulated, spread = 1 sigma of noise, sensor and the model's stated error
+        measured; residual = measured - simulated, spread = 1 sigma of noise, settings, sensor and the
+        model's stated error
     located : groups by the size of their whitened residual
     findings : of the data, and what the simulation adds
     """
@@ -77,7 +79,11 @@ def compare(measurement: MeasurementSet, data: Data, prediction: Prediction) -> 
         spread=spread,
         located=located,
         sentences=tuple(sentence(item, measurement) for item in located if significant(item)),
-        findings=(*data.findings, *swap_findings(data, prediction.values, spread)),
+        findings=(
+            *data.findings,
+            *unit_findings(data, prediction.values),
+            *swap_findings(data, prediction.values, spread),
+        ),
     )
 
 
@@ -135,11 +141,12 @@ def display_residual(value: float, quantity: str, unit: str) -> tuple[float, str
 
 
 def _spread(measurement: MeasurementSet, data: Data, prediction: Prediction) -> Array:
-    """1 sigma of measured minus simulated: noise of the mean, offset, scale, stated error of the model."""
+    """1 sigma of measured minus simulated: noise, scatter of the settings, offset, scale, stated error of the model."""
     ambient = {
         setting.name: setting.ambient_temperature or measurement.case.ambient.temperature
         for setting in data.settings
     }
+    inputs = setting_spread(data, prediction.values)
     spread = np.empty(len(data.features))
     for i, feature in enumerate(data.features):
         entry = data.channels[feature.channel]
@@ -147,7 +154,9 @@ def _spread(measurement: MeasurementSet, data: Data, prediction: Prediction) -> 
         level = data.values[i] - ambient.get(feature.setting, 0.0) if thermal else data.values[i]
         offset = entry.offset_sd if feature.part == "value" else 0.0
         error = prediction.error if thermal else 0.0
-        spread[i] = np.sqrt(data.noise[i] ** 2 + offset**2 + (entry.scale_sd * level) ** 2 + error**2)
+        spread[i] = np.sqrt(
+            data.noise[i] ** 2 + inputs[i] ** 2 + offset**2 + (entry.scale_sd * level) ** 2 + error**2
+        )
     return spread
 
 

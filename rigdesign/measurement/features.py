@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rigdesign.errors import MeasurementError
 from rigdesign.measurement.checks import data_findings
+from rigdesign.measurement.consistency import consistency_findings
 from rigdesign.measurement.model import Finding, MeasuredChannel, MeasuredPoint, MeasurementSet
 from rigdesign.measurement.repeats import pooled_noise, without_outliers
 from rigdesign.measurement.transfer import gain
@@ -80,7 +81,7 @@ def features(measurement: MeasurementSet) -> Data:
             f"no usable reading is left: {reasons or 'every cell is empty'}", str(measurement.folder)
         )
     values[~usable], spread[~usable] = np.nan, np.inf
-    return Data(
+    data = Data(
         features=names,
         values=values,
         noise=spread,
@@ -93,6 +94,7 @@ def features(measurement: MeasurementSet) -> Data:
         findings=tuple(findings),
         strength="proven" if _repeated(names, repeats, usable) else "indicative",
     )
+    return replace(data, findings=(*findings, *consistency_findings(measurement, data)))
 
 
 def _mean(values: NDArray[np.float64]) -> float:

@@ -1,4 +1,4 @@
-"""Two channels that fit the simulation much better when they are exchanged."""
+"""Input errors that only the simulation shows: channels exchanged, readings in another unit."""
 
 from collections.abc import Iterator
 from itertools import combinations
@@ -6,10 +6,46 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign import units
+from rigdesign.kinds import KINDS
 from rigdesign.measurement.features import Data
 from rigdesign.measurement.model import Finding
+from rigdesign.measurement.quantities import CHANNELS
 
 Array = NDArray[np.float64]
+RATIO = 1.3
+"""How near measured over simulated has to come to the ratio of two units."""
+UNLIKE = 3.0
+"""Least ratio of two units that can be told from a difference of model and rig."""
+
+
+def unit_findings(data: Data, simulated: Array) -> Iterator[Finding]:
+    """Channels whose readings are larger or smaller than simulated by the ratio of two units."""
+    for name, entry in data.channels.items():
+        kind = CHANNELS[entry.channel.quantity].kind
+        if kind == "temperature":
+            continue
+        rows = [
+            i
+            for i, f in enumerate(data.features)
+            if f.channel == name and data.usable[i] and simulated[i] != 0.0
+        ]
+        firm = [i for i in rows if abs(data.values[i]) > 3.0 * data.noise[i]]
+        if not firm:
+            continue
+        ratio = float(np.median(np.abs(data.values[firm] / simulated[firm])))
+        own = units.worth(kind, entry.unit)[0]
+        for unit in KINDS[kind].units:
+            factor = own / units.worth(kind, unit)[0]
+            if max(factor, 1.0 / factor) > UNLIKE and 1.0 / RATIO < ratio / factor < RATIO:
+                yield Finding(
+                    id="unit", weight="suspect", channels=(name,),
+                    text=f"{name}: reads {ratio:.3g} times what is simulated; its numbers would fit {unit} instead of "
+                    f"{entry.unit}; look at its unit",
+                )  # fmt: skip
+                break
+
+
 FAR = 3.0
 """How far off, in standard deviations, both channels have to be as they stand."""
 GAIN = 0.25
