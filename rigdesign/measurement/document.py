@@ -4,14 +4,23 @@ from collections.abc import Mapping
 from datetime import date
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from rigdesign.case.fields import Angle, Frequency, Name, Offset, Part, Quantity, Share, Text, fault
 from rigdesign.measurement.quantities import SettingQuantity
 from rigdesign.prediction import model as prediction
 
+
+def _with_unit(value: object) -> object:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        raise fault("a bare number without a unit", f'write a text with a unit, e.g. "{value} K"')
+    return value
+
+
 Label = Annotated[str, Field(pattern=r"^\S(.*\S)?$", max_length=80)]
 """Name of a column or point as the table has it."""
+Spread = Annotated[Text, BeforeValidator(_with_unit)]
+"""An uncertainty with its unit; which one depends on the quantity."""
 Delay = Annotated[float, Quantity("time", at_least="0 s", at_most="1 s")]
 
 
@@ -84,7 +93,7 @@ class SettingColumn(Part):
     place: str = ""
     """Oil stream of an inlet temperature or flow, ``gearbox.gear_oil``."""
     unit: Text
-    uncertainty: Text
+    uncertainty: Spread
     """1 sigma of one reading."""
 
 
@@ -106,9 +115,9 @@ class ChannelTable(Part):
     at: tuple[Offset, Offset, Offset] | None = None
     """Coordinates in the housing, for a temperature with the gearbox as its place."""
     unit: Text
-    uncertainty: Text
+    uncertainty: Spread
     """1 sigma of one reading; of a torque or angle of its mean and of each real or imaginary part."""
-    offset_uncertainty: Text | None = None
+    offset_uncertainty: Spread | None = None
     """1 sigma, systematic, the same over the set."""
     scale_uncertainty: Share = 0.0
     """1 sigma, systematic, relative; of a thermocouple relative to its excess over ambient."""

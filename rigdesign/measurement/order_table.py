@@ -1,5 +1,6 @@
 """orders.csv: averaged complex orders, one row per point, repeat, channel and order."""
 
+import math
 from collections.abc import Mapping, MutableSequence
 from pathlib import Path
 
@@ -60,10 +61,14 @@ def read_orders(
     found: dict[Feature, NDArray[np.float64]] = {}
     written_at: dict[tuple[Feature, int], int] = {}
     unused: dict[str, set[float]] = {}
+    orphans = 0
     order_channels = tuple(name for name, c in channels.items() if c.channel.quantity in ORDER_QUANTITIES)
     for row, line in enumerate(table.lines):
         point, name = table.column("point")[row].strip(), table.column("channel")[row].strip()
         at = f"{table.file} line {line}"
+        if rows.table.cut is not None and not _has(rows, point, values["repeat"][row]):
+            orphans += 1
+            continue
         if point not in rows.names:
             faults.append(unknown(f"{at}, point", point, rows.names, f"point in {rows.table.file}"))
             continue
@@ -71,7 +76,7 @@ def read_orders(
             faults.append(unknown(f"{at}, channel", name, order_channels, "channel of torque or angle"))
             continue
         order, repeat = values["order"][row], values["repeat"][row]
-        place = rows.place(point, int(repeat)) if repeat == round(repeat) else None
+        place = rows.place(point, int(repeat)) if math.isfinite(repeat) and repeat == round(repeat) else None
         if place is None or not order >= 0.0:
             faults.append(
                 Fault(at, written(f"repeat {repeat:g}, order {order:g}"),
@@ -109,6 +114,12 @@ def read_orders(
                 f"in channels.{name}.orders to use them")
         for name, orders in unused.items()
     )  # fmt: skip
+    if orphans:
+        findings.append(
+            Finding(id="cut_file", weight="dropped",
+                    text=f"{table.file}: {orphans} rows belong to points or repeats that {rows.table.file}, which ends "
+                    "early, does not have")
+        )  # fmt: skip
     if table.cut is not None:
         findings.append(
             Finding(id="cut_file", weight="dropped",
@@ -116,6 +127,10 @@ def read_orders(
                     "it again")
         )  # fmt: skip
     return found
+
+
+def _has(rows: Rows, point: str, repeat: float) -> bool:
+    return point in rows.names and math.isfinite(repeat) and rows.place(point, int(repeat)) is not None
 
 
 def _shown(orders: set[float]) -> str:

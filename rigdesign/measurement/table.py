@@ -103,19 +103,22 @@ def number(cell: str, decimal: str) -> float:
 
 
 def numbers(table: Table, name: str, decimal: str) -> tuple[list[float], list[Fault]]:
-    """A column as numbers, NaN where missing, with a fault for every cell that is none."""
-    values, faults = [], []
+    """A column as numbers, NaN where missing; a fault names the first cell that is none and counts the others."""
+    values: list[float] = []
+    wrong: list[tuple[int, str, str]] = []
     for line, cell in zip(table.lines, table.column(name)):
         try:
             values.append(number(cell, decimal))
         except ValueError as error:
             values.append(math.nan)
             reason = str(error) if "could not convert" not in str(error) else "not a number"
-            faults.append(
-                Fault(f"{table.file} line {line}, {name}", written(cell), reason,
-                      f'write a number (data.decimal = "{decimal}") or leave the cell empty')
-            )  # fmt: skip
-    return values, faults[:MOST_FAULTS]
+            wrong.append((line, cell, reason))
+    if not wrong:
+        return values, []
+    line, cell, reason = wrong[0]
+    more = f", and {len(wrong) - 1} more cells below" if len(wrong) > 1 else ""
+    remedy = f'write a number (data.decimal = "{decimal}") or leave the cell empty'
+    return values, [Fault(f"{table.file} line {line}, {name}", written(cell), reason + more, remedy)]
 
 
 def _cells(path: Path, name: str, data: Data) -> list[tuple[int, list[str]]]:
