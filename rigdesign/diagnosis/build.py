@@ -57,6 +57,7 @@ def build_library(
     }
     wet, dry = predictor.sources()
     return Library(
+        channels=tuple(channels),
         features=tuple(feature for feature, keep in zip(predictor.features, own, strict=True) if keep),
         settings=tuple(settings),
         base=base[own],

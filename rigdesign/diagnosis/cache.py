@@ -1,7 +1,7 @@
 """Libraries kept on disk by rig, sensors and plan, so that the next set of the same rig is quick.
 
-A library is found again by the hash of the case, its channels and its effects; of the plans stored for them, one
-whose points are near those asked for (`library.near`) serves. The folder is RIGDESIGN_CACHE_DIR or the user's cache
+A library is found again by the hash of the case and its effects; of those stored, one serves whose channels and
+operating points hold those asked for (`Library.serving`). The folder is RIGDESIGN_CACHE_DIR or the user's cache
 folder; deleting it loses time only.
 """
 
@@ -10,13 +10,12 @@ import json
 import os
 import pickle
 from collections.abc import Callable, Sequence
-from dataclasses import astuple
 from pathlib import Path
 
 from rigdesign import __version__
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.effects import Effect
-from rigdesign.diagnosis.library import Library, near
+from rigdesign.diagnosis.library import Library
 from rigdesign.prediction.model import Channel, Setting
 
 SCHEMA = 1
@@ -38,23 +37,23 @@ def library_of(
     effects: Sequence[Effect],
     build: Callable[[], Library],
 ) -> Library:
-    """The stored library of a plan near ``settings``, or the one ``build`` makes, stored."""
-    folder = cache_folder() / "diagnosis" / _key(case, channels, effects)
+    """A stored library that serves these points and channels, or the one ``build`` makes, stored."""
+    folder = cache_folder() / "diagnosis" / _key(case, effects)
     for file in sorted(folder.glob("*.pickle")) if folder.is_dir() else ():
         found = _read(file)
-        if found is not None and near(found.settings, tuple(settings)):
-            return found.moved(tuple(settings))
+        serving = None if found is None else found.serving(tuple(settings), tuple(channels))
+        if serving is not None:
+            return serving
     made = build()
     _write(folder, made)
     return made
 
 
-def _key(case: Case, channels: Sequence[Channel], effects: Sequence[Effect]) -> str:
+def _key(case: Case, effects: Sequence[Effect]) -> str:
     content = {
         "schema": SCHEMA,
         "version": __version__,
         "case": case.hash,
-        "channels": [astuple(channel) for channel in channels],
         "effects": [effect.name for effect in effects],
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]

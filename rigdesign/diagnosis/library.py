@@ -5,7 +5,7 @@ own. It belongs to a case, a set of channels and a plan of operating points; a l
 lie near the plan is served by the derivatives by its settings.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.diagnosis.columns import Array
-from rigdesign.prediction.model import Feature, Setting
+from rigdesign.prediction.model import Channel, Feature, Setting, features_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,7 +55,7 @@ class Response:
 class Library:
     """Everything a diagnosis takes from the model.
 
-    features, settings : of the plan; base : (n,) prediction there
+    channels, settings : of the plan; features : their numbers; base : (n,) prediction there
     inputs : (kind, place, setting) -> (n,) derivative by one setting value [SI]
     responses : effect -> its runs
     exponents, links, sources, dry_sources : name -> (n,): by the exponent of a loss over speed or torque; by the
@@ -64,8 +64,9 @@ class Library:
     error : stated error of the temperatures [K]
     """
 
-    features: tuple[Feature, ...]
+    channels: tuple[Channel, ...]
     settings: tuple[Setting, ...]
+    features: tuple[Feature, ...]
     base: Array
     inputs: Mapping[tuple[str, str, str], Array]
     responses: Mapping[str, Response]
@@ -76,49 +77,71 @@ class Library:
     powers: Mapping[str, float]
     error: float
 
-    def moved(self, settings: tuple[Setting, ...]) -> "Library":
-        """The library at settings near the plan (`near`): points keep their order, not their names."""
-        names = {planned.name: run.name for planned, run in zip(self.settings, settings, strict=True)}
-        values = self.base.copy()
-        for planned, run in zip(self.settings, settings, strict=True):
-            for (kind, place, point), derivative in self.inputs.items():
-                if point == planned.name:
-                    values += (value_of(run, kind, place) - value_of(planned, kind, place)) * derivative
+    def serving(self, settings: tuple[Setting, ...], channels: tuple[Channel, ...]) -> "Library | None":
+        """The library for points near some of its plan and channels among its own; None where it cannot serve.
+
+        Names of points and channels may differ: a channel is known by what and where it reads.
+        """
+        points = _matches(settings, self.settings, _close)
+        sensors = _matches(channels, self.channels, _reads_as)
+        if points is None or sensors is None:
+            return None
+        names = {channel.name: self.channels[place].name for channel, place in zip(channels, sensors)}
+        planned = {run.name: self.settings[place].name for run, place in zip(settings, points)} | {"": ""}
+        row = {feature: number for number, feature in enumerate(self.features)}
+        wanted = features_of(settings, channels)
+        rows = np.array(
+            [row[replace(one, channel=names[one.channel], setting=planned[one.setting])] for one in wanted],
+            dtype=np.intp,
+        )
+        run_of = {planned[run.name]: run for run in settings}
+        inputs = {
+            (kind, place, run_of[point].name): values[rows]
+            for (kind, place, point), values in self.inputs.items()
+            if point in run_of
+        }
+        base = self.base[rows].copy()
+        for place in points:
+            at = self.settings[place]
+            for (kind, where, point), values in inputs.items():
+                if point == run_of[at.name].name:
+                    base += (value_of(run_of[at.name], kind, where) - value_of(at, kind, where)) * values
         return replace(
-            self,
-            features=tuple(
-                replace(feature, setting=names.get(feature.setting, "")) for feature in self.features
-            ),
+            self._cut(rows),
+            channels=channels,
             settings=settings,
-            base=values,
-            inputs={(kind, place, names[point]): row for (kind, place, point), row in self.inputs.items()},
-            powers={names[point]: power for point, power in self.powers.items()},
+            features=wanted,
+            base=base,
+            inputs=inputs,
+            powers={run_of[point].name: power for point, power in self.powers.items() if point in run_of},
         )
 
     def rows(self, features: tuple[Feature, ...]) -> "Library":
         """The library cut to some of its features."""
         place = {feature: row for row, feature in enumerate(self.features)}
         rows = np.array([place[feature] for feature in features], dtype=np.intp)
+        return replace(self._cut(rows), features=features)
+
+    def _cut(self, rows: NDArray[np.intp]) -> "Library":
         return replace(
             self,
-            features=features,
             base=self.base[rows],
-            inputs=_cut(self.inputs, rows),
+            inputs=_of_rows(self.inputs, rows),
             responses={
                 name: Response(coordinates=one.coordinates, answers=one.answers[:, rows])
                 for name, one in self.responses.items()
             },
-            exponents=_cut(self.exponents, rows),
-            links=_cut(self.links, rows),
-            sources=_cut(self.sources, rows),
-            dry_sources=_cut(self.dry_sources, rows),
+            exponents=_of_rows(self.exponents, rows),
+            links=_of_rows(self.links, rows),
+            sources=_of_rows(self.sources, rows),
+            dry_sources=_of_rows(self.dry_sources, rows),
         )
 
 
 K = TypeVar("K")
 
 
-def _cut(columns: Mapping[K, Array], rows: NDArray[np.intp]) -> dict[K, Array]:
+def _of_rows(columns: Mapping[K, Array], rows: NDArray[np.intp]) -> dict[K, Array]:
     return {key: values[rows] for key, values in columns.items()}
 
 
@@ -138,9 +161,24 @@ def value_of(setting: Setting, kind: str, place: str) -> float:
     return float(value)
 
 
-def near(planned: tuple[Setting, ...], run: tuple[Setting, ...]) -> bool:
-    """Whether every point of a run lies so near the plan that derivatives carry it over."""
-    return len(planned) == len(run) and all(_close(a, b) for a, b in zip(planned, run, strict=True))
+T = TypeVar("T")
+
+
+def _matches(wanted: Sequence[T], offered: Sequence[T], fits: Callable[[T, T], bool]) -> list[int] | None:
+    """For each wanted one the place of an offered one that fits, none used twice; None if one finds no fit."""
+    found: list[int] = []
+    for one in wanted:
+        place = next((i for i, other in enumerate(offered) if i not in found and fits(other, one)), None)
+        if place is None:
+            return None
+        found.append(place)
+    return found
+
+
+def _reads_as(kept: Channel, wanted: Channel) -> bool:
+    """Whether a channel of the library reads what is wanted."""
+    same = (kept.quantity, kept.place, kept.at) == (wanted.quantity, wanted.place, wanted.at)
+    return same and set(wanted.orders) <= set(kept.orders)
 
 
 def _close(planned: Setting, run: Setting) -> bool:

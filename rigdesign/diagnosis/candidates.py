@@ -1,0 +1,125 @@
+"""Sensors and points a rig offers beyond those of a set: computed with the library, so that they can be proposed."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from rigdesign.case.model import Case
+from rigdesign.measurement.places import Places
+from rigdesign.prediction.model import Channel, Quantity, Setting
+
+SPARE = "could be: "
+"""Start of the names of sensors and points that are not measured."""
+
+NOISE: dict[Quantity, float] = {
+    "temperature": 0.5,
+    "oil_outlet_temperature": 0.4,
+    "motor_power": 25.0,
+    "drive_torque": 0.05,
+    "torque": 0.3,
+    "angle": 2e-6,
+    "natural_frequency": 6.0,
+    "backlash": 3e-6,
+}
+"""Standard deviation of a reading of a sensor that would be added, its systematic part included [SI]."""
+
+COST: dict[Quantity, float] = {
+    "temperature": 1.0,
+    "oil_outlet_temperature": 1.0,
+    "motor_power": 4.0,
+    "drive_torque": 4.0,
+    "torque": 8.0,
+    "angle": 4.0,
+    "natural_frequency": 3.0,
+    "backlash": 1.0,
+}
+"""Relative to one thermocouple."""
+
+MOST_TEMPERATURES = 12
+"""Places of thermocouples that are proposed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Extra:
+    """A point that could be run."""
+
+    title: str
+    setting: Setting
+    cost: float
+
+
+def spare_channels(case: Case, used: Sequence[Channel], orders: tuple[float, ...]) -> tuple[Channel, ...]:
+    """Channels of the rig that the set does not have."""
+    places = Places(case)
+    have = {(channel.quantity, channel.place) for channel in used}
+    quantities: tuple[Quantity, ...] = (
+        "oil_outlet_temperature", "motor_power", "torque", "natural_frequency", "backlash",
+    )  # fmt: skip
+    wanted = [(quantity, place) for quantity in quantities for place in places.of(quantity)]
+    wanted += [("temperature", place) for place in _thermocouples(places)]
+    return tuple(
+        Channel(
+            name=f"{SPARE}{quantity.replace('_', ' ')} {place}",
+            quantity=quantity,
+            place=place,
+            orders=orders if quantity == "torque" else (),
+        )
+        for quantity, place in wanted
+        if (quantity, place) not in have
+    )
+
+
+def _thermocouples(places: Places) -> list[str]:
+    """Surfaces that a thermocouple reaches, and gears and bearing shells."""
+    starts = ("outer_", "bearing_bore_", "gear_", "chamber_wall", "chamber_floor", "field_")
+    return [
+        place
+        for place in places.surfaces
+        if place.partition(".")[2].startswith(starts) and "side" not in place and "rim" not in place
+    ][:MOST_TEMPERATURES]
+
+
+def extra_points(settings: Sequence[Setting], meshes: Sequence[str]) -> tuple[Extra, ...]:
+    """Points beside the plan: other oil, other flow, other speed and torque, a wheel put on further."""
+    middle = sorted(settings, key=lambda one: one.speed * abs(one.torque))[len(settings) // 2]
+    slow, fast = (pick(one.speed for one in settings) for pick in (min, max))
+    light, heavy = (pick(abs(one.torque) for one in settings) for pick in (min, max))
+    found = [
+        Extra(
+            title="a point at the least speed and the greatest torque",
+            setting=replace(middle, name=f"{SPARE}slow", speed=slow, torque=heavy),
+            cost=1.0,
+        ),
+        Extra(
+            title="a point at the greatest speed and the least torque",
+            setting=replace(middle, name=f"{SPARE}fast", speed=fast, torque=light),
+            cost=1.0,
+        ),
+    ]
+    if middle.inlet_temperature:
+        colder = {stream: value - 20.0 for stream, value in middle.inlet_temperature.items()}
+        found.append(
+            Extra(
+                title="a point with all oil 20 K colder",
+                setting=replace(middle, name=f"{SPARE}colder", inlet_temperature=colder),
+                cost=1.5,
+            )
+        )
+    if middle.flow:
+        more = {stream: 1.5 * value for stream, value in middle.flow.items()}
+        found.append(
+            Extra(
+                title="a point with half as much oil again",
+                setting=replace(middle, name=f"{SPARE}flow", flow=more),
+                cost=1.0,
+            )
+        )
+    if meshes:
+        offset = {meshes[0]: 5 + middle.tooth_offset.get(meshes[0], 0)}
+        found.append(
+            Extra(
+                title=f"a point with the wheel of {meshes[0]} put on five teeth further",
+                setting=replace(middle, name=f"{SPARE}re-indexed", tooth_offset=offset),
+                cost=5.0,
+            )
+        )
+    return tuple(found)

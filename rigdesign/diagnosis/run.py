@@ -1,0 +1,117 @@
+"""A diagnosis from files: measurement set, healthy baseline if there is one, library of the rig, verdict."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.build import build_library
+from rigdesign.diagnosis.cache import library_of
+from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.defaults import DEFAULT, Calibration
+from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.library import Library
+from rigdesign.diagnosis.sensors import Stated
+from rigdesign.diagnosis.subject import Comparison, compare
+from rigdesign.diagnosis.workflow import Diagnosis, Problem, diagnose
+from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
+from rigdesign.measurement.places import Places
+from rigdesign.run import solver_errors
+
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Result:
+    """A diagnosis with what it was made from."""
+
+    case: Case
+    measurement: MeasurementSet
+    data: Data
+    baseline: MeasurementSet | None
+    problem: Problem
+    effects: tuple[Effect, ...]
+    diagnosis: Diagnosis
+    calibration: Calibration
+
+
+def diagnose_measurement(
+    case: Case,
+    folder: Path,
+    *,
+    calibration: Calibration = DEFAULT,
+    say: Progress = lambda message: None,
+) -> Result:
+    """Diagnose a measurement set of a rig.
+
+    Raises
+    ------
+    MeasurementError
+        Data of which nothing can be used.
+    CaseError, NotConvergedError, MissingLibraryError
+        As ``run_case``.
+    """
+    measurement = load_measurement(folder, case)
+    healthy = None if measurement.baseline is None else load_measurement(measurement.baseline, case)
+    effects = effects_of(case)
+    with solver_errors(case):
+        data, subject = _compared(case, measurement, effects, say)
+        before = None if healthy is None else _compared(case, healthy, effects, say)[1]
+        problem = Problem(
+            subject=subject,
+            baseline=before,
+            teeth_a_turn=teeth_a_turn(case),
+            seed=measurement.hash,
+            repeated=data.strength == "proven",
+        )
+        say("weighing explanations")
+        found = diagnose(problem, calibration)
+    return Result(
+        case=case,
+        measurement=measurement,
+        data=data,
+        baseline=healthy,
+        problem=problem,
+        effects=effects,
+        diagnosis=found,
+        calibration=calibration,
+    )
+
+
+def _compared(
+    case: Case, measurement: MeasurementSet, effects: tuple[Effect, ...], say: Progress
+) -> tuple[Data, Comparison]:
+    data = features(measurement)
+    channels = tuple(entry.channel for entry in measurement.channels.values())
+
+    def build() -> Library:
+        return build_library(case, data.settings, channels, effects, say)
+
+    library = library_of(case, data.settings, channels, effects, build)
+    return data, compare(data, library, effects, stated_settings(measurement), mesh_orders(case))
+
+
+def stated_settings(measurement: MeasurementSet) -> Mapping[tuple[str, str], Stated]:
+    """Systematic uncertainties of the settings, by (kind, place)."""
+    return {
+        (sensor.quantity, sensor.place): Stated(offset=sensor.offset_sd, scale=sensor.scale_sd)
+        for sensor in measurement.setting_sensors.values()
+    }
+
+
+HIGHEST = 40
+"""Multiple of the mesh frequency up to which an order counts as one of a mesh."""
+
+
+def mesh_orders(case: Case) -> frozenset[float]:
+    """Orders of all meshes per turn of the gear that counts; none without a drivetrain."""
+    if case.drivetrain is None:
+        return frozenset()
+    orders = Places(case).mesh_orders.values()
+    return frozenset(float(k * order) for order in orders for k in range(1, HIGHEST))
+
+
+def teeth_a_turn(case: Case) -> int:
+    """Of the gear that counts."""
+    box, gear = Places(case).counting_gear.split(".")
+    return case.gearboxes[box].gears[gear].teeth
