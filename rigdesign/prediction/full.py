@@ -1,19 +1,14 @@
 """What the sensors of a rig would read: the solve of a check at single operating points."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from typing import Literal
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from dynamics.response_curve import CurvePoint
 from rigdesign.case.model import Case
-from rigdesign.coupling import PointResult, solve_point
+from rigdesign.coupling import solve_point
 from rigdesign.errors import UsageError
-from rigdesign.loads import MeshModel
-from rigdesign.loads import Setting as Bracing
-from rigdesign.lubrication import OilStream
 from rigdesign.passes import PassResult
 from rigdesign.prediction.model import (
     STANDING_QUANTITIES,
@@ -23,63 +18,15 @@ from rigdesign.prediction.model import (
     features_of,
 )
 from rigdesign.prediction.operating import operating_point, rig_at
-from rigdesign.prediction.readings import readings
+from rigdesign.prediction.readings import Settled, readings
 from rigdesign.remesh import looping_rig, on_mesh
 from rigdesign.results import Fidelity
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run import solver_errors
-from rigdesign.state import OperatingPoint
 from thermal.fe.kernels import one_thread
-from thermal.fe.mesh import FloatArray
-from thermal.growth import SealGrowth
 
 Thermal = Literal["full", "reduced"]
 """Temperature fields by the finite-element model of a check, or by its projection on a few shapes."""
-
-
-@dataclass(frozen=True)
-class FullPoint:
-    """A settled point of the full model as channels read it."""
-
-    result: PointResult
-
-    @property
-    def point(self) -> OperatingPoint:
-        """Speed and torque."""
-        return self.result.point
-
-    @property
-    def bracing(self) -> Bracing | None:
-        """How the loop is braced."""
-        return self.result.setting
-
-    @property
-    def models(self) -> tuple[MeshModel, ...]:
-        """Warm meshes."""
-        return self.result.last.models
-
-    @property
-    def drags(self) -> Mapping[str, float]:
-        """Torques that brake the shafts [N m]."""
-        return self.result.last.drags
-
-    @property
-    def response(self) -> CurvePoint | None:
-        """Periodic response."""
-        return self.result.last.response
-
-    @property
-    def streams(self) -> Sequence[OilStream]:
-        """Oil streams."""
-        return self.result.last.streams
-
-    def temperature(self, gearbox: str) -> FloatArray:
-        """(n_nodes,) field of a housing [K]."""
-        return self.result.last.fields[gearbox].temperature
-
-    def seals(self, gearbox: str) -> Mapping[str, SealGrowth]:
-        """Hot seals of a housing."""
-        return self.result.last.growth[gearbox].expansion.seals
 
 
 def predict(
@@ -135,7 +82,7 @@ def _at_points(rig: Rig, settings: Sequence[Setting], channels: Sequence[Channel
         if looping is not rig:
             here, source = rig_at(rig, setting), here
             result = on_mesh(here, result, source)
-        settled = FullPoint(result)
+        settled = Settled(result.point, result.last, result.setting)
         for _, read in reads:
             values += read(here, settled)
     return values

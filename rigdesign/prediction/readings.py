@@ -1,16 +1,14 @@
 """What the channels of a rig read at a settled operating point."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Protocol
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.response_curve import CurvePoint
 from rigdesign.errors import UsageError
-from rigdesign.loads import MeshModel
 from rigdesign.loads import Setting as Bracing
-from rigdesign.lubrication import OilStream
+from rigdesign.passes import PassResult
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
 from rigdesign.prediction.places import place_weights
 from rigdesign.rig.model import Rig
@@ -19,46 +17,22 @@ from thermal.fe.mesh import FloatArray
 from thermal.growth import SealGrowth
 
 
-class Settled(Protocol):
-    """What a channel asks of a settled operating point."""
+@dataclass(frozen=True)
+class Settled:
+    """What channels read: a settled operating point."""
 
-    @property
-    def point(self) -> OperatingPoint:
-        """Speed and torque."""
-        ...
-
-    @property
-    def bracing(self) -> Bracing | None:
-        """How the loop is braced; None without a drivetrain."""
-        ...
-
-    @property
-    def models(self) -> tuple[MeshModel, ...]:
-        """Warm meshes."""
-        ...
-
-    @property
-    def drags(self) -> Mapping[str, float]:
-        """Torques that brake the shafts [N m]."""
-        ...
-
-    @property
-    def response(self) -> CurvePoint | None:
-        """Periodic response; None without a drivetrain."""
-        ...
-
-    @property
-    def streams(self) -> Sequence[OilStream]:
-        """Oil streams."""
-        ...
+    point: OperatingPoint
+    last: PassResult
+    bracing: Bracing | None
+    """How the loop is braced; None without a drivetrain."""
 
     def temperature(self, gearbox: str) -> FloatArray:
         """(n_nodes,) field of a housing [K]."""
-        ...
+        return self.last.fields[gearbox].temperature
 
     def seals(self, gearbox: str) -> Mapping[str, SealGrowth]:
         """Hot seals of a housing."""
-        ...
+        return self.last.growth[gearbox].expansion.seals
 
 
 Numbers = tuple[float, ...]
@@ -107,7 +81,7 @@ def _outlet(rig: Rig, channel: Channel) -> Reading:
         raise UsageError(
             f"channel {channel.name!r}: {channel.place!r} is no oil stream of this case; it has {', '.join(known)}"
         )
-    return lambda _, settled: (next(s.outlet for s in settled.streams if s.name == channel.place),)
+    return lambda _, settled: (next(s.outlet for s in settled.last.streams if s.name == channel.place),)
 
 
 def _drive(rig: Rig, channel: Channel) -> Reading:
@@ -117,8 +91,8 @@ def _drive(rig: Rig, channel: Channel) -> Reading:
         )
 
     def read(here: Rig, settled: Settled) -> Numbers:
-        assert settled.response is not None
-        torque = settled.response.drive_torque
+        assert settled.last.response is not None
+        torque = settled.last.response.drive_torque
         if channel.quantity == "drive_torque":
             return (torque,)
         return (torque * here.drive_speed(settled.point.speed),)
@@ -165,7 +139,9 @@ def _orders(rig: Rig, channel: Channel) -> Reading:
         from rigdesign.prediction.orders import shaft_orders
 
         assert settled.bracing is not None
-        found = shaft_orders(here, settled.point, settled.models, settled.drags, settled.bracing, [channel])
+        found = shaft_orders(
+            here, settled.point, settled.last.models, settled.last.drags, settled.bracing, [channel]
+        )
         numbers: list[float] = []
         for order in channel.orders:
             value = complex(found[channel.name, order])

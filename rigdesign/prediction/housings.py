@@ -1,0 +1,106 @@
+"""The housings of a rig in the reduced thermal model: parts of a pass that take the place of the full ones."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from dynamics.journal_bearing import BearingState
+from rigdesign.growth import HousingGrowth
+from rigdesign.losses import PlacedLoss
+from rigdesign.passes import Parts
+from rigdesign.prediction.growth_map import GrowthMap
+from rigdesign.prediction.shapes import Basis, build_basis
+from rigdesign.rig.boundary import boundary_conditions
+from rigdesign.rig.model import Rig
+from rigdesign.state import Feedback, OperatingPoint
+from rigdesign.temperatures import HousingField
+from thermal.condition_checks import Condition
+from thermal.conduction import TemperatureSolution
+from thermal.fe.mesh import FloatArray
+
+
+@dataclass(frozen=True)
+class ReducedField(HousingField):
+    """A projected field with its coefficients."""
+
+    coefficients: FloatArray
+
+
+class ReducedHousings:
+    """Shapes and growth of every housing of a rig; good for every case that leaves its housings as they are.
+
+    states : by gearbox, conditions of some operating points among which those wanted lie
+    """
+
+    def __init__(self, rig: Rig, states: Mapping[str, Sequence[Sequence[Condition]]]) -> None:
+        self.bases: dict[str, Basis] = {}
+        self.growths: dict[str, GrowthMap] = {}
+        self._start: dict[str, FloatArray] = {}
+        for name, conditions in states.items():
+            basis = build_basis(rig.conduction[name], conditions)
+            start = np.zeros(basis.reduced.size)
+            start[0] = rig.case.ambient.temperature + 30.0
+            start = basis.reduced.solve(conditions[0], start).coefficients
+            self.bases[name], self._start[name] = basis, start
+            if not rig.models[name].no_expansion:
+                self.growths[name] = GrowthMap(rig, name, basis.reduced.shapes, basis.sizes, start)
+
+    @property
+    def error(self) -> float:
+        """Stated error of a temperature against the full model [K]."""
+        return max((basis.error for basis in self.bases.values()), default=0.0)
+
+    def field(
+        self,
+        rig: Rig,
+        name: str,
+        point: OperatingPoint,
+        feedback: Feedback,
+        bearings: Mapping[str, BearingState],
+        losses: Sequence[PlacedLoss],
+        start: HousingField | None = None,
+        **_: Any,
+    ) -> ReducedField:
+        """Field of a housing as `rigdesign.temperatures.solve_housing` gives it, projected."""
+        housing = rig.case.gearboxes[name].housing
+        assert housing is not None
+        conditions = tuple(
+            boundary_conditions(
+                rig, name, point, feedback, bearings, losses, radiation_included=housing.radiation_included
+            )
+        )
+        near = start.coefficients if isinstance(start, ReducedField) else self._start[name]
+        return self.solved(name, conditions, near)
+
+    def solved(
+        self, name: str, conditions: tuple[Condition, ...], near: FloatArray | None = None
+    ) -> ReducedField:
+        """Field of a housing under conditions."""
+        reduced = self.bases[name].reduced
+        found = reduced.solve(conditions, self._start[name] if near is None else near)
+        solution = TemperatureSolution(
+            temperature=reduced.field(found.coefficients),
+            balance=found.balance,
+            residuals=(),
+            linear_iterations=(),
+            warnings=(),
+            volumes={},
+            preconditioner=None,
+        )
+        return ReducedField(name, conditions, solution, found.coefficients)
+
+    def growth(self, _: Rig, field: HousingField, start: HousingGrowth | None = None) -> HousingGrowth:
+        """Growth of a projected field; ``start`` is not needed."""
+        assert isinstance(field, ReducedField)
+        return self.growths[field.gearbox].at(field.coefficients)
+
+    def bulk(self, _: Rig, field: HousingField, body: str) -> float:
+        """Volume mean of a body [K]."""
+        assert isinstance(field, ReducedField)
+        return float(self.bases[field.gearbox].reduced.body(body) @ field.coefficients)
+
+    def parts(self, others: Parts) -> Parts:
+        """Parts of a pass with the fields and growth of these housings."""
+        return replace(others, field=self.field, growth=self.growth, bulk=self.bulk)
