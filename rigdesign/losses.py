@@ -12,7 +12,7 @@ from dynamics.response_curve import CurvePoint
 from dynamics.seal_loss import gap_seal_loss, lip_seal_loss
 from dynamics.windage import GearRotor, Mist, gear_windage
 from rigdesign.bearing_films import constant_drag
-from rigdesign.case.gearbox import Gearbox, HeatSplit
+from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals
 from rigdesign.flank_heat import MeshSplit, mesh_split
 from rigdesign.given_losses import given_power
 from rigdesign.loads import MeshModel, first_torques
@@ -20,6 +20,10 @@ from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_oil, injected_flow, jet_velocity
 from rigdesign.state import Feedback, OperatingPoint
 from thermal.air import air
+from thermal.housing_geometry import HousingGeometry
+
+PARTITIONS = 2
+"""Walls between the chamber and the cold sections, each with a seal on every shaft."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,44 +217,61 @@ def _oil_jets(
 def _seals(
     rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, feedback: Feedback
 ) -> Iterator[PlacedLoss]:
-    """Seals of each shaft; their lengths are those of the walls, so a gearbox without a housing has none."""
+    """Seals of each shaft; their lengths are those of the walls, so a gearbox without a housing has rubbing alone."""
     geometry = rig.geometries.get(box_name)
-    if geometry is None:
-        return
-    mist = chamber_mist(rig, box_name, feedback)
-    shafts = {shaft.name: shaft for shaft in geometry.shafts}
+    split = body_split(rig, box_name)
+    into_body = split.seal_into_shaft + split.seal_into_housing
     for name, seals in box.seals.items():
-        shaft = shafts[seals.shaft]
         omega = rig.shaft_speed(seals.shaft, point.speed)
-        partitions = 2
-        gaps = [(shaft.seal_diameter, geometry.partition_thickness)] * partitions
-        gaps += [
-            (shaft.overhang_diameter, geometry.bearing_depths(shaft)[0])
-            for overhang in (shaft.overhang_front, shaft.overhang_rear)
-            if overhang > 0.0
-        ]
         place = f"{box_name}.{name}"
-        if seals.kind == "radial_lip":
-            parts = [lip_seal_loss(place, diameter, omega) for diameter, _ in gaps]
-        else:
-            parts = [
-                gap_seal_loss(
-                    place, 0.5 * diameter, seals.radial_gap, length, omega, mist.density, mist.viscosity
-                )
-                for diameter, length in gaps
-            ]
+        parts = (
+            [] if geometry is None else _gap_losses(rig, box_name, place, geometry, seals, omega, feedback)
+        )
+        rubbing = seals.rubbing_torque * omega
+        if not parts and not rubbing:
+            continue
+        details = dict(parts[0].details) if parts else {"source": "friction torque of the case"}
+        details |= {"seals": float(len(parts))} if parts else {}
+        details |= {"rubbing_torque": seals.rubbing_torque} if rubbing else {}
+        power = math.fsum(part.power for part in parts) + rubbing
         loss = Loss(
             place=place,
             kind="seal",
-            power=math.fsum(part.power for part in parts),
-            details=parts[0].details | {"seals": float(len(parts))},
+            power=power,
+            details=details,
             warnings=tuple(dict.fromkeys(warning for part in parts for warning in part.warnings)),
         )
-        split = box.heat_split
-        body = (split.seal_into_shaft + split.seal_into_housing) * loss.power
-        ends = math.fsum(part.power for part in parts[partitions:])
-        share = ends / loss.power if loss.power > 0.0 else 0.0
-        yield PlacedLoss(gearbox=box_name, part=name, loss=loss, into_body=body, end_share=share)
+        ends = math.fsum(part.power for part in parts[PARTITIONS:])
+        if rubbing:
+            ends += rubbing * max(len(parts) - PARTITIONS, 0) / max(len(parts), 1)
+        share = ends / power if power > 0.0 else 0.0
+        yield PlacedLoss(gearbox=box_name, part=name, loss=loss, into_body=into_body * power, end_share=share)
+
+
+def _gap_losses(
+    rig: Rig,
+    box_name: str,
+    place: str,
+    geometry: HousingGeometry,
+    seals: Seals,
+    omega: float,
+    feedback: Feedback,
+) -> list[Loss]:
+    """Loss of every seal of a shaft, those of the partitions first."""
+    mist = chamber_mist(rig, box_name, feedback)
+    shaft = next(shaft for shaft in geometry.shafts if shaft.name == seals.shaft)
+    gaps = [(shaft.seal_diameter, geometry.partition_thickness)] * PARTITIONS
+    gaps += [
+        (shaft.overhang_diameter, geometry.bearing_depths(shaft)[0])
+        for overhang in (shaft.overhang_front, shaft.overhang_rear)
+        if overhang > 0.0
+    ]
+    if seals.kind == "radial_lip":
+        return [lip_seal_loss(place, diameter, omega) for diameter, _ in gaps]
+    return [
+        gap_seal_loss(place, 0.5 * diameter, seals.radial_gap, length, omega, mist.density, mist.viscosity)
+        for diameter, length in gaps
+    ]
 
 
 def body_split(rig: Rig, name: str) -> HeatSplit:

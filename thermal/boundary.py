@@ -58,6 +58,7 @@ class Radiation:
 
     surface: str
     emissivity: float
+    """0 to 1; negative where it takes back radiation that a film on the surface holds."""
     surroundings_temperature: float
     kind: str = "radiation"
 

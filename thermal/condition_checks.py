@@ -151,8 +151,10 @@ def _check_values(condition: Condition) -> None:
             raise ConditionError(f"{place}: {field} = {value} is no finite number")
         if absolute and value <= 0.0:
             raise ConditionError(f"{place}: {field} = {value:g} K must be above 0 K; give kelvin")
-        if field == "emissivity" and not 0.0 <= value <= 1.0:
-            raise ConditionError(f"{place}: emissivity = {value:g} is outside of 0 to 1")
+        if field == "emissivity" and not -1.0 <= value <= 1.0:
+            raise ConditionError(
+                f"{place}: emissivity = {value:g} is outside of 0 to 1, or of -1 to 0 beside a film that holds more"
+            )
     if isinstance(condition, Exchange | Contact) and condition.surface_a == condition.surface_b:
         name = type(condition).__name__.lower()
         raise ConditionError(f"{name} of {place}: needs two different surfaces")

@@ -18,6 +18,7 @@ from rigdesign.case.fields import (
     Share,
     Temperature,
     Text,
+    Torque,
     TorsionalDamping,
     Velocity,
     fault,
@@ -129,6 +130,8 @@ class Seals(Part):
     radial_gap: Length
     axial_travel: Length
     """Axial movement of the shaft the seals take without touching."""
+    rubbing_torque: Torque = 0.0
+    """Friction torque of seals that touch, of all seals of the shaft together, beside what ``kind`` loses."""
 
 
 class HeatSplit(Part):

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from rigdesign.case.fields import (
     Gap,
@@ -15,6 +15,7 @@ from rigdesign.case.fields import (
     Temperature,
     TemperatureDifference,
     Text,
+    fault,
 )
 from rigdesign.case.joint import FootContact
 from rigdesign.case.mesh import HousingMesh
@@ -200,8 +201,20 @@ class ThermalRadiation(_Condition):
 
     law: Literal["radiation"]
     emissivity: float = Field(gt=0.0, le=1.0)
+    emissivity_excess: float = Field(default=0.0, ge=-1.0, le=1.0)
+    """What the surface has beyond ``emissivity``: it counts even where a film to room air stands for the rest."""
     surroundings_temperature: Temperature | None = None
     """Walls of the room; ambient when left out."""
+
+    @model_validator(mode="after")
+    def _grey(self) -> "ThermalRadiation":
+        whole = self.emissivity + self.emissivity_excess
+        if not 0.0 <= whole <= 1.0:
+            raise fault(
+                f"emissivity and emissivity_excess add up to {whole:g}, outside of 0 to 1",
+                f"write an excess within {-self.emissivity:g} and {1.0 - self.emissivity:g}",
+            )
+        return self
 
 
 class GapExchange(_Correlation):

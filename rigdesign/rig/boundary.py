@@ -126,6 +126,7 @@ def boundary_conditions(
     for entry, surface, stood_for in rows:
         condition = housing.boundary[entry]
         if radiation_included and isinstance(condition, laws.ThermalRadiation) and surface in covered:
+            conditions += _radiation_beside(context, condition, surface)
             continue
         found = _condition(context, condition, surface, stood_for)
         if isinstance(found, Film):
@@ -156,9 +157,7 @@ def _condition(
     context: _Context, condition: laws.Condition, surface: str, stood_for: tuple[str, ...]
 ) -> BoundaryCondition:
     if isinstance(condition, laws.ThermalRadiation):
-        ambient = context.rig.case.ambient
-        walls = condition.surroundings_temperature or ambient.surroundings_temperature or ambient.temperature
-        return Radiation(surface=surface, emissivity=condition.emissivity, surroundings_temperature=walls)
+        return _radiation(context, condition, surface, condition.emissivity + condition.emissivity_excess)
     if isinstance(condition, laws.FixedTemperature):
         return PrescribedTemperature(surface=surface, temperature=condition.temperature)
     if isinstance(condition, laws.Insulated):
@@ -180,6 +179,23 @@ def _condition(
     if kind == AIR:
         law = convection.scaled(law, context.housing.ambient_film_factor)
     return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
+
+
+def _radiation(
+    context: _Context, condition: laws.ThermalRadiation, surface: str, emissivity: float
+) -> Radiation:
+    ambient = context.rig.case.ambient
+    walls = condition.surroundings_temperature or ambient.surroundings_temperature or ambient.temperature
+    return Radiation(surface=surface, emissivity=emissivity, surroundings_temperature=walls)
+
+
+def _radiation_beside(
+    context: _Context, condition: laws.ThermalRadiation, surface: str
+) -> list[BoundaryCondition]:
+    """What a surface radiates beyond the radiation that its film to room air holds already."""
+    if condition.emissivity_excess == 0.0:
+        return []
+    return [_radiation(context, condition, surface, condition.emissivity_excess)]
 
 
 def _fluid_of(context: _Context, condition: laws.Condition) -> tuple[str, float]:

@@ -124,3 +124,26 @@ def test_a_loss_that_the_case_gives_is_scaled_as_well() -> None:
 def test_a_factor_has_limits(value: float) -> None:
     with pytest.raises(CaseError, match="loss_factors"):
         case_with((("gearboxes.test.loss_factors.seal", value),))
+
+
+def test_rubbing_seals_brake_their_shafts_and_heat_them() -> None:
+    """0.1 N m on two shafts: 0.1 w each, in the heat split of the seals, paid by the motor."""
+    (cold, before), (rig, after) = settled(), settled(("gearboxes.test.seals.*.rubbing_torque", "0.1 N m"))
+    seals = rig.case.gearboxes["test"].seals.values()
+    power = sum(0.1 * rig.shaft_speed(s.shaft, after.point.speed) for s in seals)
+    assert lost(after, "seal") - lost(before, "seal") == pytest.approx(power, rel=1e-3)
+    split = rig.case.gearboxes["test"].heat_split
+    into_body = sum(p.into_body for p in after.losses if p.loss.kind == "seal")
+    assert into_body == pytest.approx((split.seal_into_shaft + split.seal_into_housing) * lost(after, "seal"))
+    paid = drive_power(rig, after) - drive_power(cold, before)
+    assert paid == pytest.approx(lost_in_all(after) - lost_in_all(before), rel=0.01)
+    assert open_share(rig, after) < 2e-3
+
+
+def test_seals_rub_in_a_gearbox_without_a_housing_too() -> None:
+    (_, before), (rig, after) = settled(), settled(("gearboxes.reference.seals.*.rubbing_torque", "0.1 N m"))
+    assert rig.case.gearboxes["reference"].housing is None
+    rubbed = [p for p in after.losses if p.loss.kind == "seal" and p.gearbox == "reference"]
+    assert [p.into_body for p in rubbed] == [0.0, 0.0]
+    assert lost(before, "seal", "reference") == 0.0 < lost(after, "seal", "reference")
+    assert open_share(rig, after) < 2e-3

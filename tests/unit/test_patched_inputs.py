@@ -2,8 +2,10 @@
 
 import pytest
 
+from rigdesign.errors import CaseError
 from rigdesign.rig.joints import FOOT_CONTACT
-from tests.warm_prototype import base, heat_by_kind, lost, open_share, outlet, settled
+from tests.warm_prototype import base, case_with, heat_by_kind, lost, open_share, outlet, settled
+from thermal.boundary import STEFAN_BOLTZMANN
 from thermal.conduction import CLOSURE
 
 BOX = "gearboxes.test"
@@ -84,3 +86,27 @@ def test_the_loss_split_moves_heat_from_oil_to_gears_and_loses_no_more() -> None
     assert lost(after, "mesh") == pytest.approx(lost(before, "mesh"), rel=0.01)
     assert outlet(after, "test.gear_oil") == pytest.approx(outlet(before, "test.gear_oil"), abs=0.3)
     assert open_share(rig, after) < 2e-3
+
+
+def test_an_excess_counts_where_the_film_to_room_air_holds_the_radiation() -> None:
+    """Niemann/Winter films hold radiation, so the emissivity of their walls moves nothing but its excess does."""
+    path = f"{BOX}.housing.boundary.housing_radiation"
+    (_, before), (_, same) = settled(), settled((f"{path}.emissivity", 0.3))
+    assert heat_by_kind(same)["radiation"] == pytest.approx(heat_by_kind(before)["radiation"], rel=1e-6)
+    powers = []
+    for excess in (0.3, -0.3):
+        rig, after = settled((f"{path}.emissivity_excess", excess))
+        rows = [
+            r
+            for r in after.fields["test"].solution.balance.rows
+            if r.kind == "radiation" and r.surface[:5] == "outer"
+        ]
+        powers.append(sum(row.power for row in rows))
+        walls, room = rows[0].mean_temperature, rig.case.ambient.temperature
+        flux = excess * STEFAN_BOLTZMANN * (room**4 - walls**4)
+        assert rows[0].power == pytest.approx(flux * rows[0].area, rel=0.05)
+        assert after.fields["test"].solution.balance.closure <= CLOSURE
+        assert open_share(rig, after) < 2e-3
+    assert powers[0] < 0.0 < powers[1]
+    with pytest.raises(CaseError, match="add up to"):
+        case_with(((f"{path}.emissivity_excess", 0.9),))
