@@ -104,7 +104,10 @@ class Problem:
     ratios: Array | None = None
 
     def driven(self, grid: HarmonicGrid, base: float) -> Complex:
-        """Windup of the mesh bodies (n_bodies, top + 1) that the swinging torques would make without the meshes."""
+        """Windup of the mesh bodies (n_bodies, top + 1) that the swinging torques would make without the meshes.
+
+        Their angle is zero where that of the first pinion would be without windup.
+        """
         n_bodies = self.model.n_bodies
         motion = np.zeros((n_bodies, grid.top + 1), complex)
         if self.ratios is None:
@@ -154,6 +157,7 @@ def solve_periodic(
     drag = model.drag(speed, drag_torques)
     newton = _Newton(problem, grid, base, receptance)
     driven = problem.driven(grid, base)[:, 1:]
+    lead = np.arange(1, grid.top + 1) * (base / speed / float(model.ratios[model.pinions[0]]))
     ports, twist, drive = start.ports.copy(), start.twist, start.drive
     rest = np.zeros(n_bodies + 1)
     rest[:n_bodies] = ports[:, 0].real
@@ -166,7 +170,9 @@ def solve_periodic(
         ports[:, 0] = rest[:n_bodies]
         reactions = _evaluate(model, grid, speed, base, ports)
         torque = reactions.torque if excitation is None else reactions.torque + excitation
-        miss = np.einsum("kij,jk->ik", receptance, torque[:, 1:]) + driven - ports[:, 1:]
+        miss = np.einsum("kij,jk->ik", receptance, torque[:, 1:]) - ports[:, 1:]
+        if driven.any():
+            miss += driven * np.exp(1j * lead * rest[model.pinions[0]])
         load = np.append(torque[:, 0].real, 0.0)
         balance = model.stiffness @ rest - load - model.twist * twist - drag
         balance[-1] -= drive

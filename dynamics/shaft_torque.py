@@ -17,7 +17,7 @@ WHOLE = 1e-6
 class ShaftTorque:
     """torque cos(order angle - phase): order per turn of its shaft, torque [N m], phase [rad].
 
-    The angle is that of the uniform rotation, zero where all shafts stand at zero.
+    The angle is that of the uniform rotation, zero where the pinion of the first mesh passes zero.
     """
 
     order: float

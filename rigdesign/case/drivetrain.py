@@ -51,7 +51,7 @@ class HarmonicTorque(Part):
     """Torque that swings with the turn of a shaft: torque cos(order angle - phase)."""
 
     order: float = Field(gt=0.0, le=1000.0)
-    """Per turn of that shaft; the angle is zero where all shafts stand at zero."""
+    """Per turn of that shaft; the angle is zero where the pinion of the first mesh passes zero."""
     torque: Torque
     """Amplitude."""
     phase: Angle = 0.0

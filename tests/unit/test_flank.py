@@ -215,7 +215,7 @@ def test_tooth_stiffness_scales_are_handed_on():
     [
         (Microgeometry(pitch_deviations=(1e-6,) * 5), "99 teeth"),
         (Microgeometry(tooth_stiffness=(1.0,) * 98), "99 teeth"),
-        (Microgeometry(tooth_stiffness=(0.0, *(1.0,) * 98)), "positive"),
+        (Microgeometry(tooth_stiffness=(-0.1, *(1.0,) * 98)), "negative"),
         (Microgeometry(tip_relief=1e-6), "tip_relief_length"),
     ],
 )
