@@ -18,13 +18,12 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.flank import alike_teeth
 from dynamics.hill_system import SAME_CLASS, HillSystem, MeshPeriodic
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
-from dynamics.mesh_tables import has_individual_teeth
 from dynamics.response_curve import CurvePoint
 from dynamics.tooth_cycle import CycleForces, cycle_forces
-from dynamics.tooth_excitation import mean_teeth
 from dynamics.tooth_forcing import ToothForcing
 
 Array = NDArray[np.float64]
@@ -33,8 +32,8 @@ Integers = NDArray[np.int64]
 
 LEAST_HARMONICS, MARGIN = 12, 8
 """Mesh harmonics on both sides at least, and beyond the highest order asked for."""
-CYCLE_STEPS = 2
-"""Steps that correct for what the contacts do beyond first order."""
+CYCLE_STEPS = 30
+"""Steps at most that correct for what the contacts do beyond first order."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,13 +75,13 @@ class DeviationResponse:
         twist_held: bool = False,
         steps: int = CYCLE_STEPS,
     ) -> None:
-        """Linearise about ``base``, found for the laws with all teeth alike (``ideal_laws``), over one mesh period.
+        """Linearise about ``base``, found for the laws with all teeth alike (``alike_teeth``), over one mesh period.
 
         laws : with their deviations; twist_held : the twist is held and not the mean torque of the first mesh
         steps : corrections beyond first order; 0 is the linear response
         """
         self.laws, self.steps = tuple(laws), steps
-        self.loop = MeshPeriodic(system, ideal_laws(laws), base, twist_held=twist_held)
+        self.loop = MeshPeriodic(system, [alike_teeth(law) for law in laws], base, twist_held=twist_held)
         self.forcing = ToothForcing(self.laws, self.loop)
 
     @cached_property
@@ -92,7 +91,7 @@ class DeviationResponse:
 
     @property
     def change(self) -> float:
-        """Largest change of the approach in the last correction, relative to its whole deviation [-]."""
+        """By how much the approach still moved in the last correction, relative to its whole deviation [-]."""
         return max((cycle.change for cycle in self.cycles), default=0.0)
 
     def loads(self, orders: Iterable[float], torques: Sequence[HarmonicTorque] = ()) -> list[OrderLoads]:
@@ -165,11 +164,6 @@ class DeviationResponse:
                     amplitude = torque.amplitude if sign > 0.0 else torque.amplitude.conjugate()
                     given[int(np.flatnonzero(dofs == torque.dof)[0]), h - number[0]] += 0.5 * amplitude
         return given
-
-
-def ideal_laws(laws: Iterable[MeshLaw]) -> list[MeshLaw]:
-    """Return the laws with all teeth of a gear alike."""
-    return [mean_teeth(law) if has_individual_teeth(law) else law for law in laws]
 
 
 def motion_orders(system: LinearSystem, loads: OrderLoads, dofs: Sequence[int]) -> Complex:

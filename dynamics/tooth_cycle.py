@@ -2,10 +2,12 @@
 
 Over the turns after which the same tooth of the gear stands at the same place of the mesh period, the true torques of
 the teeth along the motion found so far, less the tangents times its change, are forces on the linear equations that
-give the next motion: Newton's method with the tangent of the equal teeth. Gears of the same cycle are taken together;
-gears of different cycles each alone, so that what two of them do together beyond first order is left out.
+give the next motion: Newton's method with the tangent of the equal teeth, accelerated. Gears of the same cycle are
+taken together; gears of different cycles each alone, so that what two of them do together beyond first order is left
+out.
 """
 
+from collections.abc import Sequence
 from itertools import repeat
 from math import gcd
 from typing import NamedTuple
@@ -26,13 +28,17 @@ Integers = NDArray[np.int64]
 
 REACH = 12
 """Mesh harmonics on both sides in the corrections."""
+SETTLED = 5e-3
+"""Change of the approach, relative to its whole deviation, at which the corrections end [-]."""
+MEMORY = 8
+"""Answers that the next motion is combined from."""
 
 
 class CycleForces(NamedTuple):
     """Forces of the gears of one cycle on the linear equations, tooth deviations included.
 
     cells : mesh periods in the cycle; spectrum : (n_meshes, 2, cells n) two-sided, order j / cells of the cell at j
-    change : of the approach in the last step, relative to its whole deviation [-]
+    change : by which the approach still moved in the last step, relative to its whole deviation [-]
     """
 
     cells: int
@@ -96,33 +102,34 @@ class _Cycle:
             self.first[:, m] += forcing.of_cycle(m, side, cells, number)
 
     def run(self, steps: int) -> CycleForces:
-        """Correct the forces so many times."""
-        loop = self.loop
+        """Correct the forces until the motion stays, at most so many times."""
         count = self.cells * self.n
-        nothing = np.zeros((loop.bodies.size, self.number.size), complex)
         order = np.fft.fftfreq(count, 1.0 / count) / self.cells
-        shift = np.exp(-1j * order * loop.cell_order * loop.start)
-        approach = self._in_time([system.solve(f, nothing) for system, f in zip(self.systems, self.first)])
-        spectrum = np.zeros((len(loop.ideal), 2, count), complex)
-        change = 0.0
-        for step in range(steps):
-            forces = self._beyond(*approach)
-            spectrum = np.fft.fft(forces, axis=-1) / count * shift
-            if step == steps - 1:
-                break
+        shift = np.exp(-1j * order * self.loop.cell_order * self.loop.start) / count
+        classes = np.arange(self.cells // 2 + 1) / self.cells
+        motion = self._answer(self.first)
+        mixing = _Mixing()
+        result = CycleForces(self.cells, np.zeros(0, complex), np.inf)
+        for _ in range(steps):
+            spectrum = np.fft.fft(self._beyond(*motion), axis=-1) * shift
             result = CycleForces(self.cells, spectrum, 0.0)
-            found = [
-                system.solve(result.of_class(j / self.cells, self.number), nothing)
-                for j, system in enumerate(self.systems)
-            ]
-            before, approach = approach, self._in_time(found)
-            change = float(
-                np.abs(approach[0] - before[0]).max() / max(float(np.abs(approach[0]).max()), 1e-300)
-            )
-        return CycleForces(self.cells, spectrum, change)
+            answer = self._answer([result.of_class(float(residue), self.number) for residue in classes])
+            moved, whole = (float(np.abs(values).max()) for values in (answer[0] - motion[0], answer[0]))
+            result = result._replace(change=moved / max(whole, 1e-300))
+            if result.change < SETTLED:
+                break
+            motion = mixing.next(motion, answer)
+        return result
 
-    def _in_time(self, found: list[ClassSolution]) -> tuple[Array, Array, Array, Array]:
-        """Changes of approach, its rate, pinion angle and pinion speed over the cycle, each (n_meshes, count)."""
+    def _answer(self, forces: Sequence[Complex] | Complex) -> Array:
+        """Motion that forces of every class (n_classes, n_meshes, 2, n_number) make, see `_in_time`."""
+        nothing = np.zeros((self.loop.bodies.size, self.number.size), complex)
+        return self._in_time(
+            [system.solve(of_class, nothing) for system, of_class in zip(self.systems, forces)]
+        )
+
+    def _in_time(self, found: Sequence[ClassSolution]) -> Array:
+        """Changes of approach, its rate, pinion angle and pinion speed over the cycle (4, n_meshes, count)."""
         loop, count = self.loop, self.cells * self.n
         spectra = np.zeros((4, len(loop.ideal), count), complex)
         for j, (system, solution) in enumerate(zip(self.systems, found)):
@@ -140,8 +147,7 @@ class _Cycle:
                 spectra[..., -place % count] = values.conj()
         order = np.fft.fftfreq(count, 1.0 / count) / self.cells
         turned = spectra * np.exp(1j * order * loop.cell_order * loop.start)
-        approach, rate, angle, speed = np.fft.ifft(turned, axis=-1).real * count
-        return approach, rate, angle, speed
+        return np.asarray(np.fft.ifft(turned, axis=-1).real * count)
 
     def _beyond(self, approach: Array, rate: Array, angle: Array, speed: Array) -> Array:
         """True torques less those of equal teeth and tangents times change (n_meshes, 2, count)."""
@@ -157,6 +163,28 @@ class _Cycle:
             self.waves[0] * approach[:, None] + self.waves[1] * rate[:, None] + self.waves[2] * angle[:, None]
         )
         return np.asarray(forces - self.known - linear)
+
+
+class _Mixing:
+    """Next motion from the ones before and their answers (D. G. Anderson, J. ACM 12, 1965).
+
+    Where a tooth is much weaker than the mean the plain step comes closer by a share only.
+    """
+
+    def __init__(self) -> None:
+        self._before: list[tuple[Array, Array]] = []
+
+    def next(self, motion: Array, answer: Array) -> Array:
+        """Combination of the answers whose approach would be missed least."""
+        miss = (answer - motion)[0].ravel()
+        self._before = [*self._before, (answer, miss)][-MEMORY:]
+        if len(self._before) == 1:
+            return answer
+        steps = np.array([miss - old for _, old in self._before[:-1]])
+        shares = np.linalg.lstsq(steps @ steps.T, steps @ miss, rcond=1e-10)[0]
+        return np.asarray(
+            answer - sum(share * (answer - old) for share, (old, _) in zip(shares, self._before[:-1]))
+        )
 
 
 def _with_teeth(ideal: MeshLaw, law: MeshLaw, gears: list[tuple[int, int]], m: int) -> MeshLaw:

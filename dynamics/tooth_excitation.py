@@ -25,21 +25,6 @@ OUTPUTS = 3
 """Torque on the pinion, torque on the wheel [N m], front less back force times the pinion's base radius [N m]."""
 
 
-def mean_teeth(law: MeshLaw) -> MeshLaw:
-    """Return the law with all teeth alike: the mean deviation is part of the gap, the mean scale of the stiffness."""
-    shift = law.deviation_1.mean(axis=0) + law.deviation_2.mean(axis=0)
-    scale = float(law.scale_1.mean() * law.scale_2.mean())
-    n_path = law.stiffness.shape[1]
-    return law._replace(
-        gap=law.gap + shift,
-        stiffness=law.stiffness * scale,
-        deviation_1=np.zeros((1, n_path)),
-        deviation_2=np.zeros((1, n_path)),
-        scale_1=np.ones(1),
-        scale_2=np.ones(1),
-    )
-
-
 class Motion(NamedTuple):
     """Motion of one mesh, each (n,): pinion angle [rad], approach with its offset [m], speeds [rad/s]."""
 
@@ -69,7 +54,7 @@ class PairSensitivity(NamedTuple):
 def pair_sensitivity(law: MeshLaw, packed: PackedMeshes, motion: Motion) -> PairSensitivity:
     """Return the sensitivities of all pairs that touch along a motion.
 
-    law : with all teeth alike (``mean_teeth``); packed : the same, ``pack_meshes([law])``
+    law : with all teeth alike (``alike_teeth``); packed : the same, ``pack_meshes([law])``
     """
     found = [
         contacts for sign in (1.0, -1.0) if (contacts := _contacts(law, packed, motion, sign)) is not None

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.bracing import Mode, ShiftedGear, brace
-from dynamics.flank import Microgeometry, cumulative_pitch, mesh_law, pitch_waves
+from dynamics.flank import Microgeometry, alike_teeth, cumulative_pitch, mesh_law, pitch_waves
 from dynamics.gear import GearPair
 from dynamics.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.losses import ToothPath
@@ -297,12 +297,15 @@ def shifted_gear(rig: Rig) -> ShiftedGear | None:
 
 
 def brace_cold(rig: Rig, point: OperatingPoint, cold: Feedback) -> Setting:
-    """Setting that makes the asked torque in the cold loop; held ever after in the held modes."""
+    """Setting that makes the asked torque in the cold loop; held ever after in the held modes.
+
+    The torque is the mean over all places where teeth that are not alike may come to rest.
+    """
     assert rig.case.drivetrain is not None and rig.system is not None
     mode = rig.case.drivetrain.bracing.mode
     if mode == "torque_controlled":
         return Setting(mode=mode)
-    laws = laws_of(mesh_models(rig, point, cold))
+    laws = [alike_teeth(law) for law in laws_of(mesh_models(rig, point, cold))]
     state = brace(rig.system, laws, signed_torque(rig, point), mode, gear=shifted_gear(rig))
     return Setting(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
 

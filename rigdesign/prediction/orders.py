@@ -21,9 +21,9 @@ from dynamics.deviation_response import (
     DeviationResponse,
     HarmonicTorque,
     OrderLoads,
-    ideal_laws,
     mean_windup,
 )
+from dynamics.flank import alike_teeth
 from dynamics.initial_state import pinion_ratios
 from dynamics.linear_system import LinearSystem
 from dynamics.response_curve import CurvePoint, periodic_response
@@ -38,6 +38,11 @@ from rigdesign.state import OperatingPoint
 
 Array = NDArray[np.float64]
 Orders = dict[tuple[str, float], complex]
+
+SAME_ORDER = 1e-6
+"""Relative difference below which two orders are the same."""
+UNSETTLED = 0.05
+"""Change of the approach in the last correction from which the contacts are followed exactly [-]."""
 
 
 def shaft_orders(
@@ -88,8 +93,9 @@ class PointOrders:
         base : response of the same point with all teeth alike and no torque that swings (`ideal_response`), where
             it is known
         exact : follow all contacts over the hunting cycle instead (seconds, not milliseconds)
-        steps : corrections for what the contacts do beyond first order; 0 is the linear response about the motion
-            with all teeth alike
+        steps : corrections at most for what the contacts do beyond first order; 0 is the linear response about the
+            motion with all teeth alike. Where all of them do not suffice (a tooth that is all but missing) the exact
+            motion is taken
         """
         assert rig.system is not None and rig.drivetrain is not None
         self.rig, self.point, self.models, self.drags, self.setting = (
@@ -117,13 +123,13 @@ class PointOrders:
     @cached_property
     def solved(self) -> "_Solved":
         """The motion. Raises NotConverged."""
-        if self.exact:
-            return _Exact(exact_motion(self.rig, self.point, self.laws, self.drags, self.setting))
-        base = self._base or ideal_response(self.rig, self.point, self.models, self.drags, self.setting)
-        held = self.setting.mode != "torque_controlled"
-        return _Deviating(
-            DeviationResponse(self.system, self.laws, base, twist_held=held, steps=self.steps), base
-        )
+        if not self.exact:
+            base = self._base or ideal_response(self.rig, self.point, self.models, self.drags, self.setting)
+            held = self.setting.mode != "torque_controlled"
+            response = DeviationResponse(self.system, self.laws, base, twist_held=held, steps=self.steps)
+            if self.steps < CYCLE_STEPS or response.change < UNSETTLED:
+                return _Deviating(response, base)
+        return _Exact(exact_motion(self.rig, self.point, self.laws, self.drags, self.setting))
 
     @cached_property
     def swings(self) -> tuple[Swing, ...]:
@@ -175,10 +181,6 @@ class PointOrders:
         )  # fmt: skip
 
 
-SAME_ORDER = 1e-6
-"""Relative difference below which two orders are the same."""
-
-
 def ideal_response(
     rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], drags: Mapping[str, float], setting: Setting
 ) -> CurvePoint:
@@ -190,7 +192,7 @@ def ideal_response(
     controlled = setting.mode == "torque_controlled"
     curve = periodic_response(
         _still(rig.system),
-        ideal_laws(shifted_laws(rig, models, setting)),
+        [alike_teeth(law) for law in shifted_laws(rig, models, setting)],
         [rig.pinion_speed(point.speed)],
         signed_torque(rig, point) if controlled else None,
         twist=None if controlled else setting.twist,

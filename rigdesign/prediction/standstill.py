@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.deviation_response import ideal_laws
+from dynamics.flank import alike_teeth
 from dynamics.mesh_force import evaluate_mesh
 from dynamics.mesh_law import MeshLaw
 from dynamics.modes import LoopMode, loop_modes
@@ -76,7 +76,10 @@ def standing_laws(rig: Rig) -> list[MeshLaw]:
     assert rig.system is not None
     point = OperatingPoint(stage="standstill", speed=0.0, torque=standstill_torque(rig))
     cold = cold_feedback(rig, point)
-    laws = ideal_laws(shifted_laws(rig, mesh_models(rig, point, cold), brace_cold(rig, point, cold)))
+    laws = [
+        alike_teeth(law)
+        for law in shifted_laws(rig, mesh_models(rig, point, cold), brace_cold(rig, point, cold))
+    ]
     loop = port_model(rig.system, laws)
     state = solve_static(loop, torque=signed_torque(rig, point))
     found = []
