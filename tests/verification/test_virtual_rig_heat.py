@@ -453,11 +453,21 @@ def test_finer_cells_converge():
 
 def test_thermocouples_read_continuously_and_on_the_rig_only():
     boxes = rig(PROTOTYPE)[1]
-    line = {f"{z:.4f}": (0.0, -0.0497, z) for z in np.linspace(0.02, 0.26, 60)}
-    read = np.array(list(truth().solve(FULL, line)["thermocouples"].values()))
-    assert np.abs(np.diff(read)).max() < 1.5
-    with pytest.raises(OffTheRigError):
-        truth().solve(FULL, {"off": (0.12, 0.0, 0.2)})
+    for start, end in (
+        ((0.0, -0.0747, 0.005), (0.0, -0.0747, 0.275)),
+        ((0.0, -0.155, 0.16), (0.0, 0.155, 0.16)),
+        ((0.002, 0.16, 0.1), (0.28, 0.16, 0.1)),
+        ((-0.25, 0.1, 0.0), (-0.01, 0.1, 0.0)),
+    ):
+        steps = np.linspace(0.0, 1.0, 401)[:, None]
+        points = np.array(start) * (1.0 - steps) + np.array(end) * steps
+        read = truth().solve(FULL, {str(i): tuple(p) for i, p in enumerate(points)})["thermocouples"]
+        read = np.array(list(read.values()))
+        assert np.abs(np.diff(read)).max() < 0.04 * np.ptp(read) + 0.02
+        assert np.ptp(read) > 2.0
+    for wrong in ((0.12, 0.0, 0.2), (0.0, -0.0497, 0.145), (0.1, 0.0, 0.0)):
+        with pytest.raises(OffTheRigError):
+            truth().solve(FULL, {"off": wrong})
     rng = np.random.default_rng(1)
     for place in PLACES.values():
         moved = scattered(boxes["test"], place, rng)

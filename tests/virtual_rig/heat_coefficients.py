@@ -48,6 +48,9 @@ class FilmModel:
         layers = (self.c["layers"] + self.size("stratified_chamber")) * net.fh
         for group in ("chamber", "sump"):
             offset[net.group_of[group]] = layers[net.group_of[group]]
+        for group in ("bearing", "journal"):  # the film is colder than the oil that leaves it
+            index = net.group_of[group]
+            offset[index] = (self.c["film_weight"] - 1.0) * (t[net.fj[index]] - run.bearing_inlet)
         for group in ("shaft_out", "shaft_end"):
             index = net.group_of.get(group, np.array([], dtype=int))
             outside[index] = air

@@ -29,7 +29,7 @@ CONSTANTS: Mapping[str, Constant] = {
     "film_cold_end": Constant(320.0, 0.10), "film_cold_floor": Constant(270.0, 0.10),
     "film_seal_bore": Constant(260.0, 0.10), "film_rim": Constant(650.0, 0.08),
     "film_shaft_cold": Constant(1.0, 0.08),
-    "film_disc": Constant(0.70, 0.08), "film_drum": Constant(0.9, 0.08), "film_seal_gap": Constant(110.0, 0.10),
+    "film_disc": Constant(0.95, 0.08), "film_drum": Constant(0.9, 0.08), "film_seal_gap": Constant(110.0, 0.10),
     "nusselt_bearing": Constant(4.0, 0.07),
     "exponent_chamber": Constant(0.12, 0.04, True, 2.0, 0.05), "exponent_cold": Constant(0.10, 0.04, True, 2.0, 0.04),
     "exponent_rim": Constant(0.18, 0.04, True, 2.0, -0.04), "exponent_flow": Constant(0.15, 0.04, True, 2.0),
@@ -52,7 +52,7 @@ CONSTANTS: Mapping[str, Constant] = {
     # oil
     "oil_viscosity": Constant(1.0, 0.04), "oil_index": Constant(1.0, 0.02), "oil_heat_capacity": Constant(1.0, 0.02),
     "oil_density": Constant(1.0, 0.01), "oil_conductivity": Constant(1.0, 0.04),
-    "mist_share": Constant(0.15, 0.10), "straight_to_sump": Constant(0.25, 0.10),
+    "mist_share": Constant(0.35, 0.10), "straight_to_sump": Constant(0.20, 0.10),
     "spray_front": Constant(0.5, 0.03, True, 2.0, 0.05), "feed_front": Constant(1.0, 0.04),
     "feed_pinion": Constant(1.0, 0.04),
     "layers": Constant(4.0, 1.5, True, 1.5, 6.0),
