@@ -84,7 +84,9 @@ def sensors_of(document: MeasurementFile) -> dict[str, SettingSensor]:
 def _orders(entry: ChannelTable, places: Places) -> tuple[float, ...]:
     if entry.quantity not in ORDER_QUANTITIES:
         return ()
-    chosen = places.orders if entry.orders is None else tuple(sorted(set(entry.orders)))
+    chosen = places.orders
+    if entry.orders is not None:
+        chosen = tuple(sorted({places.snapped(order) for order in entry.orders}))
     return tuple(order for order in chosen if order > 0.0) if entry.quantity == "angle" else chosen
 
 

@@ -17,7 +17,7 @@ from rigdesign.measurement.table import MOST_FAULTS, numbers, read_table
 from rigdesign.prediction.model import ORDER_QUANTITIES, Feature
 
 COLUMNS = ("point", "repeat", "channel", "order", "real", "imaginary")
-SAME_ORDER = 1e-4
+SAME_ORDER = 1e-3
 """Most difference between an order of the table and one that is asked for."""
 
 

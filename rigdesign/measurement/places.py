@@ -12,6 +12,8 @@ from thermal.housing_geometry import HousingGeometry
 from thermal.housing_surfaces import body_names, surface_names
 
 MOTOR = "motor"
+ROUNDED = 1e-3
+"""Most an order written as a decimal may be off the fraction it stands for."""
 SHAFT_ORDERS = (1, 2, 3, 4)
 """Orders of every shaft that are compared unless a channel says otherwise."""
 MESH_ORDERS = (1, 2)
@@ -153,6 +155,11 @@ class Places:
     def _cycle(self, name: str, box: Gearbox) -> int:
         turns = [self.gear_orders[gear] for gear in self.gear_orders if gear.startswith(f"{name}.")]
         return lcm(1, *(turn.denominator for turn in turns))
+
+    def snapped(self, order: float) -> float:
+        """The order that turns with some gear, a multiple of 1 / cycle, if one is as near as a rounded decimal."""
+        exact = Fraction(round(order * self.cycle), self.cycle)
+        return float(exact) if abs(float(exact) - order) < ROUNDED else order
 
     @cached_property
     def orders(self) -> tuple[float, ...]:

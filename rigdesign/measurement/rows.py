@@ -177,10 +177,13 @@ def points_of(
         means = {column: _mean(values) for column, values in readings.items()}
         lost = [column for column, sensor in sensors.items()
                 if math.isnan(means[column]) and sensor.quantity in ("speed", "torque")]  # fmt: skip
-        negative = [column for column, sensor in sensors.items()
-                    if means[column] < 0.0 and sensor.quantity in ("speed", "torque", "flow")]  # fmt: skip
+        negative = [column for column, sensor in sensors.items() if _impossible(sensor, readings[column])]
         if lost or negative:
-            why = f"no reading of {', '.join(lost)}" if lost else f"{', '.join(negative)} below zero"
+            why = (
+                f"no reading of {', '.join(lost)}"
+                if lost
+                else f"{', '.join(negative)} below zero, or a speed of zero"
+            )
             findings.append(
                 Finding(id="unknown_setting", weight="dropped", points=(name,),
                         text=f"{name}: {why}; complete or correct its rows")
@@ -227,6 +230,14 @@ def _setting(
         ambient_temperature=single.get("ambient_temperature"),
         tooth_offset=dict(tooth_offset),
     )
+
+
+def _impossible(sensor: SettingSensor, values: NDArray[np.float64]) -> bool:
+    """A speed, torque or flow below zero, or a point that does not turn."""
+    finite = values[np.isfinite(values)]
+    if sensor.quantity not in ("speed", "torque", "flow") or not finite.size:
+        return False
+    return bool(finite.min() < 0.0 or (sensor.quantity == "speed" and finite.max() == 0.0))
 
 
 def _mean(values: NDArray[np.float64]) -> float:

@@ -91,8 +91,8 @@ def residual_map(comparison: Comparison) -> "Figure":
     height = 0.9 + 0.17 * len(shown)
     figure = new_figure(height)
     axes = figure.subplots()
+    axes.set_facecolor(GRID)
     colours = LinearSegmentedColormap.from_list("residual", [SERIES[0], "#ffffff", SERIES[1]])
-    colours.set_bad(GRID)
     picture = axes.pcolormesh(
         np.ma.masked_invalid(np.array(list(shown.values()))),
         cmap=colours, vmin=-COLOUR_END, vmax=COLOUR_END, edgecolors="white", linewidth=0.5,
