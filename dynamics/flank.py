@@ -190,14 +190,20 @@ def _along_profile(pair: GearPair, index: int, path: Array) -> Array:
 
 def alike_teeth(law: MeshLaw, pinion: bool = True, wheel: bool = True) -> MeshLaw:
     """The law with the teeth of pinion, wheel or both alike: the mean of their deviations and of their stiffness."""
-    shift, scale = np.zeros(law.stiffness.shape[1]), 1.0
-    changed: dict[str, Array] = {}
-    for chosen, name in ((pinion, "1"), (wheel, "2")):
-        if chosen:
-            deviation, scales = getattr(law, f"deviation_{name}"), getattr(law, f"scale_{name}")
-            shift, scale = shift + deviation.mean(axis=0), scale * float(scales.mean())
-            changed |= {f"deviation_{name}": np.zeros((1, shift.size)), f"scale_{name}": np.ones(1)}
-    return law._replace(gap=law.gap + shift, stiffness=law.stiffness * scale, **changed)
+    if pinion:
+        law = _with_means(law, law.deviation_1, law.scale_1)._replace(
+            deviation_1=np.zeros((1, law.stiffness.shape[1])), scale_1=np.ones(1)
+        )
+    if wheel:
+        law = _with_means(law, law.deviation_2, law.scale_2)._replace(
+            deviation_2=np.zeros((1, law.stiffness.shape[1])), scale_2=np.ones(1)
+        )
+    return law
+
+
+def _with_means(law: MeshLaw, deviation: Array, scale: Array) -> MeshLaw:
+    """The law with the mean of the deviations in its gap and that of the scales in its stiffness."""
+    return law._replace(gap=law.gap + deviation.mean(axis=0), stiffness=law.stiffness * float(scale.mean()))
 
 
 def reach_beyond(law: MeshLaw, approach: Array) -> str:

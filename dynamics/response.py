@@ -241,8 +241,8 @@ def run_schedule(
         turned = (
             turned[-1] + np.concatenate(([0.0], np.cumsum(0.5 * (target[1:] + target[:-1])))) / sample_rate
         )
-        for i, torques in enumerate(system.shaft_torques):
-            given[:, 4 + i] = torques.at(ratios[torques.dof] / drive_ratio * turned[1:])
+        for i, swinging in enumerate(system.shaft_torques):
+            given[:, 4 + i] = swinging.at(ratios[swinging.dof] / drive_ratio * turned[1:])
         if command.torque is not None:
             asked = np.interp(at[1:], command.time, command.torque)
             given[:, 3] = asked

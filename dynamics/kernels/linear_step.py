@@ -98,7 +98,7 @@ def slow_targets(
         target[2 + i] = value * sliding_direction(speed)
 
 
-@njit(cache=True)  # type: ignore[untyped-decorator]
+@njit(cache=True)
 def given_targets(given: Array, ahead: int, target: Array) -> None:
     """Fill the slow inputs behind the first ``ahead`` ones with what is given for the end of a sample."""
     for k in range(ahead, target.shape[0]):

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from dynamics.flank import reach_beyond
+from dynamics.response import Command, run_schedule
 from dynamics.response_curve import periodic_response
 from dynamics.static_loop import port_model, solve_static
 from rigdesign import load_case
@@ -177,6 +178,21 @@ def test_coupling_out_of_line_swings_the_loop_by_its_own_stiffness() -> None:
     quasi_static = 5.0 / 9e4 / loop_compliance(models)
     raised = 1.0 / (1.0 - (2.0 * 200.0 / (2.0 * math.pi * 258.0)) ** 2)
     assert quasi_static < abs(found) < 1.5 * raised * quasi_static
+
+
+def test_run_in_time_swings_as_the_periodic_response() -> None:
+    case = loop().with_value(EXCITATION, [{"order": 2, "torque": "5 N m", "phase": "30 deg"}])
+    rig, models = built(case)
+    assert rig.system is not None
+    twist = brace_cold(rig, POINT, cold_feedback(rig, POINT)).twist
+    time = np.array([0.0, 0.8])
+    run = run_schedule(
+        rig.system, laws_of(models), Command(time=time, speed=np.full(2, 200.0), twist=np.full(2, twist)),
+        torque_limit=20.0, sample_rate=20e3, keep_accounts=False,
+    )  # fmt: skip
+    late = run.time > run.time[-1] - 10.0 * 2.0 * math.pi / 200.0
+    found = 2.0 * np.mean(run.torque[0, late] * np.exp(-2j * 200.0 * run.time[late]))
+    assert abs(found) == pytest.approx(abs(swung("time_integration", EXCITATION, 2, 5.0)), rel=0.03)
 
 
 @pytest.mark.slow
