@@ -80,9 +80,8 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
         for name in channels if name not in found
     ]  # fmt: skip
     if not readings:
-        raise MeasurementError(
-            "no channel has a reading; add columns with the names under [channels]", str(file)
-        )
+        reasons = "; ".join(finding.text for finding in findings if finding.weight == "dropped")
+        raise MeasurementError(f"no channel has a reading: {reasons}", str(file))
     return MeasurementSet(
         title=document.title,
         folder=folder,
