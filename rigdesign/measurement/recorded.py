@@ -46,7 +46,6 @@ def read_recordings(
     if faults:
         raise MeasurementError(faults)
     found: Readings = {}
-    seen: set[str] = set()
     by_name = {point.name: point for point in points}
     for entry in document.data.recordings:
         if entry.point not in by_name:
@@ -58,7 +57,6 @@ def read_recordings(
             continue
         here = {name: channel for name, channel in channels.items()
                 if channel.signal in signals and channel.channel.quantity not in STANDING_QUANTITIES}  # fmt: skip
-        seen |= set(here)
         faults += _unit_faults(entry, here, signals)
         if faults:
             continue
@@ -111,7 +109,8 @@ class _Recording:
 
     def _turn(self, signals: Signals) -> TurnAngle | None:
         tach = self._document.data.tach
-        assert tach is not None
+        if tach is None:
+            return None
         try:
             turn = turn_angle(tach, signals, self._entry.start_turn)
         except TachError as error:
