@@ -55,8 +55,8 @@ def diagnose_measurement(
     healthy = None if measurement.baseline is None else load_measurement(measurement.baseline, case)
     effects = effects_of(case)
     with solver_errors(case):
-        data, subject = _compared(case, measurement, effects, say)
-        before = None if healthy is None else _compared(case, healthy, effects, say)[1]
+        data, subject = read_subject(case, measurement, effects, say)
+        before = None if healthy is None else read_subject(case, healthy, effects, say)[1]
         problem = Problem(
             subject=subject,
             baseline=before,
@@ -78,9 +78,13 @@ def diagnose_measurement(
     )
 
 
-def _compared(
-    case: Case, measurement: MeasurementSet, effects: tuple[Effect, ...], say: Progress
+def read_subject(
+    case: Case,
+    measurement: MeasurementSet,
+    effects: tuple[Effect, ...],
+    say: Progress = lambda message: None,
 ) -> tuple[Data, Comparison]:
+    """Readings of a set held against the library of its rig, which is made where none is kept."""
     data = features(measurement)
     channels = tuple(entry.channel for entry in measurement.channels.values())
 

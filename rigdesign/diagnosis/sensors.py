@@ -5,7 +5,7 @@ effect it may be many times that.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,11 +40,13 @@ class SensorError:
     values: Array
     unit: str
     spread: float
+    times: float = TIMES
+    """Bound over the spread."""
 
     @property
     def bound(self) -> float:
         """Largest error that is believed."""
-        return TIMES * self.spread
+        return self.times * self.spread
 
     def column(self) -> Column:
         """Its healthy part."""
@@ -101,7 +103,37 @@ def sensor_errors(
                     spread=one.scale,
                 )
             )
-    return tuple(found)
+    return (*found, *_angle_zero(library, channels))
+
+
+ANGLE_ZERO = 2e-3
+"""Healthy error of the angle at which the mark of the tach stands [rad], one sigma."""
+
+
+def _angle_zero(library: Library, channels: Mapping[str, Channel]) -> list[SensorError]:
+    """All orders turned by one angle of the gear that counts: X_k by i k X_k per radian."""
+    place = {feature: row for row, feature in enumerate(library.features)}
+    values = np.zeros(len(library.features))
+    for feature, row in place.items():
+        if feature.part == "value" or channels[feature.channel].quantity not in ORDER_QUANTITIES:
+            continue
+        other = replace(feature, part="imaginary" if feature.part == "real" else "real")
+        sign = -1.0 if feature.part == "real" else 1.0
+        if other in place:
+            values[row] = sign * feature.order * library.base[place[other]]
+    if not values.any():
+        return []
+    return [
+        SensorError(
+            name="angle_zero",
+            title="the mark of the tach stands elsewhere",
+            kind="sensor",
+            values=values,
+            unit="rad",
+            spread=ANGLE_ZERO,
+            times=20.0,
+        )
+    ]
 
 
 def input_errors(

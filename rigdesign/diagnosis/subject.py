@@ -6,7 +6,7 @@ a wrong model answers wrongly to a right cause.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -55,13 +55,7 @@ class Comparison:
             library=self.library.rows(features),
             channels=self.channels,
             effects=self.effects,
-            errors=tuple(
-                SensorError(
-                    name=error.name, title=error.title, kind=error.kind,
-                    values=error.values[places], unit=error.unit, spread=error.spread,
-                )
-                for error in self.errors
-            ),
+            errors=tuple(replace(error, values=error.values[places]) for error in self.errors),
             scatter=self.scatter[np.ix_(places, places)],
             mesh_orders=self.mesh_orders,
         )  # fmt: skip

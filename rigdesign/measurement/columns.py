@@ -76,6 +76,12 @@ def sensors_of(document: MeasurementFile) -> dict[str, SettingSensor]:
             place=entry.place,
             unit=_spelled(entry.unit, SETTINGS[entry.quantity]),
             noise=units.parse(entry.uncertainty, SETTINGS[entry.quantity].spread),
+            offset_sd=SETTINGS[entry.quantity].offset
+            if entry.offset_uncertainty is None
+            else units.parse(entry.offset_uncertainty, SETTINGS[entry.quantity].spread),
+            scale_sd=SETTINGS[entry.quantity].scale
+            if entry.scale_uncertainty is None
+            else entry.scale_uncertainty,
         )
         for name, entry in document.settings.items()
     }
@@ -102,7 +108,10 @@ def _sd(text: str | None, measured: Measured) -> float:
 
 def _setting(name: str, entry: SettingColumn, places: Places) -> Iterator[Fault]:
     at = f"settings.{name}"
-    yield from _unit_and_spread(at, entry.unit, {"uncertainty": entry.uncertainty}, SETTINGS[entry.quantity])
+    spreads = {"uncertainty": entry.uncertainty}
+    if entry.offset_uncertainty is not None:
+        spreads["offset_uncertainty"] = entry.offset_uncertainty
+    yield from _unit_and_spread(at, entry.unit, spreads, SETTINGS[entry.quantity])
     if entry.quantity in PLACED_SETTINGS:
         if entry.place not in places.streams:
             yield unknown(f"{at}.place", entry.place, places.streams, "oil stream")

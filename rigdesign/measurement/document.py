@@ -95,6 +95,10 @@ class SettingColumn(Part):
     unit: Text
     uncertainty: Spread
     """1 sigma of one reading."""
+    offset_uncertainty: Spread | None = None
+    """1 sigma, systematic, the same over the set; that of a usual instrument when left out."""
+    scale_uncertainty: Share | None = None
+    """1 sigma, systematic, relative; that of a usual instrument when left out."""
 
 
 class Transfer(Part):

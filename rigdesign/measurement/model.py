@@ -63,6 +63,10 @@ class SettingSensor:
     unit: str
     noise: float
     """1 sigma of one reading [SI; K]."""
+    offset_sd: float = 0.0
+    """Systematic, the same over the set [SI; K]."""
+    scale_sd: float = 0.0
+    """Systematic, relative."""
 
 
 @dataclass(frozen=True, kw_only=True)

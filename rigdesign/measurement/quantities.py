@@ -19,10 +19,13 @@ class Measured:
 
     kind : name in ``rigdesign.kinds.KINDS`` of the reading
     uncertainty : an example of its uncertainty
+    offset, scale : systematic uncertainty of a usual instrument where a setting states none [SI; K], relative
     """
 
     kind: str
     uncertainty: str
+    offset: float = 0.0
+    scale: float = 0.0
 
     @property
     def spread(self) -> str:
@@ -37,10 +40,10 @@ class Measured:
 
 SETTINGS: Mapping[str, Measured] = {
     "speed": Measured("speed", "1 rpm"),
-    "torque": Measured("torque", "0.5 N m"),
-    "inlet_temperature": Measured("temperature", "0.3 K"),
-    "flow": Measured("flow", "0.05 l/min"),
-    "ambient_temperature": Measured("temperature", "0.5 K"),
+    "torque": Measured("torque", "0.5 N m", scale=0.01),
+    "inlet_temperature": Measured("temperature", "0.3 K", offset=0.3),
+    "flow": Measured("flow", "0.05 l/min", scale=0.02),
+    "ambient_temperature": Measured("temperature", "0.5 K", offset=0.5),
 }
 """Quantities that say how an operating point was run."""
 

@@ -16,7 +16,6 @@ LOSSES: Mapping[str, tuple[str, str, float, float, float]] = {
     "mesh_loss": ("mesh", "friction of the teeth", 0.6, 1.6, 0.12),
     "bearing_loss": ("bearing", "friction of the bearing films", 0.5, 2.0, 0.12),
     "windage_loss": ("windage", "windage of the gears", 0.3, 3.0, 0.25),
-    "seal_loss": ("seal", "friction of the seals", 0.3, 3.0, 0.25),
     "jet_loss": ("jet", "oil brought up to speed by the gears", 0.3, 3.0, 0.20),
     "squeeze_loss": ("squeeze", "oil squeezed out of the mesh", 0.2, 5.0, 0.25),
 }
@@ -26,7 +25,6 @@ LOSS_SIGNATURES = {
     "mesh_loss": "grows with torque and speed: oil rise, gears and drive torque together",
     "bearing_loss": "grows with n^1.6 to n^2 at any torque: bearing oil, shells and drive torque",
     "windage_loss": "grows with n^2.5 to n^3 at any torque: gear oil and drive torque",
-    "seal_loss": "grows with n^2 at any torque: shaft and seal bores, little drive torque",
     "jet_loss": "grows with flow and n^2: gear oil and drive torque",
     "squeeze_loss": "grows with torque and speed, straight into the oil",
 }
@@ -34,8 +32,10 @@ LOSS_SIGNATURES = {
 
 def heat_effects(case: Case) -> Iterator[Effect]:
     """Entries for every gearbox of the case."""
+    yield _not_steady(case)
     for name, box in case.gearboxes.items():
         yield from _losses(name, box)
+        yield from _seals(name, box)
         yield from _flows(name, box)
         yield from _oil(name, box)
         if box.housing is not None:
@@ -56,6 +56,53 @@ def _losses(name: str, box: Gearbox) -> Iterator[Effect]:
             change=Scaled(((f"gearboxes.{name}.loss_factors.{key}", now),)),
             healthy=healthy,
         )
+
+
+class _Rubbing:
+    """A friction torque shared evenly by the seals of a gearbox."""
+
+    def __init__(self, paths: Mapping[str, float]) -> None:
+        self._paths = paths
+
+    def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
+        more = values[0] / len(self._paths)
+        return {path: now + more for path, now in self._paths.items()}
+
+
+def _seals(name: str, box: Gearbox) -> Iterator[Effect]:
+    paths = {
+        f"gearboxes.{name}.seals.{seal}.rubbing_torque": entry.rubbing_torque
+        for seal, entry in box.seals.items()
+    }
+    if paths:
+        yield Effect(
+            name=f"seal_loss:{name}",
+            title=f"seals of {name} that rub",
+            family="loss",
+            signature="grows with n at any torque: shafts, seal bores and drive torque",
+            parameters=(Parameter(name="friction torque", unit="N m", low=0.0, high=2.0, source=PRACTICE),),
+            change=_Rubbing(paths),
+        )
+
+
+class _Warming:
+    """The time a point has run since the start, from the rate that is its inverse."""
+
+    def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
+        return {"ambient.warming_time": 1.0 / values[0]} if values[0] > 0.0 else {}
+
+
+def _not_steady(case: Case) -> Effect:
+    return Effect(
+        name="not_steady",
+        title="points read before the housing was warm",
+        family="state",
+        signature="heavy parts too cold at every point, oil and drive torque kept",
+        parameters=(
+            Parameter(name="rate", unit="1/s", low=0.0, high=2.0 / 3600.0, source="two runs within an hour"),
+        ),
+        change=_Warming(),
+    )
 
 
 FLOWS = {
@@ -168,21 +215,37 @@ def _films(name: str, housing: Housing) -> Iterator[Effect]:
         f"{at}.bearing_film_factor",
         housing.bearing_film_factor,
     )
-    grey = tuple(
-        (f"{at}.boundary.{entry}.emissivity", condition.emissivity)
+    grey = {
+        f"{at}.boundary.{entry}.emissivity_excess": condition.emissivity_excess
         for entry, condition in housing.boundary.items()
         if isinstance(condition, ThermalRadiation)
-    )
+    }
     if grey:
+        whole = [c.emissivity for c in housing.boundary.values() if isinstance(c, ThermalRadiation)]
+        most = 0.99 - max(whole)
         yield Effect(
             name=f"emissivity:{name}",
             title=f"emissivity of the outside of {name}",
             family="film",
             signature="moves housing and field as dT^4 does",
-            parameters=(factor("factor", 0.3, 1.6),),
-            change=Scaled(grey, 1.0),
-            healthy=0.12,
+            parameters=(
+                Parameter(
+                    name="excess", unit="", low=-0.9 * min(whole), high=max(most, 0.01), source=PRACTICE
+                ),
+            ),
+            change=_Shifted(grey),
+            healthy=0.06,
         )
+
+
+class _Shifted:
+    """Adds the same to the values at several paths."""
+
+    def __init__(self, paths: Mapping[str, float]) -> None:
+        self._paths = paths
+
+    def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:
+        return {path: now + values[0] for path, now in self._paths.items()}
 
 
 def _film(name: str, title: str, path: str, now: float) -> Effect:

@@ -283,7 +283,7 @@ class _Harmonic:
 def _drive(case: Case) -> Iterator[Effect]:
     assert case.drivetrain is not None
     motor, bracing = case.drivetrain.motor, case.drivetrain.bracing
-    for order in (1, 2, 6):
+    for order in (1, 2, 3, 4, 6):
         yield Effect(
             name=f"motor_ripple/{order}",
             title=f"torque ripple of the motor, {order} a turn",

@@ -1,0 +1,293 @@
+"""The blind score: makes sets, fits the calibration to healthy ones, diagnoses the others, counts.
+
+    python -m tests.blind.score generate null plain --out WORK
+    python -m tests.blind.score calibrate --out WORK [--without RIG]
+    python -m tests.blind.score run dev plain --out WORK [--calibration FILE]
+    python -m tests.blind.score run test plain --out WORK --commit HASH
+    python -m tests.blind.score report dev plain --out WORK
+
+Every step goes on where it was stopped. Sets and results stay in WORK, outside of the repository.
+"""
+
+import argparse
+import json
+import time
+from collections.abc import Iterable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import asdict, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rigdesign.case import load_case
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.amplitudes import Amplitudes
+from rigdesign.diagnosis.calibration import Group, fit_amplitudes, missing_spread
+from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.defaults import DEFAULT, Calibration
+from rigdesign.diagnosis.detectability import slope_of
+from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.hypotheses import physical
+from rigdesign.diagnosis.run import diagnose_measurement, read_subject, teeth_a_turn
+from rigdesign.diagnosis.subject import Comparison, plain
+from rigdesign.measurement import load_measurement
+from tests.blind.metrics import Row, canonical, table
+from tests.blind.splits import RIGS, Spec, specs
+from tests.virtual_rig.generate import make_set
+
+ROOT = Path(__file__).resolve().parents[2]
+FIXED = frozenset({"sensor", "input", "widening"})
+"""Amplitudes that are what the measurement states."""
+
+
+def folder_of(out: Path, split: str, mode: str, spec: Spec) -> Path:
+    """Where a set lies; its name says nothing of what is in it."""
+    return out / split / mode / spec.name
+
+
+def set_of(folder: Path) -> Path:
+    """The set itself; with a baseline it lies beside it."""
+    return folder / "set_1" if (folder / "set_1").is_dir() else folder
+
+
+def generate(split: str, mode: str, out: Path, commit: str | None, workers: int) -> None:
+    """Make the sets of a split that are not there yet."""
+    jobs = [(split, mode, out, spec) for spec in specs(split, mode, commit)]
+    with ProcessPoolExecutor(workers) as pool:
+        for number, text in enumerate(pool.map(_generate, jobs, chunksize=2), 1):
+            print(f"{number}/{len(jobs)} {text}", flush=True)
+
+
+def _generate(job: tuple[str, str, Path, Spec]) -> str:
+    split, mode, out, spec = job
+    folder = folder_of(out, split, mode, spec)
+    answer = out / "answers" / split / mode / f"{spec.name}.json"
+    if answer.exists():
+        return "there"
+    started = time.perf_counter()
+    try:
+        entry = make_set(spec.rig, spec.wanted, spec.seed, folder)
+    except ValueError as error:
+        return f"{spec.rig} {spec.wanted['kind']}: {error}"
+    answer.parent.mkdir(parents=True, exist_ok=True)
+    answer.write_text(json.dumps(entry))
+    return f"{spec.rig} {spec.wanted['kind']} {time.perf_counter() - started:.1f} s"
+
+
+@cache
+def case_of(rig: str) -> Case:
+    """The case of a rig."""
+    return load_case(ROOT / "cases" / rig)
+
+
+@cache
+def effects_for(rig: str) -> tuple[Effect, ...]:
+    """Its catalogue."""
+    return effects_of(case_of(rig))
+
+
+def calibrate(out: Path, without: str | None, target: Path) -> None:
+    """Amplitudes and widening from the null split, rigs but one if asked; written as JSON."""
+    sets: dict[tuple[str, str, int], list[Comparison]] = {}
+    for spec in specs("null", "plain"):
+        folder = folder_of(out, "null", "plain", spec)
+        if spec.rig == without or not folder.is_dir():
+            continue
+        subject = _subject(spec.rig, folder)
+        key = (spec.rig, spec.wanted["sensors"], spec.wanted["plan"])
+        sets.setdefault(key, []).append(subject)
+    groups = [Group.of(same) for alike in sets.values() for same in _alike(alike)]
+    amplitudes = fit_amplitudes(groups, Amplitudes(), FIXED)
+    spaces, slopes = [], []
+    for (rig, _, _), alike in sets.items():
+        for subject in alike:
+            space = plain(subject, amplitudes)
+            spaces.append(space)
+            slopes.append(_slopes(rig, subject, space.covariance))
+    widening = missing_spread(spaces, slopes)
+    squares = [space.chi_square / len(space.residual) for space in spaces]
+    content = {
+        "sets": len(spaces),
+        "chi_square": [float(np.median(squares)), float(np.max(squares))],
+        "amplitudes": asdict(amplitudes),
+        "widening": widening,
+    }
+    target.write_text(json.dumps(content, indent=1))
+    print(json.dumps(content, indent=1))
+
+
+def _alike(subjects: list[Comparison]) -> Iterable[list[Comparison]]:
+    """Sets with the very same numbers."""
+    groups: dict[tuple[object, ...], list[Comparison]] = {}
+    for subject in subjects:
+        groups.setdefault(subject.features, []).append(subject)
+    return groups.values()
+
+
+def _slopes(rig: str, subject: Comparison, covariance: Any) -> dict[str, Any]:
+    found: dict[str, list[Any]] = {}
+    effects = {effect.name: effect for effect in effects_for(rig)}
+    single = tuple(replace(effect, any_tooth=0) for effect in effects.values())
+    turn = teeth_a_turn(case_of(rig))
+    for one in physical(covariance, subject.features, single, subject.library.responses, turn):
+        found.setdefault(effects[one.name].kind, []).append(slope_of(one))
+    return {kind: np.hstack(columns) for kind, columns in found.items()}
+
+
+def _subject(rig: str, folder: Path) -> Comparison:
+    case = case_of(rig)
+    return read_subject(case, load_measurement(set_of(folder), case), effects_for(rig))[1]
+
+
+def calibration_of(file: Path | None) -> Calibration:
+    """The frozen one, or one from a file of `calibrate`."""
+    if file is None:
+        return DEFAULT
+    content = json.loads(file.read_text())
+    return replace(DEFAULT, amplitudes=Amplitudes(**content["amplitudes"]), widening=content["widening"])
+
+
+def run(
+    split: str, mode: str, out: Path, commit: str | None, file: Path | None, workers: int, tag: str
+) -> None:
+    """Diagnose every set of a split that has no result yet."""
+    target = out / "results" / f"{split}_{mode}{tag}.jsonl"
+    target.parent.mkdir(parents=True, exist_ok=True)
+    done = (
+        {json.loads(line)["name"] for line in target.read_text().splitlines()} if target.exists() else set()
+    )
+    jobs = [(split, mode, out, spec, file) for spec in specs(split, mode, commit) if spec.name not in done]
+    with ProcessPoolExecutor(workers) as pool, target.open("a") as results:
+        for row in pool.map(_run, jobs):
+            if row is not None:
+                results.write(json.dumps(row) + "\n")
+                results.flush()
+                shown = [effect["effect"] for effect in row["effects"]]
+                print(
+                    row["name"],
+                    row["rig"],
+                    row["kind"],
+                    shown,
+                    "->",
+                    row["verdict"],
+                    row["named"],
+                    flush=True,
+                )
+
+
+def _run(job: tuple[str, str, Path, Spec, Path | None]) -> Row | None:
+    split, mode, out, spec, file = job
+    answer = out / "answers" / split / mode / f"{spec.name}.json"
+    if not answer.exists():
+        return None
+    entry = json.loads(answer.read_text())
+    started = time.perf_counter()
+    folder = set_of(folder_of(out, split, mode, spec))
+    result = diagnose_measurement(case_of(spec.rig), folder, calibration=calibration_of(file))
+    found = result.diagnosis
+    row: Row = {
+        **entry,
+        "name": spec.name,
+        "rig": spec.rig,
+        "verdict": found.decision.verdict,
+        "named": list(found.named),
+        "strength": found.strength,
+        "top": [list(one.parts) for one in found.alternatives],
+        "masses": [one.posterior for one in found.alternatives],
+        "chi_square": found.examinations[0].chi_square / found.examinations[0].count,
+        "rejected": len(found.rejected),
+        "seconds": time.perf_counter() - started,
+        "covered": None,
+        "size_error": None,
+        "gap_shrink": None,
+        "gap_worse": None,
+    }
+    _sizes(row, result)
+    if found.gap is not None and found.found:
+        above = max(found.gap.before - 1.0, 0.0)
+        row["gap"] = [
+            found.gap.before,
+            found.gap.after,
+            found.gap.raw_before,
+            found.gap.raw_after,
+            found.gap.raw_floor,
+        ]
+        row["gap_worse"] = found.gap.after > found.gap.before + 1e-9
+        if above > 0.05:
+            row["gap_shrink"] = 1.0 - max(found.gap.after - 1.0, 0.0) / above
+    return row
+
+
+def _sizes(row: Row, result: Any) -> None:
+    """Whether the interval of a single effect that was named rightly holds its true size."""
+    found = result.diagnosis
+    if found.fit is None or len(row["effects"]) != 1 or len(found.found) != 1:
+        return
+    hidden = row["effects"][0]
+    if canonical(hidden["effect"], row["rig"]) not in found.named:
+        return
+    sizes = found.fit.sizes
+    effect = next((one for one in result.effects if one.claim in found.named), None)
+    true = float(hidden["size"])
+    if effect is not None and len(effect.parameters) == 2:
+        value = float(np.hypot(sizes[0].coordinate, sizes[1].coordinate))
+        half = max(0.5 * (one.interval[1] - one.interval[0]) for one in sizes)
+        low, high = value - half, value + half
+        true = abs(true)
+    elif effect is not None and effect.parameters[0].factor:
+        value, low, high = (float(np.expm1(u)) for u in (sizes[0].coordinate, *sizes[0].interval))
+    else:
+        value, (low, high) = sizes[0].coordinate, sizes[0].interval
+    if hidden["effect"].startswith("not_steady"):
+        value, low, high = (3600.0 * one for one in (value, low, high))
+    if hidden["effect"].startswith("seal_loss"):
+        return
+    row["true_size"], row["size"], row["interval"] = true, value, [low, high]
+    row["covered"] = bool(low <= true <= high)
+    row["size_error"] = abs(value - true) / max(abs(true), 1e-12)
+
+
+def report(split: str, mode: str, out: Path, tag: str) -> None:
+    """Print the table of a split in one mode."""
+    text = (out / "results" / f"{split}_{mode}{tag}.jsonl").read_text()
+    rows = [json.loads(line) for line in text.splitlines()]
+    for chosen in (None, *RIGS):
+        own = [row for row in rows if chosen in (None, row["rig"])]
+        print(f"\n{split}, {mode}, {chosen or 'all rigs'}: {len(own)} sets")
+        for name, target, measured in table(own):
+            print(f"  {name:48s} {target:14s} {measured}")
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("step", choices=["generate", "calibrate", "run", "report"])
+    parser.add_argument("split", nargs="?", default="null")
+    parser.add_argument("mode", nargs="?", default="plain")
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--commit")
+    parser.add_argument("--calibration", type=Path)
+    parser.add_argument("--without")
+    parser.add_argument("--tag", default="")
+    parser.add_argument("--workers", type=int, default=2)
+    args = parser.parse_args()
+    match args.step:
+        case "generate":
+            generate(args.split, args.mode, args.out, args.commit, args.workers)
+        case "calibrate":
+            target = (
+                args.out / f"calibration{'' if args.without is None else '_without_' + args.without}.json"
+            )
+            calibrate(args.out, args.without, target)
+        case "run":
+            run(args.split, args.mode, args.out, args.commit, args.calibration, args.workers, args.tag)
+        case _:
+            report(args.split, args.mode, args.out, args.tag)
+
+
+if __name__ == "__main__":
+    main()
