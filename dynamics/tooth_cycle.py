@@ -28,7 +28,7 @@ Integers = NDArray[np.int64]
 
 REACH = 12
 """Mesh harmonics on both sides in the corrections."""
-SETTLED = 5e-3
+SETTLED = 1e-2
 """Change of the approach, relative to its whole deviation, at which the corrections end [-]."""
 MEMORY = 8
 """Answers that the next motion is combined from."""

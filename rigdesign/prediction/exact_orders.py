@@ -33,7 +33,7 @@ class ExactMotion:
 
     speed : of the first pinion [rad/s]; turns : of it in the cycle; phi : (n,) its mean angle [rad]
     dofs : (n_bodies,) freedoms of the gears; torque : (n_bodies, n) on them [N m]
-    twist [rad], drive [N m]; ahead : phi where all shafts stand at zero [rad]
+    twist [rad], drive [N m]
     """
 
     speed: float
@@ -43,7 +43,6 @@ class ExactMotion:
     torque: Array
     twist: float
     drive: float
-    ahead: float
 
     def loads(self, order: float) -> OrderLoads:
         """Loads at an order of the first pinion; zero if the cycle does not hold it."""
@@ -85,7 +84,7 @@ def exact_motion(
             wave = found.wave
             return _over_cycle(
                 rig, laws, speed, wave.time, (wave.angle, wave.approach, wave.omega_1, wave.omega_2),
-                twist=found.twist, drive=found.drive_torque, from_zero=True,
+                twist=found.twist, drive=found.drive_torque,
             )  # fmt: skip
     marched = periodic_by_time(
         rig.system, laws, speed=speed, torque=torque, twist=twist, period="hunting_cycle", drag_torques=drags,
@@ -97,15 +96,15 @@ def exact_motion(
     omega_2 = (radius_1 * marched.omega_1 - marched.approach_rate) / radius_2
     return _over_cycle(
         rig, laws, speed, marched.time, (marched.angle_1, marched.approach, marched.omega_1, omega_2),
-        twist=marched.twist, drive=marched.drive_torque, from_zero=False,
+        twist=marched.twist, drive=marched.drive_torque,
     )  # fmt: skip
 
 
 def _over_cycle(
     rig: Rig, laws: Sequence[MeshLaw], speed: float, time: Array, motion: tuple[Array, Array, Array, Array], *,
-    twist: float, drive: float, from_zero: bool,
+    twist: float, drive: float,
 ) -> ExactMotion:  # fmt: skip
-    """Torques on the gear bodies along a motion (each (n_meshes, n)) that begins at zero angle or anywhere."""
+    """Torques on the gear bodies along a motion (each (n_meshes, n)) that begins anywhere."""
     assert rig.system is not None
     torque: dict[int, Array] = {}
     for m, (law, ports) in enumerate(zip(laws, rig.system.mesh_ports.tolist())):
@@ -117,5 +116,4 @@ def _over_cycle(
     return ExactMotion(
         speed=speed, turns=speed * step * time.size / (2.0 * pi), phi=start + speed * time,
         dofs=np.array(list(torque), np.int64), torque=np.array(list(torque.values())), twist=twist, drive=drive,
-        ahead=start if from_zero else 0.0,
     )  # fmt: skip

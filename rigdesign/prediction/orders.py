@@ -137,8 +137,8 @@ class PointOrders:
         return tuple(
             Swing(
                 name=torques.name,
-                order=(order := part.order * float(self.ratios[torques.dof])),
-                amplitude=part.torque * complex(np.exp(-1j * (part.phase + order * self.solved.ahead))),
+                order=part.order * float(self.ratios[torques.dof]),
+                amplitude=part.torque * complex(np.exp(-1j * part.phase)),
                 load=torques.load,
             )
             for torques in self.system.shaft_torques
@@ -235,13 +235,11 @@ class _Count:
 
 
 class _Solved(Protocol):
-    """A motion: bracing twist [rad], motor torque [N m], speed of the first pinion [rad/s], and phi [rad] of that
-    pinion where all shafts stand at zero."""
+    """A motion: bracing twist [rad], motor torque [N m] and speed of the first pinion [rad/s]."""
 
     twist: float
     drive: float
     speed: float
-    ahead: float
 
     def loads(self, orders: Sequence[float], swings: Sequence[Swing]) -> Sequence[OrderLoads]:
         """Loads on the drivetrain at orders of the first pinion."""
@@ -253,7 +251,6 @@ class _Deviating:
     def __init__(self, response: DeviationResponse, base: CurvePoint) -> None:
         self.response = response
         self.twist, self.drive, self.speed = base.twist, base.drive_torque, base.speed
-        self.ahead = response.loop.start if base.method == "harmonic_balance" else 0.0
 
     def loads(self, orders: Sequence[float], swings: Sequence[Swing]) -> Sequence[OrderLoads]:
         torques = [
@@ -271,12 +268,7 @@ class _Exact:
 
     def __init__(self, motion: ExactMotion) -> None:
         self.motion = motion
-        self.twist, self.drive, self.speed, self.ahead = (
-            motion.twist,
-            motion.drive,
-            motion.speed,
-            motion.ahead,
-        )
+        self.twist, self.drive, self.speed = motion.twist, motion.drive, motion.speed
 
     def loads(self, orders: Sequence[float], swings: Sequence[Swing]) -> Sequence[OrderLoads]:
         return [self._with(self.motion.loads(order), swings) for order in orders]
