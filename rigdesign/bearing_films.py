@@ -1,6 +1,7 @@
 """Films of the journal bearings at one operating point: what they carry and what heats them."""
 
 import math
+from collections.abc import Callable
 
 from dynamics.journal_bearing import BearingState, JournalBearing, solve_bearing
 from rigdesign.case.gearbox import Gearbox
@@ -15,8 +16,15 @@ from rigdesign.state import Feedback, OperatingPoint
 GRAVITY = 9.81
 
 
-def solve_bearings(rig: Rig, point: OperatingPoint, feedback: Feedback) -> dict[str, BearingState]:
+def solve_bearings(
+    rig: Rig,
+    point: OperatingPoint,
+    feedback: Feedback,
+    solve: Callable[..., BearingState] = solve_bearing,
+) -> dict[str, BearingState]:
     """Film of every journal bearing by ``gearbox.bearing``.
+
+    solve : of one film; one that remembers may stand in its place
 
     A loss that the case prescribes heats its film in place of the friction the film would make.
 
@@ -33,7 +41,7 @@ def solve_bearings(rig: Rig, point: OperatingPoint, feedback: Feedback) -> dict[
         box_name, part = name.split(".")
         oil, inlet = bearing_oil(rig, box_name), box.bearing_oil.inlet_temperature
         with named(f"gearboxes.{box_name}.bearings.{part}"):
-            states[name] = solve_bearing(
+            states[name] = solve(
                 JournalBearing(
                     diameter=entry.diameter,
                     width=entry.width,

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
 from thermal.balance import HeatBalance
@@ -40,8 +41,13 @@ from thermal.low_rank import DIFFERENCE
 
 STEPS = 30
 """Newton steps at most."""
-ENOUGH = 1e-7
+ENOUGH = 1e-5
 """Root mean square of a Newton step [K] after which the coefficients stand."""
+CONTRACTION = 0.2
+"""Fall of the steps above which the Jacobian is made afresh."""
+
+Factor = tuple[FloatArray, NDArray[np.int32]]
+"""LU factors of a Jacobian with the rows of prescribed surfaces, as scipy gives them."""
 
 
 def shapes_of(fields: FloatArray, least: float) -> tuple[FloatArray, FloatArray]:
@@ -97,6 +103,19 @@ class _Joint:
 
 
 @dataclass(frozen=True)
+class Link:
+    """One local conductance at a field: how the residual follows its logarithm."""
+
+    condition: Condition
+    column: FloatArray
+    """(m,) heat that leaves each shape through it [W]."""
+    heat: float
+    """Heat that leaves the solids through a film [W]; zero for others."""
+    heat_slope: FloatArray
+    """(m,) how that heat follows the field [W/K]."""
+
+
+@dataclass(frozen=True)
 class ReducedSolution:
     """Coefficients with the heat balance and the Jacobian there."""
 
@@ -104,8 +123,8 @@ class ReducedSolution:
     """(m,) [K]"""
     balance: HeatBalance
     conditions: tuple[Condition, ...]
-    values: tuple[FilmCoefficient | None, ...]
-    """Coefficient of each condition that has one."""
+    factor: Factor
+    """Of the Jacobian the last step took."""
     steps: int
 
 
@@ -170,8 +189,12 @@ class ReducedConduction:
             self._capacities[key] = np.asarray(self.shapes.T @ (matrix @ self.shapes))
         return self._capacities[key]
 
-    def solve(self, conditions: Sequence[Condition], start: FloatArray) -> ReducedSolution:
+    def solve(
+        self, conditions: Sequence[Condition], start: FloatArray, near: Factor | None = None
+    ) -> ReducedSolution:
         """Coefficients in equilibrium under ``conditions``, from ``start`` (m,).
+
+        near : Jacobian of a solution nearby; kept as long as the steps shrink
 
         Raises
         ------
@@ -181,10 +204,14 @@ class ReducedConduction:
             Newton's method stalls.
         """
         system = Projection(self, conditions)
-        a, history = start.copy(), []
+        a, factor, history = start.copy(), near, [np.inf]
         while True:
-            residual, jacobian = system.at(a)
-            step = system.step(residual, jacobian, a)
+            if factor is None or (len(history) > 2 and history[-1] > CONTRACTION * history[-2]):
+                residual, jacobian = system.at(a)
+                factor = system.factor(jacobian)
+            else:
+                residual = system.residual(a)
+            step = system.step(residual, factor, a)
             share = 1.0
             while system.coldest(a + share * step) <= 0.0 and share > 1e-3:
                 share *= 0.5
@@ -195,14 +222,14 @@ class ReducedConduction:
                     coefficients=a,
                     balance=system.balance(a),
                     conditions=tuple(conditions),
-                    values=tuple(system.coefficients(a)),
-                    steps=len(history),
+                    factor=factor,
+                    steps=len(history) - 1,
                 )
-            if len(history) == STEPS:
+            if len(history) > STEPS:
                 raise NotConverged(
                     f"reduced conduction: Newton step of {history[-1]:.3g} K after {STEPS} steps; check the film "
                     "laws for jumps or start from a nearer field",
-                    tuple(history),
+                    tuple(history[1:]),
                 )
 
 
@@ -277,54 +304,112 @@ class Projection:
         by_b = law(t_a, t_b + DIFFERENCE).value - law(t_a, t_b - DIFFERENCE).value
         return (by_a * first + by_b * second) / (2.0 * DIFFERENCE)
 
-    def at(self, a: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Residual (m,) and Jacobian (m, m) at coefficients ``a``."""
-        reduced = self.reduced
+    def residual(self, a: FloatArray) -> FloatArray:
+        """(m,) heat that leaves with each shape [W]."""
         residual = self.matrix @ a - self.source
+        for condition in self.conditions:
+            if isinstance(condition, Film | Exchange | Contact):
+                found = self._coefficient(condition, a)
+                assert found is not None
+                residual += found.value * self.unit(condition, a)
+            elif isinstance(condition, Radiation):
+                surface = self.reduced.surface(condition.surface)
+                flux = (surface.points @ a) ** 4 - condition.surroundings_temperature**4
+                residual += (
+                    condition.emissivity * STEFAN_BOLTZMANN * (surface.weights * flux) @ surface.points
+                )
+        return np.asarray(residual)
+
+    def at(self, a: FloatArray, *, exact: bool = False) -> tuple[FloatArray, FloatArray]:
+        """Residual (m,) and Jacobian (m, m) at coefficients ``a``.
+
+        exact : with the slope of radiation point by point; else at the mean of a surface, which only costs a step
+        """
         jacobian = self.matrix.copy()
         for condition in self.conditions:
             if isinstance(condition, Film | Exchange | Contact):
-                unit, mass = self.unit(condition, a)
                 found = self._coefficient(condition, a)
                 assert found is not None
-                residual += found.value * unit
-                jacobian += found.value * mass
+                jacobian += found.value * self._mass(condition)
                 slope = self._law_slope(condition, a)
                 if slope.any():
-                    jacobian += np.outer(unit, slope)
+                    jacobian += np.outer(self.unit(condition, a), slope)
             elif isinstance(condition, Radiation):
-                surface = reduced.surface(condition.surface)
-                wall, factor = surface.points @ a, condition.emissivity * STEFAN_BOLTZMANN
-                flux = factor * (wall**4 - condition.surroundings_temperature**4)
-                residual += (surface.weights * flux) @ surface.points
-                slope = 4.0 * factor * surface.weights * wall**3
-                jacobian += surface.points.T @ (slope[:, None] * surface.points)
-        return residual, jacobian
+                surface = self.reduced.surface(condition.surface)
+                factor = 4.0 * condition.emissivity * STEFAN_BOLTZMANN
+                if exact:
+                    slope = factor * surface.weights * (surface.points @ a) ** 3
+                    jacobian += surface.points.T @ (slope[:, None] * surface.points)
+                else:
+                    jacobian += factor * float(surface.mean @ a) ** 3 * surface.mass
+        return self.residual(a), jacobian
 
-    def unit(self, condition: Film | Exchange | Contact, a: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Residual (m,) and its slope (m, m) of a condition at a coefficient of 1 W/(m2 K)."""
+    def unit(self, condition: Film | Exchange | Contact, a: FloatArray) -> FloatArray:
+        """(m,) residual of a condition at a coefficient of 1 W/(m2 K)."""
         if isinstance(condition, Film):
             surface = self.reduced.surface(condition.surface)
-            return surface.mass @ a - condition.fluid_temperature * surface.load, surface.mass
+            return np.asarray(surface.mass @ a - condition.fluid_temperature * surface.load)
         if isinstance(condition, Contact):
-            mass = self.reduced.joint(condition).mass
-            return mass @ a, mass
+            return np.asarray(self.reduced.joint(condition).mass @ a)
         first, second = self._means(condition)
-        area = self.reduced.surface(condition.surface_a).area
         jump = second - first
-        return area * float(jump @ a) * jump, area * np.outer(jump, jump)
+        return self.reduced.surface(condition.surface_a).area * float(jump @ a) * jump
 
-    def step(self, residual: FloatArray, jacobian: FloatArray, a: FloatArray) -> FloatArray:
-        """(m,) Newton step; prescribed surfaces are held by their heat."""
-        if not self.held:
-            return np.asarray(lu_solve(lu_factor(jacobian, check_finite=False), -residual))
-        rows = np.array([row for row, _ in self.held])
-        gap = np.array([float(row @ a) - temperature for row, temperature in self.held])
-        m, k = len(residual), len(rows)
-        whole = np.block([[jacobian, -rows.T], [rows, np.zeros((k, k))]])
-        found = np.linalg.solve(whole, np.append(-residual, -gap))
-        self.multipliers = found[m:]
-        return np.asarray(found[:m])
+    def _mass(self, condition: Film | Exchange | Contact) -> FloatArray:
+        """(m, m) slope of `unit`."""
+        if isinstance(condition, Film):
+            return self.reduced.surface(condition.surface).mass
+        if isinstance(condition, Contact):
+            return self.reduced.joint(condition).mass
+        first, second = self._means(condition)
+        jump = second - first
+        return self.reduced.surface(condition.surface_a).area * np.outer(jump, jump)
+
+    def factor(self, jacobian: FloatArray) -> Factor:
+        """Factors of a Jacobian (m, m), prescribed surfaces held by their heat."""
+        if self.held:
+            rows = np.array([row for row, _ in self.held])
+            zero = np.zeros((len(rows), len(rows)))
+            jacobian = np.block([[jacobian, -rows.T], [rows, zero]])
+        lu, pivots = lu_factor(jacobian, check_finite=False)
+        return np.asarray(lu), np.asarray(pivots)
+
+    def step(self, residual: FloatArray, factor: Factor, a: FloatArray) -> FloatArray:
+        """(m,) Newton step."""
+        gap = [float(row @ a) - temperature for row, temperature in self.held]
+        found = lu_solve(factor, -np.append(residual, gap), check_finite=False)
+        self.multipliers = found[len(residual) :]
+        return np.asarray(found[: len(residual)])
+
+    def links(self, a: FloatArray) -> list[Link]:
+        """Every local conductance at coefficients ``a``: films, radiation, exchanges, contacts."""
+        found: list[Link] = []
+        nothing = np.zeros(self.reduced.size)
+        for condition in self.conditions:
+            if isinstance(condition, Film):
+                surface = self.reduced.surface(condition.surface)
+                law = self._coefficient(condition, a)
+                assert law is not None
+                excess = surface.area * (float(surface.mean @ a) - condition.fluid_temperature)
+                slope = law.value * surface.load + excess * self._law_slope(condition, a)
+                found.append(Link(condition, law.value * self.unit(condition, a), law.value * excess, slope))
+            elif isinstance(condition, Exchange | Contact):
+                law = self._coefficient(condition, a)
+                assert law is not None
+                found.append(Link(condition, law.value * self.unit(condition, a), 0.0, nothing))
+            elif isinstance(condition, Radiation):
+                surface = self.reduced.surface(condition.surface)
+                flux = (surface.points @ a) ** 4 - condition.surroundings_temperature**4
+                column = condition.emissivity * STEFAN_BOLTZMANN * (surface.weights * flux) @ surface.points
+                found.append(Link(condition, np.asarray(column), 0.0, nothing))
+        return found
+
+    def answers(self, a: FloatArray, loads: FloatArray) -> FloatArray:
+        """(m, k) changes of the field by loads (m, k) [W] on the shapes, with the exact Jacobian."""
+        _, jacobian = self.at(a, exact=True)
+        factor = self.factor(jacobian)
+        whole = np.vstack([loads, np.zeros((len(self.held), loads.shape[1]))])
+        return np.asarray(lu_solve(factor, whole, check_finite=False))[: len(a)]
 
     def balance(self, a: FloatArray) -> HeatBalance:
         """Rows of the heat balance at coefficients ``a``, two for an exchange or contact."""

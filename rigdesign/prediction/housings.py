@@ -11,6 +11,7 @@ from rigdesign.growth import HousingGrowth
 from rigdesign.losses import PlacedLoss
 from rigdesign.passes import Parts
 from rigdesign.prediction.growth_map import GrowthMap
+from rigdesign.prediction.places import Weights
 from rigdesign.prediction.shapes import Basis, build_basis
 from rigdesign.rig.boundary import boundary_conditions
 from rigdesign.rig.model import Rig
@@ -19,6 +20,7 @@ from rigdesign.temperatures import HousingField
 from thermal.condition_checks import Condition
 from thermal.conduction import TemperatureSolution
 from thermal.fe.mesh import FloatArray
+from thermal.reduced import Factor
 
 
 @dataclass(frozen=True)
@@ -26,20 +28,28 @@ class ReducedField(HousingField):
     """A projected field with its coefficients."""
 
     coefficients: FloatArray
+    factor: Factor
+    """Of the Jacobian it was found with."""
 
 
 class ReducedHousings:
     """Shapes and growth of every housing of a rig; good for every case that leaves its housings as they are.
 
     states : by gearbox, conditions of some operating points among which those wanted lie
+    readers : by gearbox, sensors at points
     """
 
-    def __init__(self, rig: Rig, states: Mapping[str, Sequence[Sequence[Condition]]]) -> None:
+    def __init__(
+        self,
+        rig: Rig,
+        states: Mapping[str, Sequence[Sequence[Condition]]],
+        readers: Mapping[str, Sequence[Weights]],
+    ) -> None:
         self.bases: dict[str, Basis] = {}
         self.growths: dict[str, GrowthMap] = {}
         self._start: dict[str, FloatArray] = {}
         for name, conditions in states.items():
-            basis = build_basis(rig.conduction[name], conditions)
+            basis = build_basis(rig.conduction[name], conditions, readers.get(name, ()))
             start = np.zeros(basis.reduced.size)
             start[0] = rig.case.ambient.temperature + 30.0
             start = basis.reduced.solve(conditions[0], start).coefficients
@@ -71,15 +81,17 @@ class ReducedHousings:
                 rig, name, point, feedback, bearings, losses, radiation_included=housing.radiation_included
             )
         )
-        near = start.coefficients if isinstance(start, ReducedField) else self._start[name]
-        return self.solved(name, conditions, near)
+        return self.solved(name, conditions, start if isinstance(start, ReducedField) else None)
 
     def solved(
-        self, name: str, conditions: tuple[Condition, ...], near: FloatArray | None = None
+        self, name: str, conditions: tuple[Condition, ...], near: ReducedField | None = None
     ) -> ReducedField:
         """Field of a housing under conditions."""
         reduced = self.bases[name].reduced
-        found = reduced.solve(conditions, self._start[name] if near is None else near)
+        if near is None:
+            found = reduced.solve(conditions, self._start[name])
+        else:
+            found = reduced.solve(conditions, near.coefficients, near.factor)
         solution = TemperatureSolution(
             temperature=reduced.field(found.coefficients),
             balance=found.balance,
@@ -89,7 +101,7 @@ class ReducedHousings:
             volumes={},
             preconditioner=None,
         )
-        return ReducedField(name, conditions, solution, found.coefficients)
+        return ReducedField(name, conditions, solution, found.coefficients, found.factor)
 
     def growth(self, _: Rig, field: HousingField, start: HousingGrowth | None = None) -> HousingGrowth:
         """Growth of a projected field; ``start`` is not needed."""

@@ -5,7 +5,9 @@ use. A changed case is settled anew from there with the same passes; what a chan
 twice.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -13,22 +15,31 @@ from threadpoolctl import threadpool_limits
 from rigdesign.case.model import Case
 from rigdesign.cold import cold_feedback
 from rigdesign.errors import UsageError
+from rigdesign.loads import Setting as Bracing
 from rigdesign.loads import brace_cold
-from rigdesign.passes import Parts, feedback_of, one_pass
+from rigdesign.passes import feedback_of, one_pass
 from rigdesign.prediction.changes import Changes, changed_case
 from rigdesign.prediction.full import check_names, standing_values
 from rigdesign.prediction.housings import ReducedHousings
+from rigdesign.prediction.memory import Memory
 from rigdesign.prediction.model import Channel, Setting, features_of
 from rigdesign.prediction.operating import like, operating_point, rig_at
+from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
 from rigdesign.prediction.settle import SettledPoint, settle
+from rigdesign.prediction.slopes import PointSlopes, directions_of
 from rigdesign.results import Fidelity
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run import solver_errors
+from rigdesign.state import OperatingPoint
 from thermal.condition_checks import Condition
 from thermal.fe.kernels import one_thread
 from thermal.fe.mesh import FloatArray
 
+STEP_SHARE = 2e-3
+"""Share of a speed, torque or flow by which it is moved for a derivative."""
+STEP_KELVIN = 0.2
+"""Temperature by which an inlet or the room is moved for a derivative [K]."""
 STATES = 2
 """Operating points whose conditions shape the reduced model."""
 
@@ -66,11 +77,16 @@ class Predictor:
         self.fidelity: Fidelity = fidelity
         check_names(self.settings, self.channels)
         self.features = features_of(self.settings, self.channels)
-        with solver_errors(case), threadpool_limits(limits=1), one_thread():
+        if not self.settings:
+            raise UsageError("no operating points; give one setting at least")
+        self._made_slopes: list[PointSlopes] | None = None
+        with self._calm():
             self._rig = build_rig(case, fidelity)
             self._reads = readings(self._rig, self.channels)
-            self._housings = ReducedHousings(self._rig, self._states())
-            self._parts = self._housings.parts(Parts())
+            self._housings = ReducedHousings(self._rig, self._states(), self._sensors())
+            self._memory = Memory()
+            self._parts = self._housings.parts(self._memory.parts)
+            self._rigs = [rig_at(self._rig, setting) for setting in self.settings]
             self._points = self._settled_base()
             self.base = self._values(self._rig, self._points)
         self.error = self._housings.error
@@ -88,23 +104,141 @@ class Predictor:
         NotConvergedError
             A point that does not settle.
         """
+        made = self._changed_rigs(changes)
+        with self._calm():
+            points = [
+                settle(rig_at(rig, setting), operating_point(setting), self._parts, near)
+                for rig, setting, near in zip(made, self.settings, self._points)
+            ]
+            return self._values(made[0], points, made)
+
+    def response(self, changes: Changes | Sequence[Changes]) -> FloatArray:
+        """(n_features,) first-order prediction for a changed case: one pass a point, the loop followed linearly.
+
+        changes : as `values`
+        """
+        made = self._changed_rigs(changes)
+        with self._calm():
+            numbers = [
+                slopes.changed(*self._posed(rig, setting))
+                for slopes, rig, setting in zip(self._slopes(), made, self.settings)
+            ]
+            return np.concatenate([*numbers, standing_values(made[0], self.channels)])
+
+    def links(self) -> dict[str, FloatArray]:
+        """Name -> (n_features,) derivative by the logarithm of every local conductance of the housings.
+
+        Names: ``film:``, ``bearing_film:``, ``radiation:`` gearbox.surface; ``exchange:``, ``contact:``
+        gearbox.surface|surface. The conductance changes at all operating points together.
+        """
+        with self._calm():
+            return self._joined([slopes.links() for slopes in self._slopes()])
+
+    def sources(self, *, paid: bool = False) -> dict[str, FloatArray]:
+        """Name -> (n_features,) answer per watt [1/W] put in at all operating points.
+
+        Names: ``body:`` gearbox.body, ``rim:`` gearbox.gear, ``bore:`` and ``film:`` gearbox.bearing, ``oil:``
+        stream.
+
+        paid : whether the motor gives that watt, so that its power and torque rise with it
+        """
+        with self._calm():
+            found = self._joined([slopes.sources() for slopes in self._slopes()])
+        return {name: values + self._motor() for name, values in found.items()} if paid else found
+
+    def inputs(self) -> dict[tuple[str, str], FloatArray]:
+        """(kind, place) -> (n_features,) derivative by each value of the settings, SI.
+
+        A number follows the value of its own operating point only: by the value of one point alone the column is
+        this one where ``feature.setting`` is that point and zero elsewhere. Kinds: ``speed``, ``torque``,
+        ``inlet_temperature``, ``flow``, ``ambient_temperature``; place is the oil stream or empty.
+        """
+        found: dict[tuple[str, str], list[FloatArray]] = {}
+        with self._calm():
+            for slopes, setting in zip(self._slopes(), self.settings):
+                for key, (moved, step) in _moved_settings(self.case, setting).items():
+                    there = slopes.changed(*self._posed(self._rig, moved))
+                    found.setdefault(key, []).append((there - slopes.readings) / step)
+        standing = np.zeros(len(self.base) - sum(len(part) for part in next(iter(found.values()), [])))
+        return {key: np.concatenate([*parts, standing]) for key, parts in found.items()}
+
+    def _motor(self) -> FloatArray:
+        """(n_features,) what one watt more of the motor reads."""
+        speeds = {
+            s.name: rig.drive_speed(s.speed)
+            for s, rig in zip(self.settings, self._rigs)
+            if self.case.drivetrain
+        }
+        quantity = {channel.name: channel.quantity for channel in self.channels}
+        numbers = []
+        for feature in self.features:
+            of = quantity[feature.channel]
+            per_watt = 1.0 if of == "motor_power" else 0.0
+            if of == "drive_torque":
+                per_watt = 1.0 / speeds[feature.setting]
+            numbers.append(per_watt)
+        return np.array(numbers)
+
+    def _joined(self, parts: Sequence[Mapping[str, FloatArray]]) -> dict[str, FloatArray]:
+        """Numbers of all operating points behind each other, zeros for a name one of them lacks and at rest."""
+        names = dict.fromkeys(name for part in parts for name in part)
+        sizes = [len(slopes.readings) for slopes in self._slopes()]
+        standing = np.zeros(len(self.base) - sum(sizes))
+        return {
+            name: np.concatenate(
+                [*(part.get(name, np.zeros(size)) for part, size in zip(parts, sizes)), standing]
+            )
+            for name in names
+        }
+
+    def _slopes(self) -> list[PointSlopes]:
+        """First-order answers of all points, made when they are first asked for."""
+        if self._made_slopes is None:
+            directions = (
+                directions_of(self._rigs[0], self._points[0], self._housings, self._parts, self._reads)
+                if self._points
+                else {}
+            )
+            self._made_slopes = [
+                PointSlopes(rig, point, self._housings, self._parts, self._reads, directions)
+                for rig, point in zip(self._rigs, self._points)
+            ]
+        return self._made_slopes
+
+    def _posed(self, rig: Rig, setting: Setting) -> tuple[Rig, OperatingPoint, Bracing | None]:
+        """A rig at a setting, braced."""
+        here, point = rig_at(rig, setting), operating_point(setting)
+        braced = here.case.drivetrain is not None
+        return here, point, brace_cold(here, point, cold_feedback(here, point)) if braced else None
+
+    def _changed_rigs(self, changes: Changes | Sequence[Changes]) -> list[Rig]:
+        """The rig of every operating point under changes."""
         given = [changes] * len(self.settings) if isinstance(changes, Mapping) else list(changes)
         if len(given) != len(self.settings):
             raise UsageError(
                 f"{len(given)} changes for {len(self.settings)} operating points; give one for each"
             )
-        with solver_errors(self.case), threadpool_limits(limits=1), one_thread():
-            rigs: dict[int, Rig] = {}
-            made: list[Rig] = []
+        rigs: dict[int, Rig] = {}
+        with self._calm():
             for change in given:
                 if id(change) not in rigs:
                     rigs[id(change)] = like(self._rig, changed_case(self.case, change))
-                made.append(rigs[id(change)])
-            points = [
-                settle(rig_at(rig, setting), operating_point(setting), self._parts, near)
-                for rig, setting, near in zip(made, self.settings, self._points)
-            ]
-            return self._values(made[0] if made else self._rig, points, made)
+        return [rigs[id(change)] for change in given]
+
+    @contextmanager
+    def _calm(self) -> Iterator[None]:
+        """Errors of the tool, linear algebra on one thread."""
+        with solver_errors(self.case), threadpool_limits(limits=1), one_thread():
+            yield
+
+    def _sensors(self) -> dict[str, list[Weights]]:
+        """Temperature channels by gearbox."""
+        found: dict[str, list[Weights]] = {}
+        for channel in self.channels:
+            if channel.quantity == "temperature":
+                name, weights = place_weights(self._rig, channel.place, channel.at)
+                found.setdefault(name, []).append(weights)
+        return found
 
     def _states(self) -> dict[str, list[Sequence[Condition]]]:
         """Conditions of every housing after a pass at the operating points that lie furthest apart."""
@@ -125,7 +259,7 @@ class Predictor:
         for index, setting in enumerate(self.settings):
             near = min(range(index), key=lambda i: _distance(self.settings[i], setting), default=None)
             start = None if near is None else points[near]
-            points.append(settle(rig_at(self._rig, setting), operating_point(setting), self._parts, start))
+            points.append(settle(self._rigs[index], operating_point(setting), self._parts, start))
         return points
 
     def _values(
@@ -134,10 +268,30 @@ class Predictor:
         """(n_features,) numbers of settled points; standing quantities of ``rig``."""
         numbers: list[float] = []
         for index, (setting, point) in enumerate(zip(self.settings, points)):
-            here = rig_at(rig if rigs is None else rigs[index], setting)
+            here = self._rigs[index] if rigs is None else rig_at(rigs[index], setting)
             for _, read in self._reads:
                 numbers += read(here, point)
         return np.array([*numbers, *standing_values(rig, self.channels)])
+
+
+def _moved_settings(case: Case, setting: Setting) -> dict[tuple[str, str], tuple[Setting, float]]:
+    """(kind, place) -> the setting with that value moved a little, and by how much."""
+    moved: dict[tuple[str, str], tuple[Setting, float]] = {}
+    for kind in ("speed", "torque"):
+        step = STEP_SHARE * max(abs(getattr(setting, kind)), 1.0)
+        moved[kind, ""] = replace(setting, **{kind: getattr(setting, kind) + step}), step
+    for name, box in case.gearboxes.items():
+        for stream, feed in ((f"{name}.gear_oil", box.oil), (f"{name}.bearing_oil", box.bearing_oil)):
+            inlet = setting.inlet_temperature.get(stream, feed.inlet_temperature)
+            inlets = {**setting.inlet_temperature, stream: inlet + STEP_KELVIN}
+            moved["inlet_temperature", stream] = replace(setting, inlet_temperature=inlets), STEP_KELVIN
+            flow = setting.flow.get(stream, feed.flow)
+            flows = {**setting.flow, stream: flow * (1.0 + STEP_SHARE)}
+            moved["flow", stream] = replace(setting, flow=flows), flow * STEP_SHARE
+    room = case.ambient.temperature if setting.ambient_temperature is None else setting.ambient_temperature
+    warmer = replace(setting, ambient_temperature=room + STEP_KELVIN)
+    moved["ambient_temperature", ""] = warmer, STEP_KELVIN
+    return moved
 
 
 def _distance(first: Setting, second: Setting) -> float:
