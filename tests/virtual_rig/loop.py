@@ -19,8 +19,8 @@ from tests.virtual_rig import teeth as tooth
 from tests.virtual_rig.loop_changes import LoopConstants, changed
 from tests.virtual_rig.loop_model import Circuit, read_circuit, speed_ratio, standing_frequencies
 
-TIME_STEP = 1.25e-5
-"""Longest step [s]; a mesh and its gears swing at 4 to 8 kHz."""
+TIME_STEP, LONG_STEP = 1.0e-5, 2.0e-5
+"""Longest step where one turn is the cycle, and over a hunting cycle [s]; a mesh and its gears swing at 4 to 8 kHz."""
 CUT = 1.5e5
 """Modes of the circuit above it [rad/s] stay out of the march."""
 MATERIAL_GROWTH = 11.5e-6
@@ -40,6 +40,8 @@ class Point:
     """Coefficient by mesh."""
     drags: Mapping[str, float] = field(default_factory=dict)
     """Braking torque on the shaft of each gear [N m]: bearings, windage, seals."""
+    tooth_offset: Mapping[str, int] = field(default_factory=dict)
+    """By mesh: teeth by which the wheel was put on further; its eccentricity goes with its teeth."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,6 +73,7 @@ class LoopTruth:
         ]
         self.constants = changed(constants or LoopConstants(), effects, self.meshes)
         turns = math.lcm(*(m.z[1] // math.gcd(*m.z) for m in self.meshes))
+        self._at_rest: Circuit | None = None
         self.cycle_turns = turns * self.constants.cycle_factor
 
     def natural_frequencies(self, count: int) -> np.ndarray:
@@ -87,6 +90,18 @@ class LoopTruth:
         found = next(m for m in self.meshes if m.name == mesh)
         return found.backlash * self.constants.scale.get(f"backlash:{mesh}", 1.0)
 
+    def sliding_power(self, speed: float, torque: float) -> dict[str, float]:
+        """Power [W] each mesh would lose with a coefficient of friction of one."""
+        point = Point(speed=speed, torque=torque, friction={m.name: 1.0 for m in self.meshes})
+        if self._at_rest is None:
+            self._at_rest = read_circuit(self.tree, self.meshes, 100.0, torque, self.constants.scale)
+        tables = self._tables(self._at_rest, speed, 1e-5, point, (0.0,) * len(self.meshes))
+        found = {}
+        for m, (mesh, force) in enumerate(zip(self.meshes, self._forces(self._at_rest, torque))):
+            _, _, on_1, on_2 = kernel.mean_approach(force, N_PHASES, m, *tables)
+            found[mesh.name] = speed * (on_1 - on_2 * mesh.z[0] / mesh.z[1])
+        return found
+
     def solve(self, point: Point, orders: Sequence[float]) -> LoopAnswer:
         """Periodic state at a point. RuntimeError when the march leaves the tables."""
         circuit = read_circuit(self.tree, self.meshes, point.speed, point.torque, self.constants.scale)
@@ -96,7 +111,8 @@ class LoopTruth:
         state = self._state(circuit, point, at_rest["twist"] * lock)
         turn = 2.0 * math.pi / point.speed
         teeth = self.meshes[0].z[0]
-        per_turn = teeth * 2 * math.ceil(turn / TIME_STEP / teeth / 2)
+        longest = TIME_STEP if self.cycle_turns <= 2 else LONG_STEP
+        per_turn = teeth * 2 * math.ceil(turn / longest / teeth / 2)
         n_cycle = per_turn * self.cycle_turns
         dt = turn / per_turn
         tables = self._tables(circuit, point.speed, dt, point, state["angles"], state["growth"])
@@ -227,7 +243,7 @@ class LoopTruth:
             numbers[i, kernel.BACK_GAP] = mesh.backlash - (2.0 * growth[i] if growth else 0.0)
             numbers[i, kernel.BACK_STIFF] = mean
         counts = np.array([m.z for m in self.meshes])
-        shift = np.array([own.tooth_offset.get(m.name, 0) for m in self.meshes])
+        shift = np.array([point.tooth_offset.get(m.name, 0) for m in self.meshes])
         return numbers, courses, gaps, tooth_gap, tooth_scale, tooth_slope, counts, shift
 
     def _outer(
@@ -244,7 +260,8 @@ class LoopTruth:
                     continue
                 speed = point.speed * (1.0 if side == 0 else mesh.z[0] / mesh.z[1])
                 angle = speed * time + (state["angles"] if side == 0 else state["wheel_angles"])[i]
-                wave = error.run_out * np.exp(-1j * angle)
+                further = point.tooth_offset.get(mesh.name, 0) if side == 1 else 0
+                wave = error.run_out * np.exp(-1j * (angle + 2.0 * math.pi * further / mesh.z[1]))
                 outer[i] += wave.real
                 rate[i] += speed * wave.imag
         loads = self._harmonic_loads(circuit, point, state)
@@ -319,14 +336,14 @@ class LoopTruth:
         )  # fmt: skip
         vector = np.zeros(upper.sum(), dtype=complex)
         rho = np.zeros(2)
-        nothing = np.zeros((3 * n, 0))
+        record = np.zeros((3 * n, n_cycle))
         size = np.concatenate((np.abs(motion).max(0), [np.abs(fixed[4]).max(), np.abs(fixed[4]).max() / 400.0]))
         span = n_cycle * dt
-        steps, done, residual = 0, 0, 1.0
+        steps, residual = 0, 1.0
 
         def run(times: int) -> None:
-            nonlocal steps, done
-            worst = kernel.march(times * n_cycle, done % n_cycle, dt, vector, rho, *fixed, nothing)
+            nonlocal steps
+            worst = kernel.march(times * n_cycle, 0, dt, vector, rho, *fixed, record)
             steps += times * n_cycle
             if not worst < 1e-2:
                 raise RuntimeError(f"loop truth: approach {worst:.3g} m leaves the tables")
@@ -352,9 +369,7 @@ class LoopTruth:
             if residual < SETTLED:
                 break
             unpack(_extrapolated(np.array(samples)))
-        record = np.zeros((3 * n, n_cycle))
-        kernel.march(n_cycle, 0, dt, vector, rho, *fixed, record)
-        return record, residual, steps + n_cycle
+        return record, residual, steps
 
     # ------------------------------------------------------------------ reading
 

@@ -56,7 +56,6 @@ class LoopConstants:
     drift: float = 0.0
     """Relative change of the locked twist per kelvin of oil."""
     torques: tuple[HarmonicTorque, ...] = ()
-    tooth_offset: Mapping[str, int] = field(default_factory=dict)
     cycle_factor: int = 1
     stiffening: float = 0.0
     """Out of catalogue: relative change of the mesh stiffness from no torque to 400 N m."""

@@ -1,0 +1,244 @@
+"""One rig with its constants and hidden effects: what all its sensors would read without any error of their own."""
+
+import math
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tests.virtual_rig import loop_changes
+from tests.virtual_rig.case_reader import read_case
+from tests.virtual_rig.generate_plans import STREAMS, Sensor, TruePoint
+from tests.virtual_rig.heat_constants import draw_constants as draw_heat
+from tests.virtual_rig.heat_constants import nominal
+from tests.virtual_rig.heat_effects import EFFECTS
+from tests.virtual_rig.heat_truth import HeatTruth, boxes_of
+from tests.virtual_rig.loop import LoopTruth, Point
+from tests.virtual_rig.loop_changes import CHANGES, LoopConstants
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+
+
+class Reading(NamedTuple):
+    """One number: channel at a point, of orders its real or imaginary part. Point is empty at standstill."""
+
+    channel: str
+    point: str
+    order: float = 0.0
+    part: str = "value"
+
+
+class Constants(NamedTuple):
+    """Everything one built rig has of its own."""
+
+    heat: Mapping[str, float]
+    loop: LoopConstants | None
+    places: Mapping[str, tuple[float, float, float]]
+    """Where thermocouples really sit [m], where that is not the drawing."""
+
+
+@lru_cache(maxsize=4)
+def case_of(rig: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Tree of a case and its boxes, built once."""
+    tree = read_case(CASES / rig / "case.toml")
+    return tree, boxes_of(tree)
+
+
+def has_loop(rig: str) -> bool:
+    return rig.startswith("loop_")
+
+
+def nominal_constants(rig: str) -> Constants:
+    """The middle of the population, without tooth errors."""
+    return Constants(nominal(), LoopConstants() if has_loop(rig) else None, {})
+
+
+def draw_rig(rig: str, rng: np.random.Generator, places: Sequence[Sensor], *, shift: bool = False) -> Constants:
+    """A rig as built."""
+    tree, boxes = case_of(rig)
+    heat = draw_heat(rng, shift)
+    loop = None
+    if has_loop(rig):
+        loop = loop_changes.draw_constants(rng, tree, LoopTruth(tree).meshes, shift=shift)
+    moved = {}
+    if boxes:
+        from tests.virtual_rig.heat_places import scattered
+
+        box = next(iter(boxes.values()))
+        moved = {s.name: scattered(box, s.at, rng) for s in places if s.at is not None}
+    return Constants(heat, loop, moved)
+
+
+def readings(sensors: Sequence[Sensor], points: Sequence[TruePoint]) -> list[Reading]:
+    """Numbers of a set in their order: points, sensors, orders; standstill at the end."""
+    standing = ("natural_frequency", "backlash")
+    found = []
+    for point in points:
+        for sensor in sensors:
+            if sensor.quantity in standing:
+                continue
+            if not sensor.orders:
+                found.append(Reading(sensor.name, point.name))
+            for order in sensor.orders:
+                parts = ("real", "imaginary") if order else ("value",)
+                found += [Reading(sensor.name, point.name, order, part) for part in parts]
+    return found + [Reading(sensor.name, "") for sensor in sensors if sensor.quantity in standing]
+
+
+class RigTruth:
+    """A rig of a case: heat for all of them, motion in time for the loops."""
+
+    def __init__(self, rig: str, constants: Constants, effects: Sequence[Mapping[str, Any]] = ()) -> None:
+        self.rig, self.constants = rig, constants
+        self.tree, boxes = case_of(rig)
+        hot = {e["effect"]: e["size"] for e in effects if heat_key(e["effect"]) in EFFECTS}
+        self.heat = HeatTruth(self.tree, constants.heat, hot, boxes=boxes)
+        self.loop = None
+        if constants.loop is not None:
+            moving = [e for e in effects if e["effect"].partition(":")[0] in CHANGES]
+            self.loop = LoopTruth(self.tree, constants.loop, moving)
+        self._start: dict[str, Any] = {}
+
+    def values(self, points: Sequence[TruePoint], sensors: Sequence[Sensor], *, heat: bool = True, loop: bool = True
+               ) -> np.ndarray:  # fmt: skip
+        """Numbers of ``readings`` [SI]; with ``heat`` or ``loop`` False those parts stay zero (to save time)."""
+        found: dict[tuple[str, str], Any] = {}
+        places = {s.name: self.constants.places.get(s.name, s.at) for s in sensors if s.at is not None}
+        orders = sorted({o for s in sensors for o in s.orders})
+        for point in points:
+            warm = self.heat.solve(_heat_point(point), places, self._start.get(point.name))
+            self._start[point.name] = warm["state"]
+            if heat:
+                self._read_heat(point, sensors, warm, found)
+            if loop and self.loop is not None and orders:
+                self._read_loop(point, sensors, warm["losses"], orders, found)
+        if loop and self.loop is not None:
+            self._read_standing(sensors, found)
+        rows = readings(sensors, points)
+        values = np.zeros(len(rows))
+        for i, row in enumerate(rows):
+            value = found.get((row.channel, row.point), 0.0)
+            if isinstance(value, Mapping):
+                value = value.get(row.order, 0.0)
+            values[i] = value.imag if row.part == "imaginary" else np.real(value)
+        return values
+
+    def _read_heat(self, point: TruePoint, sensors: Sequence[Sensor], warm: Mapping[str, Any], found: dict) -> None:
+        for sensor in sensors:
+            key = sensor.name, point.name
+            if sensor.quantity == "temperature":
+                found[key] = warm["thermocouples"][sensor.name] if sensor.at else warm["temperatures"][sensor.place]
+            elif sensor.quantity == "oil_outlet_temperature":
+                found[key] = warm["oil_outlets"][sensor.place]
+            elif sensor.quantity == "motor_power":
+                found[key] = warm["motor_power"]
+            elif sensor.quantity == "drive_torque":
+                found[key] = warm["drive_torque"]
+
+    def _read_loop(
+        self, point: TruePoint, sensors: Sequence[Sensor], losses: Mapping[str, float], orders: Sequence[float], found: dict
+    ) -> None:  # fmt: skip
+        assert self.loop is not None
+        answer = self.loop.solve(loop_point(self.loop, self.heat, point, losses), orders)
+        for sensor in sensors:
+            if sensor.quantity == "torque":
+                found[sensor.name, point.name] = answer.torques[sensor.place]
+            elif sensor.quantity == "angle":
+                found[sensor.name, point.name] = answer.angles[sensor.place]
+
+    def _read_standing(self, sensors: Sequence[Sensor], found: dict) -> None:
+        assert self.loop is not None
+        for sensor in sensors:
+            if sensor.quantity == "natural_frequency":
+                found[sensor.name, ""] = self.loop.natural_frequencies(int(sensor.place))[-1]
+            elif sensor.quantity == "backlash":
+                found[sensor.name, ""] = self.loop.backlash(sensor.place)
+
+
+def loop_point(loop: LoopTruth, heat: HeatTruth, point: TruePoint, losses: Mapping[str, float]) -> Point:
+    """Point of the loop with friction and drags of the heat part: its losses, spread over shafts and meshes."""
+    tree, ratio = heat.tree, heat.model.ratio
+    base = ratio[heat.model.reference_shaft]
+    drags: dict[str, float] = {}
+    friction: dict[str, float] = {}
+    gear_on = {
+        entry["shaft"]: (f"{box}.{gear}", point.speed * ratio[entry["shaft"]] / base)
+        for box, part in tree["gearboxes"].items()
+        for gear, entry in part["gears"].items()
+    }
+    for name, power in losses.items():
+        box, _, rest = name.partition(".")
+        kind, _, part = rest.partition(":")
+        entry = tree["gearboxes"][box]
+        if kind == "mesh":
+            friction[f"{box}.{part}"] = float(power)
+            continue
+        if kind == "bearing":
+            shafts = [entry["bearings"][part]["shaft"]]
+        elif kind == "windage":
+            shafts = [entry["gears"][part]["shaft"]]
+        elif kind == "seal":
+            shafts = [part]
+        else:
+            shafts = [gear["shaft"] for gear in entry["gears"].values()]
+        for shaft in shafts:
+            gear, speed = gear_on[shaft]
+            drags[gear] = drags.get(gear, 0.0) + float(power) / len(shafts) / speed
+    powers = loop.sliding_power(point.speed, point.torque)
+    return Point(
+        speed=point.speed,
+        torque=point.torque,
+        oil=point.inlet["test.gear_oil"],
+        friction={mesh: power / powers[mesh] for mesh, power in friction.items()},
+        drags=drags,
+        tooth_offset=point.tooth_offset,
+    )
+
+
+def heat_key(name: str) -> str:
+    """Key of a name in the table of heat effects."""
+    kind, _, place = name.partition(":")
+    return f"film:{place.partition('.')[2]}" if kind == "film" else kind
+
+
+def _heat_point(point: TruePoint) -> dict[str, Any]:
+    return {
+        "speed": point.speed, "torque": point.torque, "inlet_temperature": dict(point.inlet), "flow": dict(point.flow),
+        "ambient_temperature": point.room,
+    }  # fmt: skip
+
+
+def true_points(rig: str, plans: Sequence[Any], rng: np.random.Generator | None = None) -> list[TruePoint]:
+    """Points of a plan as really run: scattered by one per cent and one kelvin, exact without ``rng``."""
+    tree, _ = case_of(rig)
+
+    def about(value: float, relative: float = 0.0, absolute: float = 0.0) -> float:
+        if rng is None:
+            return value
+        return value * (1.0 + relative * rng.uniform(-1.0, 1.0)) + absolute * rng.uniform(-1.0, 1.0)
+
+    found = []
+    for index, plan in enumerate(plans):
+        inlet, flow = {}, {}
+        for stream in STREAMS:
+            box, kind = stream.split(".")
+            entry = tree["gearboxes"][box]["oil" if kind == "gear_oil" else "bearing_oil"]
+            factor = plan.gear_flow if kind == "gear_oil" else plan.bearing_flow
+            flow[stream] = about(entry["flow"] * factor, 0.02)
+            own = plan.gear_oil if kind == "gear_oil" else plan.bearing_oil
+            if box == "reference" and not has_loop(rig):
+                own = entry["inlet_temperature"] - 273.15
+            inlet[stream] = about(own + 273.15, absolute=1.0)
+        found.append(
+            TruePoint(
+                name=f"P{index + 1:02d}",
+                speed=about(plan.speed * math.pi / 30.0, 0.01),
+                torque=about(plan.torque, 0.01),
+                inlet=inlet,
+                flow=flow,
+                room=about(plan.room + 273.15, absolute=1.5),
+            )
+        )
+    return found
