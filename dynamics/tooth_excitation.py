@@ -122,8 +122,8 @@ def excitation(
     slope = np.gradient(pattern.gap, law.path_step, axis=1)
     out = np.empty((OUTPUTS, pattern.waves.size, n), complex)
     for output in range(OUTPUTS):
-        wave = sensitivity.gap[output] @ pattern.gap.T + sensitivity.slope[output] @ slope.T
-        wave = wave.reshape((sensitivity.pairs, n, pattern.waves.size))
+        along = np.asarray(sensitivity.gap[output] @ pattern.gap.T + sensitivity.slope[output] @ slope.T)
+        wave = along.reshape(sensitivity.pairs, n, pattern.waves.size)
         wave = wave + sensitivity.scale[output][:, :, None] * pattern.scale
         out[output] = np.einsum("wp,pnw->wn", turn, wave)
     return out
