@@ -97,7 +97,11 @@ def put_in(chain: Chain, effects: Sequence[Mapping[str, Any]]) -> None:
 
 
 def systematic(
-    chain: Chain, sensors: Sequence[Sensor], rows: Sequence[Reading], points: Sequence[TruePoint], truth: np.ndarray
+    chain: Chain,
+    sensors: Sequence[Sensor],
+    rows: Sequence[Reading],
+    points: Sequence[TruePoint],
+    truth: np.ndarray,
 ) -> np.ndarray:
     """Readings without noise: truth with offsets, scales, fins, the tach's zero and hidden channel errors [SI]."""
     by_name = {s.name: s for s in sensors}
@@ -186,21 +190,31 @@ def write_set(
     settings = _settings(sensors, points)
     rename = {a: b for pair in chain.swapped_channels for a, b in (pair, pair[::-1])}
     moved = {a: b for pair in chain.swapped_points for a, b in (pair, pair[::-1])}
-    (folder / "measurement.toml").write_text(_document(case, title, baseline, sensors, settings, points), encoding="utf-8")
+    (folder / "measurement.toml").write_text(
+        _document(case, title, baseline, sensors, settings, points), encoding="utf-8"
+    )
     scalars = [s for s in sensors if not s.orders]
     lines = [",".join(["point", "repeat", *settings, *(s.name for s in scalars)])]
-    lines.append(",".join(["", "", *(UNITS[q][0] for q, _ in settings.values()), *(UNITS[s.quantity][0] for s in scalars)]))
+    lines.append(
+        ",".join(
+            ["", "", *(UNITS[q][0] for q, _ in settings.values()), *(UNITS[s.quantity][0] for s in scalars)]
+        )
+    )
     orders = ["point,repeat,channel,order,real,imaginary"]
     by_point = {p.name: p for p in points}
     for (point, repeat), own in readings.items():
         shown = readings.get((moved[point], repeat), own) if point in moved else own
         cells = [point or "standstill", str(repeat)]
         for quantity, stream in settings.values():
-            cells.append("" if not point else _number(_read(chain, by_point[point], quantity, stream, rng), quantity))
+            cells.append(
+                "" if not point else _number(_read(chain, by_point[point], quantity, stream, rng), quantity)
+            )
         numbers = {(row.channel, row.order, row.part): value for row, value in shown.items()}
         for sensor in scalars:
             value = numbers.get((rename.get(sensor.name, sensor.name), 0.0, "value"))
-            cells.append("" if value is None else _number(value, sensor.quantity, chain.unit.get(sensor.name)))
+            cells.append(
+                "" if value is None else _number(value, sensor.quantity, chain.unit.get(sensor.name))
+            )
         lines.append(",".join(cells))
         for sensor in sensors:
             source = rename.get(sensor.name, sensor.name)
@@ -263,7 +277,12 @@ def _document(
     lines += ["", "[data]", 'table = "data.csv"']
     if any(s.orders for s in sensors):
         lines.append('orders = "orders.csv"')
-    typical = {"speed": "2 rpm", "torque": "0.3 N m", "inlet_temperature": "0.15 K", "ambient_temperature": "0.3 K"}
+    typical = {
+        "speed": "2 rpm",
+        "torque": "0.3 N m",
+        "inlet_temperature": "0.15 K",
+        "ambient_temperature": "0.3 K",
+    }
     for name, (quantity, place) in settings.items():
         flow = max((p.flow.get(place, 0.0) for p in points), default=0.0)
         spread = typical.get(quantity) or f"{SETTING_NOISE['flow'] * flow * 6e4:.2g} l/min"
@@ -274,7 +293,12 @@ def _document(
         unit, factor, _, step = UNITS[sensor.quantity]
         shown = "K" if unit == "degC" else unit
         noise = math.hypot(sensor.noise * factor, 0.29 * step)
-        lines += ["", f"[channels.{sensor.name}]", f'quantity = "{sensor.quantity}"', f'place = "{sensor.place}"']
+        lines += [
+            "",
+            f"[channels.{sensor.name}]",
+            f'quantity = "{sensor.quantity}"',
+            f'place = "{sensor.place}"',
+        ]
         if sensor.at is not None:
             lines.append("at = [" + ", ".join(f'"{x:g} m"' for x in sensor.at) + "]")
         lines += [f'unit = "{unit}"', f'uncertainty = "{noise:.3g} {shown}"']

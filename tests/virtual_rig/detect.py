@@ -18,7 +18,15 @@ from scipy.linalg import cho_factor, cho_solve
 
 from tests.virtual_rig import heat_constants
 from tests.virtual_rig.chain import TACH_ZERO
-from tests.virtual_rig.generate_plans import SETTING_OFFSET, STREAMS, Sensor, Sensors, TruePoint, plan_points, sensors
+from tests.virtual_rig.generate_plans import (
+    SETTING_OFFSET,
+    STREAMS,
+    Sensor,
+    Sensors,
+    TruePoint,
+    plan_points,
+    sensors,
+)
 from tests.virtual_rig.generate_truth import (
     Constants,
     Reading,
@@ -120,7 +128,6 @@ class Detector:
     def _floor(self) -> np.ndarray:
         by_name = {s.name: s for s in self.sensors}
         squares = np.zeros(len(self.rows))
-        common = []
         teeth = 28.0 if self.rig == "loop_1to1" else 16.0
         level: dict[tuple[str, str, bool], float] = {}
         for value, row in zip(self.base, self.rows):
@@ -144,11 +151,12 @@ class Detector:
                 case _:
                     mesh = _of_mesh(row.order, teeth)
                     share = FLOOR["mesh_order" if mesh else "shaft_order"]
-                    each = max(share * level[row.channel, row.point, mesh], FLOOR["order_least"] * sensor.noise)
+                    each = max(
+                        share * level[row.channel, row.point, mesh], FLOOR["order_least"] * sensor.noise
+                    )
             squares[i] = each**2
-        for sensor in self.sensors:
-            if sensor.quantity in ("temperature", "oil_outlet_temperature"):
-                common.append([FLOOR["temperature_common"] * (row.channel == sensor.name) for row in self.rows])
+        warm = [s.name for s in self.sensors if s.quantity in ("temperature", "oil_outlet_temperature")]
+        common = [[FLOOR["temperature_common"] * (row.channel == name) for row in self.rows] for name in warm]
         floor = np.diag(squares)
         if common:
             columns = np.array(common).T
@@ -202,23 +210,37 @@ def _steps(rig: str, middle: Constants):  # type: ignore[no-untyped-def]
     tree, _ = case_of(rig)
     meshes = RigTruth(rig, middle).loop.meshes  # type: ignore[union-attr]
     for name, spread in {**constant_names(tree, meshes), **error_names(meshes)}.items():
-        yield name, middle._replace(loop=with_constants(middle.loop, {name: spread})), {"heat": False, "loop": True}
+        yield (
+            name,
+            middle._replace(loop=with_constants(middle.loop, {name: spread})),
+            {"heat": False, "loop": True},
+        )
 
 
 def _input_columns(
-    rig: str, middle: Constants, points: Sequence[TruePoint], own: Sequence[Sensor], base: np.ndarray, names: list[str]
+    rig: str,
+    middle: Constants,
+    points: Sequence[TruePoint],
+    own: Sequence[Sensor],
+    base: np.ndarray,
+    names: list[str],
 ) -> list[np.ndarray]:
     """Answers to settings that were other than read: inlets, flows, bracing torque, room."""
     moves = []
     for stream in STREAMS:
-        for kind, key, step in (("inlet", "inlet", SETTING_OFFSET["inlet_temperature"]), ("flow", "flow", None)):
+        for kind, key, step in (
+            ("inlet", "inlet", SETTING_OFFSET["inlet_temperature"]),
+            ("flow", "flow", None),
+        ):
             moved = [
                 replace(p, **{key: {**getattr(p, key), stream: getattr(p, key)[stream] + step
                                     if step else getattr(p, key)[stream] * (1.0 + SETTING_OFFSET["flow"])}})
                 for p in points
             ]  # fmt: skip
             moves.append((f"{kind}:{stream}", moved, False))
-    moves.append(("room", [replace(p, room=p.room + SETTING_OFFSET["ambient_temperature"]) for p in points], False))
+    moves.append(
+        ("room", [replace(p, room=p.room + SETTING_OFFSET["ambient_temperature"]) for p in points], False)
+    )
     torque = [replace(p, torque=p.torque * (1.0 + SETTING_OFFSET["torque"])) for p in points]
     moves.append(("torque", torque, has_loop(rig)))
     found = []

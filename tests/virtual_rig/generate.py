@@ -182,10 +182,7 @@ class _Set:
 
     def _measured(self, effect: dict[str, Any]) -> dict[str, Any]:
         """The effect with how many detectable sizes it has, alone."""
-        if self._of_chain(effect):
-            change = self._seen(effect)
-        else:
-            change = self.truth([effect]) - self.truth([])
+        change = self._seen(effect) if self._of_chain(effect) else self.truth([effect]) - self.truth([])
         effect["detectable_sizes"] = self.detector.detectable_sizes(change, baseline=self.paired)
         return effect
 
@@ -242,7 +239,9 @@ def answers_file(out: Path) -> Path:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Command line."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--rig", choices=RIGS, required=True)
     parser.add_argument("--kind", choices=KINDS, required=True)
     parser.add_argument("--seed", type=int, required=True)
@@ -255,8 +254,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--reindex", type=int, default=0)
     parser.add_argument("--family", help="only effects of this family")
     options = parser.parse_args(arguments)
-    spec = {"kind": options.kind, "baseline": options.baseline, "shift": options.shift, "reindex": options.reindex}
-    spec |= {key: value for key in ("sensors", "plan", "family") if (value := getattr(options, key)) is not None}
+    spec = {
+        "kind": options.kind,
+        "baseline": options.baseline,
+        "shift": options.shift,
+        "reindex": options.reindex,
+    }
+    spec |= {
+        key: value for key in ("sensors", "plan", "family") if (value := getattr(options, key)) is not None
+    }
     file = answers_file(options.out)
     options.out.mkdir(parents=True, exist_ok=True)
     answers = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}

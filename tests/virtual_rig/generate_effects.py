@@ -42,10 +42,9 @@ LOOP: Mapping[str, Kind] = {
     "profile_slope": Kind("m", -25e-6, 25e-6, "flank", "f_Halpha of all teeth"),
     "bracing_drift": Kind("1/K", -4e-3, 4e-3, "bracing", "locked twist per kelvin of gear oil above the case"),
     # ---------------------------------------------------------------- outside the catalogue
-    "x_torque_squared": Kind("N m", 0.0, 20.0, "order 3", "torque at order 3 in a coupling, with the square of the bracing torque", False),
-    "x_half_order": Kind("N m", 0.0, 20.0, "order 0.5", "whirl locked at half the speed; only repeats and means see it", False),
+    "x_torque_squared": Kind("N m", 0.0, 20.0, "order 3", "torque at order 3, with the bracing torque squared", False),
     "x_mains": Kind("N m", 0.0, 20.0, "order near 100 Hz", "inverter's 100 Hz, leaking into the nearest order", False),
-    "x_speed_ripple": Kind("N m", 0.0, 20.0, "order 5", "motor torque at order 5 with the square of the speed", False),
+    "x_speed_ripple": Kind("N m", 0.0, 20.0, "order 4", "motor torque at order 4 with the square of the speed", False),
     "x_alternate_teeth": Kind("m", 0.0, 20e-6, "order z/2", "every second tooth ahead", False),
     "x_rub": Kind("N m", 0.0, 5.0, "orders 1 to 6", "a touch once a turn, growing with speed", False),
     "x_absorber": Kind("kg m2", 0.0, 4e-3, "shaft", "loose ring that swings at 150 Hz on a coupling flange", False),
@@ -76,8 +75,15 @@ def candidates(rig: str, own: Sequence[Sensor], *, catalogue: bool) -> list[str]
     tree, _ = case_of(rig)
     if not has_loop(rig):
         test = [n for n in effect_names(tree, catalogue) if not n.partition(":")[2].startswith("reference")]
-        return [*test, *(n for n in effect_names(tree, catalogue) if n.startswith(("mesh_loss:ref", "bearing_loss:ref")))]
-    heat = [n for n in effect_names(tree, catalogue)]
+        return [
+            *test,
+            *(
+                n
+                for n in effect_names(tree, catalogue)
+                if n.startswith(("mesh_loss:ref", "bearing_loss:ref"))
+            ),
+        ]
+    heat = list(effect_names(tree, catalogue))
     gears = [f"{box}.{gear}" for box, entry in tree["gearboxes"].items() for gear in entry["gears"]]
     meshes = [f"{box}.{mesh}" for box, entry in tree["gearboxes"].items() for mesh in entry["meshes"]]
     couplings = list(tree["drivetrain"]["couplings"])
@@ -92,7 +98,7 @@ def candidates(rig: str, own: Sequence[Sensor], *, catalogue: bool) -> list[str]
         cells = [s.name for s in own if s.quantity == "torque"]
         encoders = [s.name for s in own if s.quantity == "angle"]
         places = {
-            "x_torque_squared": couplings, "x_half_order": [""], "x_mains": [""], "x_speed_ripple": [""],
+            "x_torque_squared": couplings, "x_mains": [""], "x_speed_ripple": [""],
             "x_rub": gears, "x_absorber": couplings, "x_stiffening": [""], "x_cell_lag": cells, "x_rattle": [""],
             "x_encoder_wobble": encoders, "x_alternate_teeth": gears if rig == "loop_1to1" else
             [g for g in gears if g.endswith("pinion")],
@@ -112,7 +118,9 @@ def draw_effect(rig: str, own: Sequence[Sensor], rng: np.random.Generator, *, ca
     name = mine[rng.integers(len(mine))]
     entry = kind_of(name)
     effect: dict[str, Any] = {"effect": name, "unit": entry.unit, "family": entry.family}
-    effect["sign"] = 1 if entry.lower >= 0.0 else (1 if rng.random() < entry.upper / (entry.upper - entry.lower) else -1)
+    effect["sign"] = (
+        1 if entry.lower >= 0.0 else (1 if rng.random() < entry.upper / (entry.upper - entry.lower) else -1)
+    )
     kind = name.partition(":")[0]
     if kind in ("run_out", "cumulative_pitch", "motor_ripple", "coupling_order_2") or kind.startswith("x_"):
         effect["phase"] = float(rng.uniform(-math.pi, math.pi))
@@ -138,7 +146,9 @@ def reach(effect: Mapping[str, Any]) -> float:
     return entry.upper if effect["sign"] > 0 else -entry.lower
 
 
-def draw_input_error(own: Sequence[Sensor], points: Sequence[TruePoint], rng: np.random.Generator) -> dict[str, Any]:
+def draw_input_error(
+    own: Sequence[Sensor], points: Sequence[TruePoint], rng: np.random.Generator
+) -> dict[str, Any]:
     """An error of sensor or input, with its size: three to ten of its spreads, or a swap."""
     cells = [s for s in own if s.quantity == "torque"]
     kinds = [k for k in SENSOR_KINDS if k not in ("torque_zero", "angle_zero") or cells]
@@ -152,7 +162,9 @@ def draw_input_error(own: Sequence[Sensor], points: Sequence[TruePoint], rng: np
     match kind:
         case "sensor_offset":
             sensor = one([s for s in own if s.offset and s.quantity != "torque"])
-            return _input(f"{kind}:{sensor.name}", big * sensor.offset, "K" if "temp" in sensor.quantity else "W")
+            return _input(
+                f"{kind}:{sensor.name}", big * sensor.offset, "K" if "temp" in sensor.quantity else "W"
+            )
         case "sensor_scale":
             sensor = one([s for s in own if s.scale])
             return _input(f"{kind}:{sensor.name}", big * sensor.scale, "1")
@@ -179,9 +191,12 @@ def draw_input_error(own: Sequence[Sensor], points: Sequence[TruePoint], rng: np
             first, second = rng.choice(len(group), 2, replace=False)
             return _input(f"{kind}:{group[first].name},{group[second].name}", 0.0, "")
     sensor = one([s for s in own if UNITS[s.quantity][0] in ("degC", "W", "N m", "mrad")])
-    factor, addend = {"degC": (1.8, 32.0), "W": (1e-3, 0.0), "N m": (8.850746, 0.0), "mrad": (0.0572958, 0.0)}[
-        UNITS[sensor.quantity][0]
-    ]
+    factor, addend = {
+        "degC": (1.8, 32.0),
+        "W": (1e-3, 0.0),
+        "N m": (8.850746, 0.0),
+        "mrad": (0.0572958, 0.0),
+    }[UNITS[sensor.quantity][0]]
     return {**_input(f"unit:{sensor.name}", 0.0, ""), "factor": factor, "addend": addend}
 
 
@@ -200,4 +215,15 @@ def _teeth(rig: str, gear: str) -> int:
     return int(tree["gearboxes"][box]["gears"][name]["teeth"])
 
 
-__all__ = ["CHAIN_KINDS", "EFFECTS", "LOOP", "Kind", "candidates", "draw_effect", "draw_input_error", "kind_of", "reach", "sized"]
+__all__ = [
+    "CHAIN_KINDS",
+    "EFFECTS",
+    "LOOP",
+    "Kind",
+    "candidates",
+    "draw_effect",
+    "draw_input_error",
+    "kind_of",
+    "reach",
+    "sized",
+]

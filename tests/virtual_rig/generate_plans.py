@@ -148,10 +148,20 @@ def _prototype(level: Sensors) -> list[Sensor]:
 def _loop(rig: str, level: Sensors) -> list[Sensor]:
     orders = loop_orders(rig, level)
     first, second = ("wheel_side", "pinion_side") if rig == "loop_1to1" else ("pinion_side", "wheel_side")
-    found = [Sensor(name="M_1", quantity="torque", place=first, noise=0.02, offset=0.3, scale=0.003, orders=orders)]
+    found = [
+        Sensor(name="M_1", quantity="torque", place=first, noise=0.02, offset=0.3, scale=0.003, orders=orders)
+    ]
     if level == "rich":
         found.append(
-            Sensor(name="M_2", quantity="torque", place=second, noise=0.03, offset=0.4, scale=0.003, orders=orders)
+            Sensor(
+                name="M_2",
+                quantity="torque",
+                place=second,
+                noise=0.03,
+                offset=0.4,
+                scale=0.003,
+                orders=orders,
+            )
         )
     angles = {"rich": ("test_pinion", "reference_wheel"), "usual": ("test_pinion",), "sparse": ()}[level]
     found += [
@@ -160,7 +170,8 @@ def _loop(rig: str, level: Sensors) -> list[Sensor]:
     ]
     count = {"rich": 3, "usual": 2, "sparse": 0}[level]
     found += [
-        Sensor(name=f"f_{i + 1}", quantity="natural_frequency", place=str(i + 1), noise=1.5) for i in range(count)
+        Sensor(name=f"f_{i + 1}", quantity="natural_frequency", place=str(i + 1), noise=1.5)
+        for i in range(count)
     ]
     if level == "rich":
         found += [
@@ -174,7 +185,9 @@ def _loop(rig: str, level: Sensors) -> list[Sensor]:
 def loop_orders(rig: str, level: Sensors) -> tuple[float, ...]:
     """Orders per turn of the test pinion: mean, shafts, mesh with sidebands; fewer with sparse sensors."""
     teeth, wheel = (28, 1.0) if rig == "loop_1to1" else (16, 0.64)
-    shafts = {1.0, 2.0, wheel, 2.0 * wheel} | (set() if level == "sparse" else {3.0, 4.0, 3.0 * wheel, 4.0 * wheel})
+    shafts = {1.0, 2.0, wheel, 2.0 * wheel} | (
+        set() if level == "sparse" else {3.0, 4.0, 3.0 * wheel, 4.0 * wheel}
+    )
     bands = {0.0} if level == "sparse" else {-1.0, 0.0, 1.0, -wheel, wheel}
     high = {h * teeth + band for h in (1, 2) for band in bands}
     extra = {0.5 * teeth} if level == "rich" else set()
@@ -187,13 +200,21 @@ def _inside(name: str, place: str) -> Sensor:
 
 def _outlets(streams: Sequence[str]) -> list[Sensor]:
     return [
-        Sensor(name=f"T_{stream.replace('.', '_')}_out", quantity="oil_outlet_temperature", place=stream, noise=0.05, offset=0.3)
+        Sensor(
+            name=f"T_{stream.replace('.', '_')}_out",
+            quantity="oil_outlet_temperature",
+            place=stream,
+            noise=0.05,
+            offset=0.3,
+        )
         for stream in streams
-    ]  # fmt: skip
+    ]
 
 
 def _power(noise: float) -> Sensor:
-    return Sensor(name="P_motor", quantity="motor_power", place="motor", noise=noise, offset=noise, scale=0.01)
+    return Sensor(
+        name="P_motor", quantity="motor_power", place="motor", noise=noise, offset=noise, scale=0.01
+    )
 
 
 SETTING_NOISE: Mapping[str, float] = {

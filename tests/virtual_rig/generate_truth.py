@@ -55,7 +55,9 @@ def nominal_constants(rig: str) -> Constants:
     return Constants(nominal(), LoopConstants() if has_loop(rig) else None, {})
 
 
-def draw_rig(rig: str, rng: np.random.Generator, places: Sequence[Sensor], *, shift: bool = False) -> Constants:
+def draw_rig(
+    rig: str, rng: np.random.Generator, places: Sequence[Sensor], *, shift: bool = False
+) -> Constants:
     """A rig as built."""
     tree, boxes = case_of(rig)
     heat = draw_heat(rng, shift)
@@ -125,11 +127,15 @@ class RigTruth:
             values[i] = value.imag if row.part == "imaginary" else np.real(value)
         return values
 
-    def _read_heat(self, point: TruePoint, sensors: Sequence[Sensor], warm: Mapping[str, Any], found: dict) -> None:
+    def _read_heat(
+        self, point: TruePoint, sensors: Sequence[Sensor], warm: Mapping[str, Any], found: dict
+    ) -> None:
         for sensor in sensors:
             key = sensor.name, point.name
             if sensor.quantity == "temperature":
-                found[key] = warm["thermocouples"][sensor.name] if sensor.at else warm["temperatures"][sensor.place]
+                found[key] = (
+                    warm["thermocouples"][sensor.name] if sensor.at else warm["temperatures"][sensor.place]
+                )
             elif sensor.quantity == "oil_outlet_temperature":
                 found[key] = warm["oil_outlets"][sensor.place]
             elif sensor.quantity == "motor_power":
@@ -138,8 +144,13 @@ class RigTruth:
                 found[key] = warm["drive_torque"]
 
     def _read_loop(
-        self, point: TruePoint, sensors: Sequence[Sensor], losses: Mapping[str, float], orders: Sequence[float], found: dict
-    ) -> None:  # fmt: skip
+        self,
+        point: TruePoint,
+        sensors: Sequence[Sensor],
+        losses: Mapping[str, float],
+        orders: Sequence[float],
+        found: dict,
+    ) -> None:
         assert self.loop is not None
         answer = self.loop.solve(loop_point(self.loop, self.heat, point, losses), orders)
         for sensor in sensors:

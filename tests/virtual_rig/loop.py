@@ -65,16 +65,20 @@ class LoopTruth:
     """A loop with constants of its own and hidden effects; nothing is shared with the checker but the case file."""
 
     def __init__(
-        self, tree: Mapping[str, Any], constants: LoopConstants | None = None, effects: Sequence[Mapping[str, Any]] = ()
+        self,
+        tree: Mapping[str, Any],
+        constants: LoopConstants | None = None,
+        effects: Sequence[Mapping[str, Any]] = (),
     ) -> None:
         self.tree = tree
         self.meshes = [
-            tooth.read_teeth(tree, box, mesh) for box, entry in tree["gearboxes"].items() for mesh in entry["meshes"]
+            tooth.read_teeth(tree, box, mesh)
+            for box, entry in tree["gearboxes"].items()
+            for mesh in entry["meshes"]
         ]
         self.constants = changed(constants or LoopConstants(), effects, self.meshes)
-        turns = math.lcm(*(m.z[1] // math.gcd(*m.z) for m in self.meshes))
         self._at_rest: Circuit | None = None
-        self.cycle_turns = turns * self.constants.cycle_factor
+        self.cycle_turns = math.lcm(*(m.z[1] // math.gcd(*m.z) for m in self.meshes))
 
     def natural_frequencies(self, count: int) -> np.ndarray:
         """At rest, braced with the torque of the first load stage [Hz]."""
@@ -111,7 +115,7 @@ class LoopTruth:
         state = self._state(circuit, point, at_rest["twist"] * lock)
         turn = 2.0 * math.pi / point.speed
         teeth = self.meshes[0].z[0]
-        longest = TIME_STEP if self.cycle_turns <= 2 else LONG_STEP
+        longest = TIME_STEP if self.cycle_turns == 1 else LONG_STEP
         per_turn = teeth * 2 * math.ceil(turn / longest / teeth / 2)
         n_cycle = per_turn * self.cycle_turns
         dt = turn / per_turn
@@ -155,7 +159,9 @@ class LoopTruth:
             guess = self._forces(circuit, force * self.meshes[0].base_radii[0])
             rubbing = np.zeros((n_meshes, 2))
             if running:
-                rubbing = np.array([kernel.mean_approach(f, N_PHASES, m, *cold)[2:] for m, f in enumerate(guess)])
+                rubbing = np.array(
+                    [kernel.mean_approach(f, N_PHASES, m, *cold)[2:] for m, f in enumerate(guess)]
+                )
             fixed = force * port[0] + (drag if running else 0.0)
             for m in range(n_meshes):
                 fixed = fixed + rubbing[m, 0] * port[3 * m + 1] + rubbing[m, 1] * port[3 * m + 2]
@@ -169,7 +175,10 @@ class LoopTruth:
             approaches = [kernel.mean_approach(f, N_PHASES, m, *cold)[0] for m, f in enumerate(forces)]
             basis = np.column_stack([inverse @ wind, *(line.astype(float) for line in lines)])
             own = inverse @ load
-            wanted = [d + _play(m, sign) - g for d, m, sign, g in zip(approaches, self.meshes, circuit.directions, growth)]
+            wanted = [
+                d + _play(m, sign) - g
+                for d, m, sign, g in zip(approaches, self.meshes, circuit.directions, growth)
+            ]
             rows = np.vstack((circuit.approach @ basis, basis[counted]))
             right = np.append(np.array(wanted) - circuit.approach @ own, -own[counted])
             found = np.linalg.solve(rows, right)
@@ -315,7 +324,9 @@ class LoopTruth:
         modes = circuit.modes[:, keep]
         m = modes.shape[1]
         damping = modes.T @ circuit.damping @ modes
-        matrix = np.block([[np.zeros((m, m)), np.eye(m)], [-np.diag(circuit.frequencies[keep] ** 2), -damping]])
+        matrix = np.block(
+            [[np.zeros((m, m)), np.eye(m)], [-np.diag(circuit.frequencies[keep] ** 2), -damping]]
+        )
         roots, shapes = np.linalg.eig(matrix)
         left = np.linalg.inv(shapes)
         upper = roots.imag >= 0.0
@@ -337,7 +348,9 @@ class LoopTruth:
         vector = np.zeros(upper.sum(), dtype=complex)
         rho = np.zeros(2)
         record = np.zeros((3 * n, n_cycle))
-        size = np.concatenate((np.abs(motion).max(0), [np.abs(fixed[4]).max(), np.abs(fixed[4]).max() / 400.0]))
+        size = np.concatenate(
+            (np.abs(motion).max(0), [np.abs(fixed[4]).max(), np.abs(fixed[4]).max() / 400.0])
+        )
         span = n_cycle * dt
         steps, residual = 0, 1.0
 
@@ -433,7 +446,9 @@ class LoopTruth:
     def _free_end(self, circuit: Circuit, shaft: str) -> int:
         """Where the encoder sits: the end that no coupling takes, the start where both are free or taken."""
         couplings = self.tree["drivetrain"]["couplings"].values()
-        taken = {end for entry in couplings for name, end in zip(entry["shafts"], entry["ends"]) if name == shaft}
+        taken = {
+            end for entry in couplings for name, end in zip(entry["shafts"], entry["ends"]) if name == shaft
+        }
         return circuit.ends[shaft, "end" if taken == {"start"} else "start"]
 
 

@@ -56,7 +56,6 @@ class LoopConstants:
     drift: float = 0.0
     """Relative change of the locked twist per kelvin of oil."""
     torques: tuple[HarmonicTorque, ...] = ()
-    cycle_factor: int = 1
     stiffening: float = 0.0
     """Out of catalogue: relative change of the mesh stiffness from no torque to 400 N m."""
 
@@ -116,7 +115,9 @@ def draw_constants(
 ) -> LoopConstants:
     """A rig as built: constants and healthy tooth errors. ``shift``: half as much wider again, softer journals."""
     wide = 1.5 if shift else 1.0
-    values = {name: wide * spread * rng.standard_normal() for name, spread in constant_names(tree, meshes).items()}
+    values = {
+        name: wide * spread * rng.standard_normal() for name, spread in constant_names(tree, meshes).items()
+    }
     if shift:
         values["journal_stiffness"] -= 0.4
         values["curvature"] += 0.25
@@ -130,9 +131,12 @@ def draw_constants(
             errors[gear] = ToothErrors(
                 run_out=complex(parts[f"run_out:{gear}:cos"], parts[f"run_out:{gear}:sin"]),
                 place=tuple(_closed(steps) * 0.5),
-                slope=tuple(wide * SLOPE_SHARE * slope * (rng.standard_normal() + 0.4 * rng.standard_normal(z))),
+                slope=tuple(
+                    wide * SLOPE_SHARE * slope * (rng.standard_normal() + 0.4 * rng.standard_normal(z))
+                ),
                 waves={
-                    k: complex(parts[f"wave_{k}:{gear}:cos"], parts[f"wave_{k}:{gear}:sin"]) for k in WAVE_SHARE
+                    k: complex(parts[f"wave_{k}:{gear}:cos"], parts[f"wave_{k}:{gear}:sin"])
+                    for k in WAVE_SHARE
                 },
             )
     return with_constants(LoopConstants(errors=errors), values)
@@ -146,7 +150,9 @@ def with_constants(base: LoopConstants, values: Mapping[str, float]) -> LoopCons
     for name, value in values.items():
         if name.startswith(("run_out:", "wave_")):
             kind, gear, part = name.split(":")
-            errors[gear] = _with_wave(errors.get(gear, ToothErrors()), kind, value * (1.0 if part == "cos" else 1j))
+            errors[gear] = _with_wave(
+                errors.get(gear, ToothErrors()), kind, value * (1.0 if part == "cos" else 1j)
+            )
         elif name in ("curvature", "hertz", "relief", "lock"):
             plain[name] = getattr(base, name) * (1.0 + value)
         else:
@@ -170,7 +176,9 @@ def _closed(steps: np.ndarray) -> np.ndarray:
 # ---------------------------------------------------------------------------- effects
 
 
-def changed(base: LoopConstants, effects: Sequence[Mapping[str, Any]], meshes: Sequence[Teeth]) -> LoopConstants:
+def changed(
+    base: LoopConstants, effects: Sequence[Mapping[str, Any]], meshes: Sequence[Teeth]
+) -> LoopConstants:
     """Constants with hidden effects: entries ``{"effect": "run_out:test.pinion", "size": 12e-6, "phase": 0.4}``.
 
     Effects of losses, oil and sensors are not of the loop and pass through. KeyError: unknown gear or mesh.
@@ -242,10 +250,11 @@ def _factor(kind: str):  # type: ignore[no-untyped-def]
 def _torque(**fixed: Any):  # type: ignore[no-untyped-def]
     def change(base, place, effect, meshes):  # type: ignore[no-untyped-def]
         own = HarmonicTorque(
-            place=place or "motor", amplitude=_wave(effect), **{"order": float(effect.get("order", 1.0)), **fixed}
+            place=place or "motor",
+            amplitude=_wave(effect),
+            **{"order": float(effect.get("order", 1.0)), **fixed},
         )
-        factor = 2 if own.frequency is None and own.order % 1.0 else 1
-        return replace(base, torques=(*base.torques, own), cycle_factor=max(factor, base.cycle_factor))
+        return replace(base, torques=(*base.torques, own))
 
     return change
 
@@ -253,7 +262,9 @@ def _torque(**fixed: Any):  # type: ignore[no-untyped-def]
 def _alternate(base, place, effect, meshes):  # type: ignore[no-untyped-def]
     z = _teeth_of(meshes, place)
     pattern = 0.5 * effect["size"] * (-1.0) ** np.arange(z)
-    return _edit(base, place, place=tuple(np.array(_own(base, place).place or (0.0,) * z) + pattern - pattern.mean()))
+    return _edit(
+        base, place, place=tuple(np.array(_own(base, place).place or (0.0,) * z) + pattern - pattern.mean())
+    )
 
 
 def _rub(base, place, effect, meshes):  # type: ignore[no-untyped-def]
@@ -262,6 +273,10 @@ def _rub(base, place, effect, meshes):  # type: ignore[no-untyped-def]
         part = {**effect, "order": order, "phase": order * effect.get("phase", 0.0)}
         base = _torque(speed_power=1.0)(base, place, part, meshes)
     return base
+
+
+def _absorber(base, place, effect, meshes):  # type: ignore[no-untyped-def]
+    return replace(base, scale={**base.scale, f"absorber:{place}": effect["size"]})
 
 
 CHANGES = {
@@ -282,11 +297,10 @@ CHANGES = {
     "bracing_drift": lambda base, place, effect, meshes: replace(base, drift=base.drift + effect["size"]),
     # out of catalogue
     "x_torque_squared": _torque(order=3.0, torque_power=2.0),
-    "x_half_order": _torque(order=0.5, speed_power=1.0),
     "x_mains": _torque(frequency=100.0, order=1.0),
     "x_alternate_teeth": _alternate,
     "x_rub": _rub,
-    "x_absorber": lambda base, place, effect, meshes: replace(base, scale={**base.scale, f"absorber:{place}": effect["size"]}),
+    "x_absorber": _absorber,
     "x_stiffening": lambda base, place, effect, meshes: replace(base, stiffening=effect["size"]),
-    "x_speed_ripple": _torque(order=5.0, speed_power=2.0),
+    "x_speed_ripple": _torque(order=4.0, speed_power=2.0),
 }  # fmt: skip

@@ -9,7 +9,9 @@ from numba import njit
 
 PINION, WHEEL = 0, 1
 # numbers of one mesh
-RATE, PITCH, START, STEP, OFFSET, DAMP, MU, ARM_1, ARM_2, HERTZ, DEEP, BACK_GAP, BACK_STIFF, N_NUMBERS = range(14)
+RATE, PITCH, START, STEP, OFFSET, DAMP, MU, ARM_1, ARM_2, HERTZ, DEEP, BACK_GAP, BACK_STIFF, N_NUMBERS = (
+    range(14)
+)
 
 
 @njit(cache=True, fastmath=True)
@@ -41,7 +43,12 @@ def pair_force(x, v, place, m, numbers, tables, gaps, tooth_gap, tooth_scale, to
         one = p % counts[m, 0]
         two = (p + shift[m]) % counts[m, 1]
         run = 2.0 * at / (n_path - 1) - 1.0
-        k = ((1.0 - f) * tables[m, i] + f * tables[m, i + 1]) * tooth_scale[m, 0, one] * tooth_scale[m, 1, two] / n_slices
+        k = (
+            ((1.0 - f) * tables[m, i] + f * tables[m, i + 1])
+            * tooth_scale[m, 0, one]
+            * tooth_scale[m, 1, two]
+            / n_slices
+        )
         own = tooth_gap[m, 0, one] + tooth_gap[m, 1, two]
         own += 0.5 * run * (tooth_slope[m, 0, one] - tooth_slope[m, 1, two])
         pair = 0.0
@@ -116,7 +123,9 @@ def march(
 
 
 @njit(cache=True)
-def mean_approach(target, n_phases, m, numbers, tables, gaps, tooth_gap, tooth_scale, tooth_slope, counts, shift):
+def mean_approach(
+    target, n_phases, m, numbers, tables, gaps, tooth_gap, tooth_scale, tooth_slope, counts, shift
+):
     """Means over one base pitch under a constant force: approach [m], stiffness [N/m], friction torques [N m]."""
     total = 0.0
     slope = 0.0
@@ -129,7 +138,18 @@ def mean_approach(target, n_phases, m, numbers, tables, gaps, tooth_gap, tooth_s
         for _ in range(45):
             middle = 0.5 * (low + high)
             force = pair_force(
-                middle, 0.0, place, m, numbers, tables, gaps, tooth_gap, tooth_scale, tooth_slope, counts, shift
+                middle,
+                0.0,
+                place,
+                m,
+                numbers,
+                tables,
+                gaps,
+                tooth_gap,
+                tooth_scale,
+                tooth_slope,
+                counts,
+                shift,
             )[0]
             if force > target:
                 high = middle
@@ -141,7 +161,33 @@ def mean_approach(target, n_phases, m, numbers, tables, gaps, tooth_gap, tooth_s
         )
         on_1 += rub_1
         on_2 += rub_2
-        up = pair_force(low + 2e-8, 0.0, place, m, numbers, tables, gaps, tooth_gap, tooth_scale, tooth_slope, counts, shift)[0]
-        down = pair_force(low - 2e-8, 0.0, place, m, numbers, tables, gaps, tooth_gap, tooth_scale, tooth_slope, counts, shift)[0]
+        up = pair_force(
+            low + 2e-8,
+            0.0,
+            place,
+            m,
+            numbers,
+            tables,
+            gaps,
+            tooth_gap,
+            tooth_scale,
+            tooth_slope,
+            counts,
+            shift,
+        )[0]
+        down = pair_force(
+            low - 2e-8,
+            0.0,
+            place,
+            m,
+            numbers,
+            tables,
+            gaps,
+            tooth_gap,
+            tooth_scale,
+            tooth_slope,
+            counts,
+            shift,
+        )[0]
         slope += (up - down) / 4e-8
     return total / n_phases, slope / n_phases, on_1 / n_phases, on_2 / n_phases

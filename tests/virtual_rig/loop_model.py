@@ -5,6 +5,7 @@ the line of action: itself on the bending shaft, and the journals in their oil f
 direction of their own shaft. Meshes stay outside (`loop_march`).
 """
 
+import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -230,12 +231,14 @@ def _bar(
     edges = np.concatenate(([0.0], np.cumsum([section["length"] for section in shaft["sections"]])))
     marks = sorted({*np.round(edges, 7), *(round(float(np.clip(s, 0.0, edges[-1])), 7) for s in stations)})
     places = [marks[0]]
-    for left, right in zip(marks, marks[1:]):
+    for left, right in itertools.pairwise(marks):
         pieces = max(1, math.ceil((right - left) / ELEMENT))
         places += [left + (right - left) * (i + 1) / pieces for i in range(pieces)]
     nodes = [(float(place), parts.add(f"{name}@{place:.4f}")) for place in places]
-    for (left, a), (right, b) in zip(nodes, nodes[1:]):
-        section = shaft["sections"][min(int(np.searchsorted(edges, 0.5 * (left + right))) - 1, len(edges) - 2)]
+    for (left, a), (right, b) in itertools.pairwise(nodes):
+        section = shaft["sections"][
+            min(int(np.searchsorted(edges, 0.5 * (left + right))) - 1, len(edges) - 2)
+        ]
         outer, inner = section["outer_diameter"], section.get("inner_diameter", 0.0)
         polar = math.pi * (outer**4 - inner**4) / 32.0
         parts.join(a, b, scale * SHEAR * polar / (right - left))
@@ -286,7 +289,9 @@ def _sideways(
     bending = 3.0 * YOUNG * math.pi * seat**4 / 64.0 * span / (left * (span - left)) ** 2
     bending *= scale.get("shaft_bending", 1.0)
     gap = 0.5 * bearings[0]["diametral_clearance"]
-    film = len(bearings) * (3e7 + 3.0 * abs(force) / len(bearings) / gap) * scale.get("journal_stiffness", 1.0)
+    film = (
+        len(bearings) * (3e7 + 3.0 * abs(force) / len(bearings) / gap) * scale.get("journal_stiffness", 1.0)
+    )
     damping = 0.5 * film / max(speed, 50.0) * scale.get("journal_damping", 1.0)
     if at_rest:
         film, damping = 2e9, 0.0

@@ -1,8 +1,8 @@
 """Teeth of one mesh for the march in time: own geometry, own stiffness course, gaps and errors of every tooth.
 
-Sheets: gears.md a (geometry), c (stiffness of one pair at the pitch point), f (slices), j (deviations). The course
-of the stiffness is a parabola over the path, weaker to the ends, and grows a little with the load (Hertz), which
-no other part of the project does in this way.
+Geometry as in ISO 21771, the stiffness of one pair at the pitch point as in ISO 6336-1 method B. The course of
+the stiffness is a parabola over the path, weaker to the ends, and grows a little with the load (Hertz), which no other
+part of the project does in this way.
 """
 
 import math
@@ -42,7 +42,9 @@ class ToothErrors:
         """Place of each tooth (teeth,) [m]."""
         tooth = 2.0 * math.pi * np.arange(teeth) / teeth
         own = np.array(self.place) if self.place else np.zeros(teeth)
-        return own + sum((np.real(a * np.exp(-1j * k * tooth)) for k, a in self.waves.items()), np.zeros(teeth))
+        return own + sum(
+            (np.real(a * np.exp(-1j * k * tooth)) for k, a in self.waves.items()), np.zeros(teeth)
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,7 +102,9 @@ def read_teeth(tree: Mapping[str, Any], box: str, mesh: str) -> Teeth:
     shift_sum = (_inv(alpha_w) - _inv(alpha_t)) * sum(z) / (2.0 * math.tan(alpha))
     shifts = _shifts(gears, entry, shift_sum)
     rack = {"addendum": 1.0, "dedendum": 1.25, "tip_radius": 0.38, **entry.get("rack", {})}
-    tips = [r + m * (rack["addendum"] + x) - g.get("tip_shortening", 0.0) for r, x, g in zip(radii, shifts, gears)]
+    tips = [
+        r + m * (rack["addendum"] + x) - g.get("tip_shortening", 0.0) for r, x, g in zip(radii, shifts, gears)
+    ]
     pitch = math.pi * m_t * math.cos(alpha_t)
     cut = entry.get("tip_cut")
     if entry.get("contact_ratio") is not None:
@@ -109,10 +113,12 @@ def read_teeth(tree: Mapping[str, Any], box: str, mesh: str) -> Teeth:
     end = math.sqrt(tips[0] ** 2 - base[0] ** 2) - rolling[0]
     start = rolling[1] - math.sqrt(tips[1] ** 2 - base[1] ** 2)
     working = [a * r / sum(base) for r in base]
+    inv_w = _inv(alpha_w)
+    thinner = [0.5 * g.get("tooth_thinning", 0.0) / (math.cos(beta) * r) for g, r in zip(gears, radii)]
     thick = [
-        2.0 * w * (_half_angle(n, x, alpha, alpha_t) - g.get("tooth_thinning", 0.0) / (math.cos(beta) * 2.0 * r) - _inv(alpha_w))
-        for w, n, x, g, r in zip(working, z, shifts, gears, radii)
-    ]  # fmt: skip
+        2.0 * w * (_half_angle(n, x, alpha, alpha_t) - thin - inv_w)
+        for w, n, x, thin in zip(working, z, shifts, thinner)
+    ]
     backlash = pitch - sum(thick) * math.cos(alpha_w)
     width = min(g["face_width"] for g in gears)
     bodies = [_body(g, r, m, rack["dedendum"], x, t) for g, r, x, t in zip(gears, radii, shifts, tips)]
@@ -132,7 +138,7 @@ def read_teeth(tree: Mapping[str, Any], box: str, mesh: str) -> Teeth:
         face_widths=(gears[0]["face_width"], gears[1]["face_width"]),
         masses=(bodies[0][0], bodies[1][0]),
         inertias=(bodies[0][1], bodies[1][1]),
-        peak_stiffness=0.8 * pair_stiffness(z, shifts, beta) * width,
+        peak_stiffness=0.8 * pair_stiffness(z, shifts, beta, alpha) * width,
         phase=entry.get("phase", 0.0) * pitch,
         damping=entry["damping"],
         flanks=(gears[0].get("flank", {}), gears[1].get("flank", {})),
@@ -142,13 +148,10 @@ def read_teeth(tree: Mapping[str, Any], box: str, mesh: str) -> Teeth:
     )
 
 
-def pair_stiffness(z: Sequence[int], x: Sequence[float], beta: float) -> float:
-    """c'_th of one pair by the nine-term regression of gears.md c [N/m per m face width].
-
-    >>> round(pair_stiffness((17, 103), (0.145, 0.0), math.radians(15.8)) * 1e-9, 1)
-    17.9
-    """
-    n = [k / math.cos(beta) ** 3 for k in z]
+def pair_stiffness(z: Sequence[int], x: Sequence[float], beta: float, alpha: float) -> float:
+    """c'_th of one pair, the nine-term regression of ISO 6336-1 method B [N/m per m face width]."""
+    base = math.asin(math.sin(beta) * math.cos(alpha))
+    n = [k / (math.cos(base) ** 2 * math.cos(beta)) for k in z]
     c = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
     q = c[0] + c[1] / n[0] + c[2] / n[1] + c[3] * x[0] + c[4] * x[0] / n[0] + c[5] * x[1] + c[6] * x[1] / n[1]
     return 1e9 / (q + c[7] * x[0] ** 2 + c[8] * x[1] ** 2)
@@ -198,7 +201,7 @@ def relief_length(teeth: Teeth, index: int) -> float:
 
 
 def tolerances(teeth: Teeth, index: int) -> tuple[float, float, float]:
-    """f_p, F_p and f_Halpha of a gear of its grade, ISO 1328-1:2013 (gears.md d) [m]."""
+    """f_p, F_p and f_Halpha of a gear of its grade, ISO 1328-1:2013 [m]."""
     d, m = 1e3 * 2.0 * teeth.base_radii[index] / 0.94, 1e3 * teeth.module
     grade = math.sqrt(2.0) ** (teeth.grades[index] - 5)
     single = 0.001 * d + 0.4 * m + 5.0
@@ -225,7 +228,13 @@ def _shifts(gears: Sequence[Mapping[str, Any]], mesh: Mapping[str, Any], total: 
 
 
 def _shortened(
-    tips: Sequence[float], base: Sequence[float], a: float, alpha_w: float, pitch: float, ratio: float, cut: str | None
+    tips: Sequence[float],
+    base: Sequence[float],
+    a: float,
+    alpha_w: float,
+    pitch: float,
+    ratio: float,
+    cut: str | None,
 ) -> list[float]:
     """Tip radii cut on one or both gears until the contact ratio is met (bisection)."""
     which = {"pinion": (1.0, 0.0), "wheel": (0.0, 1.0)}.get(cut or "both", (1.0, 1.0))
