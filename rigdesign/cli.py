@@ -1,8 +1,8 @@
-"""The command line: `rigdesign check | study | compare | validate | new | schema | doctor`.
+"""The command line: `rigdesign check | study | compare | diagnose | validate | new | schema | doctor`.
 
-Exit status: 0 all checks pass (study: complete; compare: any verdict; validate: no gate missed), 1 a check fails
-or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is missing, 5 measured data cannot
-be used. Heavy imports happen inside the commands, so that `--help` answers at once.
+Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; validate: no gate missed), 1 a
+check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is missing, 5 measured
+data cannot be used. Heavy imports happen inside the commands, so that `--help` answers at once.
 """
 
 import json
@@ -176,6 +176,55 @@ def compare(
         _print_json(comparison_document(comparison, model=model, fidelity=fidelity))
     else:
         print_comparison(comparison, out)
+    return 0
+
+
+@app.command
+def diagnose(
+    case: Path,
+    measurement: Path,
+    *,
+    out: Path,
+    json: bool = False,
+    name: str | None = None,
+) -> int:
+    """Name the effect that the model lacks against a measurement set, patch the case, and prove that the gap shrinks.
+
+    Parameters
+    ----------
+    case
+        Case folder or its case.toml; it is not written to.
+    measurement
+        Folder with measurement.toml.
+    out
+        Folder for diagnosis.json, diagnosis.html and, where nothing speaks against it, case.patch.json and
+        patched/case.toml.
+    json
+        Print diagnosis.json on stdout; everything else goes to stderr.
+    name
+        Effect to patch where the data leave several, such as one of an alias group.
+    """
+    from rigdesign.case import load_case
+    from rigdesign.diagnosis.catalogue import effects_of
+    from rigdesign.diagnosis.document import diagnosis_document
+    from rigdesign.diagnosis.outcome import check_pick, outcome
+    from rigdesign.diagnosis.run import diagnose_measurement
+    from rigdesign.report import prepare_output
+    from rigdesign.report.diagnosis_files import write_diagnosis
+    from rigdesign.terminal import Progress, print_diagnosis
+
+    loaded = load_case(case)
+    if name is not None:
+        check_pick(effects_of(loaded), name)
+    prepare_output(out)
+    with Progress() as progress:
+        told = outcome(diagnose_measurement(loaded, measurement, say=progress), pick=name)
+        progress("writing report")
+        write_diagnosis(told, out)
+    if json:
+        _print_json(diagnosis_document(told))
+    else:
+        print_diagnosis(told, out)
     return 0
 
 

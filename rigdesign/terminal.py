@@ -15,6 +15,7 @@ from rich.text import Text
 from rigdesign.results import Check, RunResult
 
 if TYPE_CHECKING:
+    from rigdesign.diagnosis.outcome import Outcome
     from rigdesign.measurement.compare import Comparison
     from rigdesign.ranges_result import RangesResult
     from rigdesign.system import Finding
@@ -152,6 +153,48 @@ def print_comparison(comparison: "Comparison", out: Path | None) -> None:
         console.print(Text(f"{finding.weight:8s}", style) + Text(finding.text))
     if out is not None:
         console.print(f"{out / 'compare.html'}")
+
+
+DIAGNOSIS_STYLES = {"named": "bold green", "within_noise": "green", "input_error_suspected": "bold red"}
+
+
+def print_diagnosis(outcome: "Outcome", out: Path) -> None:
+    """Verdict, where, what and how big, the gap, what remains, what next, and where the files are."""
+    from rigdesign.diagnosis.advice import VERDICTS, certainty, headline, steps
+    from rigdesign.diagnosis.document import sentences
+    from rigdesign.diagnosis.naming import told
+
+    console = Console(highlight=False, soft_wrap=True)
+    found, measurement = outcome.result.diagnosis, outcome.result.measurement
+    style = DIAGNOSIS_STYLES.get(outcome.verdict, "bold yellow")
+    console.print(Text(VERDICTS[outcome.verdict], style) + Text(f" ({found.strength})", "dim"))
+    console.print(Text(headline(outcome)))
+    console.print(Text(certainty(outcome), "dim"))
+    for text in sentences(outcome.before, measurement)[:3]:
+        console.print(Text("where     ", "bold") + Text(text))
+    for one in outcome.named:
+        sizes = "; ".join(told(value) for value in one.shown)
+        console.print(Text("effect    ", "bold") + Text(f"{one.explanation}: {sizes}, 95 % interval"))
+    for suspect in () if outcome.verdict == "within_noise" else outcome.suspects:
+        share = f"{100.0 * suspect.inclusion:.0f} %"
+        size = "" if suspect.size is None else f"; alone {told(suspect.size.shown[0])}"
+        console.print(Text("perhaps   ", "bold") + Text(f"{suspect.name}: posterior {share}{size}"))
+    if found.gap is not None and outcome.named:
+        text = (
+            f"{found.gap.before:.2f} -> {found.gap.after:.2f} standard deviations on points the fit never saw "
+            f"({', '.join(found.gap.points)}), a healthy rig has 1"
+        )
+        console.print(Text("gap       ", "bold") + Text(text))
+    left = sentences(outcome.after, measurement) if outcome.named else []
+    for text in left[:3]:
+        console.print(Text("remains   ", "bold") + Text(text))
+    for step in steps(outcome)[:5]:
+        console.print(Text("next      ", "bold") + Text(f"{step.text}: {step.why}"))
+    if outcome.case_patch is not None:
+        console.print(f"patched case: {out / 'patched' / 'case.toml'}")
+    else:
+        console.print(f"case not patched: {outcome.refused}")
+    console.print(f"report: {out / 'diagnosis.html'}")
 
 
 def print_findings(findings: Sequence["Finding"]) -> None:

@@ -1,0 +1,151 @@
+"""A diagnosis in sentences: the verdict, how sure it is, and what to do next."""
+
+from dataclasses import dataclass
+
+from rigdesign.diagnosis.heldout import LEAST_POINTS
+from rigdesign.diagnosis.naming import told
+from rigdesign.diagnosis.outcome import Outcome
+from rigdesign.diagnosis.workflow import LEAST_RUNNING_POINTS
+from rigdesign.measurement.compare import sentence, significant
+
+VERDICTS = {
+    "named": "effect named",
+    "alias_group": "one of a few",
+    "unknown_located": "unknown, located",
+    "within_noise": "nothing missing",
+    "too_small": "too small to tell",
+    "input_error_suspected": "data suspected",
+    "data_insufficient": "data insufficient",
+}
+"""Verdict -> as a heading."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Step:
+    """Something to measure or do next.
+
+    separation : of the rivals it tells apart least [variances], cost : relative to one thermocouple; None where it
+    follows from a rule and not from a computation
+    """
+
+    text: str
+    why: str
+    separation: float | None = None
+    cost: float | None = None
+    decides: bool | None = None
+
+
+def headline(outcome: Outcome) -> str:
+    """The verdict in a sentence or two."""
+    found = outcome.result.diagnosis
+    match outcome.verdict:
+        case "named":
+            model = [f"{one.title}, {told(one.shown[0])}" for one in outcome.named]
+            return f"What the model lacks: {'; '.join(model)}."
+        case "alias_group":
+            return f"One of these is at work, the data cannot tell which: {_titles(outcome)}."
+        case "input_error_suspected":
+            return f"The data look wrong rather than the model: {_titles(outcome)}."
+        case "unknown_located":
+            reason = found.decision.reason
+            return f"Something is at work, and no name for it is safe: {reason}. {_where(outcome)}".rstrip()
+        case "within_noise":
+            return "Nothing is missing that these data could show: a healthy rig leaves as much."
+        case "too_small":
+            first = _titles(outcome)
+            return f"Something may be at work, too small to be told from its rivals; first of them: {first}."
+    return f"These data cannot name anything: {found.decision.reason}."
+
+
+def _where(outcome: Outcome) -> str:
+    """The most conspicuous group in a sentence; empty where none is outside what a healthy rig leaves."""
+    first = outcome.before[0] if outcome.before else None
+    return "" if first is None or not significant(first) else sentence(first, outcome.result.measurement)
+
+
+def certainty(outcome: Outcome) -> str:
+    """Why the verdict is proven or only indicative."""
+    found = outcome.result.diagnosis
+    if found.strength == "proven":
+        count = len(found.held_out_points)
+        return (
+            f"Proven: the noise is known from repeats, and {count} operating point{'s were' if count > 1 else ' was'} "
+            "kept aside before anything was fitted."
+        )
+    missing = []
+    if not outcome.result.problem.repeated:
+        missing.append("most numbers have a single reading, so the noise is what the set declares")
+    if not found.held_out_points:
+        missing.append(f"no operating point was kept aside (that takes at least {LEAST_POINTS})")
+    return f"Indicative: {', and '.join(missing)}."
+
+
+def steps(outcome: Outcome) -> tuple[Step, ...]:
+    """What to measure or do next: computed proposals first, then what the rules of the workflow say."""
+    computed = [
+        Step(
+            text=one.title,
+            why="tells the leading explanations apart"
+            if one.decides
+            else "goes some way to tell the leading explanations apart",
+            separation=one.separation,
+            cost=one.cost,
+            decides=one.decides,
+        )
+        for one in outcome.proposals
+    ]
+    return (*_first(outcome), *computed, *_better_data(outcome))
+
+
+def _first(outcome: Outcome) -> list[Step]:
+    """What the verdict itself asks for."""
+    corrections = [Step(text=one.text, why="then diagnose again") for one in outcome.corrections]
+    match outcome.verdict:
+        case "alias_group":
+            if outcome.picked is None:
+                return [
+                    Step(
+                        text="look for what one of the group would show elsewhere on the rig, or pick one with --name",
+                        why="these data fit all of them alike",
+                    )
+                ]
+        case "unknown_located":
+            place = outcome.before[0].group if outcome.before else "the rig"
+            return [Step(text=f"look at {place}", why="there the residual stands out most")]
+    return corrections
+
+
+def _better_data(outcome: Outcome) -> list[Step]:
+    result, found = outcome.result, outcome.result.diagnosis
+    running = len(result.data.settings)
+    steps = []
+    if running < LEAST_RUNNING_POINTS:
+        steps.append(
+            Step(
+                text="measure 9 to 15 operating points that mix low and high speed, torque, oil temperature and flow",
+                why=f"{running} operating point{'s' if running != 1 else ''} cannot tell effects apart",
+            )
+        )
+    elif not found.held_out_points:
+        steps.append(
+            Step(
+                text=f"measure at least {LEAST_POINTS} operating points: corners of speed and torque, two oil temperatures",
+                why="some can then be kept aside to prove a name",
+            )
+        )
+    if not result.problem.repeated:
+        steps.append(
+            Step(text="repeat every operating point", why="the noise is then measured, not declared")
+        )
+    if result.baseline is None and outcome.verdict != "named":
+        steps.append(
+            Step(
+                text="measure the same points in a state known to be healthy and give that set as baseline",
+                why="errors of the model cancel in the difference, so that smaller effects are seen",
+            )
+        )
+    return steps
+
+
+def _titles(outcome: Outcome) -> str:
+    return "; ".join(one.title for one in outcome.suspects)

@@ -1,0 +1,371 @@
+"""diagnosis.json: what was found, how sure it is, what it rests on and what it leaves."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from rigdesign import __version__, units
+from rigdesign.diagnosis.advice import certainty, headline, steps
+from rigdesign.diagnosis.columns import Array
+from rigdesign.diagnosis.detectability import Detectability
+from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.naming import Names, Sized, Value, from_evidence, parameter_of, size_value
+from rigdesign.diagnosis.outcome import Outcome
+from rigdesign.measurement import MeasurementSet
+from rigdesign.measurement.compare import display_residual, sentence, significant
+from rigdesign.measurement.locate import Located
+from rigdesign.measurement.quantities import CHANNELS
+from rigdesign.prediction.model import Feature
+from rigdesign.report.results_json import to_plain
+
+SCHEMA = 1
+
+
+def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
+    """The document; plain values, numbers with ten significant digits at most.
+
+    Raises
+    ------
+    NonFiniteResultError
+        If a number is not finite; what does not exist is None.
+    """
+    result, found = outcome.result, outcome.result.diagnosis
+    document = {
+        "schema_version": SCHEMA,
+        "tool_version": __version__,
+        "case": {"name": result.case.name, "path": str(result.case.path), "hash": result.case.hash},
+        "measurement": _measurement(result.measurement),
+        "baseline": None if result.baseline is None else _measurement(result.baseline),
+        "verdict": outcome.verdict,
+        "strength": found.strength,
+        "headline": headline(outcome),
+        "certainty": certainty(outcome),
+        "reason": found.decision.reason,
+        "named": [_sized(one) for one in outcome.named],
+        "suspects": [
+            {
+                "effect": one.name,
+                "title": one.title,
+                "posterior": one.inclusion,
+                **(_NO_SIZE if one.size is None else _size_keys(one.size)),
+            }
+            for one in outcome.suspects
+        ],
+        "picked": None if outcome.picked is None else _sized(outcome.picked),
+        "alternatives": _alternatives(outcome),
+        "detectability": detectability_rows(outcome),
+        "aliases": _aliases(outcome),
+        "gap": _gap(outcome),
+        "located": [_located(one, result.measurement) for one in outcome.before],
+        "unexplained": _unexplained(outcome),
+        "next_measurements": [
+            {
+                "measurement": one.text,
+                "why": one.why,
+                "separation": one.separation,
+                "cost": one.cost,
+                "decides": one.decides,
+            }
+            for one in steps(outcome)
+        ],
+        "data": {
+            "findings": result.data.findings,
+            "rejected_readings": _rejected(outcome),
+            "numbers": len(found.kept),
+            "points": [
+                {
+                    "point": setting.name,
+                    "speed_rpm": units.display(setting.speed, "speed"),
+                    "torque_Nm": setting.torque,
+                    "held_out": setting.name in found.held_out_points,
+                }
+                for setting in result.data.settings
+            ],
+        },
+        "patch": _patch(outcome),
+        "calibration": asdict(result.calibration),
+        "seed": result.problem.seed,
+    }
+    plain = to_plain(document)
+    assert isinstance(plain, dict)
+    return plain
+
+
+def _measurement(measurement: MeasurementSet) -> dict[str, Any]:
+    return {
+        "title": measurement.title,
+        "path": str(measurement.folder),
+        "hash": measurement.hash,
+        "points": len(measurement.points),
+        "channels": list(measurement.channels),
+    }
+
+
+def _sized(one: Sized) -> dict[str, Any]:
+    return {"effect": one.name, "title": one.title, **_size_keys(one)}
+
+
+_NO_SIZE: Mapping[str, Any] = {
+    "explanation": None, "belongs_to": None, "tooth": None, "signature": None, "parameters": [],
+}  # fmt: skip
+
+
+def _size_keys(one: Sized) -> dict[str, Any]:
+    """Entry, tooth, and parameters as the contract has them."""
+    effect = isinstance(one.entry, Effect)
+    return {
+        "explanation": one.explanation,
+        "belongs_to": "case" if effect else "measurement",
+        "tooth": one.tooth,
+        "signature": one.entry.signature if isinstance(one.entry, Effect) else None,
+        "parameters": [_value(value) for value in one.shown],
+    }
+
+
+def _value(value: Value) -> dict[str, Any]:
+    return {
+        "name": value.name,
+        "value": value.value,
+        "unit": value.unit,
+        "interval_95": list(value.interval),
+        "interval_open": value.open,
+        "factor": value.factor,
+    }
+
+
+def _alternatives(outcome: Outcome) -> list[dict[str, Any]]:
+    """Explanations that were weighed, by posterior mass; that nothing is at work among them."""
+    found = outcome.result.diagnosis
+    evidence = {one.hypothesis.name: one for one in found.examinations[0].evidence}
+    rows: list[dict[str, Any]] = [
+        {"explanation": "none", "title": "nothing but what a healthy rig leaves", "family": "none", "effects": [],
+         "posterior": found.examinations[0].weights.masses["none"], "gain": 0.0, "parameters": []}
+    ]  # fmt: skip
+    for one in found.alternatives:
+        own = evidence[one.name]
+        sized = outcome.names.entry(one.name) is not None
+        size = (
+            from_evidence(outcome.names, own, outcome.result.calibration.signature_error) if sized else None
+        )
+        rows.append(
+            {
+                "explanation": one.name,
+                "title": outcome.names.title(one.name),
+                "family": own.hypothesis.family,
+                "effects": list(one.parts),
+                "posterior": one.posterior,
+                "gain": one.gain,
+                "parameters": [] if size is None else [_value(value) for value in size.shown],
+            }
+        )
+    return sorted(rows, key=lambda row: -row["posterior"])
+
+
+def detectability_rows(outcome: Outcome) -> list[dict[str, Any]]:
+    """One row an effect, of any tooth the one seen worst; sizes as values of the parameter, None where unbounded.
+
+    The smallest ``isolable`` relative to its bound comes first.
+    """
+    names = outcome.names
+    worst: dict[str, tuple[Detectability, int]] = {}
+    for row in outcome.result.diagnosis.detectability:
+        effect = names.plain(row.effect)
+        kept, count = worst.get(effect, (row, 0))
+        worst[effect] = (max(kept, row, key=lambda one: one.isolable), count + 1)
+    rows = [
+        _detectability(names, effect, row, count)
+        for effect, (row, count) in sorted(
+            worst.items(), key=lambda item: item[1][0].isolable / item[1][0].bound
+        )
+    ]
+    seen = {row["effect"] for row in rows}
+    missing = [effect for effect in outcome.result.effects if effect.name not in seen]
+    return rows + [_unseen(effect) for effect in missing]
+
+
+def _detectability(names: Names, effect: str, row: Detectability, count: int) -> dict[str, Any]:
+    parameter = parameter_of(names, row.effect)
+    return {
+        "effect": effect,
+        "title": names.title(effect),
+        "parameter": None if parameter is None else parameter.name,
+        "unit": None if parameter is None else parameter.unit,
+        "factor": parameter is not None and parameter.factor,
+        "teeth": count if count > 1 else None,
+        "detectable": size_value(names, row.effect, row.detectable),
+        "isolable": size_value(names, row.effect, row.isolable),
+        "bound": size_value(names, row.effect, row.bound),
+        "detectable_share_of_bound": row.detectable / row.bound if isfinite(row.detectable) else None,
+        "isolable_share_of_bound": row.isolable / row.bound if isfinite(row.isolable) else None,
+        "nearest_rival": row.rival,
+        "rival_title": names.title(row.rival),
+        "correlation": row.correlation,
+        "verdict": row.verdict,
+    }
+
+
+def _unseen(effect: Effect) -> dict[str, Any]:
+    """An effect that no sensor of the set answers to."""
+    parameter = effect.parameters[0]
+    return {
+        "effect": effect.name, "title": effect.title, "parameter": parameter.name, "unit": parameter.unit,
+        "factor": parameter.factor, "teeth": effect.any_tooth or None, "detectable": None, "isolable": None,
+        "bound": parameter.high, "detectable_share_of_bound": None, "isolable_share_of_bound": None,
+        "nearest_rival": None, "rival_title": None, "correlation": None, "verdict": "not testable here",
+    }  # fmt: skip
+
+
+def _aliases(outcome: Outcome) -> list[dict[str, Any]]:
+    """Pairs of effects that look alike, teeth of one gear taken together."""
+    names = outcome.names
+    strongest: dict[tuple[str, str], float] = {}
+    for first, second, correlation in outcome.result.diagnosis.aliases:
+        pair = sorted((names.plain(first), names.plain(second)))
+        key = (pair[0], pair[1])
+        if key[0] != key[1]:
+            strongest[key] = max(strongest.get(key, 0.0), correlation)
+    return [
+        {"effects": list(pair), "titles": [names.title(one) for one in pair], "correlation": correlation}
+        for pair, correlation in sorted(strongest.items(), key=lambda item: (-item[1], item[0]))
+    ]
+
+
+def _gap(outcome: Outcome) -> dict[str, Any] | None:
+    """On points the fit never saw; None without any. ``after`` equals ``before`` where nothing was named."""
+    found = outcome.result.diagnosis
+    if found.gap is None:
+        return None
+    return {
+        "before": found.gap.before,
+        "after": found.gap.after,
+        "floor": 1.0,
+        "unit": "standard deviations of a healthy rig",
+        "held_out_points": list(found.gap.points),
+        "effects_added": [one.explanation for one in outcome.named],
+        "channels": gap_rows(outcome),
+    }
+
+
+def gap_rows(outcome: Outcome) -> list[dict[str, Any]]:
+    """Root mean square of measured minus simulated by channel on the held-out points, in the unit of the channel.
+
+    Those that the named effects move most come first; ``moved`` is the change they make.
+    """
+    result, found = outcome.result, outcome.result.diagnosis
+    features = kept_features(outcome)
+    noise = result.problem.subject.noise[list(found.kept)]
+    spread = np.sqrt(np.diagonal(found.covariance.matrix))
+    rows = []
+    for name, entry in result.data.channels.items():
+        own = np.array(
+            [f.channel == name and f.setting in found.held_out_points for f in features], dtype=np.bool_
+        )
+        if not own.any():
+            continue
+        numbers = (found.residual, found.residual - found.answer, found.answer, noise)
+        shown = [display_residual(_rms(one[own]), entry.channel.quantity, entry.unit) for one in numbers]
+        before, after, moved, floor = (value for value, _ in shown)
+        rows.append(
+            {
+                "channel": name, "quantity": entry.channel.quantity, "unit": shown[0][1], "before": before,
+                "after": after, "moved": moved, "noise": floor,
+                "moved_over_spread": _rms(found.answer[own] / spread[own]), "numbers": int(own.sum()),
+            }
+        )  # fmt: skip
+    return sorted(rows, key=lambda row: -row["moved_over_spread"])
+
+
+def kept_features(outcome: Outcome) -> tuple[Feature, ...]:
+    """The numbers that were kept, in the order of residual and answer."""
+    return tuple(outcome.result.problem.subject.features[row] for row in outcome.result.diagnosis.kept)
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _located(item: Located, measurement: MeasurementSet) -> dict[str, Any]:
+    return {
+        "group": item.group,
+        "significant": significant(item),
+        "sentence": sentence(item, measurement),
+        "whitened_rms": item.rms,
+        "by_chance": item.excess,
+        "channels": list(item.channels),
+        "points_off": list(item.points),
+    }
+
+
+def _unexplained(outcome: Outcome) -> dict[str, Any]:
+    """What is left once the named effects are in the model."""
+    found = outcome.result.diagnosis
+    last = found.examinations[-1]
+    return {
+        "verdict": last.decision.verdict,
+        "reason": last.decision.reason,
+        "groups": [_located(one, outcome.result.measurement) for one in outcome.after if significant(one)],
+    }
+
+
+def _rejected(outcome: Outcome) -> list[dict[str, Any]]:
+    result = outcome.result
+    rows = []
+    for row, deviation in result.diagnosis.rejected:
+        feature = result.problem.subject.features[row]
+        entry = result.data.channels[feature.channel]
+        kind = CHANNELS[entry.channel.quantity].kind
+        value = float(result.problem.subject.values[row])
+        rows.append(
+            {
+                "channel": feature.channel, "point": feature.setting or None, "order": feature.order,
+                "part": feature.part, "value": units.display(value, kind, entry.unit), "unit": entry.unit,
+                "deviation": deviation,
+            }
+        )  # fmt: skip
+    return rows
+
+
+def _patch(outcome: Outcome) -> Mapping[str, Any]:
+    written = outcome.case_patch is not None
+    return {
+        "case": "case.patch.json" if written else None,
+        "variant": "patched/case.toml" if written else None,
+        "refused": None if written else outcome.refused,
+        "picked_by_user": outcome.picked is not None,
+        "measurement": "measurement.patch.json" if outcome.corrections else None,
+    }
+
+
+def measurement_patch(outcome: Outcome) -> dict[str, Any]:
+    """measurement.patch.json: JSON Patch on measurement.toml, and corrections that no key of it says."""
+    measurement = outcome.result.measurement
+    plain = to_plain(
+        {
+            "schema_version": SCHEMA,
+            "tool_version": __version__,
+            "measurement": {
+                "title": measurement.title,
+                "path": str(measurement.folder),
+                "hash": measurement.hash,
+            },
+            "operations": [operation for one in outcome.corrections for operation in one.operations],
+            "corrections": [
+                {
+                    "effect": one.name,
+                    "text": one.text,
+                    "parameters": [] if one.size is None else [_value(value) for value in one.size.shown],
+                }
+                for one in outcome.corrections
+            ],
+        }
+    )
+    assert isinstance(plain, dict)
+    return plain
+
+
+def sentences(items: Sequence[Located], measurement: MeasurementSet) -> list[str]:
+    """Conspicuous groups in words."""
+    return [sentence(item, measurement) for item in items if significant(item)]

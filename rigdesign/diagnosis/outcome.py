@@ -1,0 +1,231 @@
+"""A diagnosis as it is told: effects with their sizes, suspects, what may be patched and what is refused."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Any
+
+from rigdesign.diagnosis.correction import Correction, of_data, of_sensor
+from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.evidence import Evidence
+from rigdesign.diagnosis.located import located
+from rigdesign.diagnosis.naming import Names, Sized, from_evidence, from_fit, told
+from rigdesign.diagnosis.next_measurement import Ranked
+from rigdesign.diagnosis.patch import Fitted, patched_title, patched_values
+from rigdesign.diagnosis.run import Result
+from rigdesign.errors import CaseError, UsageError
+from rigdesign.measurement.locate import Located
+
+SHOWN = 3
+"""Explanations that are told where nothing is named."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Suspect:
+    """Something that may be at work but is not named.
+
+    inclusion : posterior mass of all explanations that claim it; size : at its own best fit, None for what has none
+    """
+
+    name: str
+    title: str
+    inclusion: float
+    size: Sized | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CasePatch:
+    """What is changed in the case: title of the variant, path -> marked value."""
+
+    title: str
+    values: Mapping[str, Mapping[str, Any]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """Everything the document, the page and the terminal say.
+
+    named : of verdict ``named``; suspects : members of an alias group, suspected data, or the leading explanations
+    picked : what the user chose among those not named; case_patch : None where refused, with the reason in ``refused``
+    before, after : where the residual sits without and with the named effects
+    """
+
+    result: Result
+    names: Names
+    named: tuple[Sized, ...]
+    suspects: tuple[Suspect, ...]
+    picked: Sized | None
+    case_patch: CasePatch | None
+    refused: str
+    corrections: tuple[Correction, ...]
+    before: tuple[Located, ...]
+    after: tuple[Located, ...]
+    proposals: tuple[Ranked, ...]
+
+    @property
+    def verdict(self) -> str:
+        """Of the decision."""
+        return self.result.diagnosis.decision.verdict
+
+    @property
+    def applied(self) -> tuple[Sized, ...]:
+        """What a patch holds: the named effects, or the one the user picked."""
+        return self.named if self.picked is None else (self.picked,)
+
+
+def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Ranked] = ()) -> Outcome:
+    """Put a diagnosis into words and patches.
+
+    pick : name of an effect that the user decides for although, or of those that, the data name
+    proposals : measurements that would tell the rivals apart, best first
+
+    Raises
+    ------
+    UsageError
+        An effect picked that these data do not weigh, or that is not among the named ones.
+    """
+    found = result.diagnosis
+    names = Names(result.effects, result.problem.subject.errors)
+    named = from_fit(names, found.fit.sizes) if found.fit is not None else ()
+    suspects = () if named else _suspects(result, names)
+    picked = None if pick is None else _picked(result, names, named, pick)
+    applied = named if picked is None else (picked,)
+    patch, refused = _case_patch(result, applied, picked is not None)
+    corrections = [of_sensor(one) for one in applied if not isinstance(one.entry, Effect)]
+    if found.decision.verdict == "input_error_suspected":
+        corrections += [of_data(name, result.measurement) for name in found.decision.named]
+    return Outcome(
+        result=result,
+        names=names,
+        named=named,
+        suspects=suspects,
+        picked=picked,
+        case_patch=patch,
+        refused=refused,
+        corrections=tuple(corrections),
+        before=located(result, found.residual),
+        after=located(result, found.residual - found.answer),
+        proposals=tuple(proposals),
+    )
+
+
+def check_pick(effects: Sequence[Effect], pick: str) -> None:
+    """Refuse a name that is in no catalogue before anything is computed; sensors are known with the data only.
+
+    Raises
+    ------
+    UsageError
+        With the nearest names.
+    """
+    known = dict.fromkeys(name for effect in effects for name in (effect.claim, effect.name))
+    sensors = ("sensor_", "torque_zero:", "flow_", "inlet_", "speed_", "torque_")
+    if pick in known or pick == "ambient" or pick.startswith(sensors):
+        return
+    if any(effect.any_tooth and pick.rpartition("/")[0] == effect.name for effect in effects):
+        return
+    raise UsageError(f"--name {pick}: no such effect for this case; {_nearest(pick, list(known))}")
+
+
+def _nearest(pick: str, known: Sequence[str]) -> str:
+    near = get_close_matches(pick, known, n=3, cutoff=0.4)
+    return f"did you mean {' or '.join(near)}?" if near else f"known are {', '.join(known)}"
+
+
+def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
+    """Members of the group the verdict gives, or the leading explanations."""
+    found = result.diagnosis
+    weights = found.examinations[0].weights
+    if found.decision.named:
+        wanted = list(found.decision.named)
+    elif found.decision.verdict == "data_insufficient":
+        wanted = [one.hypothesis.parts[0] for one in found.examinations[0].evidence if _single(one)]
+        wanted = list(dict.fromkeys(wanted))[:SHOWN]
+    else:
+        parts = sorted(weights.inclusion.items(), key=lambda item: -item[1])
+        wanted = [part for part, _ in parts[:SHOWN]]
+    suspects = []
+    for name in wanted:
+        best = _best(result, names, name)
+        size = None if best is None else from_evidence(names, best, result.calibration.signature_error)
+        title = names.title(name) if size is None else size.title
+        suspects.append(
+            Suspect(name=name, title=title, inclusion=weights.inclusion.get(name, 0.0), size=size)
+        )
+    return tuple(suspects)
+
+
+def _single(one: Evidence) -> bool:
+    return one.hypothesis.family != "pair"
+
+
+def _best(result: Result, names: Names, name: str) -> Evidence | None:
+    """The best explanation by this effect alone, of those with an entry."""
+    for one in result.diagnosis.examinations[0].evidence:
+        alone = one.hypothesis.parts == (name,) or one.hypothesis.name == name
+        if alone and names.entry(one.hypothesis.name) is not None:
+            return one
+    return None
+
+
+def _picked(result: Result, names: Names, named: Sequence[Sized], pick: str) -> Sized:
+    if named:
+        own = next((one for one in named if pick in (one.name, one.explanation)), None)
+        if own is None:
+            raise UsageError(
+                f"--name {pick}: the data name {', '.join(one.name for one in named)}; leave --name out or pick of them"
+            )
+        return own
+    best = _best(result, names, pick)
+    if best is None:
+        weighed = [
+            one.hypothesis.name
+            for one in result.diagnosis.examinations[0].evidence
+            if names.entry(one.hypothesis.name) is not None
+        ]
+        raise UsageError(f"--name {pick}: these sensors and points do not see it; {_nearest(pick, weighed)}")
+    return from_evidence(names, best, result.calibration.signature_error)
+
+
+def _case_patch(result: Result, applied: Sequence[Sized], picked: bool) -> tuple[CasePatch | None, str]:
+    """The patch, or why there is none."""
+    fitted = [
+        Fitted(
+            effect=one.entry, values=one.values, ends=one.ends, tooth=one.tooth,
+            reason=_evidence_text(result, one, picked),
+        )
+        for one in applied
+        if isinstance(one.entry, Effect)
+    ]  # fmt: skip
+    if not fitted:
+        return None, _why_not(result, bool(applied))
+    try:
+        values = patched_values(result.case, fitted)
+    except CaseError as error:
+        return None, f"the case does not admit the fitted value: {error}"
+    return CasePatch(title=patched_title(result.case, fitted), values=values), ""
+
+
+def _why_not(result: Result, sensors: bool) -> str:
+    if sensors:
+        return "only sensors or settings are off; the case stays as it is"
+    match result.diagnosis.decision.verdict:
+        case "alias_group":
+            return "these data do not tell the members of the group apart; pick one with --name, or measure what would"
+        case "unknown_located":
+            return "no name for what is at work is safe; pick one with --name, or measure what would decide"
+        case "input_error_suspected":
+            return "the data look wrong, not the model; correct them first"
+        case "data_insufficient":
+            return "these data cannot name anything"
+        case "too_small":
+            return "what may be at work is too small to be told from its rivals; pick one with --name, or measure more"
+    return "nothing is missing that these data could show"
+
+
+def _evidence_text(result: Result, one: Sized, picked: bool) -> str:
+    sizes = ", ".join(told(value) for value in one.shown)
+    strength = "picked by the user among explanations the data do not tell apart" if picked else (
+        f"named, {result.diagnosis.strength}"
+    )  # fmt: skip
+    origin = f"fitted to measurement '{result.measurement.title}' ({result.measurement.hash[:16]})"
+    return f"{origin}: {one.title}, {sizes}, 95 %; {strength}"
