@@ -20,7 +20,7 @@ from rigdesign.temperatures import HousingField
 from thermal.condition_checks import Condition
 from thermal.conduction import TemperatureSolution
 from thermal.fe.mesh import FloatArray
-from thermal.reduced import Factor
+from thermal.reduced import Factor, ReducedConduction
 
 
 @dataclass(frozen=True)
@@ -56,6 +56,28 @@ class ReducedHousings:
             self.bases[name], self._start[name] = basis, start
             if not rig.models[name].no_expansion:
                 self.growths[name] = GrowthMap(rig, name, basis.reduced.shapes, basis.sizes, start)
+
+    def numbers(self) -> dict[str, tuple[FloatArray, FloatArray, float, GrowthMap | None, FloatArray]]:
+        """Shapes, their sizes, error, growth and start by gearbox: what another process needs."""
+        return {
+            name: (basis.reduced.shapes, basis.sizes, basis.error, self.growths.get(name), self._start[name])
+            for name, basis in self.bases.items()
+        }
+
+    @classmethod
+    def of_numbers(
+        cls,
+        rig: Rig,
+        numbers: Mapping[str, tuple[FloatArray, FloatArray, float, GrowthMap | None, FloatArray]],
+    ) -> "ReducedHousings":
+        """The housings of the same rig from their numbers."""
+        made = cls(rig, {}, {})
+        for name, (shapes, sizes, error, growth, start) in numbers.items():
+            made.bases[name] = Basis(ReducedConduction(rig.conduction[name], shapes), sizes, error)
+            made._start[name] = start
+            if growth is not None:
+                made.growths[name] = growth
+        return made
 
     @property
     def error(self) -> float:

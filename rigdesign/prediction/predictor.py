@@ -8,6 +8,7 @@ twice.
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -26,7 +27,7 @@ from rigdesign.prediction.model import Channel, Setting, features_of
 from rigdesign.prediction.operating import like, operating_point, rig_at
 from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
-from rigdesign.prediction.settle import SettledPoint, settle
+from rigdesign.prediction.settle import CLOSE, SettledPoint, settle
 from rigdesign.prediction.slopes import PointSlopes, directions_of
 from rigdesign.results import Fidelity
 from rigdesign.rig.model import Rig, build_rig
@@ -36,6 +37,8 @@ from thermal.condition_checks import Condition
 from thermal.fe.kernels import one_thread
 from thermal.fe.mesh import FloatArray
 
+NEAR = 0.1
+"""Last step of the loop, in sizes of `settle.SCALES`, that is answered to first order: 0.1 K, 0.1 um, 1 W."""
 STEP_SHARE = 2e-3
 """Share of a speed, torque or flow by which it is moved for a derivative."""
 STEP_KELVIN = 0.2
@@ -106,11 +109,23 @@ class Predictor:
         """
         made = self._changed_rigs(changes)
         with self._calm():
+            known = self._made_slopes
             points = [
-                settle(rig_at(rig, setting), operating_point(setting), self._parts, near)
-                for rig, setting, near in zip(made, self.settings, self._points)
+                settle(
+                    rig_at(rig, setting),
+                    operating_point(setting),
+                    self._parts,
+                    near,
+                    None if known is None else known[number].inverse,
+                    close=CLOSE if known is None else NEAR,
+                )
+                for number, (rig, setting, near) in enumerate(zip(made, self.settings, self._points))
             ]
-            return self._values(made[0], points, made)
+            found = self._values(made[0], points, made)
+            if known is not None:
+                last = np.concatenate([slopes.corrected(point) for slopes, point in zip(known, points)])
+                found[: len(last)] += last
+            return found
 
     def response(self, changes: Changes | Sequence[Changes]) -> FloatArray:
         """(n_features,) first-order prediction for a changed case: one pass a point, the loop followed linearly.
@@ -131,6 +146,8 @@ class Predictor:
         Names: ``film:``, ``bearing_film:``, ``radiation:`` gearbox.surface; ``exchange:``, ``contact:``
         gearbox.surface|surface. The conductance changes at all operating points together.
         """
+        if not self._housings.bases:
+            return {}
         with self._calm():
             return self._joined([slopes.links() for slopes in self._slopes()])
 
@@ -210,6 +227,37 @@ class Predictor:
         here, point = rig_at(rig, setting), operating_point(setting)
         braced = here.case.drivetrain is not None
         return here, point, brace_cold(here, point, cold_feedback(here, point)) if braced else None
+
+    def __getstate__(self) -> dict[str, object]:
+        """What a worker needs to make the same predictor again: laws of films cannot be sent, numbers can."""
+        return {
+            "case": self.case,
+            "settings": self.settings,
+            "channels": self.channels,
+            "fidelity": self.fidelity,
+            "base": self.base,
+            "housings": self._housings.numbers(),
+            "feedbacks": [point.last.feedback for point in self._points],
+        }
+
+    def __setstate__(self, state: Mapping[str, Any]) -> None:
+        """Make rig and points again; the numbers of the base are those that were sent."""
+        self.case, self.settings, self.channels = state["case"], state["settings"], state["channels"]
+        self.fidelity, self.base = state["fidelity"], state["base"]
+        self.features = features_of(self.settings, self.channels)
+        self._made_slopes = None
+        self._memory = Memory()
+        with self._calm():
+            self._rig = build_rig(self.case, self.fidelity)
+            self._reads = readings(self._rig, self.channels)
+            self._housings = ReducedHousings.of_numbers(self._rig, state["housings"])
+            self._parts = self._housings.parts(self._memory.parts)
+            self._rigs = [rig_at(self._rig, setting) for setting in self.settings]
+            self._points = [
+                settle(rig, operating_point(setting), self._parts, start=feedback)
+                for rig, setting, feedback in zip(self._rigs, self.settings, state["feedbacks"])
+            ]
+        self.error = self._housings.error
 
     def _changed_rigs(self, changes: Changes | Sequence[Changes]) -> list[Rig]:
         """The rig of every operating point under changes."""

@@ -1,7 +1,7 @@
 """What the channels of a rig read at a settled operating point."""
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ from rigdesign.errors import UsageError
 from rigdesign.loads import Setting as Bracing
 from rigdesign.passes import PassResult
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
+from rigdesign.prediction.orders import shaft_orders
 from rigdesign.prediction.places import place_weights
 from rigdesign.rig.model import Rig
 from rigdesign.state import OperatingPoint
@@ -48,16 +49,14 @@ def readings(rig: Rig, channels: Iterable[Channel]) -> list[tuple[Channel, Readi
     UsageError
         A place the rig does not have, a quantity its case cannot give.
     """
-    return [
-        (channel, _reading(rig, channel))
-        for channel in channels
-        if channel.quantity not in STANDING_QUANTITIES
-    ]
+    moving = [channel for channel in channels if channel.quantity not in STANDING_QUANTITIES]
+    orders = _Orders([channel for channel in moving if channel.quantity in ORDER_QUANTITIES])
+    return [(channel, _reading(rig, channel, orders)) for channel in moving]
 
 
-def _reading(rig: Rig, channel: Channel) -> Reading:
+def _reading(rig: Rig, channel: Channel, orders: "_Orders") -> Reading:
     if channel.quantity in ORDER_QUANTITIES:
-        return _orders(rig, channel)
+        return _in_orders(rig, channel, orders)
     match channel.quantity:
         case "temperature":
             return _temperature(rig, channel)
@@ -127,7 +126,26 @@ def _seal_gap(rig: Rig, channel: Channel) -> Reading:
     return read
 
 
-def _orders(rig: Rig, channel: Channel) -> Reading:
+class _Orders:
+    """Complex orders of all channels that want them, found together for one settled point after the other."""
+
+    def __init__(self, channels: Sequence[Channel]) -> None:
+        self._channels = channels
+        self._known: tuple[Settled, Mapping[tuple[str, float], complex]] | None = None
+
+    def at(self, rig: Rig, settled: Settled) -> Mapping[tuple[str, float], complex]:
+        """(channel, order) -> amplitude."""
+        if self._known is None or self._known[0] is not settled:
+            last = settled.last
+            assert settled.bracing is not None
+            found = shaft_orders(
+                rig, settled.point, last.models, last.drags, settled.bracing, list(self._channels)
+            )
+            self._known = settled, found
+        return self._known[1]
+
+
+def _in_orders(rig: Rig, channel: Channel, orders: _Orders) -> Reading:
     if rig.case.drivetrain is None:
         raise UsageError(
             f"channel {channel.name!r}: {channel.quantity} needs the drivetrain, which this case leaves out"
@@ -136,12 +154,7 @@ def _orders(rig: Rig, channel: Channel) -> Reading:
         raise UsageError(f"channel {channel.name!r}: {channel.quantity} is read by orders, and none is given")
 
     def read(here: Rig, settled: Settled) -> Numbers:
-        from rigdesign.prediction.orders import shaft_orders
-
-        assert settled.bracing is not None
-        found = shaft_orders(
-            here, settled.point, settled.last.models, settled.last.drags, settled.bracing, [channel]
-        )
+        found = orders.at(here, settled)
         numbers: list[float] = []
         for order in channel.orders:
             value = complex(found[channel.name, order])

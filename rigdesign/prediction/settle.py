@@ -8,14 +8,15 @@ Source: Walker, Ni, SIAM J. Numer. Anal. 49 (2011) 1715.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign.cold import cold_feedback
 from rigdesign.errors import NotConvergedError
 from rigdesign.loads import brace_cold
-from rigdesign.passes import Parts, feedback_of, one_pass
+from rigdesign.passes import Parts, PassResult, feedback_of, one_pass
 from rigdesign.prediction.readings import Settled
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
@@ -50,6 +51,8 @@ class SettledPoint(Settled):
     """(n, k) differences of the feedback that passes started from."""
     answers: FloatArray
     """(n, k) differences of what came of it."""
+    left: FloatArray
+    """(n,) what the last pass would still move, heats not relaxed, in sizes of `SCALES`."""
     passes: int
 
 
@@ -84,17 +87,28 @@ def ordered(feedback: Feedback, like: Feedback) -> Feedback:
     )
 
 
+def raw(rig: Rig, done: PassResult, parts: Parts, like: Feedback) -> Feedback:
+    """What a pass hands on, heats not relaxed, names in the order of ``like``."""
+    after = feedback_of(rig, done, parts)
+    after = replace(after, bearing_heat=done.bearing_heat, wall_heat=done.wall_heat)
+    return ordered(after, like)
+
+
 def settle(
     rig: Rig,
     point: OperatingPoint,
     parts: Parts,
     near: SettledPoint | None = None,
+    inverse: NDArray[np.floating] | None = None,
     *,
     close: float = CLOSE,
+    start: Feedback | None = None,
 ) -> SettledPoint:
     """Passes until none of them moves anything by more than ``close``.
 
     near : a settled point nearby, to start from; the cold rig when left out
+    start : feedback to start from where there is no point nearby
+    inverse : (n, n) of `PointSlopes` at that point: then each pass is followed by a step of Newton's method with it
 
     Raises
     ------
@@ -103,25 +117,28 @@ def settle(
     """
     cold = cold_feedback(rig, point)
     bracing = None if rig.case.drivetrain is None else brace_cold(rig, point, cold)
-    feedback = cold if near is None else ordered(near.last.feedback, cold)
+    given = start if near is None else near.last.feedback
+    feedback = cold if given is None else ordered(given, cold)
     done = None if near is None else near.last
     steps: list[FloatArray] = []
     answers: list[FloatArray] = []
-    if near is not None:
+    if near is not None and inverse is None:
         steps, answers = list(near.steps.T), list(near.answers.T)
     before: tuple[FloatArray, FloatArray] | None = None
     x = flat(feedback)
     for count in range(1, PASSES + 1):
         done = one_pass(rig, point, feedback, bracing, done, parts=parts)
-        after = flat(ordered(feedback_of(rig, done, parts), cold))
+        handed = flat(raw(rig, done, parts, cold)) - x
+        relaxed = flat(ordered(feedback_of(rig, done, parts), cold)) - x
+        left = relaxed if inverse is None else inverse @ handed
+        after = x + left
         if before is not None:
             steps.append(x - before[0])
             answers.append(after - before[1])
             steps, answers = steps[-MEMORY:], answers[-MEMORY:]
-        left = after - x
         if float(np.abs(left).max()) <= close:
             return SettledPoint(
-                point, done, bracing, _columns(steps, len(x)), _columns(answers, len(x)), count
+                point, done, bracing, _columns(steps, len(x)), _columns(answers, len(x)), handed, count
             )
         before = x, after
         x = _next(x, after, steps, answers)

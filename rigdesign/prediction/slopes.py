@@ -16,12 +16,13 @@ from rigdesign.drags import drag_shafts
 from rigdesign.flank_heat import rim_surfaces
 from rigdesign.loads import MeshModel
 from rigdesign.loads import Setting as Bracing
-from rigdesign.passes import Parts, PassResult, feedback_of, one_pass
+from rigdesign.passes import Parts, PassResult, one_pass
 from rigdesign.prediction.growth_map import GrowthMap
 from rigdesign.prediction.housings import ReducedField, ReducedHousings
 from rigdesign.prediction.memory import balanced
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.readings import Reading, Settled
-from rigdesign.prediction.settle import SCALES, SettledPoint, flat, ordered, unflat
+from rigdesign.prediction.settle import SCALES, SettledPoint, flat, raw, unflat
 from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
@@ -35,14 +36,7 @@ STEP = 0.3
 OF_BEARINGS = ("bearing_clearance", "bearing_heat")
 """Arrows that reach the loop only as drag."""
 
-Named = Sequence[tuple[object, Reading]]
-
-
-def raw(rig: Rig, done: PassResult, parts: Parts, like: Feedback) -> Feedback:
-    """What a pass hands on, heats not relaxed, names in the order of ``like``."""
-    after = feedback_of(rig, done, parts)
-    after = replace(after, bearing_heat=done.bearing_heat, wall_heat=done.wall_heat)
-    return ordered(after, like)
+Named = Sequence[tuple[Channel, Reading]]
 
 
 @dataclass(frozen=True)
@@ -95,7 +89,9 @@ class PointSlopes:
         """(n, n) slope of a pass by its feedback."""
         self.follow = np.array(readings).T
         """(f, n) slope of the readings by the feedback."""
-        self._closed = np.linalg.solve((np.eye(len(x)) - self.loop).T, self.follow.T).T
+        self.inverse = np.linalg.inv(np.eye(len(x)) - self.loop)
+        """(n, n) how far the feedback moves until the loop has settled, per change of what a pass hands on."""
+        self._closed = self.follow @ self.inverse
         """(f, n) settled readings per change of what a pass hands on."""
 
     @property
@@ -106,6 +102,10 @@ class PointSlopes:
     def answer(self, handed: FloatArray, read: FloatArray) -> FloatArray:
         """(f, ...) settled answer to changes of what a pass hands on (n, ...) and of the readings (f, ...)."""
         return np.asarray(read + self._closed @ handed)
+
+    def corrected(self, point: SettledPoint) -> FloatArray:
+        """(f,) what the readings of a point nearby lack: its last step of the loop, beyond that of the point here."""
+        return np.asarray(self._closed @ (point.left - self.settled.left))
 
     def changed(self, rig: Rig, point: OperatingPoint, bracing: Bracing | None) -> FloatArray:
         """(f,) settled readings of a rig or setting nearby, from one pass of it."""
@@ -188,8 +188,20 @@ class PointSlopes:
         return one_pass(rig, last.point, feedback, self.settled.bracing, last, parts=parts)
 
     def _read(self, done: PassResult) -> FloatArray:
-        settled = Settled(done.point, done, self.settled.bracing)
-        return np.array([number for _, reading in self._reads for number in reading(self.rig, settled)])
+        """(f,) readings of a pass; of orders those of the point where the meshes are its own.
+
+        The drag of a bearing then moves no mean torque of a coupling: it would do so by its share of a per mille.
+        """
+        same = done.models is self.settled.last.models
+        settled = self.settled if same else Settled(done.point, done, self.settled.bracing)
+        fresh = Settled(done.point, done, self.settled.bracing)
+        return np.array(
+            [
+                number
+                for channel, reading in self._reads
+                for number in reading(self.rig, settled if channel.quantity in ORDER_QUANTITIES else fresh)
+            ]
+        )
 
     def _drag_only(
         self,
@@ -261,13 +273,11 @@ def directions_of(
     return found
 
 
-def _of_field(channel: object, read: Reading, rig: Rig, settled: Settled) -> Sequence[float]:
+def _of_field(channel: Channel, read: Reading, rig: Rig, settled: Settled) -> Sequence[float]:
     """Readings that hang on a field itself; zeros for the others, which follow the feedback."""
-    quantity = getattr(channel, "quantity", "")
-    if quantity in ("temperature", "seal_gap"):
+    if channel.quantity in ("temperature", "seal_gap"):
         return read(rig, settled)
-    orders = getattr(channel, "orders", ())
-    return [0.0] * (sum(2 if order else 1 for order in orders) if orders else 1)
+    return [0.0] * (sum(2 if order else 1 for order in channel.orders) if channel.orders else 1)
 
 
 def _index(feedback: Feedback) -> dict[tuple[str, str], int]:

@@ -9,6 +9,9 @@ import pytest
 from rigdesign.case.loader import load_case
 from rigdesign.errors import UsageError
 from rigdesign.prediction import Channel, Setting, features_of, predict
+from rigdesign.prediction.places import place_weights
+from rigdesign.prediction.readings import readings
+from rigdesign.rig.model import build_rig
 from rigdesign.run import run_case
 
 CASE = load_case(Path(__file__).parents[2] / "cases" / "uhcf_prototype")
@@ -32,20 +35,22 @@ def checked():
 
 
 @pytest.fixture(scope="module")
-def predicted():
-    seals = [Channel(name="seal", quantity="seal_gap", place=_first_seal())]
-    channels = (*CHANNELS, *seals)
+def rig():
+    return build_rig(CASE, "quick")
+
+
+@pytest.fixture(scope="module")
+def predicted(rig):
+    seal = Channel(name="seal", quantity="seal_gap", place=rig.models["test"].seals[0].name)
+    point = Channel(name="point", quantity="temperature", place="test", at=POINT)
+    channels = (*CHANNELS, seal, point)
     prediction = predict(CASE, [DWELL], channels)
+    assert prediction.features == features_of([DWELL], channels)
+    assert prediction.error == 0.0 and np.all(np.isfinite(prediction.values))
     return dict(zip([feature.channel for feature in prediction.features], prediction.values))
 
 
-def _first_seal():
-    from rigdesign.rig.model import build_rig
-
-    return build_rig(CASE, "quick").models["test"].seals[0].name
-
-
-def test_a_dwell_is_that_of_the_check_to_nine_digits(checked, predicted):
+def test_a_dwell_is_that_of_the_check_to_nine_digits(rig, checked, predicted):
     outlets = {row.consumer: row.outlet_degC + 273.15 for row in checked.oil if row.stage == DWELL.name}
     assert predicted["gear_oil"] == pytest.approx(outlets["test.gear_oil"], rel=1e-9)
     assert predicted["bearing_oil"] == pytest.approx(outlets["reference.bearing_oil"], rel=1e-9)
@@ -54,7 +59,7 @@ def test_a_dwell_is_that_of_the_check_to_nine_digits(checked, predicted):
     assert predicted["wall"] == pytest.approx(wall.mean_temperature_degC + 273.15, rel=1e-9)
     pinion = thermal.bodies["gear_test_pinion"]["mean_degC"] + 273.15
     assert predicted["pinion"] == pytest.approx(pinion, rel=1e-9)
-    seal = next(row for row in checked.growth[0].seal_gaps if row["seal"] == _first_seal())
+    seal = next(row for row in checked.growth[0].seal_gaps if row["seal"] == rig.models["test"].seals[0].name)
     assert predicted["seal"] == pytest.approx(1e-3 * seal["hot_mean_mm"], rel=1e-9)
 
 
@@ -64,18 +69,20 @@ def test_the_motor_gives_the_sum_of_the_losses(checked, predicted):
     assert predicted["power"] > 0.0
 
 
-def test_coordinates_read_the_field_where_the_sensor_sits():
-    on_wall = Channel(name="point", quantity="temperature", place="test", at=POINT)
-    prediction = predict(CASE, [DWELL], [on_wall, CHANNELS[0]])
-    point, mean = prediction.values
-    assert abs(point - mean) < 60.0
-    assert point > CASE.ambient.temperature
+def test_coordinates_read_the_field_where_the_sensor_sits(rig, predicted):
+    """A quadratic field is read to rounding anywhere; the wall is warmer than the room and near its mean."""
+    elements = rig.conduction["test"].elements
+    points = elements.mesh.points
+    name, (nodes, weights) = place_weights(rig, "test", POINT)
+    assert name == "test" and weights.sum() == pytest.approx(1.0)
+    straight = points @ np.array([3.0, -2.0, 5.0])
+    assert weights @ straight[nodes] == pytest.approx(np.dot(POINT, [3.0, -2.0, 5.0]), abs=1e-6)
+    assert CASE.ambient.temperature < predicted["point"] < predicted["wall"] + 40.0
 
 
-def test_a_point_off_the_body_names_the_nearest_surface():
-    lost = Channel(name="lost", quantity="temperature", place="test", at=(0.05, 0.0, 0.2))
+def test_a_point_off_the_body_names_the_nearest_surface(rig):
     with pytest.raises(UsageError, match=r"mm off the body.*nearest surface: "):
-        predict(CASE, [DWELL], [lost])
+        place_weights(rig, "test", (0.05, 0.0, 0.2))
 
 
 @pytest.mark.parametrize(
@@ -88,19 +95,11 @@ def test_a_point_off_the_body_names_the_nearest_surface():
         (Channel(name="x", quantity="torque", place="wheel_side"), "read by orders"),
     ],
 )
-def test_a_place_the_rig_does_not_have_is_a_wrong_call(channel, said):
+def test_a_place_the_rig_does_not_have_is_a_wrong_call(rig, channel, said):
     with pytest.raises(UsageError, match=said):
-        predict(CASE, [DWELL], [channel])
+        readings(rig, [channel])
 
 
 def test_settings_and_channels_need_names_of_their_own():
     with pytest.raises(UsageError, match="two settings are called"):
         predict(CASE, [DWELL, DWELL], CHANNELS)
-
-
-def test_features_stand_in_the_order_of_the_contract():
-    settings = (DWELL, Setting(name="slow", speed=500.0, torque=90.0, ambient_temperature=300.0))
-    prediction = predict(CASE, settings, CHANNELS[:3])
-    assert prediction.features == features_of(settings, CHANNELS[:3])
-    assert np.all(np.isfinite(prediction.values))
-    assert prediction.error == 0.0
