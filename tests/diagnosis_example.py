@@ -5,9 +5,11 @@ set and workflow are the real ones.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
+from math import log
 from pathlib import Path
+from tempfile import mkdtemp
 
 import numpy as np
 
@@ -135,12 +137,13 @@ def answer(effect: str, at: Sequence[float], feature: Feature, run: Setting) -> 
         value = complex(at[0], -at[1]) * np.exp(1j * turn)
         return gain * (value.real if feature.part == "real" else value.imag)
     if effect.startswith("single_pitch") and feature.order:
-        return (
-            2e4
-            * at[0]
-            * (1.0 if feature.part == "real" else 0.0)
-            * (1.0 + run.torque / 400.0 * feature.order / 28.0)
-        )
+        gain = 2e4 * at[0] * (1.0 + run.torque / 400.0 * feature.order / 28.0)
+        value = gain * np.exp(-2j * np.pi * feature.order * int(effect.partition("/")[2] or 0) / 28.0)
+        return float(value.real if feature.part == "real" else value.imag)
+    if effect == "angle_zero" and feature.order:
+        still = complex(*(base(replace(feature, part=part), run) for part in ("real", "imaginary")))
+        moved = still * np.exp(1j * feature.order * at[0]) - still
+        return float(moved.real if feature.part == "real" else moved.imag)
     grown = np.expm1(at[0])
     if effect == "mesh_loss:test":
         return grown * {"P": mesh, "T_gear": mesh / 60.0}.get(feature.channel, 0.0)
@@ -258,3 +261,33 @@ def result_of(folder: Path, *, without: Sequence[str] = (), calibration: Calibra
         case=case, measurement=measurement, data=data, baseline=healthy, problem=problem, effects=effects,
         diagnosis=diagnose(problem, calibration), calibration=calibration,
     )  # fmt: skip
+
+
+@cache
+def story(name: str) -> Result:
+    """Diagnoses that several tests look at; made once."""
+    folder = Path(mkdtemp(prefix="diagnosis-"))
+    match name:
+        case "mesh loss":  # against a healthy set of the same rig
+            write_set(folder / "healthy", Rig(seed=7), title="as new")
+            rig = Rig({"mesh_loss:test": (log(1.2),)})
+            return result_of(write_set(folder / "set", rig, baseline="../healthy"))
+        case "run-out":
+            return result_of(write_set(folder, Rig({"run_out:reference.pinion": (25e-6, -10e-6)})))
+        case "tooth":
+            return result_of(write_set(folder, Rig({"single_pitch:test.pinion/5": (30e-6,)})))
+        case "alias":
+            return result_of(write_set(folder, Rig({"run_out:test.pinion": (15e-6, -8e-6)})))
+        case "exchanged":
+
+            def exchange(point, values):
+                return {**values, "T_gear": values["T_bearing"], "T_bearing": values["T_gear"]}
+
+            return result_of(write_set(folder, Rig(), spoil=exchange))
+        case "angle":
+            return result_of(write_set(folder, Rig({"angle_zero": (0.02,)})))
+        case "one point":
+            return result_of(write_set(folder, Rig(points=1, repeats=1)))
+        case "healthy":
+            return result_of(write_set(folder, Rig()))
+    raise KeyError(name)

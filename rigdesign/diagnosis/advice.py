@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.heldout import LEAST_POINTS
 from rigdesign.diagnosis.naming import told
 from rigdesign.diagnosis.outcome import Outcome
@@ -40,8 +41,7 @@ def headline(outcome: Outcome) -> str:
     found = outcome.result.diagnosis
     match outcome.verdict:
         case "named":
-            model = [f"{one.title}, {told(one.shown[0])}" for one in outcome.named]
-            return f"What the model lacks: {'; '.join(model)}."
+            return " ".join(_named(outcome))
         case "alias_group":
             return f"One of these is at work, the data cannot tell which: {_titles(outcome)}."
         case "input_error_suspected":
@@ -55,6 +55,16 @@ def headline(outcome: Outcome) -> str:
             first = _titles(outcome)
             return f"Something may be at work, too small to be told from its rivals; first of them: {first}."
     return f"These data cannot name anything: {found.decision.reason}."
+
+
+def _named(outcome: Outcome) -> list[str]:
+    """What is named, of the case and of the measurement apart."""
+    texts = []
+    for lead, of_case in (("What the model lacks", True), ("What is off in the measurement", False)):
+        own = [one for one in outcome.named if isinstance(one.entry, Effect) == of_case]
+        if own:
+            texts.append(f"{lead}: {'; '.join(f'{one.title}, {told(one.shown[0])}' for one in own)}.")
+    return texts
 
 
 def _where(outcome: Outcome) -> str:
@@ -129,7 +139,7 @@ def _better_data(outcome: Outcome) -> list[Step]:
     elif not found.held_out_points:
         steps.append(
             Step(
-                text=f"measure at least {LEAST_POINTS} operating points: corners of speed and torque, two oil temperatures",
+                text=f"measure at least {LEAST_POINTS} operating points: corners of speed, torque and oil temperature",
                 why="some can then be kept aside to prove a name",
             )
         )

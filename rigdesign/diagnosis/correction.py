@@ -40,6 +40,9 @@ def of_sensor(sized: Sized) -> Correction:
     value = sized.shown[0]
     channel = sized.name.partition(":")[2] or sized.name
     text = f"{sized.entry.title}: {told(value)}; "
+    if sized.name == "angle_zero":
+        text += f"add {value.value:.4g} rad to the angle of the gear that counts (zero under data.tach of recordings)"
+        return Correction(name=sized.name, text=text, size=sized)
     if sized.entry.kind == "input":
         text += "the rig ran at another value than was read; correct the column of this setting"
     elif sized.name.startswith("sensor_scale"):

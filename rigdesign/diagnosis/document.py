@@ -44,7 +44,7 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
         "headline": headline(outcome),
         "certainty": certainty(outcome),
         "reason": found.decision.reason,
-        "named": [_sized(one) for one in outcome.named],
+        "named": [{**_sized(one), "posterior": _inclusion(outcome, one)} for one in outcome.named],
         "suspects": [
             {
                 "effect": one.name,
@@ -102,6 +102,12 @@ def _measurement(measurement: MeasurementSet) -> dict[str, Any]:
         "points": len(measurement.points),
         "channels": list(measurement.channels),
     }
+
+
+def _inclusion(outcome: Outcome, one: Sized) -> float:
+    """Posterior mass of all explanations that hold the effect, in the look at the data that named it."""
+    masses = [look.weights.inclusion.get(one.name, 0.0) for look in outcome.result.diagnosis.examinations]
+    return max(masses)
 
 
 def _sized(one: Sized) -> dict[str, Any]:
@@ -369,3 +375,14 @@ def measurement_patch(outcome: Outcome) -> dict[str, Any]:
 def sentences(items: Sequence[Located], measurement: MeasurementSet) -> list[str]:
     """Conspicuous groups in words."""
     return [sentence(item, measurement) for item in items if significant(item)]
+
+
+def leading_sentences(outcome: Outcome) -> list[str]:
+    """Groups that the named effects move most, or that hold most of the residual; where none betrays itself."""
+    found = outcome.result.diagnosis
+    values = found.answer if outcome.named else found.residual
+    shares = (values / np.sqrt(np.diagonal(found.covariance.matrix))) ** 2
+    whole = float(shares.sum())
+    weights = [(float(shares[list(item.features)].sum()), item) for item in outcome.before]
+    ordered = sorted(weights, key=lambda pair: -pair[0])
+    return [sentence(item, outcome.result.measurement) for weight, item in ordered if weight > 0.15 * whole]

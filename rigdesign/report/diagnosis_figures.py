@@ -28,15 +28,20 @@ MOST_SERIES = 6
 """Series whose readings are drawn against both models."""
 MOST_BARS = 10
 """Explanations drawn."""
+LEAST_BARS = 4
+LEAST_POSTERIOR = 0.01
+"""Explanations drawn at least, and the posterior from which on more are."""
+FARTHEST = 10.0
+"""Right end of the detectability picture [bounds]."""
 MOST_EFFECTS = 30
 """Effects of the detectability picture."""
 FAMILY_COLOURS = {
     "none": MUTED, "physical": SERIES[0], "sensor": SERIES[2], "input": SERIES[4], "anonymous": SERIES[1],
-    "pair": SERIES[3],
+    "pair": SERIES[3], "rest": GRID,
 }  # fmt: skip
 FAMILY_WORDS = {
     "none": "nothing", "physical": "catalogue", "sensor": "sensor or setting", "input": "wrong data",
-    "anonymous": "no entry of the catalogue", "pair": "two at once",
+    "anonymous": "not in the catalogue", "pair": "two at once", "rest": "the rest",
 }  # fmt: skip
 VERDICT_SHADES = {"testable": SERIES[0], "visible only": "#8fb3cf", "not testable here": GRID}
 
@@ -72,9 +77,10 @@ def residual_maps(outcome: Outcome) -> "Figure":
         axes.tick_params(length=0)
         finish(axes, "", "", title)
     grid[0].invert_yaxis()
-    bar = figure.colorbar(picture, ax=list(grid), fraction=0.022, pad=0.015)
-    bar.set_label("residual / σ", fontsize=7.5)
     figure.subplots_adjust(left=0.17, right=0.92, top=1 - 0.3 / height, bottom=0.72 / height, wspace=0.05)
+    side = figure.add_axes((0.932, 0.72 / height, 0.011, 1 - 1.02 / height))
+    bar = figure.colorbar(picture, cax=side, ticks=[-COLOUR_END, 0.0, COLOUR_END])
+    bar.set_label("residual / σ", fontsize=7.5)
     return figure
 
 
@@ -184,7 +190,7 @@ def _sizes(
 
 def posterior_bars(alternatives: Sequence[Mapping[str, Any]]) -> "Figure":
     """Posterior of the best explanations."""
-    rows = list(alternatives[:MOST_BARS])
+    rows = _leading(alternatives)
     height = 0.75 + 0.27 * len(rows)
     figure = new_figure(height)
     axes = figure.subplots()
@@ -192,7 +198,7 @@ def posterior_bars(alternatives: Sequence[Mapping[str, Any]]) -> "Figure":
         share = 100.0 * row["posterior"]
         axes.barh(place, share, height=0.66, color=FAMILY_COLOURS[row["family"]])
         axes.text(share + 0.8, place, _percent(share), va="center", fontsize=7.5)
-    axes.set_yticks(range(len(rows)), [_short(row["title"]) for row in rows])
+    axes.set_yticks(range(len(rows)), [_short(row["label"]) for row in rows])
     axes.invert_yaxis()
     axes.set_xlim(0.0, 108.0)
     axes.grid(visible=False, axis="y")
@@ -204,6 +210,22 @@ def posterior_bars(alternatives: Sequence[Mapping[str, Any]]) -> "Figure":
     finish(axes, "posterior probability [%]")
     figure.subplots_adjust(left=0.43, right=0.985, top=1 - 0.08 / height, bottom=0.48 / height)
     return figure
+
+
+def _leading(alternatives: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """The explanations worth a bar, the rest taken together."""
+    rows = [
+        {
+            "label": row["title"] if row["family"] != "pair" else row["explanation"].replace("unknown: ", ""),
+            **row,
+        }
+        for place, row in enumerate(alternatives[:MOST_BARS])
+        if place < LEAST_BARS or row["posterior"] >= LEAST_POSTERIOR
+    ]
+    rest = 1.0 - sum(row["posterior"] for row in rows)
+    if rest > 1e-4:
+        rows.append({"label": "all others together", "family": "rest", "posterior": rest})
+    return rows
 
 
 def _percent(share: float) -> str:
@@ -218,19 +240,13 @@ def _short(text: str, most: int = 62) -> str:
 
 def detectability_figure(rows: Sequence[Mapping[str, Any]]) -> "Figure | None":
     """Smallest size seen and smallest size that can be named, as a share of the physical bound."""
-    drawn = [row for row in rows if row["detectable_share_of_bound"]][:MOST_EFFECTS]
+    drawn = [row for row in rows if 0.0 < (row["detectable_share_of_bound"] or 0.0) < FARTHEST][:MOST_EFFECTS]
     if not drawn:
         return None
     height = 0.95 + 0.2 * len(drawn)
     figure = new_figure(height)
     axes = figure.subplots()
-    ends = [
-        value
-        for row in drawn
-        for value in (row["detectable_share_of_bound"], row["isolable_share_of_bound"])
-        if value
-    ]
-    low, high = min(0.1, 0.6 * min(ends)), min(max(3.0, 1.6 * max(ends)), 1e3)
+    low, high = min(0.1, 0.6 * min(row["detectable_share_of_bound"] for row in drawn)), FARTHEST
     axes.axvspan(1.0, high, color="#f1f3f5", zorder=0, linewidth=0)
     for place, row in enumerate(drawn):
         seen, told = row["detectable_share_of_bound"], row["isolable_share_of_bound"] or high

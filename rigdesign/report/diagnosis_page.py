@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from rigdesign.diagnosis.advice import VERDICTS
-from rigdesign.diagnosis.document import sentences
+from rigdesign.diagnosis.document import leading_sentences, sentences
 from rigdesign.diagnosis.naming import display_scale
 from rigdesign.diagnosis.outcome import Outcome
 from rigdesign.report.drawing import drawing_style, inline_svg
@@ -42,6 +42,7 @@ def diagnosis_page(outcome: Outcome, document: dict[str, Any]) -> str:
             "verdict_words": VERDICTS[outcome.verdict],
             "banner": BANNERS.get(outcome.verdict, "warn"),
             "where": sentences(outcome.before, measurement),
+            "leading": leading_sentences(outcome),
             "channels_shown": CHANNELS_SHOWN,
             "shown": shown_value,
             "size": shown_size,
@@ -51,6 +52,7 @@ def diagnosis_page(outcome: Outcome, document: dict[str, Any]) -> str:
             "readings": draw(
                 figures.with_and_without(outcome), "Measured against simulated, without and with the effect"
             ),
+            "likeness": lambda value: "–" if value is None else f"{value:.2f}",
             "posterior": draw(
                 figures.posterior_bars(document["alternatives"]), "Posterior of the best explanations"
             ),

@@ -1,0 +1,183 @@
+"""Effects that engineers know of and no entry holds yet, each with what the model or the channels lack."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Waiting:
+    """An effect without an entry.
+
+    signature : how it would show; lacks : what has to come first
+    """
+
+    name: str
+    title: str
+    signature: str
+    lacks: str
+
+
+LATERAL = "shafts that bend and bearings that yield: the drivetrain has torsional freedoms only"
+GAUGES = "strain gauges in the tooth roots as channels"
+FACE = "a mesh that shares its load over the face in the periodic response, and strain gauges as channels"
+VIBRATION = "accelerations of bearings and housing as channels"
+
+WAITING = (
+    Waiting(
+        "unbalance",
+        "unbalance of a shaft",
+        "order 1 growing with the square of the speed, lateral, at any torque",
+        LATERAL,
+    ),
+    Waiting("shaft_bow", "bent shaft", "order 1, the same at any speed, lateral", LATERAL),
+    Waiting(
+        "thermal_bow",
+        "shaft bent by heat",
+        "order 1 that grows while the rig warms up",
+        f"{LATERAL}; temperatures round the shaft",
+    ),
+    Waiting(
+        "bearing_stiffness",
+        "stiffness of a bearing film",
+        "lateral peaks move, split in two directions",
+        LATERAL,
+    ),
+    Waiting(
+        "whirl",
+        "oil whirl of a journal",
+        "a line below half the speed",
+        f"{LATERAL}; orders below one as channels",
+    ),
+    Waiting(
+        "rub",
+        "seal or gear that touches",
+        "orders and half orders of the shaft, heat at one place",
+        f"{LATERAL}; contact of shaft and seal",
+    ),
+    Waiting(
+        "looseness",
+        "loose bearing cap or foot",
+        "many orders of the shaft, one-sided",
+        f"{LATERAL}; {VIBRATION}",
+    ),
+    Waiting(
+        "foundation",
+        "resonance of housing or foundation",
+        "peaks at one frequency on all sensors of the housing",
+        VIBRATION,
+    ),
+    Waiting(
+        "misalignment",
+        "misaligned axes or helix slope",
+        "the load leans over the face at all speeds, less with torque",
+        FACE,
+    ),
+    Waiting(
+        "crowning",
+        "crowning or twist of the flanks",
+        "the load over the face is fuller or emptier in the middle",
+        FACE,
+    ),
+    Waiting(
+        "sharing",
+        "uneven sharing of a double helix",
+        "one half carries more, with the axial order of the other",
+        FACE,
+    ),
+    Waiting(
+        "tooth_friction",
+        "friction of the teeth in the mesh force",
+        "a step at the pitch point, reversed with the direction",
+        "an entry: `friction_factor` of a mesh is in the case; torque hardly shows it, strain gauges would",
+    ),
+    Waiting(
+        "backlash",
+        "backlash in the power circuit",
+        "low torque only, contact lost, orders between",
+        "points with contact loss in the library: the response to them is not smooth",
+    ),
+    Waiting(
+        "spline_stick",
+        "spline that sticks and slips",
+        "a mean that depends on the way there, orders at reversal",
+        "friction with memory in splines",
+    ),
+    Waiting(
+        "mesh_shape",
+        "shape of the mesh stiffness",
+        "mesh orders among each other",
+        "a stiffness curve with free harmonics",
+    ),
+    Waiting(
+        "extended_contact",
+        "contact beyond the path of contact",
+        "fast edges at entry and exit, more with torque",
+        GAUGES,
+    ),
+    Waiting(
+        "crack_growth",
+        "root crack that grows",
+        "the answer of a weak tooth, rising from point to point",
+        "effects that change over the points",
+    ),
+    Waiting(
+        "running_in",
+        "friction that falls while running in",
+        "losses that fall from point to point",
+        "effects that change over the points",
+    ),
+    Waiting(
+        "flange_drift",
+        "drift or cross-talk of a torque flange",
+        "mean torque that follows temperature or axial force",
+        "temperature of the flange as a setting",
+    ),
+    Waiting(
+        "gauge_errors",
+        "gauge factor, place, zero or thermal output of a strain gauge",
+        "one gauge alone, constant, with temperature or n^2",
+        GAUGES,
+    ),
+    Waiting(
+        "aliasing",
+        "mesh frequency folded by the logger",
+        "a line that runs against the speed",
+        "sample rate of recordings as an input",
+    ),
+    Waiting(
+        "draught",
+        "draught on one side of the housing",
+        "one wall colder than its neighbours",
+        "ambient films by wall",
+    ),
+    Waiting(
+        "base_conduction",
+        "heat into the base",
+        "foot and field, slow",
+        "the base as a body with a joint of its own in every case",
+    ),
+    Waiting(
+        "oil_mist",
+        "oil mist and air gap as a path of heat",
+        "the hottest point, small",
+        "air in the chamber as a medium with its own balance",
+    ),
+    Waiting(
+        "drain",
+        "oil that backs up in the drain",
+        "churning that jumps above a flow, sump warmer",
+        "the level of the oil in the chamber",
+    ),
+    Waiting(
+        "barrier_air",
+        "barrier air of the seals",
+        "shaft ends colder, less oil at the outlet",
+        "air through seals in the balance",
+    ),
+    Waiting(
+        "heat_misalignment",
+        "misalignment by uneven growth of the housing",
+        "follows temperature, not time",
+        f"{FACE}; growth of the housing at every point",
+    ),
+)
+"""In the order of the page."""
