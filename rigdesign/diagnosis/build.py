@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign.beside import Beside
 from rigdesign.case.model import Case
@@ -11,12 +12,15 @@ from rigdesign.diagnosis.effects import Changes, Effect
 from rigdesign.diagnosis.library import Library, Response
 from rigdesign.errors import RigdesignError
 from rigdesign.prediction import Predictor
-from rigdesign.prediction.model import Channel, Setting
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Setting
 
 Progress = Callable[[str], None]
 
 SHARES = (-1.0, -0.4, -0.12, 0.12, 0.4, 1.0)
 """Runs of a nonlinear effect, as shares of its bounds."""
+
+DYNAMIC = frozenset({"excitation", "tooth", "stiffness", "inertia", "damping"})
+"""Families that leave temperatures and losses nearly as they are."""
 
 LINEAR_SHARE = 0.1
 """Run of an effect that the numbers answer to in proportion."""
@@ -43,11 +47,12 @@ def build_library(
     say(f"model of {len(settings)} operating points and {len(channels)} sensors")
     predictor = Predictor(case, tuple(settings), (*channels, POWER))
     base = predictor.base
-    work = [_Response(predictor, case, effect, base) for effect in effects]
-    say(f"responses to {len(effects)} effects")
+    moving = [effect for effect in effects if _reaches(effect, channels)]
+    work = [_Response(predictor, case, effect, base) for effect in moving]
+    say(f"responses to {len(moving)} effects")
     with Beside(work) as beside:
         found = beside.results()
-    responses = {effect.name: one for effect, one in zip(effects, found, strict=True) if one is not None}
+    responses = {effect.name: one for effect, one in zip(moving, found, strict=True) if one is not None}
     say("local conductances, sources, settings")
     own = np.array([feature.channel != POWER.name for feature in predictor.features])
     powers = {
@@ -55,24 +60,40 @@ def build_library(
         for feature, value in zip(predictor.features, base, strict=True)
         if feature.channel == POWER.name
     }
-    wet, dry = predictor.sources()
+    paid, unpaid = predictor.sources(paid=True), predictor.sources()
     return Library(
         channels=tuple(channels),
         features=tuple(feature for feature, keep in zip(predictor.features, own, strict=True) if keep),
         settings=tuple(settings),
         base=base[own],
-        inputs={key: values[own] for key, values in predictor.inputs().items()},
+        inputs=_by_point(predictor, own),
         responses={
             name: Response(coordinates=one.coordinates, answers=one.answers[:, own])
             for name, one in responses.items()
         },
         exponents={name: values[own] for name, values in _exponents(predictor, case, base)},
         links={name: values[own] for name, values in predictor.links().items()},
-        sources={name: values[own] for name, values in wet.items()},
-        dry_sources={name: values[own] for name, values in dry.items()},
+        sources={name: values[own] for name, values in paid.items()},
+        dry_sources={name: values[own] for name, values in unpaid.items()},
         powers=powers,
         error=predictor.error,
     )
+
+
+def _reaches(effect: Effect, channels: Sequence[Channel]) -> bool:
+    """Whether an effect can show at all: teeth and swinging torques only where orders or modes are read."""
+    dynamic = any(channel.quantity in (*ORDER_QUANTITIES, "natural_frequency") for channel in channels)
+    return dynamic or effect.family not in DYNAMIC
+
+
+def _by_point(predictor: Predictor, own: NDArray[np.bool_]) -> dict[tuple[str, str, str], Array]:
+    """Derivatives by the settings, each point's by itself."""
+    points = np.array([feature.setting for feature in predictor.features])
+    return {
+        (kind, place, setting.name): np.where(points == setting.name, values, 0.0)[own]
+        for (kind, place), values in predictor.inputs().items()
+        for setting in predictor.settings
+    }
 
 
 class _Response:
@@ -87,7 +108,7 @@ class _Response:
         for place in run_places(self._effect):
             changes = self._effect.changes(self._case, tuple(float(value) for value in place))
             try:
-                answer = self._predictor.values(changes) - self._base
+                answer = self._predictor.response(changes) - self._base
             except RigdesignError:
                 continue
             coordinates.append(place)
