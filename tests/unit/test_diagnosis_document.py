@@ -185,7 +185,7 @@ def test_an_alias_group_is_refused_until_the_user_picks_one() -> None:
 
 
 def test_a_pick_that_means_nothing_is_refused_with_what_is_near() -> None:
-    with pytest.raises(UsageError, match="did you mean run_out:test.pinion"):
+    with pytest.raises(UsageError, match=r"did you mean run_out:test\.pinion"):
         check_pick(effects_of(the_case()), "runout:test.pinion")
     for good in ("run_out:test.pinion", "single_pitch:test.wheel/3", "sensor_offset:TC1", "angle_zero"):
         check_pick(effects_of(the_case()), good)
