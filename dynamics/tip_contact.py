@@ -8,6 +8,7 @@ flank ends in a corner too, which is treated alike.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,6 +103,7 @@ def _corner(pair: GearPair, owner: int, radius: float) -> CornerMesh:
     )
 
 
+@lru_cache(maxsize=4096)
 def path_reach(pair: GearPair, gap: float) -> tuple[float, float]:
     """Path positions [m] before and beyond the active path where the tip separation has grown to ``gap`` [m].
 

@@ -51,8 +51,7 @@ def mesh_models(
 
     stiffness : ``iso_6336_scaled`` or ``weber_banaschek_0.8``; that of the case when left out
     """
-    kind = stiffness or (rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else "iso_6336_scaled")
-    return tuple(_mesh_model(rig, name, point, feedback, kind) for name in rig.mesh_names)
+    return tuple(mesh_model(rig, name, point, feedback, stiffness) for name in rig.mesh_names)
 
 
 def warm_pair(rig: Rig, name: str, speed: float, feedback: Feedback) -> GearPair:
@@ -72,7 +71,11 @@ def warm_pair(rig: Rig, name: str, speed: float, feedback: Feedback) -> GearPair
     )
 
 
-def _mesh_model(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, kind: str) -> MeshModel:
+def mesh_model(
+    rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, stiffness: str | None = None
+) -> MeshModel:
+    """One warm mesh and its law; ``stiffness`` as in `mesh_models`."""
+    kind = stiffness or (rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else "iso_6336_scaled")
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
@@ -296,16 +299,21 @@ def shifted_gear(rig: Rig) -> ShiftedGear | None:
     )
 
 
-def brace_cold(rig: Rig, point: OperatingPoint, cold: Feedback) -> Setting:
+def brace_cold(
+    rig: Rig, point: OperatingPoint, cold: Feedback, models: Sequence[MeshModel] | None = None
+) -> Setting:
     """Setting that makes the asked torque in the cold loop; held ever after in the held modes.
 
     The torque is the mean over all places where teeth that are not alike may come to rest.
+
+    models : the meshes at ``cold``, where they are known
     """
     assert rig.case.drivetrain is not None and rig.system is not None
     mode = rig.case.drivetrain.bracing.mode
     if mode == "torque_controlled":
         return Setting(mode=mode)
-    laws = [alike_teeth(law) for law in laws_of(mesh_models(rig, point, cold))]
+    met = mesh_models(rig, point, cold) if models is None else models
+    laws = [alike_teeth(law) for law in laws_of(met)]
     state = brace(rig.system, laws, signed_torque(rig, point), mode, gear=shifted_gear(rig))
     return Setting(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
 

@@ -1,45 +1,52 @@
-"""Parts of a pass that remember: bearing films, meshes and responses whose inputs were met before.
+"""Parts of a pass that remember: bearing films, meshes, responses and bracing whose inputs were met before.
 
-A remembered part is the same numbers, only not computed twice. Films are known by all numbers that enter them.
-Meshes and responses follow so many keys of a case that they are known by the whole case but for the films of its
-housings: a change that only touches those finds them again.
+A remembered part is the same numbers, only not computed twice. Each is known by all numbers that enter it and by
+nothing else of the case, so that a change finds again whatever it leaves alone. Gaps of the teeth count as the same
+within a tenth of a picometre: the mean over teeth that deviate is zero only to rounding.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from dynamics.flank import alike_teeth
 from dynamics.journal_bearing import BearingState, solve_bearing
+from dynamics.linear_system import LinearSystem
+from dynamics.losses import ToothPath
+from dynamics.mesh_law import MeshLaw
 from dynamics.response_curve import CurvePoint
 from rigdesign.bearing_films import solve_bearings
-from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.model import Case, Origin
-from rigdesign.loads import MeshModel, Setting, mesh_models, respond
+from rigdesign.cold import cold_feedback
+from rigdesign.loads import (
+    MeshModel,
+    Setting,
+    brace_cold,
+    laws_of,
+    mesh_friction,
+    mesh_model,
+    mesh_phase,
+    respond,
+    shifted_laws,
+    signed_torque,
+)
 from rigdesign.passes import Parts
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
+from rigdesign.unlike_teeth import periodic_laws
 
-MOST_FILMS = 4000
-MOST_STATES = 400
-"""Entries kept; all are forgotten when one more comes."""
-_NOWHERE = Origin(path=Path(), tree={}, marks=())
-"""In place of file and marks, which say where a value is from and not what it is."""
-_TOKEN = "prediction_token"
-"""Under which a rig knows the number of its case without the films of its housings."""
-
-ARROWS = ("gear_temperature", "centre_distance", "oil_outlet", "mesh_torque", "tooth_growth")
-"""Arrows of the loop that a mesh may follow; the others are of bearings and oil."""
+MOST = {"films": 20000, "meshes": 2000, "responses": 1000, "bracings": 1000}
+"""Entries kept of each kind; all of a kind are forgotten when one more comes."""
+SAME_GAP = 13
+"""Decimal places of a gap [m] that count."""
 
 
 class Memory:
     """What passes of one rig and its variants found out."""
 
     def __init__(self) -> None:
-        self._cases: list[Case] = []
-        self._films: dict[Any, BearingState] = {}
-        self._meshes: dict[Any, tuple[MeshModel, ...]] = {}
-        self._responses: dict[Any, tuple[tuple[MeshModel, ...], CurvePoint]] = {}
+        self._known: dict[str, dict[Any, Any]] = {kind: {} for kind in MOST}
 
     @property
     def parts(self) -> Parts:
@@ -52,62 +59,112 @@ class Memory:
 
     def _film(self, *given: Any, **named: Any) -> BearingState:
         key = (given, tuple(named.items()))
-        if key not in self._films:
-            if len(self._films) >= MOST_FILMS:
-                self._films.clear()
-            self._films[key] = solve_bearing(*given, **named)
-        return self._films[key]
+        known = self._room("films")
+        if key not in known:
+            known[key] = solve_bearing(*given, **named)
+        found: BearingState = known[key]
+        return found
 
     def models(self, rig: Rig, point: OperatingPoint, feedback: Feedback) -> tuple[MeshModel, ...]:
-        """As `mesh_models`."""
-        arrows = tuple(tuple(getattr(feedback, name).items()) for name in ARROWS)
-        key = (self._token(rig), point, arrows)
-        if key not in self._meshes:
-            if len(self._meshes) >= MOST_STATES:
-                self._meshes.clear()
-            self._meshes[key] = mesh_models(rig, point, feedback)
-        return self._meshes[key]
+        """As `mesh_models`; of a mesh that differs in friction and damping alone all arrays are shared."""
+        return tuple(self._model(rig, name, point, feedback) for name in rig.mesh_names)
+
+    def _model(self, rig: Rig, name: str, point: OperatingPoint, feedback: Feedback) -> MeshModel:
+        key = _shape_key(rig, name, point, feedback)
+        known = self._room("meshes")
+        if key not in known:
+            known[key] = mesh_model(rig, name, point, feedback)
+        model: MeshModel = known[key]
+        friction = mesh_friction(rig, name, model.pair, point, feedback)
+        box, mesh = rig.mesh(name)
+        damping = box.meshes[mesh].damping
+        if friction == model.friction and damping == model.law.damping:
+            return model
+        along = ToothPath.of_pair(model.pair).transverse_friction(friction.value)
+        return replace(model, friction=friction, law=model.law._replace(friction=along, damping=damping))
+
+    def bracing(self, rig: Rig, point: OperatingPoint) -> Setting | None:
+        """As `brace_cold`; None without a drivetrain."""
+        if rig.case.drivetrain is None:
+            return None
+        cold = cold_feedback(rig, point)
+        assert rig.system is not None
+        models = self.models(rig, point, cold)
+        at_rest = [alike_teeth(law)._replace(friction=0.0, damping=0.0) for law in laws_of(models)]
+        key = (
+            id(rig.system),
+            tuple(map(law_key, at_rest)),
+            signed_torque(rig, point),
+            rig.case.drivetrain.bracing,
+        )
+        known = self._room("bracings")
+        if key not in known:
+            known[key] = rig.system, brace_cold(rig, point, cold, models)
+        found: tuple[LinearSystem, Setting] = known[key]
+        return found[1]
 
     def response(
         self,
         rig: Rig,
         point: OperatingPoint,
-        models: tuple[MeshModel, ...],
+        models: Sequence[MeshModel],
         drags: Mapping[str, float],
         setting: Setting,
     ) -> CurvePoint:
         """As `respond`."""
-        key = (self._token(rig), point, id(models), tuple(drags.items()), setting)
-        if key not in self._responses:
-            if len(self._responses) >= MOST_STATES:
-                self._responses.clear()
-            self._responses[key] = models, respond(rig, point, models, drags, setting)
-        return self._responses[key][1]
+        laws = periodic_laws(rig, shifted_laws(rig, models, setting))
+        asked = signed_torque(rig, point) if setting.mode == "torque_controlled" else setting.twist
+        key = (
+            id(rig.system),
+            tuple(map(law_key, laws)),
+            rig.pinion_speed(point.speed),
+            (setting.mode, asked),
+            rig.case.numerics.response_period,
+            tuple(drags.items()),
+        )
+        known = self._room("responses")
+        if key not in known:
+            known[key] = rig.system, respond(rig, point, models, drags, setting)
+        found: tuple[LinearSystem, CurvePoint] = known[key]
+        return found[1]
 
-    def _token(self, rig: Rig) -> int:
-        """Number of the case of a rig, the same for cases that differ in films of housings only."""
-        if _TOKEN not in rig.__dict__:
-            bare = _bare(rig.case)
-            if bare not in self._cases:
-                self._cases.append(bare)
-            rig.__dict__[_TOKEN] = self._cases.index(bare)
-        return int(rig.__dict__[_TOKEN])
-
-
-def _bare(case: Case) -> Case:
-    """The case without the films of its housings."""
-    boxes = {name: _without_films(box) for name, box in case.gearboxes.items()}
-    bare = case.model_copy(update={"gearboxes": boxes})
-    bare._origin = _NOWHERE
-    return bare
-
-
-def _without_films(box: Gearbox) -> Gearbox:
-    if box.housing is None:
-        return box
-    return box.model_copy(update={"housing": box.housing.model_copy(update={"boundary": {}})})
+    def _room(self, kind: str) -> dict[Any, Any]:
+        """What is known of a kind, with room for one more."""
+        known = self._known[kind]
+        if len(known) >= MOST[kind]:
+            known.clear()
+        return known
 
 
-def balanced(response: CurvePoint, rig: Rig, speed: float, braked: float) -> CurvePoint:
-    """A response whose motor pays for ``braked`` [W] more: the loop itself hardly feels a drag."""
-    return replace(response, drive_torque=response.drive_torque + braked / rig.drive_speed(speed))
+def _shape_key(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback) -> tuple[object, ...]:
+    """All that enters a mesh but its friction and damping."""
+    box, own = rig.mesh(name)
+    mesh, power, numerics = box.meshes[own], rig.case.drivetrain, rig.case.numerics
+    pinion, wheel = rig.mesh_gears(name)
+    gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
+    return (
+        name,
+        rig.fidelity,
+        rig.pairs[name],
+        "" if power is None else power.mesh_stiffness,
+        numerics.slices_spur,
+        numerics.slices_helical,
+        rig.case.ambient.reference_temperature,
+        tuple((gear.teeth, gear.flank, rig.materials[gear.material].expansion_coefficient) for gear in gears),
+        (mesh.application_factor, mesh.low_load_factor, mesh.stiffness_factor, mesh.tooth_offset),
+        mesh_phase(rig, name),
+        rig.shaft_speed(gears[0].shaft, point.speed),
+        feedback.gear_temperature[pinion],
+        feedback.gear_temperature[wheel],
+        feedback.centre_distance[name],
+        feedback.tooth_growth[name],
+        feedback.mesh_torque[name],
+    )
+
+
+def law_key(law: MeshLaw) -> tuple[object, ...]:
+    """What a mesh law is known by."""
+    return tuple(
+        (np.round(value, SAME_GAP) + 0.0).tobytes() if isinstance(value, np.ndarray) else value
+        for value in law
+    )

@@ -203,6 +203,11 @@ def ideal_response(
     return curve.points[0]
 
 
+def is_ideal(rig: Rig) -> bool:
+    """Whether the response of a pass is the ideal one: it takes all teeth alike where it runs over one mesh."""
+    return rig.case.numerics.response_period == "mesh" and not (rig.system and rig.system.shaft_torques)
+
+
 def _still(system: LinearSystem) -> LinearSystem:
     """The system without torques that swing; its modes stay known."""
     if not system.shaft_torques:

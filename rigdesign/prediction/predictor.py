@@ -5,30 +5,34 @@ use. A changed case is settled anew from there with the same passes; what a chan
 twice.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from dynamics.response_curve import CurvePoint
+from rigdesign.beside import Beside
 from rigdesign.case.model import Case
 from rigdesign.cold import cold_feedback
 from rigdesign.errors import UsageError
 from rigdesign.loads import Setting as Bracing
 from rigdesign.loads import brace_cold
-from rigdesign.passes import feedback_of, one_pass
+from rigdesign.passes import Parts, feedback_of, one_pass
 from rigdesign.prediction.changes import Changes, changed_case
 from rigdesign.prediction.full import check_names, standing_values
 from rigdesign.prediction.housings import ReducedHousings
 from rigdesign.prediction.memory import Memory
 from rigdesign.prediction.model import Channel, Setting, features_of
 from rigdesign.prediction.operating import like, operating_point, rig_at
+from rigdesign.prediction.orders import ideal_response, is_ideal, shaft_orders
 from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
 from rigdesign.prediction.settle import CLOSE, SettledPoint, settle
-from rigdesign.prediction.slopes import PointSlopes, directions_of
+from rigdesign.prediction.slopes import Directions, Named, PointSlopes, SlopeNumbers, directions_of
 from rigdesign.results import Fidelity
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run import solver_errors
@@ -83,6 +87,8 @@ class Predictor:
         if not self.settings:
             raise UsageError("no operating points; give one setting at least")
         self._made_slopes: list[PointSlopes] | None = None
+        self._known_swings: dict[int, FloatArray] = {}
+        self._ideal: dict[int, CurvePoint] = {}
         with self._calm():
             self._rig = build_rig(case, fidelity)
             self._reads = readings(self._rig, self.channels)
@@ -134,11 +140,71 @@ class Predictor:
         """
         made = self._changed_rigs(changes)
         with self._calm():
-            numbers = [
+            answers = [
                 slopes.changed(*self._posed(rig, setting))
                 for slopes, rig, setting in zip(self._slopes(), made, self.settings)
             ]
+            numbers = [answer.readings for answer in answers]
+            rest = sum(map(len, numbers))
+            if all(answer.same_loop for answer in answers):
+                return np.concatenate([*numbers, self.base[rest:]])
             return np.concatenate([*numbers, standing_values(made[0], self.channels)])
+
+    def swinging(self, changes: Changes) -> FloatArray:
+        """(n_features,) linear prediction for a case whose change only swings: waves over the teeth, torques.
+
+        Such a change has no mean over a turn, so that losses, temperatures and means stay; orders alone are solved.
+
+        changes : as `values`, for all operating points
+        """
+        made = self._changed_rigs(changes)
+        found = self.base.copy()
+        start = 0
+        with self._calm():
+            for number, (rig, setting) in enumerate(zip(made, self.settings)):
+                moved = self._swings(number, rig_at(rig, setting)) - self._still_swings(number)
+                found[start : start + len(moved)] += moved
+                start += len(moved)
+        return found
+
+    def _still_swings(self, number: int) -> FloatArray:
+        if number not in self._known_swings:
+            self._known_swings[number] = self._swings(number, self._rigs[number])
+        return self._known_swings[number]
+
+    def _swings(self, number: int, rig: Rig) -> FloatArray:
+        """(f,) numbers of the channels of orders at a point, linear about its ideal motion; zeros for the others."""
+        point = self._points[number]
+        last = point.last
+        if number not in self._ideal:
+            ideal = last.response if is_ideal(self._rigs[number]) else None
+            assert point.bracing is not None
+            self._ideal[number] = ideal or ideal_response(
+                self._rigs[number], last.point, last.models, last.drags, point.bracing
+            )
+        models = self._memory.models(rig, last.point, last.feedback)
+        assert point.bracing is not None
+        orders = shaft_orders(
+            rig,
+            last.point,
+            models,
+            last.drags,
+            point.bracing,
+            self.channels,
+            base=self._ideal[number],
+            steps=0,
+        )
+        read = []
+        for feature in features_of((self.settings[number],), self.channels):
+            value = orders.get((feature.channel, feature.order), 0.0) if feature.setting else None
+            if value is not None:
+                read.append(value.imag if feature.part == "imaginary" else value.real)
+        return np.array(read)
+
+    def prepare(self) -> None:
+        """Make what first-order answers of all points need; on all cores."""
+        with self._calm():
+            self._slopes()
 
     def links(self) -> dict[str, FloatArray]:
         """Name -> (n_features,) derivative by the logarithm of every local conductance of the housings.
@@ -174,7 +240,7 @@ class Predictor:
         with self._calm():
             for slopes, setting in zip(self._slopes(), self.settings):
                 for key, (moved, step) in _moved_settings(self.case, setting).items():
-                    there = slopes.changed(*self._posed(self._rig, moved))
+                    there = slopes.changed(*self._posed(self._rig, moved)).readings
                     found.setdefault(key, []).append((there - slopes.readings) / step)
         standing = np.zeros(len(self.base) - sum(len(part) for part in next(iter(found.values()), [])))
         return {key: np.concatenate([*parts, standing]) for key, parts in found.items()}
@@ -216,17 +282,19 @@ class Predictor:
                 if self._points
                 else {}
             )
+            made = partial(_slopes_at, self._housings, self._parts, self._reads, directions)
+            works = [partial(_numbers_at, made, rig, point) for rig, point in zip(self._rigs, self._points)]
+            with Beside(works) as beside:
+                numbers = beside.results()
             self._made_slopes = [
-                PointSlopes(rig, point, self._housings, self._parts, self._reads, directions)
-                for rig, point in zip(self._rigs, self._points)
+                made(rig, point, known) for rig, point, known in zip(self._rigs, self._points, numbers)
             ]
         return self._made_slopes
 
     def _posed(self, rig: Rig, setting: Setting) -> tuple[Rig, OperatingPoint, Bracing | None]:
         """A rig at a setting, braced."""
         here, point = rig_at(rig, setting), operating_point(setting)
-        braced = here.case.drivetrain is not None
-        return here, point, brace_cold(here, point, cold_feedback(here, point)) if braced else None
+        return here, point, self._memory.bracing(here, point)
 
     def __getstate__(self) -> dict[str, object]:
         """What a worker needs to make the same predictor again: laws of films cannot be sent, numbers can."""
@@ -246,6 +314,7 @@ class Predictor:
         self.fidelity, self.base = state["fidelity"], state["base"]
         self.features = features_of(self.settings, self.channels)
         self._made_slopes = None
+        self._known_swings, self._ideal = {}, {}
         self._memory = Memory()
         with self._calm():
             self._rig = build_rig(self.case, self.fidelity)
@@ -320,6 +389,24 @@ class Predictor:
             for _, read in self._reads:
                 numbers += read(here, point)
         return np.array([*numbers, *standing_values(rig, self.channels)])
+
+
+def _slopes_at(
+    housings: ReducedHousings,
+    parts: Parts,
+    reads: Named,
+    directions: Mapping[str, Directions],
+    rig: Rig,
+    point: SettledPoint,
+    known: SlopeNumbers | None = None,
+) -> PointSlopes:
+    return PointSlopes(rig, point, housings, parts, reads, directions, known)
+
+
+def _numbers_at(
+    made: Callable[[Rig, SettledPoint], PointSlopes], rig: Rig, point: SettledPoint
+) -> SlopeNumbers:
+    return made(rig, point).numbers
 
 
 def _moved_settings(case: Case, setting: Setting) -> dict[tuple[str, str], tuple[Setting, float]]:

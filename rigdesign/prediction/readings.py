@@ -10,7 +10,7 @@ from rigdesign.errors import UsageError
 from rigdesign.loads import Setting as Bracing
 from rigdesign.passes import PassResult
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
-from rigdesign.prediction.orders import shaft_orders
+from rigdesign.prediction.orders import is_ideal, shaft_orders
 from rigdesign.prediction.places import place_weights
 from rigdesign.rig.model import Rig
 from rigdesign.state import OperatingPoint
@@ -139,7 +139,13 @@ class _Orders:
             last = settled.last
             assert settled.bracing is not None
             found = shaft_orders(
-                rig, settled.point, last.models, last.drags, settled.bracing, list(self._channels)
+                rig,
+                settled.point,
+                last.models,
+                last.drags,
+                settled.bracing,
+                list(self._channels),
+                base=last.response if is_ideal(rig) else None,
             )
             self._known = settled, found
         return self._known[1]

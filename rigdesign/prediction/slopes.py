@@ -8,19 +8,19 @@ answered on the temperature shapes.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 
 import numpy as np
 
 from dynamics.response_curve import CurvePoint
-from rigdesign.drags import drag_shafts
 from rigdesign.flank_heat import rim_surfaces
 from rigdesign.loads import MeshModel
 from rigdesign.loads import Setting as Bracing
 from rigdesign.passes import Parts, PassResult, one_pass
 from rigdesign.prediction.growth_map import GrowthMap
 from rigdesign.prediction.housings import ReducedField, ReducedHousings
-from rigdesign.prediction.memory import balanced
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
+from rigdesign.prediction.near_loop import Cause, NearLoop
 from rigdesign.prediction.readings import Reading, Settled
 from rigdesign.prediction.settle import SCALES, SettledPoint, flat, raw, unflat
 from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
@@ -33,8 +33,6 @@ from thermal.reduced import Link, Projection
 
 STEP = 0.3
 """Step of a difference in the sizes of the feedback: 0.3 K, 0.3 um, 3 W, 0.3 N m."""
-OF_BEARINGS = ("bearing_clearance", "bearing_heat")
-"""Arrows that reach the loop only as drag."""
 
 Named = Sequence[tuple[Channel, Reading]]
 
@@ -49,10 +47,36 @@ class Directions:
     """(f, m)"""
 
 
+@dataclass(frozen=True)
+class SlopeNumbers:
+    """What the passes of a point found out: plain numbers, so that another process can send them.
+
+    loop : (n, n) slope of a pass by its feedback; follow : (f, n) of the readings; near : answers of `NearLoop`
+    """
+
+    loop: FloatArray
+    follow: FloatArray
+    near: Mapping[Cause, FloatArray]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a pass near a settled point gives.
+
+    readings : (f,); handed : (n,) what it hands on, in sizes of `SCALES`
+    same_loop : whether the loop is that of the point but for its drags and the friction of its teeth
+    """
+
+    readings: FloatArray
+    handed: FloatArray
+    same_loop: bool
+
+
 class PointSlopes:
     """First-order answers of one settled point.
 
-    reads : readings of the channels; directions : by gearbox, see `directions_of`
+    reads : readings of the channels; directions : by gearbox, see `directions_of`; known : the slopes, where they
+    were found before
     """
 
     def __init__(
@@ -63,6 +87,7 @@ class PointSlopes:
         parts: Parts,
         reads: Named,
         directions: Mapping[str, Directions],
+        known: SlopeNumbers | None = None,
     ) -> None:
         self.rig, self.settled, self._housings, self._parts, self._reads = (
             rig,
@@ -73,26 +98,38 @@ class PointSlopes:
         )
         self._directions = directions
         self.feedback = settled.last.feedback
+        self.near = NearLoop(rig, settled, parts, reads, None if known is None else known.near)
         self._g = flat(raw(rig, settled.last, parts, self.feedback))
-        self._y = self._read(settled.last)
-        x = flat(self.feedback)
-        slopes, readings = [], []
+        self._y = np.array([number for _, reading in reads for number in reading(rig, settled)])
         self.index = _index(self.feedback)
-        for (arrow, _), number in self.index.items():
-            moved = x.copy()
-            moved[number] += STEP
-            light = replace(parts, response=self._drag_only) if arrow in OF_BEARINGS else parts
-            done = self._pass(rig, unflat(moved, self.feedback), light)
-            slopes.append((flat(raw(rig, done, parts, self.feedback)) - self._g) / STEP)
-            readings.append((self._read(done) - self._y) / STEP)
-        self.loop = np.array(slopes).T
+        numbers = known or self._found()
+        self.loop = numbers.loop
         """(n, n) slope of a pass by its feedback."""
-        self.follow = np.array(readings).T
+        self.follow = numbers.follow
         """(f, n) slope of the readings by the feedback."""
-        self.inverse = np.linalg.inv(np.eye(len(x)) - self.loop)
+        self.inverse = np.linalg.inv(np.eye(len(self._g)) - self.loop)
         """(n, n) how far the feedback moves until the loop has settled, per change of what a pass hands on."""
         self._closed = self.follow @ self.inverse
         """(f, n) settled readings per change of what a pass hands on."""
+
+    @property
+    def numbers(self) -> SlopeNumbers:
+        """The slopes."""
+        return SlopeNumbers(self.loop, self.follow, self.near.slopes)
+
+    def _found(self) -> SlopeNumbers:
+        """The slopes, from one pass per number of the feedback."""
+        x = flat(self.feedback)
+        slopes, readings = [], []
+        for number in self.index.values():
+            moved = x.copy()
+            moved[number] += STEP
+            done = self._pass(
+                self.rig, self.settled.point, unflat(moved, self.feedback), self.settled.bracing
+            )
+            slopes.append((done.handed - self._g) / STEP)
+            readings.append((done.readings - self._y) / STEP)
+        return SlopeNumbers(np.array(slopes).T, np.array(readings).T, self.near.slopes)
 
     @property
     def readings(self) -> FloatArray:
@@ -107,14 +144,10 @@ class PointSlopes:
         """(f,) what the readings of a point nearby lack: its last step of the loop, beyond that of the point here."""
         return np.asarray(self._closed @ (point.left - self.settled.left))
 
-    def changed(self, rig: Rig, point: OperatingPoint, bracing: Bracing | None) -> FloatArray:
-        """(f,) settled readings of a rig or setting nearby, from one pass of it."""
-        last = self.settled.last
-        done = one_pass(rig, point, self.feedback, bracing, last, parts=self._parts)
-        handed = flat(raw(rig, done, self._parts, self.feedback)) - self._g
-        settled = Settled(point, done, bracing)
-        read = np.array([number for _, reading in self._reads for number in reading(rig, settled)])
-        return self._y + self.answer(handed, read - self._y)
+    def changed(self, rig: Rig, point: OperatingPoint, bracing: Bracing | None) -> Answer:
+        """Settled readings of a rig or setting nearby, from one pass of it."""
+        done = self._pass(rig, point, self.feedback, bracing)
+        return replace(done, readings=self._y + self.answer(done.handed - self._g, done.readings - self._y))
 
     def links(self) -> dict[str, FloatArray]:
         """Name -> (f,) answer to the logarithm of every local conductance of the housings."""
@@ -183,43 +216,35 @@ class PointSlopes:
             return self.index.get(("bearing_heat", f"{name}.{part}"))
         return self.index.get(("wall_heat", f"{name}.{kind}")) if kind in (GEAR_OIL, BEARING_OIL) else None
 
-    def _pass(self, rig: Rig, feedback: Feedback, parts: Parts) -> PassResult:
-        last = self.settled.last
-        return one_pass(rig, last.point, feedback, self.settled.bracing, last, parts=parts)
+    def _pass(self, rig: Rig, point: OperatingPoint, feedback: Feedback, bracing: Bracing | None) -> Answer:
+        """A pass with what it hands on and what is read of it; the loop to first order where it is nearly the same."""
+        causes: dict[Cause, float] | None = None
 
-    def _read(self, done: PassResult) -> FloatArray:
-        """(f,) readings of a pass; of orders those of the point where the meshes are its own.
+        def response(
+            rig: Rig,
+            point: OperatingPoint,
+            models: tuple[MeshModel, ...],
+            drags: Mapping[str, float],
+            setting: Bracing,
+        ) -> CurvePoint:
+            nonlocal causes
+            causes = self.near.causes(rig, point, models, drags, setting)
+            if causes is None:
+                return self._parts.response(rig, point, models, drags, setting)
+            return self.near.response(causes)
 
-        The drag of a bearing then moves no mean torque of a coupling: it would do so by its share of a per mille.
-        """
-        same = done.models is self.settled.last.models
-        settled = self.settled if same else Settled(done.point, done, self.settled.bracing)
-        fresh = Settled(done.point, done, self.settled.bracing)
-        return np.array(
-            [
-                number
-                for channel, reading in self._reads
-                for number in reading(self.rig, settled if channel.quantity in ORDER_QUANTITIES else fresh)
-            ]
-        )
-
-    def _drag_only(
-        self,
-        rig: Rig,
-        point: OperatingPoint,
-        models: tuple[MeshModel, ...],
-        drags: Mapping[str, float],
-        setting: Bracing,
-    ) -> CurvePoint:
-        """The response with other drags: the motor pays, the loop hardly feels it."""
-        last = self.settled.last
-        assert last.response is not None and rig.drivetrain is not None
-        shafts = drag_shafts(rig.drivetrain)
-        braked = sum(
-            (drag - last.drags.get(place, 0.0)) * rig.shaft_speed(shafts[place], point.speed)
-            for place, drag in drags.items()
-        )
-        return balanced(last.response, rig, point.speed, braked)
+        parts = replace(self._parts, response=response)
+        done = one_pass(rig, point, feedback, bracing, self.settled.last, parts=parts)
+        settled = Settled(point, done, bracing)
+        orders = None if causes is None else iter(self.near.orders(causes).tolist())
+        read: list[float] = []
+        for channel, reading in self._reads:
+            if orders is not None and channel.quantity in ORDER_QUANTITIES:
+                read += islice(orders, numbers_of(channel))
+            else:
+                read += reading(rig, settled)
+        handed = flat(raw(rig, done, self._parts, self.feedback))
+        return Answer(readings=np.array(read), handed=handed, same_loop=orders is not None)
 
 
 def link_name(gearbox: str, link: Link) -> str:
@@ -277,7 +302,12 @@ def _of_field(channel: Channel, read: Reading, rig: Rig, settled: Settled) -> Se
     """Readings that hang on a field itself; zeros for the others, which follow the feedback."""
     if channel.quantity in ("temperature", "seal_gap"):
         return read(rig, settled)
-    return [0.0] * (sum(2 if order else 1 for order in channel.orders) if channel.orders else 1)
+    return [0.0] * numbers_of(channel)
+
+
+def numbers_of(channel: Channel) -> int:
+    """How many numbers a channel gives at a point."""
+    return sum(2 if order else 1 for order in channel.orders) if channel.orders else 1
 
 
 def _index(feedback: Feedback) -> dict[tuple[str, str], int]:
