@@ -46,11 +46,13 @@ class Microgeometry:
     profile_twist: float = 0.0
     """Gap at the tip at z = b/2; it changes sign at the root and at z = -b/2 (bilinear) [m]."""
     pitch_deviations: tuple[float, ...] = ()
-    """Place of each tooth along the line of action ahead of its ideal one (cumulative), (z,) [m]."""
+    """Place of each tooth along the line of action ahead of its ideal one (cumulative), (z,) [m]; the whole tooth
+    stands there, so that its back flank gives way by as much."""
     run_out: float = 0.0
     """Eccentricity f_e of the teeth, about half the run-out F_r [m]."""
     run_out_phase: float = 0.0
-    """Rotation of the gear at which the eccentric teeth stand furthest along the line of action, [rad]."""
+    """Rotation of the gear at which the eccentric teeth stand furthest along the line of action of the front flanks
+    [rad]; along that of the back flanks they do so half a turn and 2 alpha_wt later (pinion) or earlier (wheel)."""
     profile_slopes: tuple[float, ...] = ()
     """Slope of the profile of each tooth beyond ``profile_slope``, (z,) [m]."""
     tooth_stiffness: tuple[float, ...] = ()
@@ -126,7 +128,11 @@ def mesh_law(
     gap = gap + misalignment * face[:, None]
     for index, gear in enumerate(micro):
         gap = gap + flank_modification(pair, gear, index, path, face)
-    turns = (path - phase) / (pair.base_pitch / (2.0 * pi))
+    back_phase = pair.working_thicknesses[0] * pair.base_radii[0] / pair.working_radii[0] - phase
+    deviations = [
+        _deviations(pair, gear, index, path, (phase, back_phase), first)
+        for gear, index, first in ((micro[0], 0, 0), (micro[1], 1, tooth_offset_2))
+    ]
     scales = [np.array(gear.tooth_stiffness or (1.0,)) for gear in micro]
     return MeshLaw(
         base_radius_1=_law_radius(pair, 0),
@@ -140,22 +146,22 @@ def mesh_law(
         stiffness=np.tile(stiffness.at(path) * width / slices, (slices, 1)),
         gap=gap,
         slice_shift=face * tan(pair.base_helix_angle),
-        deviation_1=_deviations(micro[0], pair.teeth[0], turns, 0, _along_profile(pair, 0, path)),
-        deviation_2=_deviations(
-            micro[1], pair.teeth[1], turns, tooth_offset_2, _along_profile(pair, 1, path)
-        ),
+        deviation_1=deviations[0][0],
+        deviation_2=deviations[1][0],
         scale_1=scales[0],
         scale_2=scales[1],
         backlash=max(pair.backlash_along_path, 0.0),
         offset=offset,
         phase=phase,
-        back_phase=pair.working_thicknesses[0] * pair.base_radii[0] / pair.working_radii[0] - phase,
+        back_phase=back_phase,
         damping=damping,
         mean_stiffness=stiffness.mesh_mean * width * float(scales[0].mean() * scales[1].mean()),
         friction=friction,
         rolling_radius_1=pair.rolling_radii[0],
         rolling_radius_2=pair.rolling_radii[1],
         friction_reversal_speed=friction_reversal_speed,
+        back_deviation_1=deviations[0][1],
+        back_deviation_2=deviations[1][1],
     )
 
 
@@ -189,21 +195,29 @@ def _along_profile(pair: GearPair, index: int, path: Array) -> Array:
 
 
 def alike_teeth(law: MeshLaw, pinion: bool = True, wheel: bool = True) -> MeshLaw:
-    """The law with the teeth of pinion, wheel or both alike: the mean of their deviations and of their stiffness."""
+    """The law with the teeth of pinion, wheel or both alike: the mean of their deviations and of their stiffness.
+
+    What they have in common in front and on the back goes into the gap, half of the difference into the offset.
+    """
+    none, one = np.zeros((1, law.stiffness.shape[1])), np.ones(1)
     if pinion:
-        law = _with_means(law, law.deviation_1, law.scale_1)._replace(
-            deviation_1=np.zeros((1, law.stiffness.shape[1])), scale_1=np.ones(1)
-        )
+        law = _with_means(law, law.deviation_1, law.back_deviation_1, law.scale_1)
+        law = law._replace(deviation_1=none, back_deviation_1=None, scale_1=one)
     if wheel:
-        law = _with_means(law, law.deviation_2, law.scale_2)._replace(
-            deviation_2=np.zeros((1, law.stiffness.shape[1])), scale_2=np.ones(1)
-        )
+        law = _with_means(law, law.deviation_2, law.back_deviation_2, law.scale_2)
+        law = law._replace(deviation_2=none, back_deviation_2=None, scale_2=one)
     return law
 
 
-def _with_means(law: MeshLaw, deviation: Array, scale: Array) -> MeshLaw:
-    """The law with the mean of the deviations in its gap and that of the scales in its stiffness."""
-    return law._replace(gap=law.gap + deviation.mean(axis=0), stiffness=law.stiffness * float(scale.mean()))
+def _with_means(law: MeshLaw, front: Array, back: Array | None, scale: Array) -> MeshLaw:
+    """The law with the mean of the deviations in its gap and offset and that of the scales in its stiffness."""
+    mean, ahead = front.mean(axis=0), 0.0
+    if back is not None:
+        behind = back.mean(axis=0)
+        mean, ahead = 0.5 * (mean + behind), 0.5 * float((behind - mean).mean())
+    return law._replace(
+        gap=law.gap + mean, offset=law.offset + ahead, stiffness=law.stiffness * float(scale.mean())
+    )
 
 
 def reach_beyond(law: MeshLaw, approach: Array) -> str:
@@ -239,21 +253,38 @@ def _law_radius(pair: GearPair, index: int) -> float:
     return pair.base_pitch * pair.teeth[index] / (2.0 * pi)
 
 
-def _deviations(gear: Microgeometry, teeth: int, turns: Array, first_tooth: int, profile: Array) -> Array:
-    """Gap added by each tooth, (teeth, n_path) or (1, n_path) [m].
+def _deviations(
+    pair: GearPair,
+    gear: Microgeometry,
+    index: int,
+    path: Array,
+    phases: tuple[float, float],
+    first_tooth: int,
+) -> tuple[Array, Array | None]:
+    """Gap added by each tooth of gear ``index`` in front and on the back, (teeth, n_path) or (1, n_path) [m].
 
-    ``turns`` (n_path,): teeth passed since rotation zero, times 2 pi; tooth j reaches it a tooth later.
-    ``profile`` (n_path,): from -1 at the root of the gear to 1 at its tip.
+    phases : path position of pair 0 at rotation zero, front and back; first_tooth : the one in pair 0 in front
+
+    None for the back where it has the same. On the lines of action n = (sin alpha_wt, +-cos alpha_wt), front and
+    back, from the centre of the gear, an eccentricity that turns with the gear stands out by e cos(rotation - phase)
+    in front and by -e cos(rotation - phase -+ 2 alpha_wt), pinion and wheel, on the back: together 2 sin alpha_wt
+    times its part towards the other gear, by which it takes away from the backlash.
     """
+    teeth = pair.teeth[index]
     if not gear.pitch_deviations and not gear.run_out and not gear.profile_slopes:
-        return np.zeros((1, len(turns)))
+        return np.zeros((1, len(path))), None
     place = np.array(gear.pitch_deviations or (0.0,) * teeth)[:, None]
+    slope = 0.5 * np.array(gear.profile_slopes or (0.0,) * teeth)[:, None] * _along_profile(pair, index, path)
     tooth = (np.arange(teeth) - first_tooth)[:, None]
-    rotation = (turns[None, :] + 2.0 * pi * tooth) / teeth
-    added = -place - gear.run_out * np.cos(rotation - gear.run_out_phase)
-    if gear.profile_slopes:
-        added = added - 0.5 * np.array(gear.profile_slopes)[:, None] * profile
-    return np.asarray(added)
+    per_turn = pair.base_pitch / (2.0 * pi)
+    rotation = ((path - phases[0]) / per_turn + 2.0 * pi * tooth) / teeth
+    front = -place - gear.run_out * np.cos(rotation - gear.run_out_phase) - slope
+    if not gear.pitch_deviations and not gear.run_out:
+        return front, None
+    pair_of_tooth = tooth - index  # a tooth of the wheel is on the back in the pair before
+    rotation = ((phases[1] - path) / per_turn + 2.0 * pi * pair_of_tooth) / teeth
+    later = gear.run_out_phase + (2.0 - 4.0 * index) * pair.working_pressure_angle
+    return front, place + gear.run_out * np.cos(rotation - later) - slope
 
 
 def _default_slices(pair: GearPair, micro: tuple[Microgeometry, Microgeometry], misalignment: float) -> int:

@@ -52,7 +52,8 @@ class MeshReaction(NamedTuple):
 class ToothForces:
     """Forces of single tooth pairs at n states; column c of row n is pair ``pair[n, c]``.
 
-    pair : (n, n_pairs) index p; it joins pinion tooth p mod z1 with wheel tooth (p + tooth_offset_2) mod z2
+    pair : (n, n_pairs) index p; it joins pinion tooth p mod z1 with wheel tooth (p + tooth_offset_2) mod z2 in front,
+        with the one after it on the back
     path : (n, n_pairs) front-flank path position at the middle of the face width (slice_shift = 0) [m]
     back_path : (n, n_pairs) the same on the back flank [m]
     front, back : (n, n_pairs, n_slices) normal force of each slice in the transverse line of action [N]

@@ -11,9 +11,11 @@ Tooth pair ``p`` (any integer) touches on the front flank at the path position
 
 and on the back flank at the mirrored position ``back_phase - r_b1 theta_1 + p base_pitch``. Slice ``i`` of
 the face width sees ``s_p - slice_shift[i]`` in front and, the helix being mirrored with the flank, the back
-position plus ``slice_shift[i]``. The deviation of a tooth counts on both of its flanks. The penetration is
-``x - gap`` in front and ``-x - backlash - gap`` on the back, and all forces and torques follow from the one
-potential
+position plus ``slice_shift[i]``. Pair ``p`` joins pinion tooth p in front with wheel tooth p + tooth_offset_2,
+on the back with the one that follows it, since the pinion tooth stands between the two. A tooth that stands ahead
+narrows the gap in front and widens it on the back, a thick one narrows both: each flank has deviations of its own.
+The penetration is ``x - gap`` in front and ``-x - backlash - gap`` on the back, and all forces and torques follow
+from the one potential
 
     W = sum over flanks, pairs and slices of  k(s) max(0, penetration)^2 / 2                          [J]
 
@@ -42,7 +44,8 @@ class MeshLaw(NamedTuple):
     teeth_1: int
     teeth_2: int
     tooth_offset_2: int
-    """Wheel tooth that meets pinion tooth 0 in pair 0: pair p joins p mod z1 with (p + offset) mod z2."""
+    """Wheel tooth that meets pinion tooth 0 in pair 0: pair p joins p mod z1 with (p + offset) mod z2 in front and
+    with (p + 1 + offset) mod z2 on the back."""
     path_start: float
     """Path position of the first grid point [m]; the grid reaches beyond the active path on both sides."""
     path_step: float
@@ -55,7 +58,7 @@ class MeshLaw(NamedTuple):
     slice_shift: Array
     """Lag of each slice on the path, shape (n_slices,) [m]: z tan(base helix angle)."""
     deviation_1: Array
-    """Gap added by each pinion tooth, shape (teeth_1, n_path), or (1, n_path) if all teeth are equal [m]."""
+    """Gap added by each pinion tooth in front, shape (teeth_1, n_path), or (1, n_path) if all teeth are equal [m]."""
     deviation_2: Array
     """The same for the wheel, shape (teeth_2, n_path) or (1, n_path) [m]."""
     scale_1: Array
@@ -85,6 +88,18 @@ class MeshLaw(NamedTuple):
     damping_depth: float = 1e-6
     """Penetration over which the damping of a contact grows to its full value [m], so that a tooth that
     touches with some speed starts at zero force (Hunt and Crossley, ASME J. Appl. Mech. 42, 1975)."""
+    back_deviation_1: Array | None = None
+    """Gap added by each pinion tooth on its back flank, shape as ``deviation_1`` [m]; None: the same as in front."""
+    back_deviation_2: Array | None = None
+    """The same for the wheel, shape as ``deviation_2`` [m]."""
+
+
+def back_deviations(law: MeshLaw) -> tuple[Array, Array]:
+    """Return the gaps that the teeth of pinion and wheel add on their back flanks, shapes as in front [m]."""
+    return (
+        law.deviation_1 if law.back_deviation_1 is None else law.back_deviation_1,
+        law.deviation_2 if law.back_deviation_2 is None else law.back_deviation_2,
+    )
 
 
 def check_mesh_law(law: MeshLaw) -> None:
@@ -115,11 +130,14 @@ def check_mesh_law(law: MeshLaw) -> None:
     for name, value in not_negative.items():
         if not (value >= 0.0 and np.isfinite(value)):
             raise ValueError(f"mesh law: {name} = {value} must not be negative")
+    back_1, back_2 = back_deviations(law)
     shapes: dict[str, tuple[tuple[int, ...], tuple[tuple[int, ...], ...]]] = {
         "gap": (law.gap.shape, ((n_slices, n_path),)),
         "slice_shift": (law.slice_shift.shape, ((n_slices,),)),
         "deviation_1": (law.deviation_1.shape, ((law.teeth_1, n_path), (1, n_path))),
         "deviation_2": (law.deviation_2.shape, ((law.teeth_2, n_path), (1, n_path))),
+        "back_deviation_1": (back_1.shape, (law.deviation_1.shape,)),
+        "back_deviation_2": (back_2.shape, (law.deviation_2.shape,)),
         "scale_1": (law.scale_1.shape, ((law.teeth_1,), (1,))),
         "scale_2": (law.scale_2.shape, ((law.teeth_2,), (1,))),
     }
@@ -130,7 +148,9 @@ def check_mesh_law(law: MeshLaw) -> None:
         raise ValueError(
             f"mesh law: stiffness has shape {law.stiffness.shape}; one slice and two path points are needed"
         )
-    if not all(np.all(np.isfinite(table)) for table in (law.gap, law.deviation_1, law.deviation_2)):
+    if not all(
+        np.all(np.isfinite(table)) for table in (law.gap, law.deviation_1, law.deviation_2, back_1, back_2)
+    ):
         raise ValueError(
             "mesh law: gap and deviations must be finite; let the gap grow outside the active path"
         )

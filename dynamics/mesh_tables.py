@@ -18,7 +18,7 @@ from scipy.interpolate import PchipInterpolator
 from dynamics import kernels
 from dynamics.kernels import PackedMeshes
 from dynamics.kernels.contact import DAMP_TIME
-from dynamics.mesh_law import MeshLaw, check_mesh_law
+from dynamics.mesh_law import MeshLaw, back_deviations, check_mesh_law
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -51,7 +51,8 @@ def pack_meshes(
     least: list[Array] = []
     for mesh, law in enumerate(laws):
         n_slices, n_path = law.stiffness.shape
-        deviation_at, scale_at = sum(map(len, deviations)), sum(map(len, scales))
+        own, places = _deviation_tables(law, sum(map(len, deviations)))
+        scale_at = sum(map(len, scales))
         individual = has_individual_teeth(law)
         n_phases = phase_count(law) if over_phase and not individual else 0
         front_at = sum(map(len, sizes))
@@ -64,15 +65,14 @@ def pack_meshes(
         counts[mesh] = (
             n_slices, n_path - 1, sum(map(len, cells)), sum(map(len, shifts)), individual,
             law.teeth_1, law.teeth_2, law.tooth_offset_2,
-            len(law.deviation_1), deviation_at,
-            len(law.deviation_2), deviation_at + len(law.deviation_1) * (n_path - 1),
+            len(law.deviation_1), places[0], len(law.deviation_2), places[1],
             len(law.scale_1), scale_at, len(law.scale_2), scale_at + len(law.scale_1),
             most_contacts(law),
-            n_phases, front_at, front_at + n_phases,
+            n_phases, front_at, front_at + n_phases, places[2], places[3],
         )  # fmt: skip
         cells.append(np.hstack((_cells(stiffness), _cells(gap))))
         shifts.append(np.asarray(law.slice_shift, float))
-        deviations.append(np.vstack((_deviation_cells(law.deviation_1), _deviation_cells(law.deviation_2))))
+        deviations.append(own)
         scales.append(np.concatenate((law.scale_1, law.scale_2)).astype(float))
     return PackedMeshes(
         values=values,
@@ -97,7 +97,9 @@ def undamped(packed: PackedMeshes) -> PackedMeshes:
 
 def has_individual_teeth(law: MeshLaw) -> bool:
     """Return whether a tooth of the law differs from the others by deviation or stiffness."""
-    tables = (law.deviation_1, law.deviation_2, law.scale_1 - 1.0, law.scale_2 - 1.0)
+    tables = (
+        law.deviation_1, law.deviation_2, *back_deviations(law), law.scale_1 - 1.0, law.scale_2 - 1.0
+    )  # fmt: skip
     return any(bool(np.any(table)) for table in tables)
 
 
@@ -114,7 +116,8 @@ def most_contacts(law: MeshLaw) -> int:
 
 
 def _values(law: MeshLaw, derivative_torques: bool) -> tuple[float, ...]:
-    least_gap = float(law.gap.min() + law.deviation_1.min() + law.deviation_2.min())
+    front, back = (law.deviation_1, law.deviation_2), back_deviations(law)
+    least_gap = float(law.gap.min()) + min(float(one.min() + two.min()) for one, two in (front, back))
     reversal = max(law.friction_reversal_speed, 1e-9)
     return (
         law.base_radius_1, law.base_radius_2, law.base_pitch, law.phase, law.back_phase, law.backlash,
@@ -141,6 +144,17 @@ def _deviation_cells(table: Array) -> Array:
     """Return the same of a table of deviations, which mostly has none."""
     rows, points = table.shape
     return _cells(_cubic(table)) if np.any(table) else np.zeros((rows * (points - 1), 4))
+
+
+def _deviation_tables(law: MeshLaw, at: int) -> tuple[Array, tuple[int, int, int, int]]:
+    """Return cells of pinion and wheel, front and back, and where each begins in a table whose next row is ``at``."""
+    tables = [_deviation_cells(law.deviation_1), _deviation_cells(law.deviation_2)]
+    places = [at, at + len(tables[0])]
+    for index, table in enumerate((law.back_deviation_1, law.back_deviation_2)):
+        places.append(places[index] if table is None else at + sum(map(len, tables)))
+        if table is not None:
+            tables.append(_deviation_cells(table))
+    return np.vstack(tables), (places[0], places[1], places[2], places[3])
 
 
 def _phase_contacts(

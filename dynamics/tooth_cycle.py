@@ -10,7 +10,7 @@ out.
 from collections.abc import Sequence
 from itertools import repeat
 from math import gcd
-from typing import NamedTuple
+from typing import NamedTuple, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -191,12 +191,25 @@ def _with_teeth(ideal: MeshLaw, law: MeshLaw, gears: list[tuple[int, int]], m: i
     """The law in which only the teeth of some gears deviate from their mean."""
     if (m, 0) in gears:
         ideal = ideal._replace(
-            deviation_1=law.deviation_1 - law.deviation_1.mean(axis=0),
+            deviation_1=_from_mean(law.deviation_1), back_deviation_1=_from_mean(law.back_deviation_1),
             scale_1=law.scale_1 / law.scale_1.mean(),
-        )
+        )  # fmt: skip
     if (m, 1) in gears:
         ideal = ideal._replace(
-            deviation_2=law.deviation_2 - law.deviation_2.mean(axis=0),
+            deviation_2=_from_mean(law.deviation_2), back_deviation_2=_from_mean(law.back_deviation_2),
             scale_2=law.scale_2 / law.scale_2.mean(),
-        )
+        )  # fmt: skip
     return ideal
+
+
+@overload
+def _from_mean(table: Array) -> Array: ...
+
+
+@overload
+def _from_mean(table: None) -> None: ...
+
+
+def _from_mean(table: Array | None) -> Array | None:
+    """What each tooth deviates from the mean of all."""
+    return None if table is None else np.asarray(table - table.mean(axis=0))

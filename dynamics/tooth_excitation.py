@@ -35,7 +35,7 @@ class Motion(NamedTuple):
 
 
 class PairSensitivity(NamedTuple):
-    """Answer of each output to what one tooth pair deviates, at n places of a motion.
+    """Answer of each output to what one tooth pair deviates on one flank, at n places of a motion.
 
     first : number of the first pair in the tables
     pairs : pairs in the tables
@@ -51,28 +51,21 @@ class PairSensitivity(NamedTuple):
     scale: Array
 
 
-def pair_sensitivity(law: MeshLaw, packed: PackedMeshes, motion: Motion) -> PairSensitivity:
-    """Return the sensitivities of all pairs that touch along a motion.
+def pair_sensitivity(
+    law: MeshLaw, packed: PackedMeshes, motion: Motion, *, back: bool = False
+) -> PairSensitivity | None:
+    """Return the sensitivities of all pairs that touch along a motion, front or back; None if none touches.
 
     law : with all teeth alike (``alike_teeth``); packed : the same, ``pack_meshes([law])``
     """
-    found = [
-        contacts for sign in (1.0, -1.0) if (contacts := _contacts(law, packed, motion, sign)) is not None
-    ]
+    found = _contacts(law, packed, motion, -1.0 if back else 1.0)
+    if found is None or not found.pair.size:
+        return None
     n, n_path = motion.angle.size, law.stiffness.shape[1]
-    if not found:
-        empty = csr_array((n, n_path))
-        return PairSensitivity(0, 1, (empty,) * OUTPUTS, (empty,) * OUTPUTS, np.zeros((OUTPUTS, 1, n)))
-    first = min(int(contacts.pair.min()) for contacts in found)
-    pairs = max(int(contacts.pair.max()) for contacts in found) - first + 1
-    row = np.concatenate([(contacts.pair - first) * n + contacts.at for contacts in found])
-    column = np.concatenate([contacts.cell for contacts in found])
-    share = np.concatenate([contacts.fraction for contacts in found])
-    per_gap, per_slope, per_scale = (
-        np.concatenate([getattr(contacts, name) for contacts in found], axis=1)
-        for name in ("per_gap", "per_slope", "per_scale")
-    )
-    rows, columns = np.concatenate([row, row]), np.concatenate([column, column + 1])
+    first = int(found.pair.min())
+    pairs = int(found.pair.max()) - first + 1
+    row, share = (found.pair - first) * n + found.at, found.fraction
+    rows, columns = np.concatenate([row, row]), np.concatenate([found.cell, found.cell + 1])
     weight = np.concatenate([1.0 - share, share])
 
     def spread(values: Array) -> tuple[csr_array, ...]:
@@ -81,12 +74,14 @@ def pair_sensitivity(law: MeshLaw, packed: PackedMeshes, motion: Motion) -> Pair
             for value in values
         )
 
-    scale = np.array([np.bincount(row, value, pairs * n) for value in per_scale]).reshape(OUTPUTS, pairs, n)
-    return PairSensitivity(first, pairs, spread(per_gap), spread(per_slope), scale)
+    scale = np.array([np.bincount(row, value, pairs * n) for value in found.per_scale]).reshape(
+        OUTPUTS, pairs, n
+    )
+    return PairSensitivity(first, pairs, spread(found.per_gap), spread(found.per_slope), scale)
 
 
 class ToothPattern(NamedTuple):
-    """What the teeth of one gear deviate from their mean, as waves over the teeth.
+    """What the teeth of one gear deviate from their mean on one flank, as waves over the teeth.
 
     waves : (n_waves,) number of each wave, 0 to teeth - 1: tooth j has the factor exp(2 pi i wave j / teeth)
     gap : (n_waves, n_path) [m]; scale : (n_waves,) [-]
@@ -99,7 +94,7 @@ class ToothPattern(NamedTuple):
 
 
 def tooth_pattern(deviation: Array, scale: Array, teeth: int, waves: Integers) -> ToothPattern:
-    """Return waves of the tables ``deviation_1``, ``scale_1`` (or 2) of a law, the mean over all teeth left out."""
+    """Return waves of the tables ``deviation_1``, ``scale_1`` (2, back) of a law, the mean over all teeth left out."""
     waves = np.asarray(waves, np.int64) % teeth
     turn = np.exp(-2j * np.pi / teeth * np.outer(waves, np.arange(teeth))) / teeth
     turn[waves == 0] = 0.0
@@ -114,7 +109,7 @@ def excitation(
 ) -> Complex:
     """Return the outputs (OUTPUTS, n_waves, n) that each wave over the teeth adds along the motion.
 
-    first_tooth : tooth of this gear in pair 0 (``tooth_offset_2`` of the wheel)
+    first_tooth : tooth of this gear in pair 0 (of the wheel ``tooth_offset_2`` in front, the next one on the back)
     """
     n = sensitivity.scale.shape[2]
     pair = sensitivity.first + np.arange(sensitivity.pairs) + first_tooth

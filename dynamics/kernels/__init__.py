@@ -2,8 +2,8 @@
 
 ``contact`` sums the tooth contacts of a flank, ``reactions`` evaluates meshes at given states, ``linear_step`` takes
 the modes over one step, ``mesh_solve`` the meshes, ``march`` joins them; ``book`` is what the last three share. The
-disk cache of a compiled function is keyed by its own file: after an edit of one of the others touch ``reactions``,
-``linear_step``, ``mesh_solve`` and ``march`` too.
+disk cache of a compiled function is keyed by the content of its own file: a mark of all sources in each file that takes
+from another goes with it (``tests/unit/test_kernel_cache.py`` says what to write).
 """
 
 from dynamics.kernels.book import port_place

@@ -61,8 +61,8 @@ N_VALUES = 23
 N_SLICES, N_CELLS, CELLS_AT, SHIFTS_AT, INDIVIDUAL, TEETH_1, TEETH_2, OFFSET_2 = 0, 1, 2, 3, 4, 5, 6, 7
 ROWS_1, DEVIATION_1_AT, ROWS_2, DEVIATION_2_AT = 8, 9, 10, 11
 SCALES_1, SCALES_1_AT, SCALES_2, SCALES_2_AT, MOST = 12, 13, 14, 15, 16
-N_PHASES, FRONT_AT, BACK_AT = 17, 18, 19
-N_COUNTS = 20
+N_PHASES, FRONT_AT, BACK_AT, BACK_DEVIATION_1_AT, BACK_DEVIATION_2_AT = 17, 18, 19, 20, 21
+N_COUNTS = 22
 # rows of a table of contacts: cubics of stiffness and gap over the place in the cell, path position at its start
 ROW_K, ROW_E, ROW_S = 0, 4, 8
 N_PHASE = 9
@@ -161,6 +161,9 @@ def list_on_path(
     pitch = book[at + PITCH] * per_step
     origin = (book[at + PHASE] if sign > 0.0 else book[at + BACK_PHASE]) - book[at + START]
     travel = origin + sign * book[at + R1] * theta_1
+    deviation_1 = counts[m, DEVIATION_1_AT] if sign > 0.0 else counts[m, BACK_DEVIATION_1_AT]
+    deviation_2 = counts[m, DEVIATION_2_AT] if sign > 0.0 else counts[m, BACK_DEVIATION_2_AT]
+    offset_2 = counts[m, OFFSET_2] if sign > 0.0 else counts[m, OFFSET_2] + 1
     column = 0
     for i in range(counts[m, N_SLICES]):
         whole = (travel - sign * shifts[counts[m, SHIFTS_AT] + i]) * per_step
@@ -176,9 +179,9 @@ def list_on_path(
             e = cells[c, 4] + f * (cells[c, 5] + f * (cells[c, 6] + f * cells[c, 7]))
             de = cells[c, 5] + f * (2.0 * cells[c, 6] + 3.0 * f * cells[c, 7])
             pair = int(turn) if sign > 0.0 else -int(turn)
-            mate = pair + counts[m, OFFSET_2]
-            a = counts[m, DEVIATION_1_AT] + (pair % counts[m, ROWS_1]) * n_cells + j
-            b = counts[m, DEVIATION_2_AT] + (mate % counts[m, ROWS_2]) * n_cells + j
+            mate = pair + offset_2
+            a = deviation_1 + (pair % counts[m, ROWS_1]) * n_cells + j
+            b = deviation_2 + (mate % counts[m, ROWS_2]) * n_cells + j
             d_1 = deviations[a, 1] + deviations[b, 1]
             d_2 = deviations[a, 2] + deviations[b, 2]
             d_3 = deviations[a, 3] + deviations[b, 3]

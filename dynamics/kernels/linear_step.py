@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.book import OLD, SPEED, TAU, TURN
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined, sliding_direction
 
+# compiled from sources 91f568f6
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -60,6 +60,7 @@ from dynamics.kernels.contact import (
     press_flank,
 )
 
+# compiled from sources 91f568f6
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -33,8 +33,10 @@ def test_sensitivities_are_slopes_of_the_mesh_torques(healthy, mesh):
     law = case.models[mesh].law
     wave = base.wave
     motion = Motion(wave.angle[mesh], wave.approach[mesh], wave.omega_1[mesh], wave.omega_2[mesh])
-    found = pair_sensitivity(law, pack_meshes([law]), motion)
     sign = 1.0 if base.flank[mesh] > 0.0 else -1.0
+    found = pair_sensitivity(law, pack_meshes([law]), motion, back=sign < 0.0)
+    assert pair_sensitivity(law, pack_meshes([law]), motion, back=sign > 0.0) is None
+    assert found is not None
     # all gaps wider by the same is an approach that much shorter
     uniform = np.array(
         [np.asarray(part.sum(axis=1)).reshape(found.pairs, -1).sum(axis=0) for part in found.gap]
@@ -48,9 +50,12 @@ def test_sensitivities_are_slopes_of_the_mesh_torques(healthy, mesh):
     shape = np.linspace(-1.0, 1.0, law.stiffness.shape[1])
     deviation = rng.normal(size=(28, 1)) * 1e-10 + rng.normal(size=(28, 1)) * 1e-10 * shape
     softer = 1.0 + 1e-6 * rng.normal(size=28)
-    whole = law._replace(deviation_2=deviation, scale_2=softer / softer.mean())
+    other = rng.normal(size=(28, 1)) * 1e-10 * shape
+    front, back = (deviation, other) if sign > 0.0 else (other, deviation)
+    whole = law._replace(deviation_2=front, back_deviation_2=back, scale_2=softer / softer.mean())
     pattern = tooth_pattern(deviation, softer, 28, np.arange(28))
-    linear_part = excitation(found, law, pattern, law.tooth_offset_2).sum(axis=1).real
+    first = law.tooth_offset_2 + (sign < 0.0)
+    linear_part = excitation(found, law, pattern, first).sum(axis=1).real
     mean = law._replace(
         gap=law.gap + deviation.mean(axis=0), deviation_2=0.0 * deviation, scale_2=1.0 + 0.0 * softer,
         scale_1=np.array([1.0]), deviation_1=np.full_like(law.deviation_1, 1e-30),

@@ -193,6 +193,8 @@ def test_packing_twice_gives_the_same_bytes() -> None:
         ({"slice_shift": np.zeros(3)}, "slice_shift"),
         ({"scale_1": np.ones(7)}, "scale_1"),
         ({"deviation_1": np.full((1, 401), np.nan)}, "finite"),
+        ({"back_deviation_1": np.full((1, 401), np.nan)}, "finite"),
+        ({"back_deviation_2": np.zeros((102, 401))}, "back_deviation_2"),
     ],
 )
 def test_impossible_laws_are_refused_by_name(change: dict[str, object], words: str) -> None:

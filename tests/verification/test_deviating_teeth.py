@@ -93,6 +93,23 @@ def test_run_out_swings_the_torque_by_the_stiffness_of_the_loop() -> None:
     assert np.angle(order(torque, 1)) == pytest.approx(windup() - math.radians(50.0), abs=0.01)
 
 
+@pytest.mark.parametrize(("gear", "sign"), [("pinion", 1.0), ("wheel", -1.0)])
+def test_run_out_on_the_back_flank_turns_by_twice_the_working_angle(gear: str, sign: float) -> None:
+    """The reference gearbox carries on its back flanks, on the other line of action: half a turn and 2 alpha_wt."""
+    flank = f"gearboxes.reference.gears.{gear}.flank"
+    torque, _ = turn(changed(**{f"{flank}.run_out": "40 um", f"{flank}.run_out_phase": "50 deg"}))
+    rig, models = built(loop())
+    assert rig.system is not None
+    law = models[1].law
+    model = port_model(rig.system, laws_of(models))
+    ahead = float(solve_static(model, torque=POINT.torque).ports[:, model.pinions[1]].mean())
+    expected = 20e-6 / law.base_radius_1 / loop_compliance(models)
+    later = math.radians(50.0) + math.pi + sign * 2.0 * models[1].pair.working_pressure_angle
+    found = order(torque, 1)
+    assert abs(found) == pytest.approx(expected, rel=0.02)
+    assert abs(np.angle(found * np.exp(1j * (later - ahead)))) < 0.01
+
+
 def test_the_same_teeth_meet_until_the_wheel_is_put_on_further() -> None:
     """Two equal run-outs add up; half a turn further they cancel, a quarter further they are at right angles."""
     both = {f"{PINION}.run_out": "40 um", f"{WHEEL}.run_out": "40 um"}

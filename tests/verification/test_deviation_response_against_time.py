@@ -18,6 +18,11 @@ ORDERS = (1.0, 2.0, 3.0, 27.0, 28.0, 29.0)
 JUMPS = [f"{(-1) ** tooth * (tooth % 5)} um" for tooth in range(28)]
 """Single pitch deviations of the size of ISO 1328-1 class 4 to 5."""
 RUN_OUT = {PINION + "run_out": "20 um", WHEEL + "run_out": "20 um", WHEEL + "run_out_phase": "1 rad"}
+BACK = {
+    path.replace("__test__", "__reference__"): value
+    for path, value in (RUN_OUT | {WHEEL + "single_pitch": JUMPS}).items()
+}
+"""On the gears that carry on their back flanks."""
 WAVES = {PINION + "pitch_waves": [{"order": 2, "amplitude": "5 um"}, {"order": 3, "amplitude": "5 um"}]}
 WEAK = {PINION + "weak_tooth": {"tooth": 3, "stiffness": 0.8}}
 
@@ -48,6 +53,7 @@ def errors(name, values, rpm, torque, orders, *, march, steps=(0, 30)):
     ("values", "rpm", "torque", "whole", "sides"),
     [
         (RUN_OUT, 1500.0, 200.0, (1.0, 28.0), (27.0, 29.0)),
+        (BACK, 2900.0, 200.0, (1.0, 2.0, 3.0, 28.0), (27.0, 29.0)),
         ({PINION + "single_pitch": JUMPS}, 2900.0, 200.0, (1.0, 2.0, 3.0, 28.0), (27.0, 29.0)),
         (WAVES, 2900.0, 200.0, (2.0, 3.0, 28.0), ()),
         (WEAK, 2900.0, 200.0, (1.0, 2.0, 3.0, 28.0), (27.0, 29.0)),
