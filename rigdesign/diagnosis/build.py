@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rigdesign.beside import Beside
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.columns import Array
-from rigdesign.diagnosis.effects import Changes, Effect
+from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.library import Library, Response
 from rigdesign.errors import RigdesignError
 from rigdesign.prediction import Predictor
@@ -25,8 +25,8 @@ DYNAMIC = frozenset({"excitation", "tooth", "stiffness", "inertia", "damping"})
 LINEAR_SHARE = 0.1
 """Run of an effect that the numbers answer to in proportion."""
 
-EXPONENT = 0.1
-"""Change of an exponent from which its derivative is taken."""
+SWING_SHARE = 0.01
+"""The same of an excitation: what grows with its square stays small beside."""
 
 POWER = Channel(name="losses of the rig", quantity="motor_power", place="motor")
 """Read beside the channels of the measurement: all losses together."""
@@ -46,8 +46,9 @@ def build_library(
     """
     say(f"model of {len(settings)} operating points and {len(channels)} sensors")
     predictor = Predictor(case, tuple(settings), (*channels, POWER))
+    predictor.prepare()
     base = predictor.base
-    moving = [effect for effect in effects if _reaches(effect, channels)]
+    moving = sorted((effect for effect in effects if _reaches(effect, channels)), key=_haste)
     work = [_Response(predictor, case, effect, base) for effect in moving]
     say(f"responses to {len(moving)} effects")
     with Beside(work) as beside:
@@ -71,7 +72,7 @@ def build_library(
             name: Response(coordinates=one.coordinates, answers=one.answers[:, own])
             for name, one in responses.items()
         },
-        exponents={name: values[own] for name, values in _exponents(predictor, case, base)},
+        exponents={name: values[own] for name, values in _exponents(predictor, case, responses)},
         links={name: values[own] for name, values in predictor.links().items()},
         sources={name: values[own] for name, values in paid.items()},
         dry_sources={name: values[own] for name, values in unpaid.items()},
@@ -108,7 +109,12 @@ class _Response:
         for place in run_places(self._effect):
             changes = self._effect.changes(self._case, tuple(float(value) for value in place))
             try:
-                answer = self._predictor.response(changes) - self._base
+                found = (
+                    self._predictor.swinging(changes)
+                    if swings(self._effect)
+                    else self._predictor.response(changes)
+                )
+                answer = found - self._base
             except RigdesignError:
                 continue
             coordinates.append(place)
@@ -118,32 +124,53 @@ class _Response:
         return Response(coordinates=np.array(coordinates), answers=np.array(answers))
 
 
+def swings(effect: Effect) -> bool:
+    """Whether an effect only swings, with no mean over a turn: waves over the teeth, harmonic torques."""
+    return effect.family == "excitation" and effect.linear and not effect.any_tooth
+
+
 def run_places(effect: Effect) -> list[Array]:
     """Coordinates at which an effect is run."""
     bounds = [parameter.bounds for parameter in effect.parameters]
     if effect.linear or len(bounds) > 1:
-        steps = [LINEAR_SHARE * max(abs(low), abs(high)) for low, high in bounds]
+        share = SWING_SHARE if swings(effect) else LINEAR_SHARE
+        steps = [share * max(abs(low), abs(high)) for low, high in bounds]
         return list(np.diag(steps))
     low, high = bounds[0]
     shares = (share * (high if share > 0.0 else -low) for share in SHARES)
     return [np.array([share]) for share in shares if share != 0.0]
 
 
+def _haste(effect: Effect) -> tuple[int, int]:
+    """Order in which the works are dealt to the cores: what runs longest first, so that none ends alone."""
+    dear = ("tooth", "stiffness", "inertia", "damping", "excitation", "state", "oil")
+    place = dear.index(effect.family) if effect.family in dear else len(dear)
+    return place, -len(run_places(effect))
+
+
 _EXPONENT_LAWS = {"mesh": ("speed", "torque"), "bearing": ("speed",), "windage": ("speed",)}
 
 
-def _exponents(predictor: Predictor, case: Case, base: Array) -> Iterator[tuple[str, Array]]:
-    """Derivatives by the exponents of the loss laws, about the mean point."""
-    for name, box in case.gearboxes.items():
+def _exponents(
+    predictor: Predictor, case: Case, responses: Mapping[str, Response]
+) -> Iterator[tuple[str, Array]]:
+    """Derivatives by the exponents of the loss laws, about the mean point.
+
+    An exponent scales the loss of each point by itself, and a number follows its own point only: the derivative is
+    that by the logarithm of the loss times the logarithm of the point's ratio.
+    """
+    for name in case.gearboxes:
         for kind, laws in _EXPONENT_LAWS.items():
-            now: float = getattr(box.loss_factors, kind)
+            response = responses.get(f"{kind}_loss:{name}")
+            if response is None:
+                continue
+            slope = response.slope()[:, 0]
             for law in laws:
-                ratios = _ratios(predictor.settings, law)
-                changes: list[Changes] = [
-                    {f"gearboxes.{name}.loss_factors.{kind}": now * float(ratio**EXPONENT)}
-                    for ratio in ratios
-                ]
-                yield f"{kind} loss of {name} over {law}", (predictor.values(changes) - base) / EXPONENT
+                turned = dict(
+                    zip((s.name for s in predictor.settings), np.log(_ratios(predictor.settings, law)))
+                )
+                share = np.array([turned.get(feature.setting, 0.0) for feature in predictor.features])
+                yield f"{kind} loss of {name} over {law}", slope * share
 
 
 def _ratios(settings: Sequence[Setting], law: str) -> Array:

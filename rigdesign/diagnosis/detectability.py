@@ -71,7 +71,7 @@ def detectabilities(
                 answer = effect.curve.at(np.array([at]))[0][:, None] / at
                 size = _detectable(release.product(answer, answer))
                 column = answer
-        rival, correlation = everything.nearest(effect.name, column)
+        rival, correlation = everything.nearest(effect.parts, column)
         half = effect.half if effect.curve is None else effect.curve.half
         told = TOLD / SEEN * size / max(np.sqrt(max(1.0 - correlation**2, 0.0)), 1e-9)
         rows.append(
@@ -98,6 +98,7 @@ class _Bases:
 
     def __init__(self, explanations: Sequence[Hypothesis]) -> None:
         self.names = [one.name for one in explanations]
+        self._parts = [one.parts for one in explanations]
         self._bases = np.stack([_two_columns(slope_of(one)) for one in explanations])
 
     def alike(self, basis: Array) -> Array:
@@ -106,10 +107,10 @@ class _Bases:
         squares = np.linalg.eigvalsh(overlap @ overlap.transpose(0, 2, 1))[:, -1]
         return np.asarray(np.sqrt(np.clip(squares, 0.0, 1.0)))
 
-    def nearest(self, name: str, column: Array) -> tuple[str, float]:
-        """The explanation most like these columns, itself left out."""
+    def nearest(self, parts: tuple[str, ...], column: Array) -> tuple[str, float]:
+        """The explanation most like these columns that claims something else."""
         alike = self.alike(np.linalg.qr(column)[0])
-        alike[[i for i, other in enumerate(self.names) if other == name]] = -1.0
+        alike[[i for i, other in enumerate(self._parts) if other == parts]] = -1.0
         best = int(np.argmax(alike))
         return self.names[best], max(float(alike[best]), 0.0)
 

@@ -29,8 +29,12 @@ def physical(
     effects: Sequence[Effect],
     responses: Mapping[str, Response],
     teeth_a_turn: int,
+    least: float = INVISIBLE,
 ) -> list[Hypothesis]:
-    """Effects of the catalogue that the sensors answer to; of a tooth that may be any, one explanation each."""
+    """Effects of the catalogue that the sensors answer to; of a tooth that may be any, one explanation each.
+
+    least : whitened length of an effect at its bound below which it is left out
+    """
     found = []
     for effect in effects:
         response = responses.get(effect.name)
@@ -42,7 +46,7 @@ def physical(
             here = Response(coordinates=response.coordinates, answers=answers)
             make = _curve if _is_curve(response) else _plane
             one = make(covariance, effect, here, name)
-            if _reach(one) > INVISIBLE:
+            if _reach(one) > least:
                 found.append(one)
     return found
 
@@ -176,9 +180,9 @@ def _swapped_points(features: Sequence[Feature], values: Array) -> list[tuple[st
 
 
 _MISREAD = {
-    "temperature": (("fahrenheit", 1.8, 273.15 * 1.8 - 459.67), ("kelvin as celsius", 1.0, 273.15)),
+    "temperature": (("fahrenheit", 1.8, 273.15 - 459.67), ("kelvin as celsius", 1.0, 273.15)),
     "oil_outlet_temperature": (
-        ("fahrenheit", 1.8, 273.15 * 1.8 - 459.67),
+        ("fahrenheit", 1.8, 273.15 - 459.67),
         ("kelvin as celsius", 1.0, 273.15),
     ),
     "motor_power": (("sign", -1.0, 0.0), ("kilowatt", 1e-3, 0.0), ("horsepower", 1.0 / 745.7, 0.0)),

@@ -69,7 +69,8 @@ def fit_together(
     sizes = []
     number = 0
     for one, size, limits in zip(found, coordinates, bounds, strict=True):
-        width = widths.get(one.hypothesis.name.split(":")[0], widths.get("", 0.25))
+        kind = one.hypothesis.parts[0].split(":")[0]
+        width = widths.get(kind, widths.get("", 0.25))
         whole = float(np.linalg.norm(size))
         for place, value in enumerate(size):
             half = float(np.hypot(NORMAL_95 * deviations[number], NORMAL_95 * width * whole))

@@ -164,35 +164,43 @@ def value_of(setting: Setting, kind: str, place: str) -> float:
 T = TypeVar("T")
 
 
-def _matches(wanted: Sequence[T], offered: Sequence[T], fits: Callable[[T, T], bool]) -> list[int] | None:
-    """For each wanted one the place of an offered one that fits, none used twice; None if one finds no fit."""
+def _matches(wanted: Sequence[T], offered: Sequence[T], apart: Callable[[T, T], float]) -> list[int] | None:
+    """For each wanted one the place of the nearest offered one, none used twice; None if one is a distance of 1 off."""
     found: list[int] = []
     for one in wanted:
-        place = next((i for i, other in enumerate(offered) if i not in found and fits(other, one)), None)
-        if place is None:
+        free = [place for place in range(len(offered)) if place not in found]
+        nearest = min(free, key=lambda place: apart(offered[place], one), default=None)
+        if nearest is None or apart(offered[nearest], one) > 1.0:
             return None
-        found.append(place)
+        found.append(nearest)
     return found
 
 
-def _reads_as(kept: Channel, wanted: Channel) -> bool:
-    """Whether a channel of the library reads what is wanted."""
+def _reads_as(kept: Channel, wanted: Channel) -> float:
+    """Zero where a channel of the library reads what is wanted."""
     same = (kept.quantity, kept.place, kept.at) == (wanted.quantity, wanted.place, wanted.at)
-    return same and set(wanted.orders) <= set(kept.orders)
+    return 0.0 if same and set(wanted.orders) <= set(kept.orders) else 2.0
 
 
-def _close(planned: Setting, run: Setting) -> bool:
+NEAR = {"speed": 0.05, "torque": 0.05, "flow": 0.15, "temperature": 8.0}
+"""How far a point may lie from the plan for derivatives to carry it over: relative, temperatures in kelvin."""
+
+
+def _close(planned: Setting, run: Setting) -> float:
+    """Distance of a point from one of the plan, at most one where derivatives serve; infinite where they state
+    different things."""
     if dict(planned.tooth_offset) != dict(run.tooth_offset):
-        return False
+        return float("inf")
     if set(planned.inlet_temperature) != set(run.inlet_temperature) or set(planned.flow) != set(run.flow):
-        return False
+        return float("inf")
     if (planned.ambient_temperature is None) != (run.ambient_temperature is None):
-        return False
-    relative = [(planned.speed, run.speed), (planned.torque, run.torque)]
-    relative += [(value, run.flow[place]) for place, value in planned.flow.items()]
-    kelvins = [(value, run.inlet_temperature[place]) for place, value in planned.inlet_temperature.items()]
+        return float("inf")
+    shares = [
+        abs(run.speed / planned.speed - 1.0) / NEAR["speed"],
+        abs(run.torque - planned.torque) / max(abs(planned.torque), 1e-9) / NEAR["torque"],
+    ]
+    shares += [abs(run.flow[place] / value - 1.0) / NEAR["flow"] for place, value in planned.flow.items()]
+    warmer = [run.inlet_temperature[place] - value for place, value in planned.inlet_temperature.items()]
     if planned.ambient_temperature is not None and run.ambient_temperature is not None:
-        kelvins.append((planned.ambient_temperature, run.ambient_temperature))
-    return all(abs(b - a) <= 0.05 * abs(a) for a, b in relative) and all(
-        abs(b - a) <= 5.0 for a, b in kelvins
-    )
+        warmer.append(run.ambient_temperature - planned.ambient_temperature)
+    return max(*shares, *(abs(step) / NEAR["temperature"] for step in warmer))

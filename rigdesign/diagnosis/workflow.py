@@ -217,7 +217,7 @@ def _refused(subject: Comparison) -> Decision | None:
     return Decision(
         verdict="data_insufficient",
         named=(),
-        reason=f"{len(points)} operating points, at least {LEAST_RUNNING_POINTS} are needed to tell effects apart",
+        reason=f"operating points: {len(points)}, at least {LEAST_RUNNING_POINTS} are needed to tell effects apart",
     )
 
 
@@ -236,10 +236,14 @@ def _bounds(one: Evidence) -> list[tuple[float, float]]:
 
 def _answer(problem: Problem, subject: Comparison, found: Sequence[Evidence], fit: JointFit) -> Array:
     """(n,) what the named effects at their fitted sizes add at all kept numbers."""
-    identity = Covariance(base=np.eye(len(subject.features)), columns=(), amplitudes={})
-    space = Whitened(covariance=identity, residual=subject.residual)
-    everything = _explanations(problem, subject, space)
-    by_name = {one.name: one for one in (*everything.physical, *everything.sensor)}
+    plain_space = Covariance(base=np.eye(len(subject.features)), columns=(), amplitudes={})
+    claimed = {one.hypothesis.name for one in found}
+    effects = physical(
+        plain_space, subject.features, subject.effects, subject.library.responses, problem.teeth_a_turn, 0.0
+    )
+    by_name = {
+        one.name: one for one in (*effects, *sensor(plain_space, subject.errors)) if one.name in claimed
+    }
     answer = np.zeros(len(subject.features))
     for one, size in zip(found, fit.coordinates, strict=True):
         hypothesis = by_name[one.hypothesis.name]
