@@ -18,6 +18,8 @@ Engagement = Literal["corner", "path"]
 
 RAMP_LENGTH = 0.05
 """Length in base pitches over which pairs are let in without corner contact."""
+LEAST_DIGIT = 15
+"""Decimals of the offset [m] of teeth made alike: the mean of run-outs and closed pitches is zero, not its rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -214,7 +216,7 @@ def _with_means(law: MeshLaw, front: Array, back: Array | None, scale: Array) ->
     mean, ahead = front.mean(axis=0), 0.0
     if back is not None:
         behind = back.mean(axis=0)
-        mean, ahead = 0.5 * (mean + behind), 0.5 * float((behind - mean).mean())
+        mean, ahead = 0.5 * (mean + behind), round(0.5 * float((behind - mean).mean()), LEAST_DIGIT)
     return law._replace(
         gap=law.gap + mean, offset=law.offset + ahead, stiffness=law.stiffness * float(scale.mean())
     )

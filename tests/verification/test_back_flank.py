@@ -12,7 +12,7 @@ from math import acos, pi, radians, sin, tan
 import numpy as np
 import pytest
 
-from dynamics.flank import Microgeometry, alike_teeth, mesh_law
+from dynamics.flank import Microgeometry, alike_teeth, mesh_law, pitch_waves
 from dynamics.gear import GearPair
 from dynamics.mesh_force import evaluate_mesh, pack_meshes, tooth_forces
 from dynamics.mesh_law import MeshLaw
@@ -121,6 +121,17 @@ def test_all_teeth_ahead_are_a_gear_turned_ahead() -> None:
             expected = evaluate_mesh(plain, theta_1, approach + alike.offset, 10.0, 8.0)
             scale = np.abs(expected.torque_1).max()
             assert found.torque_1 == pytest.approx(expected.torque_1, abs=1e-9 * scale)
+
+
+def test_run_out_and_closed_pitch_leave_the_mean_tooth_in_its_place() -> None:
+    waves = Microgeometry(
+        run_out=17e-6, run_out_phase=0.3, pitch_deviations=pitch_waves(16, [(3, 4e-6, 1.0)])
+    )
+    law = law_of(PAIR, waves, Microgeometry(run_out=9e-6, run_out_phase=2.3))
+    alike, ideal = alike_teeth(law), law_of(PAIR, Microgeometry(), Microgeometry())
+    assert alike.offset == ideal.offset == 0.0
+    assert alike.back_deviation_1 is None and alike.back_deviation_2 is None
+    assert alike.gap == pytest.approx(ideal.gap, abs=1e-18)
 
 
 def test_back_flank_of_a_tooth_meets_the_next_tooth_of_the_wheel() -> None:
