@@ -7,7 +7,7 @@ that of the linear Gaussian model, e.g. Rasmussen, Williams, Gaussian Processes,
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -80,16 +80,28 @@ class Covariance:
 class Whitened:
     """A covariance with a residual in its space; what an effect's own spread hid can be given back.
 
-    residual : (n,) whitened
+    residual : (n,) whitened; bends : effect -> (n,) whitened, what its constant adds beyond its column where the data
+        put it: taken out of the residual, given back while that effect is tested
     """
 
     covariance: Covariance
     residual: Array
+    bends: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, covariance: Covariance, residual: Array) -> "Whitened":
-        """Whiten a residual (n,)."""
-        return cls(covariance=covariance, residual=covariance.whiten(residual))
+    def of(
+        cls, covariance: Covariance, residual: Array, bends: Mapping[str, Array] | None = None
+    ) -> "Whitened":
+        """Whiten a residual (n,) with its bends, all in the units of the features."""
+        return cls(
+            covariance=covariance,
+            residual=covariance.whiten(residual),
+            bends={effect: covariance.whiten(bend) for effect, bend in (bends or {}).items()},
+        )
+
+    def freed(self, own: Sequence[str]) -> Array:
+        """(n,) the residual while these effects are tested."""
+        return np.asarray(self.residual + sum((self.bends[one] for one in own if one in self.bends), 0.0))
 
     @cached_property
     def chi_square(self) -> float:

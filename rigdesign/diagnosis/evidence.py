@@ -84,7 +84,7 @@ class Evidence:
     """What a hypothesis is worth.
 
     log_bayes : against no effect; coordinates : at the best fit; deviations : of the coordinates there (with a flat
-    prior); gain : fall of the whitened square at the best fit; column : (n, k) whitened slope there
+    prior); gain : fall of the whitened square at the best fit against a healthy rig; column : (n, k) whitened slope there
     """
 
     hypothesis: Hypothesis
@@ -151,7 +151,8 @@ def _weigh_data(space: Whitened, hypothesis: Hypothesis) -> Evidence:
 def _weigh_curve(space: Whitened, hypothesis: Hypothesis, curve: Curve) -> Evidence:
     release = release_of(space, hypothesis.own)
     grid, weights = graded(curve.bounds)
-    left = (space.residual - curve.at(grid)).T
+    residual = space.freed(hypothesis.own)
+    left = (residual - curve.at(grid)).T
     squares = np.einsum("nk,nk->k", left, left)
     if release.directions.shape[1]:
         projected = release.directions.T @ left
@@ -160,29 +161,28 @@ def _weigh_curve(space: Whitened, hypothesis: Hypothesis, curve: Curve) -> Evide
     prior = mixture_density(grid, curve.half)
     prior = prior - logsumexp(prior + np.log(weights))
     log_bayes = float(logsumexp(fit + prior + np.log(weights)))
-    best = _refined(space, release, curve, float(grid[int(np.argmin(squares))]))
+    best = _refined(residual, release, curve, float(grid[int(np.argmin(squares))]))
     slope = curve.slope(best)
     answer = curve.at(np.array([best]))[0]
-    after = space.residual - answer
+    after = residual - answer
     stiffness = float(release.product(slope, slope))
-    before = float(release.product(space.residual, space.residual))
     return Evidence(
         hypothesis=hypothesis,
         log_bayes=log_bayes,
         coordinates=(best,),
         deviations=(stiffness**-0.5 if stiffness > 0.0 else float("inf"),),
-        gain=before - float(release.product(after, after)),
+        gain=space.chi_square - float(release.product(after, after)),
         columns=slope[:, None],
         answer=answer,
     )
 
 
-def _refined(space: Whitened, release: Release, curve: Curve, start: float) -> float:
+def _refined(residual: Array, release: Release, curve: Curve, start: float) -> float:
     """Best size by Gauss-Newton steps on the curve, kept within its bounds."""
     size = start
     for _ in range(20):
         slope = curve.slope(size)
-        left = space.residual - curve.at(np.array([size]))[0]
+        left = residual - curve.at(np.array([size]))[0]
         stiffness = float(release.product(slope, slope))
         if stiffness <= 0.0:
             break
@@ -196,9 +196,11 @@ def _refined(space: Whitened, release: Release, curve: Curve, start: float) -> f
 def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> Evidence:
     release = release_of(space, hypothesis.own)
     gram = np.atleast_2d(release.product(columns, columns))
-    load = np.atleast_1d(release.product(columns, space.residual))
+    residual = space.freed(hypothesis.own)
+    load = np.atleast_1d(release.product(columns, residual))
     spreads = np.outer(np.array(SPREADS) * hypothesis.half, np.ones(len(load)))
-    shift = 0.5 * (space.chi_square - float(release.product(space.residual, space.residual)))
+    before = float(release.product(residual, residual))
+    shift = 0.5 * (space.chi_square - before)
     log_bayes = _mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
     inverse = np.linalg.pinv(gram, hermitian=True)
     best = np.clip(inverse @ load, -hypothesis.half, hypothesis.half)
@@ -207,7 +209,7 @@ def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> E
         log_bayes=log_bayes,
         coordinates=tuple(float(value) for value in best),
         deviations=tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0))),
-        gain=float(2.0 * best @ load - best @ gram @ best),
+        gain=space.chi_square - before + float(2.0 * best @ load - best @ gram @ best),
         columns=columns,
         answer=columns @ best,
     )
@@ -237,7 +239,7 @@ def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
     release = release_of(space, own)
     base = first.answer - first.columns @ np.array(first.coordinates)
     columns = np.hstack([first.columns, second.columns])
-    left = space.residual - base
+    left = space.freed(own) - base
     gram = release.product(columns, columns)
     load = release.product(columns, left)
     sizes = [first.columns.shape[1], second.columns.shape[1]]
@@ -247,7 +249,6 @@ def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
     log_bayes = _mixed(gram, load, np.array(mixed)) + shift - 0.5 * release.log_determinant
     inverse = np.linalg.pinv(gram, hermitian=True)
     best = inverse @ load
-    before = float(release.product(space.residual, space.residual))
     after = left - columns @ best
     hypothesis = Hypothesis(
         name=name,
@@ -261,7 +262,7 @@ def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
         log_bayes=log_bayes,
         coordinates=tuple(float(value) for value in best),
         deviations=tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0))),
-        gain=before - float(release.product(after, after)),
+        gain=space.chi_square - float(release.product(after, after)),
         columns=columns,
         answer=base + columns @ best,
     )

@@ -49,12 +49,13 @@ def fit_together(
     widths : family of an effect -> relative error of the model's answer to it, by which intervals widen
     bounds : of every coordinate of every effect
     """
-    release = release_of(space, [own for one in found for own in one.hypothesis.own])
+    owns = [own for one in found for own in one.hypothesis.own]
+    release, residual = release_of(space, owns), space.freed(owns)
     coordinates = [np.array(one.coordinates) for one in found]
     for _ in range(20):
         slopes = [_slope(one, size) for one, size in zip(found, coordinates, strict=True)]
         columns = np.hstack(slopes)
-        left = space.residual - sum(
+        left = residual - sum(
             (_answer(one, size) for one, size in zip(found, coordinates, strict=True)), np.zeros(len(columns))
         )
         gram = release.product(columns, columns)

@@ -9,11 +9,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import cho_solve
 
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.evidence import Curve
 from rigdesign.diagnosis.healthy import healthy_columns, own_spread
 from rigdesign.diagnosis.library import Library
 from rigdesign.diagnosis.sensors import SensorError, Stated, input_errors, sensor_errors, setting_scatter
@@ -77,6 +79,26 @@ class Comparison:
         columns = (*self.columns(), *self._widened(widening or {}))
         return Covariance(base=self.base_noise(amplitudes), columns=columns, amplitudes=amplitudes.as_dict())
 
+    def curves(self) -> dict[str, Curve]:
+        """Effect -> its answer over its size, of constants of one parameter that bend."""
+        found = {}
+        for effect in self.effects:
+            response = self.library.responses.get(effect.name)
+            if (
+                effect.healthy == 0.0
+                or response is None
+                or response.linear
+                or response.coordinates.shape[1] > 1
+            ):
+                continue
+            order = np.argsort(response.coordinates[:, 0])
+            coordinates = response.coordinates[order, 0]
+            bounds = (float(coordinates[0]), float(coordinates[-1]))
+            found[effect.name] = Curve(
+                coordinates=coordinates, answers=response.answers[order], bounds=bounds
+            )
+        return found
+
     @property
     def _thermal(self) -> Array:
         quantities = (self.channels[feature.channel].quantity for feature in self.features)
@@ -135,8 +157,46 @@ def compare(
 def plain(
     subject: Comparison, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None
 ) -> Whitened:
-    """The residual of one set against the model."""
-    return Whitened.of(subject.covariance(amplitudes, widening), subject.residual)
+    """The residual of one set against the model.
+
+    Constants are far enough off for their answer to bend: each column is the slope where the data put its constant,
+    found by a few steps, and what the answer has beyond it is taken out of the residual.
+    """
+    covariance = subject.covariance(amplitudes, widening)
+    curves = subject.curves()
+    bends: dict[str, Array] = {}
+    for _ in range(BENDING_STEPS if curves else 0):
+        residual = subject.residual - sum(bends.values(), np.zeros(len(subject.features)))
+        sizes = _constants_at(covariance, residual, curves)
+        bends = {
+            effect: curves[effect].at(np.array([size]))[0] - size * curves[effect].slope(size)
+            for effect, size in sizes.items()
+        }
+        columns = tuple(
+            replace(column, values=curves[column.effect].slope(sizes[column.effect]))
+            if column.effect in sizes
+            else column
+            for column in covariance.columns
+        )
+        covariance = Covariance(base=covariance.base, columns=columns, amplitudes=covariance.amplitudes)
+    residual = subject.residual - sum(bends.values(), np.zeros(len(subject.features)))
+    return Whitened.of(covariance, residual, bends)
+
+
+BENDING_STEPS = 3
+"""Steps in which the slopes of the constants follow the data."""
+
+
+def _constants_at(covariance: Covariance, residual: Array, curves: Mapping[str, Curve]) -> dict[str, float]:
+    """Where the data put every constant that has a curve, kept within its bounds."""
+    solved = cho_solve((covariance.lower, True), residual)
+    found = {}
+    for column in covariance.columns:
+        if column.effect in curves:
+            spread = covariance.amplitudes.get(column.kind, 1.0) * column.spread
+            size = spread**2 * float(column.values @ solved)
+            found[column.effect] = float(np.clip(size, *curves[column.effect].bounds))
+    return found
 
 
 RESPONSE_ERROR = 0.2

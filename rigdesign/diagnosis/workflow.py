@@ -200,8 +200,10 @@ def _with_named(space: Whitened, found: Sequence[Evidence]) -> Whitened:
         for one in found
         for number, slope in enumerate(one.columns.T)
     ]
-    residual = space.raw - lower @ sum((one.answer for one in found), np.zeros(len(space.residual)))
-    return Whitened.of(space.covariance.with_extra(columns), residual)
+    owns = [own for one in found for own in one.hypothesis.own]
+    residual = lower @ (space.freed(owns) - sum((one.answer for one in found), np.zeros(len(space.residual))))
+    bends = {effect: lower @ bend for effect, bend in space.bends.items() if effect not in owns}
+    return Whitened.of(space.covariance.with_extra(columns), residual, bends)
 
 
 def _half(one: Evidence) -> float:
