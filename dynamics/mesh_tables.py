@@ -23,6 +23,10 @@ from dynamics.mesh_law import MeshLaw, back_deviations, check_mesh_law
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+MOST_PACKED = 128
+"""Tables that are kept; all are forgotten when one more comes."""
+_packed: dict[object, PackedMeshes] = {}
+
 
 def pack_meshes(
     laws: Sequence[MeshLaw], *, derivative_torques: bool = True, over_phase: bool = True
@@ -33,11 +37,27 @@ def pack_meshes(
     negative control of the energy test, of no other use. With ``over_phase=False`` the tables over the phase are
     left out, which the force of single tooth pairs does not need.
 
+    Tables of laws met before are handed out again: nobody may write into them.
+
     Raises
     ------
     ValueError
         If a law is impossible (see ``check_mesh_law``).
     """
+    key = (tuple(map(_content, laws)), derivative_torques, over_phase)
+    if key not in _packed:
+        if len(_packed) >= MOST_PACKED:
+            _packed.clear()
+        _packed[key] = _tables(laws, derivative_torques, over_phase)
+    return _packed[key]
+
+
+def _content(law: MeshLaw) -> tuple[object, ...]:
+    """All numbers of a law, to be known by."""
+    return tuple((value.shape, value.tobytes()) if isinstance(value, np.ndarray) else value for value in law)
+
+
+def _tables(laws: Sequence[MeshLaw], derivative_torques: bool, over_phase: bool) -> PackedMeshes:
     for law in laws:
         check_mesh_law(law)
     values = np.array([_values(law, derivative_torques) for law in laws])

@@ -22,6 +22,8 @@ PairStiffness = Callable[[Array], Array]
 """Stiffness of one tooth pair per face width over path positions; only its relative course matters."""
 
 GAUSS_POINTS = 16
+GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+"""Its places and weights from -1 to 1."""
 STIFFNESS_POINTS = 4001
 
 
@@ -142,7 +144,7 @@ def tooth_loss_factor(path: ToothPath, stiffness: PairStiffness | None = None) -
     share = _uniform if stiffness is None else stiffness
     load, moment = _spur_weights(share) if path.width_shift == 0.0 else _line_weights(path, share)
     total = 0.0
-    knots, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+    knots, weights = GAUSS
     edges = _phase_edges(path)
     pairs = np.arange(-1, math.ceil((path.end - path.start + path.width_shift) / path.base_pitch) + 2)
     for left, right in pairwise(edges):

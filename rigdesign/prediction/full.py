@@ -93,9 +93,11 @@ def standing_values(rig: Rig, channels: Iterable[Channel]) -> list[float]:
     standing = [channel for channel in channels if channel.quantity in STANDING_QUANTITIES]
     if not standing:
         return []
-    from rigdesign.prediction.standstill import standing_value
+    from rigdesign.prediction.standstill import standing_modes, standing_value
 
-    return [standing_value(rig, channel) for channel in standing]
+    swinging = any(channel.quantity == "natural_frequency" for channel in standing)
+    modes = standing_modes(rig) if swinging else ()
+    return [standing_value(rig, channel, modes) for channel in standing]
 
 
 def check_names(settings: Sequence[Setting], channels: Sequence[Channel]) -> None:

@@ -92,16 +92,17 @@ class Memory:
         models = self.models(rig, point, cold)
         at_rest = [alike_teeth(law)._replace(friction=0.0, damping=0.0) for law in laws_of(models)]
         key = (
-            id(rig.system),
+            rig.system.stiffness.tobytes(),
+            rig.system.twist_load.tobytes(),
             tuple(map(law_key, at_rest)),
             signed_torque(rig, point),
             rig.case.drivetrain.bracing,
         )
         known = self._room("bracings")
         if key not in known:
-            known[key] = rig.system, brace_cold(rig, point, cold, models)
-        found: tuple[LinearSystem, Setting] = known[key]
-        return found[1]
+            known[key] = brace_cold(rig, point, cold, models)
+        found: Setting = known[key]
+        return found
 
     def response(
         self,

@@ -22,8 +22,10 @@ from thermal.fe.mesh import FloatArray
 
 DRAG_STEP = 1.0
 """Drag from which an answer is taken [N m]."""
-FRICTION_STEP = 0.2
-"""Share of a friction coefficient from which its answer is taken, to both sides."""
+FRICTION_STEP = 0.4
+"""Share of a friction coefficient from which its answer is taken, to both sides, with its curvature."""
+SAME_BRACING = 1e-9
+"""Relative difference of twists or shifts that are the same."""
 LEAST_FRICTION = 0.01
 """Friction coefficient of which that share is taken at least."""
 
@@ -34,7 +36,8 @@ Cause = tuple[str, str]
 class NearLoop:
     """Torques, losses and orders of a settled point under other drags and frictions.
 
-    orders : channels of orders with their readings; slopes : answers by cause that are known already
+    orders : channels of orders with their readings; slopes : answers by cause that are known
+    already, (2, n) per size and per its square
     """
 
     def __init__(
@@ -61,7 +64,7 @@ class NearLoop:
         last = self.settled.last
         if (
             rig.system is not self.rig.system
-            or setting != self.settled.bracing
+            or not _same_bracing(setting, self.settled.bracing)
             or rig.pinion_speed(point.speed) != self.rig.pinion_speed(last.point.speed)
             or signed_torque(rig, point) != signed_torque(self.rig, last.point)
             or not all(_alike(model.law, own.law) for model, own in zip(models, last.models))
@@ -108,23 +111,26 @@ class NearLoop:
         for cause, size in causes.items():
             if cause not in self.slopes:
                 self.slopes[cause] = self._slope(*cause)
-            moved += size * self.slopes[cause]
+            slope, curvature = self.slopes[cause]
+            moved += size * (slope + size * curvature)
         return moved
 
     def _slope(self, kind: str, place: str) -> FloatArray:
-        """Answer to one newton metre of a drag, to a friction coefficient of one."""
+        """(2, n) answer to one newton metre of a drag or to a friction coefficient of one, and half its slope."""
         last = self.settled.last
         if kind == "drag":
             more = {**last.drags, place: last.drags.get(place, 0.0) + DRAG_STEP}
-            return (self._solved(last.models, more) - self._base) / DRAG_STEP
+            slope = (self._solved(last.models, more) - self._base) / DRAG_STEP
+            return np.stack([slope, np.zeros_like(slope)])
         number = [model.name for model in last.models].index(place)
         stated = last.models[number].law.friction
         step = FRICTION_STEP * max(stated, LEAST_FRICTION)
-        low, high = (
-            self._solved(_rubbed(last.models, number, friction), last.drags)
-            for friction in (max(stated - step, 0.0), stated + step)
-        )
-        return (high - low) / (stated + step - max(stated - step, 0.0))
+        sizes = np.array([-step if stated > step else 2.0 * step, step])
+        moved = [
+            self._solved(_rubbed(last.models, number, stated + size), last.drags) - self._base
+            for size in sizes.tolist()
+        ]
+        return np.linalg.solve(np.stack([sizes, sizes**2], axis=1), np.array(moved))
 
     def _solved(self, models: tuple[MeshModel, ...], drags: Mapping[str, float]) -> FloatArray:
         last, bracing = self.settled.last, self.settled.bracing
@@ -146,6 +152,14 @@ def _rubbed(models: tuple[MeshModel, ...], number: int, friction: float) -> tupl
     model = models[number]
     changed = replace(model, law=model.law._replace(friction=friction))
     return (*models[:number], changed, *models[number + 1 :])
+
+
+def _same_bracing(setting: Setting, own: Setting | None) -> bool:
+    """Whether two settings are the same but for rounding."""
+    if own is None or setting.mode != own.mode:
+        return False
+    pairs = (setting.twist, own.twist), (setting.shift, own.shift)
+    return all(abs(one - other) <= SAME_BRACING * abs(other) for one, other in pairs)
 
 
 def _alike(law: MeshLaw, own: MeshLaw) -> bool:

@@ -15,7 +15,7 @@ STREAMS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
 """Name of an oil stream -> key of the gearbox that feeds it."""
 HOUSINGS = ("models", "conduction")
 """Cached parts of a rig that hang on geometry and materials of its housings alone, as ``expansion`` does."""
-UNMOVED = (*HOUSINGS, "geometries", "speed_ratios", "drivetrain", "mesh_forces", "system")
+UNMOVED = (*HOUSINGS, "geometries", "speed_ratios", "drivetrain", "mesh_forces", "system", "joints")
 """Cached parts of a rig that no setting of an operating point touches."""
 
 
@@ -73,7 +73,7 @@ def like(stated: Rig, case: Case) -> Rig:
     if _same_housings(rig, stated):
         _sharing(rig, stated, HOUSINGS)
     if rig.drivetrain == stated.drivetrain:
-        _sharing(rig, stated, ("drivetrain", "system"))
+        _sharing(rig, stated, ("drivetrain", "system", "joints"))
     return rig
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.deviation_response import OrderLoads, motion_orders
-from dynamics.drivetrain import Joint, joints
+from dynamics.deviation_response import OrderLoads
+from dynamics.drivetrain import Joint
 from dynamics.linear_system import LinearSystem
 from rigdesign.errors import UsageError
 from rigdesign.prediction.model import Channel
@@ -42,10 +42,13 @@ class InCoupling:
         turned = float(windup[self.joint.dof_a] - windup[self.joint.dof_b])
         return self.joint.stiffness * (turned - (twist if self.twisted else 0.0))
 
-    def amplitude(self, system: LinearSystem, loads: OrderLoads, swings: Sequence[Swing]) -> complex:
-        """Complex torque [N m]; what the coupling itself adds between its ends is transmitted too."""
-        first, second = motion_orders(system, loads, (self.joint.dof_a, self.joint.dof_b))
-        sprung = (self.joint.stiffness + 1j * loads.omega * self.joint.damping) * (first - second)
+    def amplitude(self, motion: Complex, omega: float, swings: Sequence[Swing]) -> complex:
+        """Complex torque [N m] from the angles of all freedoms (n,) [rad] at a frequency [rad/s].
+
+        What the coupling itself adds between its ends is transmitted too.
+        """
+        turned = motion[self.joint.dof_a] - motion[self.joint.dof_b]
+        sprung = (self.joint.stiffness + 1j * omega * self.joint.damping) * turned
         return complex(sprung - sum(swing.amplitude for swing in swings if swing.name == self.joint.name))
 
 
@@ -59,9 +62,23 @@ class OfShaft:
         """Zero: an encoder counts from where it stands."""
         return 0.0
 
-    def amplitude(self, system: LinearSystem, loads: OrderLoads, swings: Sequence[Swing]) -> complex:
+    def amplitude(self, motion: Complex, omega: float, swings: Sequence[Swing]) -> complex:
         """Complex angle [rad]."""
-        return complex(motion_orders(system, loads, (self.dof,))[0])
+        return complex(motion[self.dof])
+
+
+def motions(system: LinearSystem, loads: Sequence[OrderLoads]) -> Complex:
+    """One-sided amplitudes of the angles of all freedoms under the loads of orders above 0 (n_orders, n) [rad].
+
+    As `dynamics.deviation_response.motion_orders`, of all orders at once.
+    """
+    acting = np.zeros((system.inertia.size, len(loads)), complex)
+    for column, one in zip(acting.T, loads):
+        np.add.at(column, one.dofs, one.torque)
+    form = system.form
+    s = 1j * np.array([one.omega for one in loads])
+    moved = form.velocity_shapes @ ((form.loads @ acting) / (s - form.poles[:, None]))
+    return np.asarray((moved / s).T)
 
 
 def place_of(rig: Rig, channel: Channel) -> InCoupling | OfShaft:
@@ -69,7 +86,7 @@ def place_of(rig: Rig, channel: Channel) -> InCoupling | OfShaft:
     drivetrain, system = rig.drivetrain, rig.system
     assert drivetrain is not None and system is not None
     if channel.quantity == "torque":
-        for joint in joints(drivetrain):
+        for joint in rig.joints:
             if joint.kind == "coupling" and joint.name == channel.place:
                 return InCoupling(joint, drivetrain.bracing_coupling == joint.name)
         known = ", ".join(coupling.name for coupling in drivetrain.couplings) or "none"

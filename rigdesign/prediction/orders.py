@@ -32,11 +32,12 @@ from rigdesign.errors import UsageError
 from rigdesign.loads import MeshModel, Setting, shifted_laws, signed_torque
 from rigdesign.prediction.exact_orders import ExactMotion, exact_motion
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
-from rigdesign.prediction.order_places import Swing, place_of
+from rigdesign.prediction.order_places import Swing, motions, place_of
 from rigdesign.rig.model import Rig
 from rigdesign.state import OperatingPoint
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 Orders = dict[tuple[str, float], complex]
 
 SAME_ORDER = 1e-6
@@ -109,6 +110,7 @@ class PointOrders:
         self.laws = shifted_laws(rig, models, setting)
         self._base, self.exact, self.steps = base, exact, steps
         self._loads: dict[float, OrderLoads] = {}
+        self._motions: dict[float, Complex] = {}
 
     @cached_property
     def count(self) -> "_Count":
@@ -150,7 +152,10 @@ class PointOrders:
         missing = sorted({float(order) for order in orders} - self._loads.keys())
         if missing:
             turned = [order * self.count.turns for order in missing]
-            self._loads |= dict(zip(missing, self.solved.loads(turned, self.swings)))
+            found = dict(zip(missing, self.solved.loads(turned, self.swings)))
+            moving = [order for order in missing if order > 0.0]
+            self._loads |= found
+            self._motions |= dict(zip(moving, motions(self.system, [found[order] for order in moving])))
 
     def read(self, channel: Channel) -> dict[float, complex]:
         """Amplitudes of a channel by order. UsageError for an unknown place or a channel without orders."""
@@ -167,7 +172,8 @@ class PointOrders:
             swings = [
                 swing for swing in self.swings if abs(swing.order - loads.order) < SAME_ORDER * loads.order
             ]
-            found[order] = place.amplitude(self.system, loads, swings) / self.count.turned(order)
+            amplitude = place.amplitude(self._motions[order], loads.omega, swings)
+            found[order] = amplitude / self.count.turned(order)
         return found
 
     @cached_property

@@ -26,7 +26,7 @@ from rigdesign.prediction.changes import Changes, changed_case
 from rigdesign.prediction.full import check_names, standing_values
 from rigdesign.prediction.housings import ReducedHousings
 from rigdesign.prediction.memory import Memory
-from rigdesign.prediction.model import Channel, Setting, features_of
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Setting, features_of
 from rigdesign.prediction.operating import like, operating_point, rig_at
 from rigdesign.prediction.orders import ideal_response, is_ideal, shaft_orders
 from rigdesign.prediction.places import Weights, place_weights
@@ -47,6 +47,8 @@ STEP_SHARE = 2e-3
 """Share of a speed, torque or flow by which it is moved for a derivative."""
 STEP_KELVIN = 0.2
 """Temperature by which an inlet or the room is moved for a derivative [K]."""
+SWING_STEPS = 1
+"""Corrections for what contacts do beyond first order where a change only swings: the first is most of it."""
 STATES = 2
 """Operating points whose conditions shape the reduced model."""
 
@@ -192,7 +194,7 @@ class Predictor:
             point.bracing,
             self.channels,
             base=self._ideal[number],
-            steps=0,
+            steps=SWING_STEPS,
         )
         read = []
         for feature in features_of((self.settings[number],), self.channels):
@@ -205,6 +207,9 @@ class Predictor:
         """Make what first-order answers of all points need; on all cores."""
         with self._calm():
             self._slopes()
+            if any(channel.quantity in ORDER_QUANTITIES for channel in self.channels):
+                for number in range(len(self.settings)):
+                    self._still_swings(number)
 
     def links(self) -> dict[str, FloatArray]:
         """Name -> (n_features,) derivative by the logarithm of every local conductance of the housings.

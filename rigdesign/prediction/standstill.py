@@ -5,6 +5,7 @@ carry by that torque alone, so that the mesh is as stiff as the pairs it presses
 the teeth may have come to rest.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -25,8 +26,10 @@ HIGHEST_FREQUENCY = 20e3
 """Natural frequencies are counted up to here [Hz]."""
 
 
-def standing_value(rig: Rig, channel: Channel) -> float:
+def standing_value(rig: Rig, channel: Channel, modes: Sequence[LoopMode] | None = None) -> float:
     """Natural frequency [Hz] or circumferential backlash on the working pitch circle [m] of the cold rig at rest.
+
+    modes : `standing_modes`, where they are known
 
     Raises
     ------
@@ -39,7 +42,7 @@ def standing_value(rig: Rig, channel: Channel) -> float:
         return cold_backlash(rig, channel.place)
     if channel.quantity != "natural_frequency":
         raise UsageError(f"channel {channel.name!r}: {channel.quantity} is not measured on the rig at rest")
-    modes = standing_modes(rig)
+    modes = standing_modes(rig) if modes is None else modes
     number = int(channel.place) if channel.place.isdecimal() else 0
     if not 1 <= number <= len(modes):
         raise UsageError(

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from dynamics.drivetrain import Drivetrain, assemble
+from dynamics.drivetrain import Drivetrain, Joint, assemble, joints
 from dynamics.gear import GearPair
 from dynamics.linear_system import LinearSystem
 from rigdesign.case.gearbox import Gearbox, JournalBearing
@@ -65,6 +65,11 @@ class Rig:
     def system(self) -> LinearSystem | None:
         """Matrices of the power circuit without its meshes."""
         return None if self.drivetrain is None else assemble(self.drivetrain)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Springs and dampers of the power circuit between its freedoms."""
+        return () if self.drivetrain is None else joints(self.drivetrain)
 
     @cached_property
     def shaft_torsions(self) -> tuple[SectionTorsion, ...]:
