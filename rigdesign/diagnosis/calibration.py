@@ -17,7 +17,7 @@ from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.covariance import Whitened
 from rigdesign.diagnosis.healthy import own_spread
-from rigdesign.diagnosis.subject import Comparison
+from rigdesign.diagnosis.subject import Comparison, plain
 
 PRIOR = 1.5
 """Standard deviation of the logarithm of an amplitude around its starting value."""
@@ -42,11 +42,16 @@ class Group:
     count: int
 
     @classmethod
-    def of(cls, sets: Sequence[Comparison]) -> "Group":
-        """Sets with the same features in the same order."""
+    def of(cls, sets: Sequence[Comparison], amplitudes: Amplitudes) -> "Group":
+        """Sets with the same features in the same order.
+
+        amplitudes : at which the constants are bent to the data (`subject.plain`): columns are those of the first
+            set, residuals each set's own
+        """
         first = sets[0]
+        spaces = [plain(one, amplitudes) for one in sets]
         parts: dict[str, Array] = {}
-        for column in first.columns():
+        for column in spaces[0].covariance.columns:
             values = column.spread * column.values
             parts[column.kind] = parts.get(column.kind, 0.0) + np.outer(values, values)
         nothing = Amplitudes(**dict.fromkeys(OWN_KINDS, 0.0))
@@ -58,21 +63,39 @@ class Group:
         return cls(
             noise=np.mean([one.base_noise(nothing) for one in sets], axis=0),
             parts=parts,
-            products=np.sum([np.outer(one.residual, one.residual) for one in sets], axis=0),
+            products=np.sum([np.outer(one.raw, one.raw) for one in spaces], axis=0),
             count=len(sets),
         )
 
 
+ROUNDS = 3
+"""Fits one after the other, each with the constants bent at the amplitudes of the one before."""
+
+
+def calibrate(
+    alike: Sequence[Sequence[Comparison]], start: Amplitudes, fixed: frozenset[str] = frozenset()
+) -> Amplitudes:
+    """Amplitudes of healthy sets, in lists of the same features."""
+    found = start
+    for _ in range(ROUNDS):
+        found = fit_amplitudes([Group.of(sets, found) for sets in alike], found, fixed, start)
+    return found
+
+
 def fit_amplitudes(
-    groups: Sequence[Group], start: Amplitudes, fixed: frozenset[str] = frozenset()
+    groups: Sequence[Group],
+    start: Amplitudes,
+    fixed: frozenset[str] = frozenset(),
+    prior: Amplitudes | None = None,
 ) -> Amplitudes:
     """The amplitudes that make the healthy sets most likely.
 
     fixed : amplitudes that stay as they are: sensors and inputs are what the measurement states
+    prior : centre of their wide prior; ``start`` when left out
     """
     names = sorted({kind for group in groups for kind in group.parts} - fixed)
     first = start.as_dict()
-    centre = np.log([first[name] for name in names])
+    centre = np.log([(prior or start).as_dict()[name] for name in names])
 
     def misfit(logs: Array) -> tuple[float, Array]:
         amplitudes = first | dict(zip(names, np.exp(logs), strict=True))
@@ -85,7 +108,7 @@ def fit_amplitudes(
         return value, slope
 
     found = minimize(
-        misfit, centre, jac=True, method="L-BFGS-B", bounds=[(c - 5.0, c + 5.0) for c in centre],
+        misfit, np.log([first[name] for name in names]), jac=True, method="L-BFGS-B", bounds=[(c - 5.0, c + 5.0) for c in centre],
         options={"maxiter": 60},
     )  # fmt: skip
     return start.with_values(dict(zip(names, (float(value) for value in np.exp(found.x)), strict=True)))

@@ -13,10 +13,10 @@ import numpy as np
 from rigdesign.diagnosis.anonymous import anonymous
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.covariance import Covariance, Whitened
-from rigdesign.diagnosis.decision import Decision
+from rigdesign.diagnosis.decision import Decision, posterior
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.detectability import Detectability, aliases
-from rigdesign.diagnosis.evidence import Evidence
+from rigdesign.diagnosis.evidence import Evidence, weigh
 from rigdesign.diagnosis.examine import Examination, Explanations, examine
 from rigdesign.diagnosis.heldout import Gap, gap, held_out
 from rigdesign.diagnosis.hypotheses import physical, sensor, without_a_name, wrong_data
@@ -99,7 +99,9 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
     space = _space(problem, seen, calibration)
     explanations = _explanations(problem, seen, space)
     examinations, found = _search(problem, seen, space, explanations, calibration)
-    decision = _refused(subject) or examinations[0].decision
+    decision = (
+        _refused(subject) or _wrong_data(problem, subject, whole, calibration) or examinations[0].decision
+    )
     if decision.verdict != "named":
         found = ()
     fit = _fitted(problem, space, found, calibration) if found else None
@@ -220,6 +222,27 @@ def _refused(subject: Comparison) -> Decision | None:
         verdict="data_insufficient",
         named=(),
         reason=f"operating points: {len(points)}, at least {LEAST_RUNNING_POINTS} are needed to tell effects apart",
+    )
+
+
+def _wrong_data(
+    problem: Problem, subject: Comparison, whole: Whitened, calibration: Calibration
+) -> Decision | None:
+    """Whether all data together, held-out points included, fit once something in them is undone.
+
+    An exchange with a held-out point would not show in the others; no effect is looked for in this step.
+    """
+    everything = _explanations(problem, subject, whole)
+    singles = (*everything.physical, *everything.sensor, *everything.data)
+    evidence = [weigh(whole, one) for one in singles]
+    weights = posterior(evidence, everything.members)
+    if weights.families.get("input", 0.0) <= calibration.thresholds.input:
+        return None
+    best = max(evidence, key=lambda one: weights.masses[one.hypothesis.name])
+    return Decision(
+        verdict="input_error_suspected",
+        named=best.hypothesis.parts,
+        reason=f"the data fit the rig once {best.hypothesis.parts[0]} is undone",
     )
 
 

@@ -24,7 +24,8 @@ import numpy as np
 from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.amplitudes import Amplitudes
-from rigdesign.diagnosis.calibration import Group, fit_amplitudes, missing_spread
+from rigdesign.diagnosis.calibration import calibrate as fit_all
+from rigdesign.diagnosis.calibration import missing_spread
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.detectability import slope_of
@@ -98,8 +99,7 @@ def calibrate(out: Path, without: str | None, target: Path) -> None:
         subject = _subject(spec.rig, folder)
         key = (spec.rig, spec.wanted["sensors"], spec.wanted["plan"])
         sets.setdefault(key, []).append(subject)
-    groups = [Group.of(same) for alike in sets.values() for same in _alike(alike)]
-    amplitudes = fit_amplitudes(groups, Amplitudes(), FIXED)
+    amplitudes = fit_all([same for alike in sets.values() for same in _alike(alike)], Amplitudes(), FIXED)
     spaces, slopes = [], []
     for (rig, _, _), alike in sets.items():
         for subject in alike:
