@@ -133,28 +133,46 @@ def _misfit(group: Group, amplitudes: Mapping[str, float], names: Sequence[str])
     return value, np.array(slopes)
 
 
-def missing_spread(spaces: Sequence[Whitened], slopes: Sequence[Mapping[str, Array]]) -> dict[str, float]:
-    """Spread [coordinate] that healthy sets show along each kind of effect beyond the covariance.
+def widen(subjects: Sequence[Comparison], amplitudes: Amplitudes) -> dict[str, float]:
+    """Spread [coordinate] that healthy sets show along an effect beyond the columns, by `Effect.likeness`.
 
-    spaces : healthy residuals; slopes : of each, kind -> (n, k) whitened columns of all its effects
-
-    The mean square of z = a'r / |a| is one where the covariance is right. Where it is above `WIDEN_ABOVE`, the
-    coordinate spreads by (z^2 - 1)^(1/2) / |a| more than the covariance knows; of all effects of a kind the median.
+    z = a'r / |a| in the white space of a healthy rig has a mean square of one where the covariance is right. The
+    effect with the largest is widened until it is `WIDEN_ABOVE`, then the next: one direction two models disagree on
+    shows in many effects and is mended once.
     """
-    found: dict[str, list[tuple[float, float]]] = {}
-    for space, columns in zip(spaces, slopes, strict=True):
-        for kind, white in columns.items():
-            lengths = np.linalg.norm(white, axis=0)
-            seen = lengths > 1e-9
-            scores = (white.T @ space.residual)[seen] / lengths[seen]
-            found.setdefault(kind, []).extend(
-                (float(score) ** 2, float(length))
-                for score, length in zip(scores, lengths[seen], strict=True)
-            )
-    spreads = {}
-    for kind, pairs in found.items():
-        squares = np.array([square for square, _ in pairs])
-        if squares.mean() > WIDEN_ABOVE:
-            lengths = np.array([length for _, length in pairs])
-            spreads[kind] = float(np.sqrt(squares.mean() - 1.0) / np.median(lengths))
-    return spreads
+    found: dict[str, float] = {}
+    for _ in range(WIDEST):
+        scores: dict[str, list[tuple[float, float]]] = {}
+        for subject in subjects:
+            _score(subject, plain(subject, amplitudes, found), scores)
+        worst, square, length = "", WIDEN_ABOVE, 1.0
+        for likeness, pairs in scores.items():
+            mean = float(np.mean([one for one, _ in pairs]))
+            if mean > square * (1.0 + 1e-6):
+                worst, square, length = likeness, mean, float(np.median([one for _, one in pairs]))
+        if not worst:
+            break
+        more = (square / WIDEN_ABOVE - 1.0) / length**2
+        found[worst] = float(np.sqrt(found.get(worst, 0.0) ** 2 + more))
+    return found
+
+
+WIDEST = 30
+"""Effects that are widened at most, one at a time."""
+
+UNSEEN = 0.3
+"""Whitened length of an effect at its bound below which healthy sets say nothing of it."""
+
+
+def _score(subject: Comparison, space: Whitened, scores: dict[str, list[tuple[float, float]]]) -> None:
+    for effect in subject.effects:
+        response = subject.library.responses.get(effect.name)
+        if response is None:
+            continue
+        white = space.covariance.whiten(response.slope())
+        reach = max(abs(bound) for parameter in effect.parameters for bound in parameter.bounds)
+        for column in white.T:
+            length = float(np.linalg.norm(column))
+            if length * reach > UNSEEN:
+                score = float(column @ space.residual) / length
+                scores.setdefault(effect.likeness, []).append((score**2, length))

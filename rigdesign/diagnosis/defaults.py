@@ -33,7 +33,7 @@ class Calibration:
 
     amplitudes: Amplitudes = field(default_factory=Amplitudes)
     widening: Mapping[str, float] = field(default_factory=dict)
-    """Kind of effect -> spread of its coordinate that healthy sets asked for beyond the columns."""
+    """Likeness of an effect -> spread of its coordinate that healthy sets asked for beyond the columns."""
     thresholds: Thresholds = field(default_factory=Thresholds)
     signature_error: Mapping[str, float] = field(default_factory=lambda: dict(SIGNATURE_ERROR))
     response_error: float = 0.2

@@ -95,3 +95,9 @@ class Effect:
     def kind(self) -> str:
         """The part of the name before its place."""
         return self.claim.split(":")[0]
+
+    @property
+    def likeness(self) -> str:
+        """What it shares with entries of other gearboxes and rigs: its kind, of a film also the entry."""
+        place = self.claim.partition(":")[2]
+        return f"{self.kind}.{place.partition('.')[2]}" if self.kind == "film" else self.kind

@@ -84,7 +84,8 @@ class Evidence:
     """What a hypothesis is worth.
 
     log_bayes : against no effect; coordinates : at the best fit; deviations : of the coordinates there (with a flat
-    prior); gain : fall of the whitened square at the best fit against a healthy rig; column : (n, k) whitened slope there
+    prior); gain : fall of the whitened square against a healthy rig;
+    column : (n, k) whitened slope there
     """
 
     hypothesis: Hypothesis

@@ -75,7 +75,7 @@ class Comparison:
         return (*model, *(error.column() for error in self.errors))
 
     def covariance(self, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None) -> Covariance:
-        """Of a healthy rig; ``widening``: kind of effect -> spread [coordinate] that calibration found missing."""
+        """Of a healthy rig; ``widening``: likeness of effect -> spread [coordinate] that calibration found missing."""
         columns = (*self.columns(), *self._widened(widening or {}))
         return Covariance(base=self.base_noise(amplitudes), columns=columns, amplitudes=amplitudes.as_dict())
 
@@ -110,10 +110,10 @@ class Comparison:
                 name=f"{effect.name} widened/{number}",
                 kind="widening",
                 values=values,
-                spread=widening[effect.kind],
+                spread=widening[effect.likeness],
             )
             for effect in self.effects
-            if effect.kind in widening and effect.name in self.library.responses
+            if effect.likeness in widening and effect.name in self.library.responses
             for number, values in enumerate(self.library.responses[effect.name].slope().T)
         ]
 

@@ -25,13 +25,11 @@ from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.calibration import calibrate as fit_all
-from rigdesign.diagnosis.calibration import missing_spread
+from rigdesign.diagnosis.calibration import widen
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
-from rigdesign.diagnosis.detectability import slope_of
 from rigdesign.diagnosis.effects import Effect
-from rigdesign.diagnosis.hypotheses import physical
-from rigdesign.diagnosis.run import diagnose_measurement, read_subject, teeth_a_turn
+from rigdesign.diagnosis.run import diagnose_measurement, read_subject
 from rigdesign.diagnosis.subject import Comparison, plain
 from rigdesign.measurement import load_measurement
 from tests.blind.metrics import Row, canonical, table
@@ -100,13 +98,9 @@ def calibrate(out: Path, without: str | None, target: Path) -> None:
         key = (spec.rig, spec.wanted["sensors"], spec.wanted["plan"])
         sets.setdefault(key, []).append(subject)
     amplitudes = fit_all([same for alike in sets.values() for same in _alike(alike)], Amplitudes(), FIXED)
-    spaces, slopes = [], []
-    for (rig, _, _), alike in sets.items():
-        for subject in alike:
-            space = plain(subject, amplitudes)
-            spaces.append(space)
-            slopes.append(_slopes(rig, subject, space.covariance))
-    widening = missing_spread(spaces, slopes)
+    subjects = [subject for alike in sets.values() for subject in alike]
+    widening = widen(subjects, amplitudes)
+    spaces = [plain(subject, amplitudes, widening) for subject in subjects]
     squares = [space.chi_square / len(space.residual) for space in spaces]
     content = {
         "sets": len(spaces),
@@ -124,16 +118,6 @@ def _alike(subjects: list[Comparison]) -> Iterable[list[Comparison]]:
     for subject in subjects:
         groups.setdefault(subject.features, []).append(subject)
     return groups.values()
-
-
-def _slopes(rig: str, subject: Comparison, covariance: Any) -> dict[str, Any]:
-    found: dict[str, list[Any]] = {}
-    effects = {effect.name: effect for effect in effects_for(rig)}
-    single = tuple(replace(effect, any_tooth=0) for effect in effects.values())
-    turn = teeth_a_turn(case_of(rig))
-    for one in physical(covariance, subject.features, single, subject.library.responses, turn):
-        found.setdefault(effects[one.name].kind, []).append(slope_of(one))
-    return {kind: np.hstack(columns) for kind, columns in found.items()}
 
 
 def _subject(rig: str, folder: Path) -> Comparison:
