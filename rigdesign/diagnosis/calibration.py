@@ -42,14 +42,14 @@ class Group:
     count: int
 
     @classmethod
-    def of(cls, sets: Sequence[Comparison], amplitudes: Amplitudes) -> "Group":
+    def of(cls, sets: Sequence[Comparison], amplitudes: Amplitudes, widening: Mapping[str, float]) -> "Group":
         """Sets with the same features in the same order.
 
         amplitudes : at which the constants are bent to the data (`subject.plain`): columns are those of the first
             set, residuals each set's own
         """
         first = sets[0]
-        spaces = [plain(one, amplitudes) for one in sets]
+        spaces = [plain(one, amplitudes, widening) for one in sets]
         parts: dict[str, Array] = {}
         for column in spaces[0].covariance.columns:
             values = column.spread * column.values
@@ -68,18 +68,23 @@ class Group:
         )
 
 
-ROUNDS = 3
+ROUNDS = 2
 """Fits one after the other, each with the constants bent at the amplitudes of the one before."""
 
 
 def calibrate(
     alike: Sequence[Sequence[Comparison]], start: Amplitudes, fixed: frozenset[str] = frozenset()
-) -> Amplitudes:
-    """Amplitudes of healthy sets, in lists of the same features."""
-    found = start
+) -> tuple[Amplitudes, dict[str, float]]:
+    """Amplitudes and widening of healthy sets, in lists of the same features.
+
+    The widening takes over what amplitudes had to stretch for, so both are found again beside each other.
+    """
+    found, widening = start, dict[str, float]()
     for _ in range(ROUNDS):
-        found = fit_amplitudes([Group.of(sets, found) for sets in alike], found, fixed, start)
-    return found
+        groups = [Group.of(sets, found, widening) for sets in alike]
+        found = fit_amplitudes(groups, found, fixed | {"widening"}, start)
+        widening = widen([one for sets in alike for one in sets], found)
+    return found, widening
 
 
 def fit_amplitudes(
@@ -94,7 +99,7 @@ def fit_amplitudes(
     prior : centre of their wide prior; ``start`` when left out
     """
     names = sorted({kind for group in groups for kind in group.parts} - fixed)
-    first = start.as_dict()
+    first = start.as_dict() | {"widening": 1.0}
     centre = np.log([(prior or start).as_dict()[name] for name in names])
 
     def misfit(logs: Array) -> tuple[float, Array]:

@@ -25,7 +25,6 @@ from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.calibration import calibrate as fit_all
-from rigdesign.diagnosis.calibration import widen
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.effects import Effect
@@ -97,9 +96,9 @@ def calibrate(out: Path, without: str | None, target: Path) -> None:
         subject = _subject(spec.rig, folder)
         key = (spec.rig, spec.wanted["sensors"], spec.wanted["plan"])
         sets.setdefault(key, []).append(subject)
-    amplitudes = fit_all([same for alike in sets.values() for same in _alike(alike)], Amplitudes(), FIXED)
-    subjects = [subject for alike in sets.values() for subject in alike]
-    widening = widen(subjects, amplitudes)
+    alike = [same for own in sets.values() for same in _alike(own)]
+    amplitudes, widening = fit_all(alike, Amplitudes(), FIXED)
+    subjects = [subject for same in alike for subject in same]
     spaces = [plain(subject, amplitudes, widening) for subject in subjects]
     squares = [space.chi_square / len(space.residual) for space in spaces]
     content = {
