@@ -56,6 +56,8 @@ def canonical(name: str, rig: str) -> str:
     kind, _, place = name.partition(":")
     if kind in ("mesh_loss", "squeeze_loss"):
         place = place.split(".")[0]
+    if kind.startswith("swapped"):
+        place = ",".join(sorted(place.split(",")))
     return f"{kind}:{place}" if place else kind
 
 
