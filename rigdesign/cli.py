@@ -218,7 +218,8 @@ def diagnose(
         check_pick(effects_of(loaded), name)
     prepare_output(out)
     with Progress() as progress:
-        told = outcome(diagnose_measurement(loaded, measurement, say=progress), pick=name)
+        found = diagnose_measurement(loaded, measurement, say=progress)
+        told = outcome(found, pick=name, proposals=found.proposals)
         progress("writing report")
         write_diagnosis(told, out)
     if json:

@@ -38,15 +38,31 @@ def library_of(
     build: Callable[[], Library],
 ) -> Library:
     """A stored library that serves these points and channels, or the one ``build`` makes, stored."""
-    folder = cache_folder() / "diagnosis" / _key(case, effects)
+    found = stored_library(case, settings, channels, effects)
+    if found is not None:
+        return found
+    made = build()
+    _write(_folder(case, effects), made)
+    serving = made.serving(tuple(settings), tuple(channels))
+    assert serving is not None
+    return serving
+
+
+def stored_library(
+    case: Case, settings: Sequence[Setting], channels: Sequence[Channel], effects: Sequence[Effect]
+) -> Library | None:
+    """A stored library that serves these points and channels; None if there is none."""
+    folder = _folder(case, effects)
     for file in sorted(folder.glob("*.pickle")) if folder.is_dir() else ():
         found = _read(file)
         serving = None if found is None else found.serving(tuple(settings), tuple(channels))
         if serving is not None:
             return serving
-    made = build()
-    _write(folder, made)
-    return made
+    return None
+
+
+def _folder(case: Case, effects: Sequence[Effect]) -> Path:
+    return cache_folder() / "diagnosis" / _key(case, effects)
 
 
 def _key(case: Case, effects: Sequence[Effect]) -> str:

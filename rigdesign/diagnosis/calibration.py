@@ -113,9 +113,13 @@ def fit_amplitudes(
         return value, slope
 
     found = minimize(
-        misfit, np.log([first[name] for name in names]), jac=True, method="L-BFGS-B", bounds=[(c - 5.0, c + 5.0) for c in centre],
+        misfit,
+        np.log([first[name] for name in names]),
+        jac=True,
+        method="L-BFGS-B",
+        bounds=[(c - 5.0, c + 5.0) for c in centre],
         options={"maxiter": 60},
-    )  # fmt: skip
+    )
     return start.with_values(dict(zip(names, (float(value) for value in np.exp(found.x)), strict=True)))
 
 

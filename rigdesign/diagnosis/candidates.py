@@ -48,12 +48,12 @@ class Extra:
 
 
 def spare_channels(case: Case, used: Sequence[Channel], orders: tuple[float, ...]) -> tuple[Channel, ...]:
-    """Channels of the rig that the set does not have."""
+    """Channels of the rig that the set does not have; orders and modes only where some are read already."""
     places = Places(case)
     have = {(channel.quantity, channel.place) for channel in used}
-    quantities: tuple[Quantity, ...] = (
-        "oil_outlet_temperature", "motor_power", "torque", "natural_frequency", "backlash",
-    )  # fmt: skip
+    quantities: list[Quantity] = ["oil_outlet_temperature", "motor_power"]
+    if any(channel.orders for channel in used):
+        quantities += ["torque", "natural_frequency"]
     wanted = [(quantity, place) for quantity in quantities for place in places.of(quantity)]
     wanted += [("temperature", place) for place in _thermocouples(places)]
     return tuple(

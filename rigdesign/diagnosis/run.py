@@ -6,16 +6,20 @@ from pathlib import Path
 
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.build import build_library
-from rigdesign.diagnosis.cache import library_of
+from rigdesign.diagnosis.cache import library_of, stored_library
+from rigdesign.diagnosis.candidates import spare_channels
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.library import Library
+from rigdesign.diagnosis.next_measurement import Ranked
+from rigdesign.diagnosis.proposals import extras_of, proposals
 from rigdesign.diagnosis.sensors import Stated
 from rigdesign.diagnosis.subject import Comparison, compare
 from rigdesign.diagnosis.workflow import Diagnosis, Problem, diagnose
 from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
 from rigdesign.measurement.places import Places
+from rigdesign.prediction.model import Channel, Setting
 from rigdesign.run import solver_errors
 
 Progress = Callable[[str], None]
@@ -33,6 +37,7 @@ class Result:
     effects: tuple[Effect, ...]
     diagnosis: Diagnosis
     calibration: Calibration
+    proposals: tuple[Ranked, ...] = ()
 
 
 def diagnose_measurement(
@@ -66,6 +71,9 @@ def diagnose_measurement(
         )
         say("weighing explanations")
         found = diagnose(problem, calibration)
+        extras = extras_of(case, data.settings)
+        offered = candidates_of(case, measurement, data.settings)
+        ahead = proposals(problem, found, offered, extras, calibration.amplitudes) if offered else ()
     return Result(
         case=case,
         measurement=measurement,
@@ -75,7 +83,22 @@ def diagnose_measurement(
         effects=effects,
         diagnosis=found,
         calibration=calibration,
+        proposals=ahead,
     )
+
+
+def candidates_of(case: Case, measurement: MeasurementSet, settings: tuple[Setting, ...]) -> Library | None:
+    """The library of the rig with the points and sensors that could be added; None if the stored one has none."""
+    channels, spare = _channels(case, measurement)
+    extras = tuple(extra.setting for extra in extras_of(case, settings))
+    return stored_library(case, (*settings, *extras), (*channels, *spare), effects_of(case))
+
+
+def _channels(case: Case, measurement: MeasurementSet) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
+    """Channels of a set, and those it could have besides."""
+    channels = tuple(entry.channel for entry in measurement.channels.values())
+    orders = max((channel.orders for channel in channels), key=len, default=())
+    return channels, spare_channels(case, channels, orders)
 
 
 def read_subject(
@@ -86,10 +109,11 @@ def read_subject(
 ) -> tuple[Data, Comparison]:
     """Readings of a set held against the library of its rig, which is made where none is kept."""
     data = features(measurement)
-    channels = tuple(entry.channel for entry in measurement.channels.values())
+    channels, spare = _channels(case, measurement)
+    extras = tuple(extra.setting for extra in extras_of(case, data.settings))
 
     def build() -> Library:
-        return build_library(case, data.settings, channels, effects, say)
+        return build_library(case, (*data.settings, *extras), (*channels, *spare), effects, say)
 
     library = library_of(case, data.settings, channels, effects, build)
     return data, compare(data, library, effects, stated_settings(measurement), mesh_orders(case))
