@@ -200,7 +200,7 @@ BAD = [
         'gearboxes.test.gears.pinion.flank.single_pitch = ["1 um", "2 um"]',
         "gearboxes.test.gears.pinion.flank.single_pitch",
         "the gear has 99 teeth",
-        "one deviation per tooth",
+        "one entry per tooth",
     ),
     # bearings and shafts
     (
