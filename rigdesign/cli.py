@@ -187,6 +187,7 @@ def diagnose(
     out: Path,
     json: bool = False,
     name: str | None = None,
+    calibrate: Annotated[bool, Parameter(negative=())] = False,
 ) -> int:
     """Name the effect that the model lacks against a measurement set, patch the case, and prove that the gap shrinks.
 
@@ -203,7 +204,11 @@ def diagnose(
         Print diagnosis.json on stdout; everything else goes to stderr.
     name
         Effect to patch where the data leave several, such as one of an alias group.
+    calibrate
+        The set is of a healthy rig: fit the uncertain constants of the case to it and write calibrated/case.toml.
     """
+    if calibrate:
+        return _calibrate(case, measurement, out)
     from rigdesign.case import load_case
     from rigdesign.diagnosis.catalogue import effects_of
     from rigdesign.diagnosis.document import diagnosis_document
@@ -226,6 +231,22 @@ def diagnose(
         _print_json(diagnosis_document(told))
     else:
         print_diagnosis(told, out)
+    return 0
+
+
+def _calibrate(case: Path, measurement: Path, out: Path) -> int:
+    from rigdesign.case import load_case
+    from rigdesign.diagnosis.run import calibrate_case
+    from rigdesign.report import prepare_output
+    from rigdesign.report.diagnosis_files import write_calibrated
+    from rigdesign.terminal import Progress, print_constants
+
+    loaded = load_case(case)
+    prepare_output(out)
+    with Progress() as progress:
+        found = calibrate_case(loaded, measurement, say=progress)
+        write_calibrated(found, out)
+    print_constants(found, out)
     return 0
 
 

@@ -16,6 +16,7 @@ from rigdesign.results import Check, RunResult
 
 if TYPE_CHECKING:
     from rigdesign.diagnosis.outcome import Outcome
+    from rigdesign.diagnosis.run import Calibrated
     from rigdesign.measurement.compare import Comparison
     from rigdesign.ranges_result import RangesResult
     from rigdesign.system import Finding
@@ -156,6 +157,23 @@ def print_comparison(comparison: "Comparison", out: Path | None) -> None:
 
 
 DIAGNOSIS_STYLES = {"named": "bold green", "within_noise": "green", "input_error_suspected": "bold red"}
+
+
+def print_constants(found: "Calibrated", out: Path) -> None:
+    """Every constant that a healthy set narrows: its value, its interval, and what it was known to before."""
+    console = Console(highlight=False, soft_wrap=True)
+    entries = found.constants.entries
+    if not entries:
+        console.print("no constant of the case is known better from this set than before")
+    for entry in entries:
+        parameter = entry.effect.parameters[0]
+        low, high = (
+            parameter.value(entry.coordinate + sign * 1.96 * entry.deviation) for sign in (-1.0, 1.0)
+        )
+        value = f"{parameter.value(entry.coordinate):.4g} ({low:.4g} to {high:.4g}) {parameter.unit}".rstrip()
+        narrowed = f"{entry.deviation / entry.before:.0%} of the spread before"
+        console.print(Text(f"{entry.effect.title}: {parameter.name} {value}, {narrowed}"))
+    console.print(Text(f"calibrated case: {out / 'calibrated' / 'case.toml'}"))
 
 
 def print_diagnosis(outcome: "Outcome", out: Path) -> None:

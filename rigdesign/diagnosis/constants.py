@@ -9,8 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.covariance import Whitened
 from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.intervals import NORMAL_95
 from rigdesign.diagnosis.patch import Fitted
 
 NARROWED = 0.7
@@ -21,44 +23,60 @@ NARROWED = 0.7
 class Constant:
     """One constant as a healthy set has it.
 
-    coordinates, deviations : of the parameters of its effect, after; before : their healthy spread
+    coordinate, deviation : of the parameter of its effect, after; before : its healthy spread
     """
 
     effect: Effect
-    coordinates: tuple[float, ...]
-    deviations: tuple[float, ...]
+    coordinate: float
+    deviation: float
     before: float
 
-    def fitted(self) -> Fitted:
+    def fitted(self, reason: str) -> Fitted:
         """As a change of the case."""
-        values = tuple(
-            parameter.value(u) for parameter, u in zip(self.effect.parameters, self.coordinates, strict=True)
+        parameter = self.effect.parameters[0]
+        low, high = parameter.bounds
+        half = NORMAL_95 * self.deviation
+        ends = (max(self.coordinate - half, low), min(self.coordinate + half, high))
+        return Fitted(
+            effect=self.effect,
+            values=(parameter.value(self.coordinate),),
+            ends=((parameter.value(ends[0]), parameter.value(ends[1])),),
+            reason=reason,
         )
-        return Fitted(effect=self.effect, values=values, reason="fitted to a healthy set")
 
 
-def constants(space: Whitened, effects: Sequence[Effect]) -> tuple[Constant, ...]:
-    """Constants that the residual of a healthy set narrows, clipped to their bounds."""
-    found = []
+@dataclass(frozen=True, kw_only=True)
+class Constants:
+    """Constants of a rig with their covariance (m, m) in the coordinates of their parameters."""
+
+    entries: tuple[Constant, ...]
+    covariance: Array
+
+
+def constants(space: Whitened, effects: Sequence[Effect]) -> Constants:
+    """Constants of one parameter that the residual of a healthy set narrows, clipped to their bounds."""
+    entries, kept = [], []
     for effect in effects:
         places = space.covariance.own(effect.name)
-        if not places:
+        if len(places) != 1 or len(effect.parameters) != 1:
             continue
-        columns = space.columns[:, places]
         column = space.covariance.columns[places[0]]
         spread = space.covariance.amplitudes.get(column.kind, 1.0) * column.spread
-        mean = spread * (columns.T @ space.residual)
-        left = np.clip(1.0 - np.einsum("nk,nk->k", columns, columns), 0.0, 1.0)
-        deviations = spread * np.sqrt(left)
-        if not (deviations < NARROWED * spread).any():
+        white = space.columns[:, places[0]]
+        deviation = spread * float(np.sqrt(max(1.0 - float(white @ white), 0.0)))
+        if deviation >= NARROWED * spread:
             continue
-        bounds = [parameter.bounds for parameter in effect.parameters]
-        found.append(
+        mean = spread * float(white @ space.residual)
+        entries.append(
             Constant(
                 effect=effect,
-                coordinates=tuple(float(np.clip(u, *limits)) for u, limits in zip(mean, bounds, strict=True)),
-                deviations=tuple(float(value) for value in deviations),
+                coordinate=float(np.clip(mean, *effect.parameters[0].bounds)),
+                deviation=deviation,
                 before=spread,
             )
         )
-    return tuple(found)
+        kept.append(places[0])
+    white = space.columns[:, kept]
+    spreads = np.array([entry.before for entry in entries])
+    left = np.eye(len(kept)) - white.T @ white
+    return Constants(entries=tuple(entries), covariance=np.asarray(spreads[:, None] * left * spreads))

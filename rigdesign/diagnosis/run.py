@@ -3,19 +3,22 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.build import build_library
 from rigdesign.diagnosis.cache import library_of, stored_library
 from rigdesign.diagnosis.candidates import spare_channels
 from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.constants import Constants, constants
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.library import Library
 from rigdesign.diagnosis.next_measurement import Ranked
+from rigdesign.diagnosis.patch import patched_values
 from rigdesign.diagnosis.proposals import extras_of, proposals
 from rigdesign.diagnosis.sensors import Stated
-from rigdesign.diagnosis.subject import Comparison, compare
+from rigdesign.diagnosis.subject import Comparison, compare, plain
 from rigdesign.diagnosis.workflow import Diagnosis, Problem, diagnose
 from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
 from rigdesign.measurement.places import Places
@@ -84,6 +87,50 @@ def diagnose_measurement(
         diagnosis=found,
         calibration=calibration,
         proposals=ahead,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Calibrated:
+    """Constants of a case from a healthy set of its rig, and the values of the case that they change."""
+
+    case: Case
+    measurement: MeasurementSet
+    constants: Constants
+    title: str
+    values: Mapping[str, Mapping[str, Any]]
+
+
+def calibrate_case(
+    case: Case,
+    folder: Path,
+    *,
+    calibration: Calibration = DEFAULT,
+    say: Progress = lambda message: None,
+) -> Calibrated:
+    """Fit the uncertain constants of a case to a set of its rig that is known to be healthy.
+
+    Raises
+    ------
+    MeasurementError
+        Data of which nothing can be used.
+    CaseError, NotConvergedError, MissingLibraryError
+        As ``run_case``.
+    """
+    measurement = load_measurement(folder, case)
+    effects = effects_of(case)
+    with solver_errors(case):
+        subject = read_subject(case, measurement, effects, say)[1]
+        say("fitting constants")
+        found = constants(plain(subject, calibration.amplitudes, calibration.widening), effects)
+        reason = f"fitted to the healthy measurement {measurement.title!r} ({measurement.hash[:16]})"
+        values = patched_values(case, [entry.fitted(reason) for entry in found.entries])
+    return Calibrated(
+        case=case,
+        measurement=measurement,
+        constants=found,
+        title=f"{case.title}, constants fitted to a healthy set",
+        values=values,
     )
 
 

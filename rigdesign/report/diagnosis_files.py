@@ -6,6 +6,7 @@ from pathlib import Path
 from rigdesign.diagnosis.document import diagnosis_document, measurement_patch
 from rigdesign.diagnosis.outcome import Outcome
 from rigdesign.diagnosis.patch import case_patch, variant_text
+from rigdesign.diagnosis.run import Calibrated
 from rigdesign.report.diagnosis_page import diagnosis_page
 from rigdesign.report.output import remove_published, staged
 from rigdesign.report.results_json import to_plain, to_text
@@ -53,6 +54,39 @@ def diagnosis_texts(outcome: Outcome, out: Path) -> dict[str, str]:
         texts["measurement.patch.json"] = to_text(measurement_patch(outcome))
     texts["diagnosis.json"] = to_text(document)
     return texts
+
+
+def write_calibrated(calibrated: Calibrated, out: Path) -> None:
+    """Write calibrated/case.toml, which extends the case, and calibration.json with the covariance of the constants.
+
+    Raises
+    ------
+    OutputError
+        If ``out`` cannot be written.
+    """
+    found = calibrated.constants
+    document = {
+        "case": {"name": calibrated.case.name, "hash": calibrated.case.hash},
+        "measurement": {"title": calibrated.measurement.title, "hash": calibrated.measurement.hash},
+        "constants": [
+            {
+                "effect": entry.effect.name,
+                "parameter": entry.effect.parameters[0].name,
+                "unit": entry.effect.parameters[0].unit,
+                "value": entry.effect.parameters[0].value(entry.coordinate),
+                "coordinate": "logarithm" if entry.effect.parameters[0].factor else "value",
+                "deviation": entry.deviation,
+                "deviation_before": entry.before,
+            }
+            for entry in found.entries
+        ],
+        "covariance": found.covariance.tolist(),
+    }
+    text = variant_text(calibrated.case, calibrated.title, calibrated.values, out / "calibrated")
+    with staged(out) as scratch:
+        (scratch / "calibrated").mkdir()
+        (scratch / "calibrated" / "case.toml").write_text(text, encoding="utf-8", newline="\n")
+        (scratch / "calibration.json").write_text(to_text(document), encoding="utf-8", newline="\n")
 
 
 def _is_empty(folder: Path) -> bool:

@@ -8,8 +8,10 @@ import pytest
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.calibration import Group, _misfit, fit_amplitudes
 from rigdesign.diagnosis.columns import Column
+from rigdesign.diagnosis.constants import constants
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.detectability import aliases, detectabilities
+from rigdesign.diagnosis.effects import Effect, Parameter
 from rigdesign.diagnosis.evidence import Hypothesis, weigh
 from rigdesign.diagnosis.heldout import gap, held_out
 from rigdesign.diagnosis.intervals import fit_together
@@ -202,3 +204,37 @@ def test_a_cause_some_teeth_later_turns_its_orders():
     later = turned(features, answers, 5, 20)
     assert later[0] == pytest.approx([7.0, 5.0, 0.0, -1.0, 0.0, -2.0], abs=1e-12)
     assert turned(features, later, 15, 20) == pytest.approx(answers)
+
+
+def test_constants_of_a_healthy_set_are_the_posterior():
+    rng = np.random.default_rng(8)
+    slopes = rng.normal(size=(30, 2))
+    slopes[:, 1] *= 1e-3
+    effects = [
+        Effect(
+            name=f"mesh_loss:{name}",
+            title=name,
+            family="loss",
+            signature="",
+            parameters=(Parameter(name="factor", unit="", low=0.1, high=10.0, source="", factor=True),),
+            change=lambda case, values: {},
+            healthy=0.2,
+        )
+        for name in ("seen", "unseen")
+    ]
+    columns = [
+        Column(name=one.name, kind="constant", values=slopes[:, i], spread=0.2, effect=one.name)
+        for i, one in enumerate(effects)
+    ]
+    covariance = Covariance.of_noise(np.full(30, 0.1), columns, {"constant": 2.0})
+    residual = 0.3 * slopes[:, 0] + 0.1 * rng.normal(size=30)
+    found = constants(Whitened.of(covariance, residual), effects)
+    assert [entry.effect.name for entry in found.entries] == ["mesh_loss:seen"]
+    prior = np.diag([0.4**2, 0.4**2])
+    posterior = np.linalg.inv(np.linalg.inv(prior) + slopes.T @ slopes / 0.1**2)
+    mean = posterior @ slopes.T @ residual / 0.1**2
+    entry = found.entries[0]
+    assert entry.coordinate == pytest.approx(mean[0], rel=1e-9)
+    assert entry.deviation == pytest.approx(np.sqrt(posterior[0, 0]), rel=1e-9)
+    assert found.covariance == pytest.approx(posterior[:1, :1], rel=1e-9)
+    assert entry.fitted("why").values[0] == pytest.approx(np.exp(mean[0]), rel=1e-9)
