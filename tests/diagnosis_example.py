@@ -14,6 +14,7 @@ from tempfile import mkdtemp
 import numpy as np
 
 from rigdesign.case import load_case
+from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.defaults import Calibration
 from rigdesign.diagnosis.library import Library, Response
@@ -241,7 +242,8 @@ def write_set(folder: Path, rig: Rig, *, title: str = "trial", baseline: str = "
 
 def result_of(folder: Path, *, without: Sequence[str] = (), calibration: Calibration | None = None) -> Result:
     """``diagnose_measurement`` with the formulas as the model."""
-    case, calibration = the_case(), calibration or Calibration()
+    # amplitudes of the design: what is frozen for real rigs must not change these stories
+    case, calibration = the_case(), calibration or Calibration(amplitudes=Amplitudes(), widening={})
     effects = effects_of(case)
     measurement = load_measurement(folder, case)
     healthy = None if measurement.baseline is None else load_measurement(measurement.baseline, case)
