@@ -26,7 +26,9 @@ def test_oil_that_must_be_heated_cools_nothing() -> None:
     """140 degC oil that comes back 1.4 kW colder does not carry what a 40 degC circuit brings."""
     box = SimpleNamespace(oil=SimpleNamespace(oil="ester"), bearing_oil=SimpleNamespace(oil="ester"))
     ambient = SimpleNamespace(warming_time=None)
-    rig: Any = SimpleNamespace(case=SimpleNamespace(gearboxes={"test": box, "reference": box}, ambient=ambient))
+    rig: Any = SimpleNamespace(
+        case=SimpleNamespace(gearboxes={"test": box, "reference": box}, ambient=ambient)
+    )
     heats = {
         "test.gear_oil": (413.15, -1400.0),
         "test.bearing_oil": (313.15, 6200.0),
