@@ -176,8 +176,3 @@ def _exponents(
 def _ratios(settings: Sequence[Setting], law: str) -> Array:
     values = np.array([max(abs(getattr(setting, law)), 1e-3) for setting in settings])
     return np.asarray(values / np.exp(np.log(values).mean()))
-
-
-def channels_of(entries: Mapping[str, Channel]) -> tuple[Channel, ...]:
-    """Channels in the order of their names: a library does not depend on the order of a file."""
-    return tuple(entries[name] for name in sorted(entries))

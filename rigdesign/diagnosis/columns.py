@@ -34,8 +34,3 @@ def stacked(columns: Sequence[Column], amplitudes: Mapping[str, float]) -> Array
         raise ValueError("no columns to stack; a comparison has at least its noise and its inputs")
     scaled = [amplitudes.get(column.kind, 1.0) * column.spread * column.values for column in columns]
     return np.stack(scaled, axis=1)
-
-
-def kinds(columns: Sequence[Column]) -> tuple[str, ...]:
-    """The kinds that occur, in their first order."""
-    return tuple(dict.fromkeys(column.kind for column in columns))

@@ -23,9 +23,6 @@ Family = Literal[
 ]
 """Kind of thing that is off: it names the amplitude of what cannot be told from it."""
 
-EASY: frozenset[Family] = frozenset({"excitation", "loss", "flow"})
-"""Families whose size alone moves the numbers; the others are confused with uncertain constants."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Parameter:

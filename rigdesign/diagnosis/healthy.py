@@ -38,14 +38,17 @@ def healthy_columns(
 
 def relative_speed(features: Sequence[Feature], settings: Sequence[Setting]) -> Array:
     """(n,) logarithm of the speed of each number's point over the geometric mean of the points; zero at rest."""
-    logs = {setting.name: float(np.log(setting.speed)) for setting in settings}
-    mean = float(np.mean(list(logs.values()))) if logs else 0.0
-    return np.array([logs.get(feature.setting, mean) - mean for feature in features])
+    return _relative(features, {setting.name: float(np.log(setting.speed)) for setting in settings})
 
 
 def relative_torque(features: Sequence[Feature], settings: Sequence[Setting]) -> Array:
     """The same of the torque."""
-    logs = {setting.name: float(np.log(max(abs(setting.torque), 1e-3))) for setting in settings}
+    return _relative(
+        features, {setting.name: float(np.log(max(abs(setting.torque), 1e-3))) for setting in settings}
+    )
+
+
+def _relative(features: Sequence[Feature], logs: Mapping[str, float]) -> Array:
     mean = float(np.mean(list(logs.values()))) if logs else 0.0
     return np.array([logs.get(feature.setting, mean) - mean for feature in features])
 

@@ -104,7 +104,7 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
     )
     if decision.verdict != "named":
         found = ()
-    fit = _fitted(problem, space, found, calibration) if found else None
+    fit = _fitted(space, found, calibration) if found else None
     answer = _answer(problem, subject, found, fit) if fit is not None else np.zeros(len(kept))
     return Diagnosis(
         decision=decision,
@@ -138,7 +138,10 @@ def _space(problem: Problem, subject: Comparison, calibration: Calibration) -> W
     )
 
 
-def _explanations(problem: Problem, subject: Comparison, space: Whitened) -> Explanations:
+def _explanations(
+    problem: Problem, subject: Comparison, space: Whitened, *, rivals: bool = True
+) -> Explanations:
+    """All explanations; without the anonymous ``rivals`` where only data and catalogue are weighed."""
     covariance = space.covariance
     expected = subject.values - space.raw
     return Explanations(
@@ -146,7 +149,7 @@ def _explanations(problem: Problem, subject: Comparison, space: Whitened) -> Exp
             covariance, subject.features, subject.effects, subject.library.responses, problem.teeth_a_turn
         ),
         sensor=sensor(covariance, subject.errors),
-        anonymous=without_a_name(covariance, anonymous(subject.library, subject.channels)),
+        anonymous=without_a_name(covariance, anonymous(subject.library, subject.channels)) if rivals else [],
         data=wrong_data(covariance, subject.features, subject.channels, subject.values, expected),
     )
 
@@ -232,7 +235,7 @@ def _wrong_data(
 
     An exchange with a held-out point would not show in the others; no effect is looked for in this step.
     """
-    everything = _explanations(problem, subject, whole)
+    everything = _explanations(problem, subject, whole, rivals=False)
     singles = (*everything.physical, *everything.sensor, *everything.data)
     evidence = [weigh(whole, one) for one in singles]
     weights = posterior(evidence, everything.members)
@@ -246,9 +249,7 @@ def _wrong_data(
     )
 
 
-def _fitted(
-    problem: Problem, space: Whitened, found: Sequence[Evidence], calibration: Calibration
-) -> JointFit:
+def _fitted(space: Whitened, found: Sequence[Evidence], calibration: Calibration) -> JointFit:
     return fit_together(space, found, calibration.signature_error, [_bounds(one) for one in found])
 
 

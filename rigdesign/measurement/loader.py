@@ -105,11 +105,6 @@ def measurement_file(path: Path) -> Path:
     return file
 
 
-def read_document(file: Path) -> MeasurementFile:
-    """measurement.toml alone, validated; MeasurementError with all its faults."""
-    return _validated(_read(file), file)
-
-
 def _read(file: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(file.read_bytes().decode("utf-8-sig"))

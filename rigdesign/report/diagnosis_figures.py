@@ -43,7 +43,6 @@ FAMILY_WORDS = {
     "none": "nothing", "physical": "catalogue", "sensor": "sensor or setting", "input": "wrong data",
     "anonymous": "not in the catalogue", "pair": "two at once", "rest": "the rest",
 }  # fmt: skip
-VERDICT_SHADES = {"testable": SERIES[0], "visible only": "#8fb3cf", "not testable here": GRID}
 
 
 def residual_maps(outcome: Outcome) -> "Figure":
