@@ -12,6 +12,7 @@ from rigdesign.passes import PassResult
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
 from rigdesign.prediction.orders import is_ideal, shaft_orders
 from rigdesign.prediction.places import place_weights
+from rigdesign.rig.joints import shell_temperature
 from rigdesign.rig.model import Rig
 from rigdesign.state import OperatingPoint
 from thermal.fe.mesh import FloatArray
@@ -71,7 +72,14 @@ def _reading(rig: Rig, channel: Channel, orders: "_Orders") -> Reading:
 
 def _temperature(rig: Rig, channel: Channel) -> Reading:
     name, (nodes, weights) = place_weights(rig, channel.place, channel.at)
-    return lambda _, settled: (float(weights @ settled.temperature(name)[nodes]),)
+    surface = channel.place.partition(".")[2]
+
+    def read(_: Rig, settled: Settled) -> Numbers:
+        field = settled.last.fields[name]
+        body = float(weights @ settled.temperature(name)[nodes])
+        return (shell_temperature(surface, body, field.conditions),)
+
+    return read
 
 
 def _outlet(rig: Rig, channel: Channel) -> Reading:

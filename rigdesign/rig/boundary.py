@@ -12,7 +12,7 @@ from rigdesign.losses import PlacedLoss
 from rigdesign.rig.films import plate_film, shaft_film
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_oil
+from rigdesign.rig.oil_supply import bearing_oil, conducting_share, wetted_width
 from rigdesign.state import Feedback, OperatingPoint
 from thermal import convection
 from thermal.boundary import (
@@ -79,6 +79,15 @@ class _Context:
         entry = self.box.oil if kind == GEAR_OIL else self.box.bearing_oil
         inlet, outlet = entry.inlet_temperature, self.feedback.oil_outlet[f"{self.name}.{kind}"]
         return kind, {"inlet": inlet, "outlet": outlet, "mean": 0.5 * (inlet + outlet)}[which]
+
+    def wetting(self, fluid: laws.Fluid, surface: str) -> float:
+        """Share of a given oil film that is left: bubbles conduct less than oil, blocked jets leave flanks dry."""
+        kind, _ = self.fluid(fluid)
+        if kind == AIR:
+            return 1.0
+        share = conducting_share(self.rig, self.name, kind)
+        on_flanks = kind == GEAR_OIL and surface in rim_surfaces(self.box).values()
+        return share * wetted_width(self.box) if on_flanks else share
 
     def shaft(self, surface: str) -> ShaftGeometry:
         """The shaft a surface belongs to, from its name."""
@@ -220,7 +229,8 @@ def _film_law(context: _Context, condition: laws.Condition, surface: str) -> Fil
         formula = "constant" if taken is None or taken.law is None else taken.law
         usual = None if condition.fluid == "ambient" else convection.OIL_RANGE
         value, source = condition.heat_transfer_coefficient, context.source(condition)
-        return convection.scaled(convection.constant(value, source, formula, usual), condition.film_factor)
+        factor = condition.film_factor * context.wetting(condition.fluid, surface)
+        return convection.scaled(convection.constant(value, source, formula, usual), factor)
     raise TypeError(f"no film law for {type(condition).__name__}")
 
 

@@ -1,17 +1,24 @@
 """Joints of a housing that pass heat from metal to metal: the foot on its field, bearing shells in their bores."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.joint import PressedJoint
 from rigdesign.rig.model import Rig
 from thermal import convection
 from thermal.air import air
-from thermal.boundary import ExchangeLaw, FilmLaw
+from thermal.boundary import ExchangeLaw, Film, FilmCoefficient, FilmLaw
+from thermal.condition_checks import Condition
 from thermal.contact import Contact
 from thermal.housing_surfaces import FOOT, SEAT
 from thermal.joint_conductance import pressed_joint
 
 FOOT_CONTACT = "foot_contact"
 """Kind of the rows of the foot joint in the heat balance."""
+
+JOINT = "shell_conductance"
+"""Among the inputs of a film behind a shell: the conductance of the joint [W/(m2 K)]."""
 
 AIR_JUMP = 0.37e-6
 """Temperature jump length of air at one atmosphere [m] (Yovanovich 2005)."""
@@ -56,7 +63,27 @@ def behind_shell(rig: Rig, name: str, surface: str, law: FilmLaw) -> FilmLaw:
     if conductance is None:
         return law
     path = f"gearboxes.{name}.bearings.{part}.shell_conductance"
-    return convection.series(law, convection.constant(conductance, rig.case.provenance(path)))
+    whole = convection.series(law, convection.constant(conductance, rig.case.provenance(path)))
+
+    def behind(wall: float, fluid: float) -> FilmCoefficient:
+        film = whole(wall, fluid)
+        return replace(film, inputs=film.inputs | {JOINT: conductance})
+
+    return behind
+
+
+def shell_temperature(surface: str, wall: float, conditions: Sequence[Condition]) -> float:
+    """What a sensor in a bearing shell reads [K], from the mean temperature of its bore in the housing.
+
+    conditions : of the housing as solved. The heat that crosses the joint into the ``wall`` drops by q / conductance
+    there; where the case joins shell and housing without a resistance both are one.
+    """
+    for condition in conditions:
+        if isinstance(condition, Film) and condition.surface == surface:
+            film = condition.law(wall, condition.fluid_temperature)
+            if film.inputs.get(JOINT):
+                return wall + film.value / film.inputs[JOINT] * (condition.fluid_temperature - wall)
+    return wall
 
 
 def _bearing_of_bore(box: Gearbox, surface: str) -> str | None:

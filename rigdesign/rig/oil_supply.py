@@ -17,6 +17,13 @@ def bearing_oil(rig: Rig, name: str) -> Oil:
     return _in_state(rig.oils[box.bearing_oil.oil], box)
 
 
+def conducting_share(rig: Rig, name: str, stream: str) -> float:
+    """Conductivity of an oil of the gearbox ``name`` over that of its data sheet; ``stream``: gear_oil, bearing_oil."""
+    box = rig.case.gearboxes[name]
+    clear = rig.oils[(box.oil if stream == "gear_oil" else box.bearing_oil).oil]
+    return _in_state(clear, box).conductivity_40 / clear.conductivity_40
+
+
 def _in_state(oil: Oil, box: Gearbox) -> Oil:
     state = box.oil_state
     return oil.in_state(

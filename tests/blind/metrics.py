@@ -17,6 +17,10 @@ EASY = frozenset({
 """Kinds that are excitations, losses, flows or leaks; the rest are parameters."""
 
 
+WHOLE_RIG = frozenset({"not_steady", "ambient"})
+"""Kinds that the catalogue counts for all gearboxes together."""
+
+
 @dataclass(frozen=True)
 class Rate:
     """A share with its 95 % interval (Wilson, J. Am. Stat. Assoc. 22, 1927, 209)."""
@@ -56,6 +60,8 @@ def canonical(name: str, rig: str) -> str:
     kind, _, place = name.partition(":")
     if kind in ("mesh_loss", "squeeze_loss"):
         place = place.split(".")[0]
+    if kind in WHOLE_RIG:
+        place = ""
     if kind.startswith("swapped"):
         place = ",".join(sorted(place.split(",")))
     return f"{kind}:{place}" if place else kind

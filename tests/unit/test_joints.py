@@ -9,7 +9,7 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.errors import CaseError
-from rigdesign.rig.joints import FOOT_CONTACT, behind_shell, foot_joint
+from rigdesign.rig.joints import FOOT_CONTACT, behind_shell, foot_joint, shell_temperature
 from rigdesign.rig.model import build_rig
 from tests.unit.test_housing import PROTOTYPE, area
 from thermal.boundary import Adiabatic, Film
@@ -135,6 +135,20 @@ def test_a_case_states_conductance_or_joint(tmp_path: Path) -> None:
     assert "assumed: loose shell" in series.source
     for other in ("bearing_bore_test_pinion_rear", "shaft_test_pinion_journal_front"):
         assert behind_shell(rig, "test", other, film) is film
+
+
+def test_a_sensor_in_the_shell_reads_beyond_the_joint(tmp_path: Path) -> None:
+    """One heat through film and joint: T_shell = T_wall + q / conductance, nearer to the film than the bore is."""
+    case = case_with(tmp_path, "[gearboxes.test.bearings.pinion_front]\nshell_conductance = '500 W/(m2 K)'\n")
+    rig = build_rig(case, "quick")
+    bore, film, wall = "bearing_bore_test_pinion_front", 310.0, 330.0
+    law = behind_shell(rig, "test", bore, constant(1000.0, "hand"))
+    conditions = [Film(surface=bore, kind="bearing_film:pinion_front", fluid_temperature=film, law=law)]
+    heat = (film - wall) / (1.0 / 1000.0 + 1.0 / 500.0)
+    assert shell_temperature(bore, wall, conditions) == pytest.approx(wall + heat / 500.0)
+    free = [Film(surface=bore, kind="x", fluid_temperature=film, law=constant(1000.0, "hand"))]
+    assert shell_temperature(bore, wall, free) == wall
+    assert shell_temperature("outer_top", wall, conditions) == wall
 
 
 def test_a_pressed_joint_follows_its_pressure(tmp_path: Path) -> None:

@@ -176,3 +176,15 @@ def test_the_course_over_time_ends_at_the_same_state() -> None:
 def test_ways_of_the_oil_have_limits(changes: tuple[tuple[str, object], ...], word: str) -> None:
     with pytest.raises(CaseError, match=word):
         case_with(changes)
+
+
+def test_blocked_jets_leave_part_of_a_given_flank_film_dry() -> None:
+    """The film of the case holds where oil lands; where a jet is closed the flank has none."""
+    films = [
+        {r.surface: r.coefficient.value for r in last.fields["test"].solution.balance.rows if r.coefficient}
+        for _, last in (settled(), settled((JETS, 0.4)))
+    ]
+    for surface in ("gear_test_pinion_rim", "gear_test_wheel_rim"):
+        assert films[1][surface] == pytest.approx(0.6 * films[0][surface])
+    other = "gear_test_pinion_side_front"
+    assert films[1][other] == pytest.approx(films[0][other], rel=1e-2)

@@ -5,7 +5,7 @@ import pytest
 from rigdesign.errors import CaseError
 from rigdesign.oil import FVA_3, OilError
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
-from tests.warm_prototype import case_with, lost, open_share, settled
+from tests.warm_prototype import base, case_with, lost, open_share, settled
 
 STATE = "gearboxes.test.oil_state"
 AT = 350.0
@@ -65,6 +65,16 @@ def test_aeration_weakens_the_heat_capacity_flow_and_lowers_the_jet_loss() -> No
         for rows in films
     ]  # fmt: skip
     assert found[0] and all(found[1][surface] < 0.9 * value for surface, value in found[0].items())
+    walls = [
+        next(
+            r.coefficient.value
+            for r in rows
+            if r.coefficient and r.kind == "gear_oil" and "chamber" in r.surface
+        )
+        for rows in films
+    ]
+    oils = [gear_oil(one, "test") for one in (base()[0], rig)]
+    assert walls[1] / walls[0] == pytest.approx(oils[1].conductivity(400.0) / oils[0].conductivity(400.0))
     assert open_share(rig, after) < 2e-3
 
 

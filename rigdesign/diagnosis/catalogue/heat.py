@@ -139,7 +139,7 @@ def _flows(name: str, box: Gearbox) -> Iterator[Effect]:
         name=f"blocked_jet:{name}",
         title=f"blocked jets of {name}",
         family="flow",
-        signature="gears warmer, jet loss higher at the same flow",
+        signature="gears warmer with dry flanks, jet loss lower as the oil is faster at the same flow",
         parameters=(share("share", 0.6),),
         change=Added(f"gearboxes.{name}.oil.blocked_jets", box.oil.blocked_jets),
     )
@@ -215,19 +215,23 @@ def _films(name: str, housing: Housing) -> Iterator[Effect]:
         f"{at}.bearing_film_factor",
         housing.bearing_film_factor,
     )
-    grey = {
-        f"{at}.boundary.{entry}.emissivity_excess": condition.emissivity_excess
+    painted = {
+        entry: condition
         for entry, condition in housing.boundary.items()
         if isinstance(condition, ThermalRadiation)
+        and not any(surface.startswith(("field_", "shaft_")) for surface in condition.surfaces)
     }
-    if grey:
-        whole = [c.emissivity for c in housing.boundary.values() if isinstance(c, ThermalRadiation)]
+    if painted:
+        grey = {
+            f"{at}.boundary.{entry}.emissivity_excess": c.emissivity_excess for entry, c in painted.items()
+        }
+        whole = [condition.emissivity for condition in painted.values()]
         most = 0.99 - max(whole)
         yield Effect(
             name=f"emissivity:{name}",
-            title=f"emissivity of the outside of {name}",
+            title=f"emissivity of the walls of {name}",
             family="film",
-            signature="moves housing and field as dT^4 does",
+            signature="moves the housing as dT^4 does, the field little",
             parameters=(
                 Parameter(
                     name="excess", unit="", low=-0.9 * min(whole), high=max(most, 0.01), source=PRACTICE
