@@ -234,7 +234,7 @@ class LoopTruth:
             gaps[i] = tooth.path_gaps(mesh, own.relief, [e.tip_relief for e in errors])
             for side, error in enumerate(errors):
                 z = mesh.z[side]
-                tooth_gap[i, side, :z] = -error.places(z)
+                tooth_gap[i, side, :z] = -sign * error.places(z)
                 tooth_scale[i, side, :z] = error.stiffness or 1.0
                 tooth_slope[i, side, :z] = error.slope or 0.0
             numbers[i, kernel.RATE] = sign * mesh.base_radii[0] * speed * dt
@@ -262,7 +262,7 @@ class LoopTruth:
         time = dt * np.arange(n_cycle)
         outer = np.zeros((len(self.meshes), n_cycle))
         rate = np.zeros_like(outer)
-        for i, mesh in enumerate(self.meshes):
+        for i, (mesh, sign) in enumerate(zip(self.meshes, circuit.directions)):
             for side, gear in enumerate(mesh.gears):
                 error = self.constants.errors.get(gear)
                 if error is None or not error.run_out:
@@ -271,6 +271,7 @@ class LoopTruth:
                 angle = speed * time + (state["angles"] if side == 0 else state["wheel_angles"])[i]
                 further = point.tooth_offset.get(mesh.name, 0) if side == 1 else 0
                 wave = error.run_out * np.exp(-1j * (angle + 2.0 * math.pi * further / mesh.z[1]))
+                wave *= 1.0 if sign > 0 else _behind(mesh, side)
                 outer[i] += wave.real
                 rate[i] += speed * wave.imag
         loads = self._harmonic_loads(circuit, point, state)
@@ -455,6 +456,15 @@ class LoopTruth:
 def _play(mesh: tooth.Teeth, sign: int) -> float:
     """Approach of the working flank stands at -x - backlash on the back: the rest of the way to go [m]."""
     return 0.0 if sign > 0 else mesh.backlash
+
+
+def _behind(mesh: tooth.Teeth, side: int) -> complex:
+    """What stands out on the line of action of the back flanks for one that stands out on that of the front flanks.
+
+    An eccentricity u of the teeth stands out by u . n, n = (sin alpha, +-cos alpha) from the centre towards the other
+    gear; the wheel turns the other way, and so does its part.
+    """
+    return -np.exp((2j, -2j)[side] * mesh.working_angle)
 
 
 def _ports(circuit: Circuit, meshes: Sequence[tooth.Teeth]) -> np.ndarray:

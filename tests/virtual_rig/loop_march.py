@@ -41,7 +41,8 @@ def pair_force(x, v, place, m, numbers, tables, gaps, tooth_gap, tooth_scale, to
         i = min(int(at), n_path - 2)
         f = at - i
         one = p % counts[m, 0]
-        two = (p + shift[m]) % counts[m, 1]
+        # the back of a tooth meets the tooth of the wheel that comes after the one in front of it
+        two = (p + shift[m] if forward else p + shift[m] + 1) % counts[m, 1]
         run = 2.0 * at / (n_path - 1) - 1.0
         k = (
             ((1.0 - f) * tables[m, i] + f * tables[m, i + 1])

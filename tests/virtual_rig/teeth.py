@@ -23,10 +23,15 @@ SLICES = 3
 
 @dataclass(frozen=True, kw_only=True)
 class ToothErrors:
-    """What one gear has of its own on its working flanks; lengths in metres, ahead of the ideal place counts plus."""
+    """What one gear has of its own; lengths in metres.
+
+    Teeth are numbered and angles counted where the front flanks touch, also in a mesh whose back flanks carry: tooth k
+    is the same steel there, but a tooth that stands ahead gives way, and an eccentricity lies on the other line of
+    action. Out of the front flank counts plus. Slopes and reliefs are alike on both flanks.
+    """
 
     run_out: complex = 0j
-    """Eccentricity as amplitude times exp(i phase): ahead by Re(run_out exp(-i rotation)) (half of F_r)."""
+    """Eccentricity as amplitude times exp(i phase): out by Re(run_out exp(-i rotation)) in front (half of F_r)."""
     place: tuple[float, ...] = ()
     """Cumulative pitch deviation of each tooth, (z,)."""
     stiffness: tuple[float, ...] = ()
@@ -79,6 +84,11 @@ class Teeth:
     @property
     def contact_ratio(self) -> float:
         return (self.end - self.start) / self.base_pitch
+
+    @property
+    def working_angle(self) -> float:
+        """Transverse pressure angle at the working pitch circle [rad]."""
+        return math.atan2(self.rolling_radii[0], self.base_radii[0])
 
     def grid(self) -> np.ndarray:
         """Path positions of the tables (N_PATH,)."""
