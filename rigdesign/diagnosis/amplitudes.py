@@ -11,8 +11,14 @@ from dataclasses import asdict, dataclass, replace
 class Amplitudes:
     """Standard deviation of each kind of cause, relative."""
 
-    constant: float = 1.0
-    """On the healthy spreads of the catalogue's parameters."""
+    constant_loss: float = 1.0
+    """On the healthy spreads of the catalogue's parameters: losses."""
+    constant_film: float = 1.0
+    """The same of films, contacts and the division of heat."""
+    constant_oil: float = 1.0
+    """The same of properties and ways of the oil."""
+    constant_loop: float = 1.0
+    """The same of stiffness, damping and inertia."""
     tooth: float = 1.0
     """On the healthy errors of the teeth, from their quality grade."""
     exponent: float = 0.15

@@ -12,7 +12,10 @@ from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.decision import Thresholds
 
 AMPLITUDES = Amplitudes(
-    constant=2.57,
+    constant_loss=2.57,
+    constant_film=2.57,
+    constant_oil=2.57,
+    constant_loop=2.57,
     tooth=1.5,
     exponent=0.157,
     link=0.609,

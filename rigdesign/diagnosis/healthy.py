@@ -11,7 +11,7 @@ import numpy as np
 
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.columns import Array, Column
-from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.effects import Effect, Family
 from rigdesign.diagnosis.levels import levels
 from rigdesign.diagnosis.library import Library
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature, Setting
@@ -53,12 +53,29 @@ def _relative(features: Sequence[Feature], logs: Mapping[str, float]) -> Array:
     return np.array([logs.get(feature.setting, mean) - mean for feature in features])
 
 
+CONSTANTS: Mapping[Family, str] = {
+    "excitation": "tooth",
+    "tooth": "tooth",
+    "stiffness": "constant_loop",
+    "damping": "constant_loop",
+    "inertia": "constant_loop",
+    "state": "constant_loop",
+    "loss": "constant_loss",
+    "split": "constant_film",
+    "film": "constant_film",
+    "contact": "constant_film",
+    "flow": "constant_oil",
+    "oil": "constant_oil",
+}
+"""Family of an effect -> amplitude of its healthy spread."""
+
+
 def _constants(library: Library, effects: Sequence[Effect]) -> list[Column]:
     wanted = [effect for effect in effects if effect.healthy > 0.0 and effect.name in library.responses]
     return [
         Column(
             name=f"{effect.name}/{number}",
-            kind="tooth" if effect.family in ("excitation", "tooth") else "constant",
+            kind=CONSTANTS[effect.family],
             values=values,
             spread=effect.healthy,
             effect=effect.name,
