@@ -59,19 +59,10 @@ def detectabilities(
 
     Nonlinear effects are judged by their slope at the detectable size, found by one repetition.
     """
-    everything = _Bases((*effects, *rivals))
+    seen = [_seen(space, effect) for effect in effects]
     rows = []
-    for effect in effects:
-        release = release_of(space, effect.own)
-        column = slope_of(effect)
-        size = _detectable(release.product(column, column))
-        if effect.curve is not None and np.isfinite(size):
-            at = float(np.clip(size, *effect.curve.bounds))
-            if at > 0.0:
-                answer = effect.curve.at(np.array([at]))[0][:, None] / at
-                size = _detectable(release.product(answer, answer))
-                column = answer
-        rival, correlation = everything.nearest(effect.parts, column)
+    nearest = _nearest(effects, [column for _, column in seen], (*effects, *rivals))
+    for effect, (size, _), (rival, correlation) in zip(effects, seen, nearest, strict=True):
         half = effect.half if effect.curve is None else effect.curve.half
         told = TOLD / SEEN * size / max(np.sqrt(max(1.0 - correlation**2, 0.0)), 1e-9)
         rows.append(
@@ -87,48 +78,71 @@ def detectabilities(
     return tuple(rows)
 
 
+def _seen(space: Whitened, effect: Hypothesis) -> tuple[float, Array]:
+    """Smallest size of an effect that is seen, and its columns (n, k) there."""
+    release = release_of(space, effect.own)
+    column = slope_of(effect)
+    size = _detectable(release.product(column, column))
+    if effect.curve is not None and np.isfinite(size):
+        at = float(np.clip(size, *effect.curve.bounds))
+        if at > 0.0:
+            column = effect.curve.at(np.array([at]))[0][:, None] / at
+            size = _detectable(release.product(column, column))
+    return size, column
+
+
 def _detectable(gram: Array) -> float:
     """Size seen in its least visible phase."""
     least = float(np.linalg.eigvalsh(np.atleast_2d(gram))[0])
     return SEEN / least**0.5 if least > 0.0 else float("inf")
 
 
-class _Bases:
-    """Orthonormal bases of what many explanations span, two columns at most each."""
-
-    def __init__(self, explanations: Sequence[Hypothesis]) -> None:
-        self.names = [one.name for one in explanations]
-        self._parts = [one.parts for one in explanations]
-        self._bases = np.stack([_two_columns(slope_of(one)) for one in explanations])
-
-    def alike(self, basis: Array) -> Array:
-        """(m,) largest cosine between a basis (n, k) and each explanation."""
-        overlap = np.einsum("nk,mnj->mkj", basis, self._bases)
-        squares = np.linalg.eigvalsh(overlap @ overlap.transpose(0, 2, 1))[:, -1]
-        return np.asarray(np.sqrt(np.clip(squares, 0.0, 1.0)))
-
-    def nearest(self, parts: tuple[str, ...], column: Array) -> tuple[str, float]:
-        """The explanation most like these columns that claims something else."""
-        alike = self.alike(np.linalg.qr(column)[0])
-        alike[[i for i, other in enumerate(self._parts) if other == parts]] = -1.0
-        best = int(np.argmax(alike))
-        return self.names[best], max(float(alike[best]), 0.0)
+def _nearest(
+    effects: Sequence[Hypothesis], columns: Sequence[Array], everything: Sequence[Hypothesis]
+) -> list[tuple[str, float]]:
+    """For the columns of each effect the explanation most like them that claims something else."""
+    if not effects:
+        return []
+    alike = _alike(_bases(columns), _bases([slope_of(one) for one in everything]))
+    number: dict[tuple[str, ...], int] = {}
+    claims = np.array([number.setdefault(one.parts, len(number)) for one in everything])
+    found = []
+    for effect, row in zip(effects, alike, strict=True):
+        others = np.where(claims == number.get(effect.parts, -1), -1.0, row)
+        best = int(np.argmax(others))
+        found.append((everything[best].name, max(float(others[best]), 0.0)))
+    return found
 
 
-def _two_columns(columns: Array) -> Array:
-    basis, _ = np.linalg.qr(columns)
-    return np.pad(basis, ((0, 0), (0, 2 - basis.shape[1])))
+def _bases(columns: Sequence[Array]) -> Array:
+    """(n, 2 m) orthonormal bases of what each (n, 1 or 2) columns span; zeros for a second that is not there."""
+    bases = np.zeros((len(columns[0]) if columns else 0, 2 * len(columns)))
+    for place, own in enumerate(columns):
+        if own.shape[1] == 1:
+            bases[:, 2 * place] = own[:, 0] / max(float(np.linalg.norm(own)), 1e-300)
+        else:
+            bases[:, 2 * place : 2 * place + 2] = np.linalg.qr(own)[0]
+    return bases
+
+
+def _alike(bases: Array, others: Array) -> Array:
+    """(m, k) largest cosine between each of m and each of k bases: of two planes that of the nearest directions."""
+    cosines = (bases.T @ others).reshape(bases.shape[1] // 2, 2, others.shape[1] // 2, 2)
+    a, b, c, d = (cosines[:, i, :, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)))
+    first, second, mixed = a**2 + b**2, c**2 + d**2, a * c + b * d
+    squares = 0.5 * (first + second) + np.hypot(0.5 * (first - second), mixed)
+    return np.asarray(np.sqrt(np.clip(squares, 0.0, 1.0)))
 
 
 def aliases(space: Whitened, effects: Sequence[Hypothesis]) -> list[tuple[str, str, float]]:
-    """Pairs of effects these sensors cannot tell apart, with their correlation."""
-    everything = _Bases(effects)
-    pairs = []
-    for number, effect in enumerate(effects):
-        alike = everything.alike(np.linalg.qr(slope_of(effect))[0])
-        pairs += [
-            (effect.name, everything.names[other], float(alike[other]))
-            for other in range(number + 1, len(effects))
-            if alike[other] > ALIAS
-        ]
-    return sorted(pairs, key=lambda pair: -pair[2])
+    """Pairs of effects these sensors cannot tell apart, with their correlation, those most alike first.
+
+    Pairs that are alike to rounding stand in the order of the effects.
+    """
+    bases = _bases([slope_of(one) for one in effects])
+    alike = np.triu(_alike(bases, bases), 1)
+    pairs = [
+        (effects[first].name, effects[second].name, float(alike[first, second]))
+        for first, second in np.argwhere(alike > ALIAS)
+    ]
+    return sorted(pairs, key=lambda pair: -round(pair[2], 9))

@@ -12,9 +12,10 @@ J. Am. Stat. Assoc. 90, 1995, 773).
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PPoly
 from scipy.special import logsumexp
 
 from rigdesign.diagnosis.columns import Array
@@ -45,17 +46,32 @@ class Curve:
 
     def at(self, coordinates: Array) -> Array:
         """(k, n) answers between the runs."""
-        if len(self.coordinates) == 2:
-            (low, high), (first, last) = self.coordinates, self.answers
-            return np.asarray(first + (coordinates[:, None] - low) / (high - low) * (last - first))
-        return np.asarray(CubicSpline(self.coordinates, self.answers)(coordinates))
+        return np.asarray(self.shares(coordinates) @ self.answers)
 
     def slope(self, coordinate: float) -> Array:
         """(n,) derivative by the coordinate."""
+        return np.asarray(self.slope_shares(coordinate) @ self.answers)
+
+    def shares(self, coordinates: Array) -> Array:
+        """(k, m) share of every run in the answers between them: a spline is linear in what it passes through."""
+        return np.asarray(_interpolation(tuple(self.coordinates.tolist()))(coordinates))
+
+    def slope_shares(self, coordinate: float) -> Array:
+        """(m,) the same of the derivative."""
         step = 1e-3 * self.half
         low, high = max(coordinate - step, self.bounds[0]), min(coordinate + step, self.bounds[1])
-        before, after = self.at(np.array([low, high]))
+        before, after = self.shares(np.array([low, high]))
         return np.asarray((after - before) / (high - low))
+
+
+@lru_cache(maxsize=256)
+def _interpolation(coordinates: tuple[float, ...]) -> CubicSpline | PPoly:
+    """Coordinate (k,) -> (k, m) shares of the runs: a cubic spline, a straight line between two."""
+    if len(coordinates) > 2:
+        return CubicSpline(coordinates, np.eye(len(coordinates)))
+    low, high = coordinates
+    slopes = np.array([-1.0, 1.0]) / (high - low)
+    return PPoly(np.array([slopes, [1.0, 0.0]])[:, None, :], np.array([low, high]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -153,45 +169,73 @@ def _weigh_curve(space: Whitened, hypothesis: Hypothesis, curve: Curve) -> Evide
     release = release_of(space, hypothesis.own)
     grid, weights = graded(curve.bounds)
     residual = space.freed(hypothesis.own)
-    left = (residual - curve.at(grid)).T
-    squares = np.einsum("nk,nk->k", left, left)
-    if release.directions.shape[1]:
-        projected = release.directions.T @ left
-        squares = squares + np.einsum("ik,ij,jk->k", projected, release.weights, projected)
-    fit = -0.5 * (squares - space.chi_square) - 0.5 * release.log_determinant
+    fit = _CurveFit.of(release, curve, residual)
+    squares = fit.squares(grid)
+    logs = -0.5 * (squares - space.chi_square) - 0.5 * release.log_determinant
     prior = mixture_density(grid, curve.half)
     prior = prior - logsumexp(prior + np.log(weights))
-    log_bayes = float(logsumexp(fit + prior + np.log(weights)))
-    best = _refined(residual, release, curve, float(grid[int(np.argmin(squares))]))
-    slope = curve.slope(best)
-    answer = curve.at(np.array([best]))[0]
-    after = residual - answer
-    stiffness = float(release.product(slope, slope))
+    log_bayes = float(logsumexp(logs + prior + np.log(weights)))
+    best = fit.refined(float(grid[int(np.argmin(squares))]))
+    stiffness = fit.stiffness(best)
     return Evidence(
         hypothesis=hypothesis,
         log_bayes=log_bayes,
         coordinates=(best,),
         deviations=(stiffness**-0.5 if stiffness > 0.0 else float("inf"),),
-        gain=space.chi_square - float(release.product(after, after)),
-        columns=slope[:, None],
-        answer=answer,
+        gain=space.chi_square - float(fit.squares(np.array([best]))[0]),
+        columns=curve.slope(best)[:, None],
+        answer=curve.at(np.array([best]))[0],
     )
 
 
-def _refined(residual: Array, release: Release, curve: Curve, start: float) -> float:
-    """Best size by Gauss-Newton steps on the curve, kept within its bounds."""
-    size = start
-    for _ in range(20):
-        slope = curve.slope(size)
-        left = residual - curve.at(np.array([size]))[0]
-        stiffness = float(release.product(slope, slope))
-        if stiffness <= 0.0:
-            break
-        after = float(np.clip(size + float(release.product(slope, left)) / stiffness, *curve.bounds))
-        if abs(after - size) <= 1e-6 * curve.half:
-            return after
-        size = after
-    return size
+@dataclass(frozen=True, kw_only=True)
+class _CurveFit:
+    """Fit of a curve by the products of its runs alone, (m, m) and (m,): no pass over the numbers a size.
+
+    gram : of the runs; load : of the runs with the residual; square : of the residual
+    """
+
+    curve: Curve
+    gram: Array
+    load: Array
+    square: float
+
+    @classmethod
+    def of(cls, release: Release, curve: Curve, residual: Array) -> "_CurveFit":
+        runs = curve.answers.T
+        return cls(
+            curve=curve,
+            gram=release.product(runs, runs),
+            load=release.product(runs, residual),
+            square=float(release.product(residual, residual)),
+        )
+
+    def squares(self, sizes: Array) -> Array:
+        """(k,) whitened squares of what sizes leave."""
+        shares = self.curve.shares(sizes)
+        return np.asarray(
+            self.square - 2.0 * (shares @ self.load) + np.einsum("km,km->k", shares @ self.gram, shares)
+        )
+
+    def stiffness(self, size: float) -> float:
+        """Square of the slope."""
+        slope = self.curve.slope_shares(size)
+        return float(slope @ self.gram @ slope)
+
+    def refined(self, start: float) -> float:
+        """Best size by Gauss-Newton steps on the curve, kept within its bounds."""
+        size = start
+        for _ in range(20):
+            slope = self.curve.slope_shares(size)
+            stiffness = float(slope @ self.gram @ slope)
+            if stiffness <= 0.0:
+                break
+            left = float(slope @ (self.load - self.gram @ self.curve.shares(np.array([size]))[0]))
+            after = float(np.clip(size + left / stiffness, *self.curve.bounds))
+            if abs(after - size) <= 1e-6 * self.curve.half:
+                return after
+            size = after
+        return size
 
 
 def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> Evidence:

@@ -12,7 +12,7 @@ from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.evidence import Curve, Hypothesis
 from rigdesign.diagnosis.library import Response
 from rigdesign.diagnosis.sensors import SensorError
-from rigdesign.diagnosis.turning import turned
+from rigdesign.diagnosis.turning import Turning
 from rigdesign.prediction.model import Channel, Feature
 
 SIGMAS = 12.0
@@ -35,29 +35,38 @@ def physical(
 
     least : whitened length of an effect at its bound below which it is left out
     """
-    found = []
-    for effect in effects:
-        response = responses.get(effect.name)
-        if response is None:
-            continue
-        for tooth in range(max(effect.any_tooth, 1)):
-            answers = turned(features, response.answers, tooth, teeth_a_turn) if tooth else response.answers
-            name = f"{effect.name}/{tooth}" if effect.any_tooth else effect.name
-            here = Response(coordinates=response.coordinates, answers=answers)
-            make = _curve if _is_curve(response) else _plane
-            one = make(covariance, effect, here, name)
-            if _reach(one) > least:
-                found.append(one)
-    return found
+    turning = Turning.of(features)
+    known = [(effect, responses[effect.name]) for effect in effects if effect.name in responses]
+    copies = [
+        (effect, response, f"{effect.name}/{tooth}" if effect.any_tooth else effect.name, tooth)
+        for effect, response in known
+        for tooth in range(max(effect.any_tooth, 1))
+    ]
+    runs = []
+    for _, response, _, tooth in copies:
+        rows = response.answers if _is_curve(response) else response.slope().T
+        runs.append(turning.turned(rows, tooth, teeth_a_turn) if tooth else rows)
+    found = [
+        _curve(effect, response, name, white) if _is_curve(response) else _plane(effect, name, white)
+        for (effect, response, name, _), white in zip(copies, _whitened(covariance, runs), strict=True)
+    ]
+    return [one for one in found if _reach(one) > least]
+
+
+def _whitened(covariance: Covariance, rows: Sequence[Array]) -> list[Array]:
+    """Blocks (m, n) of answers in the space of the covariance; all in one solve, which is what takes the time."""
+    if not rows:
+        return []
+    white = covariance.whiten(np.concatenate(rows).T).T
+    return np.split(white, np.cumsum([len(block) for block in rows])[:-1])
 
 
 def _is_curve(response: Response) -> bool:
     return response.coordinates.shape[1] == 1 and not response.linear
 
 
-def _curve(covariance: Covariance, effect: Effect, response: Response, name: str) -> Hypothesis:
+def _curve(effect: Effect, response: Response, name: str, white: Array) -> Hypothesis:
     order = np.argsort(response.coordinates[:, 0])
-    answers = covariance.whiten(response.answers[order].T).T
     coordinates = response.coordinates[order, 0]
     low, high = effect.parameters[0].bounds
     bounds = (max(low, float(coordinates[0])), min(high, float(coordinates[-1])))
@@ -65,17 +74,17 @@ def _curve(covariance: Covariance, effect: Effect, response: Response, name: str
         name=name,
         family="physical",
         parts=(effect.claim,),
-        curve=Curve(coordinates=coordinates, answers=answers, bounds=bounds),
+        curve=Curve(coordinates=coordinates, answers=white[order], bounds=bounds),
         own=(effect.name,),
     )
 
 
-def _plane(covariance: Covariance, effect: Effect, response: Response, name: str) -> Hypothesis:
+def _plane(effect: Effect, name: str, white: Array) -> Hypothesis:
     return Hypothesis(
         name=name,
         family="physical",
         parts=(effect.claim,),
-        columns=covariance.whiten(response.slope()),
+        columns=white.T,
         half=max(abs(bound) for parameter in effect.parameters for bound in parameter.bounds),
         own=(effect.name,),
     )
@@ -91,33 +100,36 @@ def _reach(hypothesis: Hypothesis) -> float:
 
 def sensor(covariance: Covariance, errors: Sequence[SensorError]) -> list[Hypothesis]:
     """Sensors and settings that may read wrong."""
+    columns = _whitened(covariance, [error.values[None, :] for error in errors])
     return [
         Hypothesis(
             name=error.name,
             family="sensor",
             parts=(error.name,),
-            columns=covariance.whiten(error.values[:, None]),
+            columns=white.T,
             half=error.bound,
             own=(error.name,),
         )
-        for error in errors
+        for error, white in zip(errors, columns, strict=True)
     ]
 
 
 def without_a_name(covariance: Covariance, causes: Iterable[Anonymous]) -> list[Hypothesis]:
     """Anonymous competitors; each may be as large as something that is seen at `SIGMAS`."""
+    causes = list(causes)
     found = []
-    for name, columns in causes:
-        white = covariance.whiten(columns)
-        lengths = np.linalg.norm(white, axis=0)
-        if lengths.max() <= 1e-9:
+    for (name, _), white in zip(
+        causes, _whitened(covariance, [columns.T for _, columns in causes]), strict=True
+    ):
+        longest = float(np.linalg.norm(white, axis=1).max())
+        if longest <= 1e-9:
             continue
         found.append(
             Hypothesis(
                 name=f"unknown: {name}",
                 family="anonymous",
                 parts=(f"unknown: {name}",),
-                columns=white / lengths.max(),
+                columns=white.T / longest,
                 half=SIGMAS,
             )
         )
@@ -132,15 +144,16 @@ def wrong_data(
     expected: Array,
 ) -> list[Hypothesis]:
     """Channels or points that may have been exchanged, and single channels with sign or unit wrong."""
-    found = []
-    for name, changed in (
+    changes = (
         *_swapped_channels(features, channels, values),
         *_swapped_points(features, values),
         *_units(features, channels, values),
-    ):
-        residual = covariance.whiten(changed - expected)
-        found.append(Hypothesis(name=name, family="input", parts=(name,), residual=residual))
-    return found
+    )
+    residuals = _whitened(covariance, [(changed - expected)[None, :] for _, changed in changes])
+    return [
+        Hypothesis(name=name, family="input", parts=(name,), residual=residual[0])
+        for (name, _), residual in zip(changes, residuals, strict=True)
+    ]
 
 
 def _swapped_channels(

@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_factor
+from scipy.linalg.lapack import dpotri
 
 from rigdesign.diagnosis.columns import Array
 
@@ -31,10 +32,9 @@ def reject(
     most : share of the readings that may go; if more would have to, nothing is an outlier and none is rejected
     """
     kept = np.arange(len(residual))
+    precision = _inverse(matrix)
     found: list[Outlier] = []
     while True:
-        factor = cho_factor(matrix[np.ix_(kept, kept)], lower=True)
-        precision = cho_solve(factor, np.eye(len(kept)))
         deviations = precision @ residual[kept] / np.sqrt(np.diagonal(precision))
         worst = int(np.argmax(np.abs(deviations)))
         if abs(deviations[worst]) <= limit:
@@ -43,3 +43,19 @@ def reject(
             return ()
         found.append(Outlier(int(kept[worst]), float(deviations[worst])))
         kept = np.delete(kept, worst)
+        precision = _without(precision, worst)
+
+
+def _inverse(matrix: Array) -> Array:
+    """Of a covariance. Raises numpy.linalg.LinAlgError where it is none."""
+    factor, _ = cho_factor(matrix, lower=True)
+    lower, _ = dpotri(factor, lower=1)
+    below = np.tril(lower, -1)
+    return np.asarray(below + below.T + np.diag(np.diagonal(lower)))
+
+
+def _without(precision: Array, place: int) -> Array:
+    """Precision of the other readings once one of them is gone: one elimination step, no new inverse."""
+    rest = np.delete(np.arange(len(precision)), place)
+    row = precision[place, rest]
+    return np.asarray(precision[np.ix_(rest, rest)] - np.outer(row, row) / precision[place, place])

@@ -1,30 +1,51 @@
 """The same answer some teeth later: complex orders turned by the angle that has passed."""
 
 from collections.abc import Sequence
-from math import cos, pi, sin
+from dataclasses import dataclass, replace
+from math import pi
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign.diagnosis.columns import Array
 from rigdesign.prediction.model import Feature
 
 
-def turned(features: Sequence[Feature], answers: Array, teeth: int, teeth_a_turn: int) -> Array:
-    """(m, n) answers of a cause that sits ``teeth`` teeth further on its gear.
+@dataclass(frozen=True)
+class Turning:
+    """Where the complex orders stand among features.
 
-    teeth_a_turn : of the gear that counts; each tooth that passes turns order k by 2 pi k over them. Means and
-        quantities without orders stay.
+    real, imaginary : (p,) places of their parts; orders : (p,)
     """
-    place = {feature: row for row, feature in enumerate(features)}
-    found = answers.copy()
-    for feature, row in place.items():
-        if feature.part != "real":
-            continue
-        other = place.get(Feature(feature.channel, feature.setting, feature.order, "imaginary"))
-        if other is None:
-            continue
-        angle = -2.0 * pi * feature.order * teeth / teeth_a_turn
-        real, imaginary = answers[:, row], answers[:, other]
-        found[:, row] = cos(angle) * real - sin(angle) * imaginary
-        found[:, other] = sin(angle) * real + cos(angle) * imaginary
-    return np.asarray(found)
+
+    real: NDArray[np.intp]
+    imaginary: NDArray[np.intp]
+    orders: Array
+
+    @classmethod
+    def of(cls, features: Sequence[Feature]) -> "Turning":
+        """Of features; means, quantities without orders and parts that stand alone do not turn."""
+        place = {feature: row for row, feature in enumerate(features) if feature.part == "imaginary"}
+        found = [
+            (row, place.get(replace(feature, part="imaginary")), feature.order)
+            for row, feature in enumerate(features)
+            if feature.part == "real"
+        ]
+        pairs = [(real, imaginary, order) for real, imaginary, order in found if imaginary is not None]
+        return cls(
+            real=np.array([pair[0] for pair in pairs], dtype=np.intp),
+            imaginary=np.array([pair[1] for pair in pairs], dtype=np.intp),
+            orders=np.array([pair[2] for pair in pairs], dtype=np.float64),
+        )
+
+    def turned(self, answers: Array, teeth: int, teeth_a_turn: int) -> Array:
+        """(m, n) answers of a cause that sits ``teeth`` teeth further on its gear.
+
+        teeth_a_turn : of the gear that counts; each tooth that passes turns order k by 2 pi k over them
+        """
+        angle = -2.0 * pi * self.orders * teeth / teeth_a_turn
+        found = answers.copy()
+        real, imaginary = answers[:, self.real], answers[:, self.imaginary]
+        found[:, self.real] = np.cos(angle) * real - np.sin(angle) * imaginary
+        found[:, self.imaginary] = np.sin(angle) * real + np.cos(angle) * imaginary
+        return np.asarray(found)

@@ -18,7 +18,7 @@ from rigdesign.diagnosis.intervals import fit_together
 from rigdesign.diagnosis.library import Library, Response
 from rigdesign.diagnosis.next_measurement import Proposal, Rival, ranked
 from rigdesign.diagnosis.outliers import reject
-from rigdesign.diagnosis.turning import turned
+from rigdesign.diagnosis.turning import Turning
 from rigdesign.prediction.model import Channel, Feature, Setting, features_of
 
 
@@ -201,9 +201,10 @@ def test_library_does_not_serve_what_it_does_not_hold():
 def test_a_cause_some_teeth_later_turns_its_orders():
     features = features_of(SETTINGS[:1], CHANNELS)
     answers = np.array([[7.0, 5.0, 1.0, 0.0, 0.0, 2.0]])
-    later = turned(features, answers, 5, 20)
+    turning = Turning.of(features)
+    later = turning.turned(answers, 5, 20)
     assert later[0] == pytest.approx([7.0, 5.0, 0.0, -1.0, 0.0, -2.0], abs=1e-12)
-    assert turned(features, later, 15, 20) == pytest.approx(answers)
+    assert turning.turned(later, 15, 20) == pytest.approx(answers)
 
 
 def test_constants_of_a_healthy_set_are_the_posterior():
