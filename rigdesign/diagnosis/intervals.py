@@ -72,17 +72,18 @@ def fit_together(
     for one, size, limits in zip(found, coordinates, bounds, strict=True):
         kind = one.hypothesis.parts[0].split(":")[0]
         width = widths.get(kind, widths.get("", 0.25))
-        whole = float(np.linalg.norm(size))
+        below, above = _misanswered(one, size, NORMAL_95 * width)
         for place, value in enumerate(size):
-            half = float(np.hypot(NORMAL_95 * deviations[number], NORMAL_95 * width * whole))
             low, high = limits[place]
+            first = float(value - np.hypot(NORMAL_95 * deviations[number], below))
+            last = float(value + np.hypot(NORMAL_95 * deviations[number], above))
             sizes.append(
                 Size(
                     effect=one.hypothesis.name,
                     number=place,
                     coordinate=float(value),
-                    interval=(max(float(value) - half, low), min(float(value) + half, high)),
-                    at_bound=bool(value - half <= low or value + half >= high),
+                    interval=(max(first, low), min(last, high)),
+                    at_bound=first <= low or last >= high,
                 )
             )
             number += 1
@@ -95,6 +96,31 @@ def fit_together(
         coordinates=tuple(tuple(float(value) for value in size) for size in coordinates),
         answer=np.asarray(answer),
     )
+
+
+def _misanswered(one: Evidence, size: Array, share: float) -> tuple[float, float]:
+    """How far below and above a coordinate the answer is smaller or larger by a share of itself.
+
+    A proportional answer is off by that share of the size; where the answer saturates a size is known much worse.
+    """
+    curve = one.hypothesis.curve
+    whole = float(np.linalg.norm(size))
+    if curve is None or whole == 0.0:
+        return share * whole, share * whole
+    value = float(size[0])
+    end = curve.bounds[1] if value > 0.0 else curve.bounds[0]
+    grid = np.linspace(0.0, end, FINE) if abs(end) > 0.0 else np.zeros(FINE)
+    here = curve.at(size)[0]
+    shares = np.maximum.accumulate(curve.at(grid) @ here / float(here @ here))
+    nearer = abs(value - float(np.interp(1.0 - share, shares, grid)))
+    farther = (
+        abs(float(np.interp(1.0 + share, shares, grid)) - value) if shares[-1] >= 1.0 + share else np.inf
+    )
+    return (nearer, farther) if value > 0.0 else (farther, nearer)
+
+
+FINE = 401
+"""Points at which a curve is searched for a larger or smaller answer."""
 
 
 def _slope(one: Evidence, size: Array) -> Array:

@@ -12,7 +12,7 @@ from rigdesign.diagnosis.constants import constants
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.detectability import aliases, detectabilities
 from rigdesign.diagnosis.effects import Effect, Parameter
-from rigdesign.diagnosis.evidence import Hypothesis, weigh
+from rigdesign.diagnosis.evidence import Curve, Hypothesis, weigh
 from rigdesign.diagnosis.heldout import gap, held_out
 from rigdesign.diagnosis.intervals import fit_together
 from rigdesign.diagnosis.library import Library, Response
@@ -96,6 +96,22 @@ def test_intervals_cover_as_often_as_they_say():
         low, high = fit.sizes[0].interval
         inside += low <= 2.0 <= high
     assert inside / 300 == pytest.approx(0.95, abs=0.035)
+
+
+def test_where_an_answer_saturates_its_size_is_known_worse():
+    """Answer R/(R + 1) off by a third: R = 1 answers 0.5; 0.335 and 0.665 are reached at R = 0.504 and 1.985."""
+    covariance = Covariance.of_noise(np.ones(4), [], {})
+    runs = np.linspace(0.0, 5.0, 60)
+    direction = 1e4 * np.array([1.0, -2.0, 0.5, 1.0])
+    curve = Curve(coordinates=runs, answers=(runs / (runs + 1.0))[:, None] * direction, bounds=(0.0, 5.0))
+    hypothesis = Hypothesis(name="joint", family="physical", parts=("joint",), curve=curve)
+    space = Whitened.of(covariance, 0.5 * direction)
+    widths = {"": 0.33 / 1.96}
+    (size,) = fit_together(space, [weigh(space, hypothesis)], widths, [[(0.0, 5.0)]]).sizes
+    assert size.coordinate == pytest.approx(1.0, abs=1e-3)
+    assert size.interval == pytest.approx((0.504, 1.985), rel=0.01)
+    (open_end,) = fit_together(space, [weigh(space, hypothesis)], {"": 0.4}, [[(0.0, 5.0)]]).sizes
+    assert open_end.interval[1] == 5.0 and open_end.at_bound
 
 
 def test_amplitudes_are_found_again():

@@ -265,6 +265,10 @@ def _film(name: str, title: str, path: str, now: float) -> Effect:
     )
 
 
+LOOSE = 5e-3
+"""Largest resistance between shell and bore [m2 K/W]: more than 0.1 mm of air, where little heat crosses any more."""
+
+
 class _Resistance:
     """Puts a resistance [m2 K/W] in the way, on top of what the case has."""
 
@@ -285,7 +289,7 @@ def _contacts(name: str, box: Gearbox, housing: Housing) -> Iterator[Effect]:
         f"gearboxes.{name}.bearings.{bearing}.shell_conductance": entry.shell_conductance
         for bearing, entry in box.bearings.items()
     }
-    yield _contact(f"shell_contact:{name}", "joint between bearing shells and housing", 0.02, shells)
+    yield _contact(f"shell_contact:{name}", "joint between bearing shells and housing", LOOSE, shells)
     joint = housing.foot_contact
     if joint is not None and joint.conductance is not None:
         foot: dict[str, float | None] = {
