@@ -16,13 +16,14 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
-from scipy.special import logsumexp
 
 from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.covariance import Release, Whitened
 
 SPREADS = (0.6, 0.2, 0.06, 0.02, 0.006, 0.002)
 """Standard deviations of the mixture, relative to the bound."""
+
+_PAIRS_OF_SPREADS = np.array([(one, other) for one in SPREADS for other in SPREADS])
 
 GRID = 121
 """Points of the quadrature over one size, denser towards neutral."""
@@ -134,7 +135,7 @@ def mixture_density(coordinates: Array, half: float) -> Array:
     """(k,) logarithm of the prior density of a size, not cut at its bounds."""
     spreads = np.array(SPREADS) * half
     terms = -0.5 * (coordinates[:, None] / spreads) ** 2 - np.log(spreads * np.sqrt(2.0 * np.pi))
-    return np.asarray(logsumexp(terms, axis=1) - np.log(len(SPREADS)))
+    return np.asarray(_log_sum(terms.T) - np.log(len(SPREADS)))
 
 
 def graded(bounds: tuple[float, float], count: int = GRID) -> tuple[Array, Array]:
@@ -173,8 +174,8 @@ def _weigh_curve(space: Whitened, hypothesis: Hypothesis, curve: Curve) -> Evide
     squares = fit.squares(grid)
     logs = -0.5 * (squares - space.chi_square) - 0.5 * release.log_determinant
     prior = mixture_density(grid, curve.half)
-    prior = prior - logsumexp(prior + np.log(weights))
-    log_bayes = float(logsumexp(logs + prior + np.log(weights)))
+    prior = prior - _log_sum(prior + np.log(weights))
+    log_bayes = float(_log_sum(logs + prior + np.log(weights)))
     best = fit.refined(float(grid[int(np.argmin(squares))]))
     stiffness = fit.stiffness(best)
     return Evidence(
@@ -247,7 +248,7 @@ def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> E
     before = float(release.product(residual, residual))
     shift = 0.5 * (space.chi_square - before)
     log_bayes = _mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
-    inverse = np.linalg.pinv(gram, hermitian=True)
+    inverse = _inverse(gram)
     best = np.clip(inverse @ load, -hypothesis.half, hypothesis.half)
     return Evidence(
         hypothesis=hypothesis,
@@ -270,7 +271,21 @@ def _mixed(gram: Array, load: Array, spreads: Array) -> float:
     _, logarithm = np.linalg.slogdet(system)
     solved = np.linalg.solve(system, half_load[:, :, None])[:, :, 0]
     logs = 0.5 * np.einsum("mk,mk->m", half_load, solved) - 0.5 * logarithm
-    return float(logsumexp(logs) - np.log(len(logs)))
+    return float(_log_sum(logs) - np.log(len(logs)))
+
+
+def _log_sum(logs: Array) -> Array:
+    """Logarithm of the sum of exponentials over the first axis."""
+    most = logs.max(axis=0)
+    return np.asarray(most + np.log(np.exp(logs - most).sum(axis=0)))
+
+
+def _inverse(gram: Array) -> Array:
+    """Of a symmetric matrix (k, k); zero along directions it does not see."""
+    values, vectors = np.linalg.eigh(gram)
+    seen = np.abs(values) > 1e-15 * np.abs(values).max()
+    inverse = np.divide(1.0, values, out=np.zeros_like(values), where=seen)
+    return np.asarray((vectors * inverse) @ vectors.T)
 
 
 def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
@@ -287,12 +302,13 @@ def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
     left = space.freed(own) - base
     gram = release.product(columns, columns)
     load = release.product(columns, left)
-    sizes = [first.columns.shape[1], second.columns.shape[1]]
-    halves = [_half(first.hypothesis), _half(second.hypothesis)]
-    mixed = [np.repeat([one * halves[0], other * halves[1]], sizes) for one in SPREADS for other in SPREADS]
+    owner = np.repeat([0, 1], [first.columns.shape[1], second.columns.shape[1]])
+    halves = np.array([_half(first.hypothesis), _half(second.hypothesis)])
     shift = 0.5 * (space.chi_square - float(release.product(left, left)))
-    log_bayes = _mixed(gram, load, np.array(mixed)) + shift - 0.5 * release.log_determinant
-    inverse = np.linalg.pinv(gram, hermitian=True)
+    log_bayes = (
+        _mixed(gram, load, (_PAIRS_OF_SPREADS * halves)[:, owner]) + shift - 0.5 * release.log_determinant
+    )
+    inverse = _inverse(gram)
     best = inverse @ load
     after = left - columns @ best
     hypothesis = Hypothesis(
