@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.heldout import LEAST_POINTS
 from rigdesign.diagnosis.naming import told
+from rigdesign.diagnosis.next_measurement import Ranked
 from rigdesign.diagnosis.outcome import Outcome
 from rigdesign.diagnosis.workflow import LEAST_RUNNING_POINTS
 from rigdesign.measurement.compare import sentence, significant
@@ -19,6 +20,17 @@ VERDICTS = {
     "data_insufficient": "data insufficient",
 }
 """Verdict -> as a heading."""
+
+
+NOTABLE = 1.5
+"""Residual of a group [standard deviations of a healthy rig] from which on it is told although it proves nothing."""
+
+
+WORTH = 1.0
+"""Separation [variances] from which on a measurement is proposed."""
+
+MOST_PROPOSED = 8
+"""Measurements proposed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,7 +66,7 @@ def headline(outcome: Outcome) -> str:
         case "too_small":
             first = _titles(outcome)
             return f"Something may be at work, too small to be told from its rivals; first of them: {first}."
-    return f"These data cannot name anything: {found.decision.reason}."
+    return f"These data cannot name anything: {found.decision.reason}. {_foremost(outcome)}".rstrip()
 
 
 def _named(outcome: Outcome) -> list[str]:
@@ -71,6 +83,18 @@ def _where(outcome: Outcome) -> str:
     """The most conspicuous group in a sentence; empty where none is outside what a healthy rig leaves."""
     first = outcome.before[0] if outcome.before else None
     return "" if first is None or not significant(first) else sentence(first, outcome.result.measurement)
+
+
+def _foremost(outcome: Outcome) -> str:
+    """Where model and data part most, and what fits best there, as far as too few data tell."""
+    first = outcome.before[0] if outcome.before else None
+    if first is None or first.rms < NOTABLE:
+        return ""
+    text = (
+        f"Model and data part most at the {first.group}: {first.rms:.2g} standard deviations of a healthy rig"
+    )
+    leading = outcome.suspects[0].title if outcome.suspects else ""
+    return f"{text}; first among what could be behind it: {leading}." if leading else f"{text}."
 
 
 def certainty(outcome: Outcome) -> str:
@@ -94,17 +118,22 @@ def steps(outcome: Outcome) -> tuple[Step, ...]:
     """What to measure or do next: computed proposals first, then what the rules of the workflow say."""
     computed = [
         Step(
-            text=one.title,
-            why="tells the leading explanations apart"
-            if one.decides
-            else "goes some way to tell the leading explanations apart",
-            separation=one.separation,
-            cost=one.cost,
-            decides=one.decides,
+            text=one.title, why=_why(outcome, one), separation=one.separation, cost=one.cost, decides=one.decides
         )
         for one in outcome.proposals
-    ]
+        if one.separation >= WORTH
+    ][:MOST_PROPOSED]  # fmt: skip
     return (*_first(outcome), *computed, *_better_data(outcome))
+
+
+def _why(outcome: Outcome, proposal: Ranked) -> str:
+    """What a proposal is good for."""
+    apart = (
+        "the leading explanation from nothing at all"
+        if outcome.verdict == "data_insufficient"
+        else "the leading explanations apart"
+    )
+    return f"tells {apart}" if proposal.decides else f"goes some way to tell {apart}"
 
 
 def _first(outcome: Outcome) -> list[Step]:

@@ -54,6 +54,7 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
             }
             for one in outcome.suspects
         ],
+        "suspected_inputs": suspected_inputs(outcome),
         "picked": None if outcome.picked is None else _sized(outcome.picked),
         "alternatives": _alternatives(outcome),
         "detectability": detectability_rows(outcome),
@@ -92,6 +93,15 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
     plain = to_plain(document)
     assert isinstance(plain, dict)
     return plain
+
+
+def suspected_inputs(outcome: Outcome) -> list[dict[str, Any]]:
+    """What may be wrong with the data: stated doubts, and what the data checks found."""
+    return [
+        {"id": one.id, "text": one.text, "channels": list(one.channels), "points": list(one.points)}
+        for one in outcome.result.data.findings
+        if one.weight == "suspect"
+    ]
 
 
 def _measurement(measurement: MeasurementSet) -> dict[str, Any]:

@@ -138,8 +138,9 @@ def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
     if found.decision.named:
         wanted = list(found.decision.named)
     elif found.decision.verdict == "data_insufficient":
-        wanted = [one.hypothesis.parts[0] for one in found.examinations[0].evidence if _single(one)]
-        wanted = list(dict.fromkeys(wanted))[:SHOWN]
+        singles = [one for one in found.examinations[0].evidence if _single(one)]
+        ordered = sorted(singles, key=lambda one: -weights.masses[one.hypothesis.name])
+        wanted = list(dict.fromkeys(one.hypothesis.parts[0] for one in ordered))[:SHOWN]
     else:
         parts = sorted(weights.inclusion.items(), key=lambda item: -item[1])
         wanted = [part for part, _ in parts[:SHOWN]]

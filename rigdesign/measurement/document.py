@@ -133,6 +133,17 @@ class ChannelTable(Part):
     """Name in recordings; that of the channel when left out."""
 
 
+class Doubt(Part):
+    """A number of the set, or one it rests on, that contradicts another of the same source."""
+
+    what: Text
+    size: Text
+    """How far the numbers are apart, with their units."""
+    source: Text
+    channels: tuple[Label, ...] = ()
+    """Those whose readings it touches."""
+
+
 class MeasurementFile(Part):
     """Content of measurement.toml."""
 
@@ -146,3 +157,5 @@ class MeasurementFile(Part):
     points: Mapping[Label, Point] = {}
     settings: Mapping[Label, SettingColumn] = Field(min_length=1)
     channels: Mapping[Label, ChannelTable] = Field(min_length=1)
+    doubts: tuple[Doubt, ...] = ()
+    """What the writer of the set suspects of it; told as suspected input errors."""

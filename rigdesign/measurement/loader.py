@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from rigdesign.case import Case
-from rigdesign.case.faults import faults_of, written
+from rigdesign.case.faults import faults_of, unknown, written
 from rigdesign.errors import Fault, MeasurementError
 from rigdesign.measurement.columns import channels_of, column_faults, sensors_of
 from rigdesign.measurement.document import MeasurementFile
@@ -40,7 +40,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     document = _validated(content, file)
     places = Places(case)
     folder = file.parent
-    faults = [*_head_faults(document, file), *column_faults(document, places)]
+    faults = [*_head_faults(document, file), *column_faults(document, places), *_doubt_faults(document)]
     try:
         table = read_table(folder, document.data.table, document.data, with_units=True)
     except MeasurementError as error:
@@ -53,7 +53,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     sensors = sensors_of(document)
     points, findings = points_of(document, sensors, rows)
     readings = rows.scalars(channels, points)
-    findings += rows.findings(channels)
+    findings += [*rows.findings(channels), *_doubts(document)]
     if document.case is not None and document.case != case.name:
         findings.append(
             Finding(
@@ -149,6 +149,22 @@ def _head_faults(document: MeasurementFile, file: Path) -> Iterable[Fault]:
         yield Fault(
             "baseline", written(document.baseline), f"no {FILE} in {folder}",
             "write the path of the healthy set from this folder",
+        )  # fmt: skip
+
+
+def _doubt_faults(document: MeasurementFile) -> Iterable[Fault]:
+    for number, doubt in enumerate(document.doubts):
+        for name in doubt.channels:
+            if name not in document.channels:
+                yield unknown(f"doubts[{number}].channels", name, tuple(document.channels), "channel")
+
+
+def _doubts(document: MeasurementFile) -> Iterable[Finding]:
+    """What the writer of the set suspects of it."""
+    for doubt in document.doubts:
+        yield Finding(
+            id="doubt", weight="suspect", channels=doubt.channels,
+            text=f"{doubt.what}: {doubt.size} ({doubt.source})",
         )  # fmt: skip
 
 
