@@ -17,7 +17,7 @@ from tests.virtual_rig.case_reader import read_case
 from tests.virtual_rig.loop import LoopTruth, Point
 from tests.virtual_rig.loop_changes import LoopConstants
 from tests.virtual_rig.loop_model import read_circuit
-from tests.virtual_rig.teeth import ToothErrors
+from tests.virtual_rig.teeth import ToothErrors, corner_gap, read_teeth
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 TEETH = range(-3, 4)
@@ -143,3 +143,22 @@ def test_rigid_gears_touch_where_their_outlines_do(case, mesh):
     expected -= own.backlash if mesh == 1 else 0.0
     assert np.ptp(found) > 25e-6
     assert found == pytest.approx(expected, abs=5e-8)
+
+
+@pytest.mark.parametrize("case", ["loop_1to1", "loop_hunting", "uhcf_prototype"])
+@pytest.mark.parametrize("at_end", [False, True], ids=["wheel_tip", "pinion_tip"])
+def test_tip_corners_part_as_the_outlines_do(case, at_end):
+    """The gap beyond the path of contact, for gears with the pitch point far outside it too."""
+    mesh = read_teeth(read_case(CASES / case / "case.toml"), "test", "main")
+    mesh = replace(mesh, flanks=({}, {}))
+    gears = PlaneGears(mesh, [ToothErrors(), ToothErrors()])
+    lowest = max(mesh.tip_radii[1] - 1.2 * (mesh.end - mesh.start), 1.0002 * mesh.base_radii[1])
+    gears.radii = np.linspace(lowest, mesh.tip_radii[1], 100001)
+    centres = [np.zeros(2), np.array([gears.distance, 0.0])]
+    for beyond, near in ((0.01, 0.03), (0.05, 0.1)):  # of the base pitch; leading order
+        s = mesh.end + beyond * mesh.base_pitch if at_end else mesh.start - beyond * mesh.base_pitch
+        turn = s / mesh.base_radii[0]
+        wheel = turn * mesh.z[0] / mesh.z[1] + gears.wheel_half
+        expected = gears._clear(turn - gears.front_half, wheel, centres, False)
+        found = corner_gap(mesh, 0 if at_end else 1) * (beyond * mesh.base_pitch) ** 2
+        assert found == pytest.approx(expected, rel=near)

@@ -90,9 +90,9 @@ class Teeth:
         """Transverse pressure angle at the working pitch circle [rad]."""
         return math.atan2(self.rolling_radii[0], self.base_radii[0])
 
-    def grid(self) -> np.ndarray:
-        """Path positions of the tables (N_PATH,)."""
-        reach = MARGIN * self.base_pitch
+    def grid(self, margin: float = MARGIN) -> np.ndarray:
+        """Path positions of the tables (N_PATH,), ``margin`` base pitches beyond the active path."""
+        reach = margin * self.base_pitch
         return np.linspace(self.start - reach, self.end + reach, N_PATH)
 
 
@@ -167,22 +167,24 @@ def pair_stiffness(z: Sequence[int], x: Sequence[float], beta: float, alpha: flo
     return 1e9 / (q + c[7] * x[0] ** 2 + c[8] * x[1] ** 2)
 
 
-def stiffness_course(teeth: Teeth, curvature: float) -> np.ndarray:
+def stiffness_course(teeth: Teeth, curvature: float, margin: float = MARGIN) -> np.ndarray:
     """Share of the peak stiffness over the grid: 1 - curvature of the parabola at the ends of the path."""
     middle, half = 0.5 * (teeth.start + teeth.end), 0.5 * (teeth.end - teeth.start)
-    share = (teeth.grid() - middle) / half
+    share = (teeth.grid(margin) - middle) / half
     return 1.0 - curvature * np.minimum(share**2, 1.3)
 
 
-def path_gaps(teeth: Teeth, relief_scale: float = 1.0, relief: Sequence[float] = (0.0, 0.0)) -> np.ndarray:
+def path_gaps(
+    teeth: Teeth, relief_scale: float = 1.0, relief: Sequence[float] = (0.0, 0.0), margin: float = MARGIN
+) -> np.ndarray:
     """Gap of ideal-pitch pairs, (SLICES, N_PATH) [m]: reliefs, crownings, slopes, and the corner beyond the path.
 
     relief : tip relief beyond that of the case, pinion and wheel [m]
     """
-    s = teeth.grid()
+    s = teeth.grid(margin)
     inside = np.clip(s, teeth.start, teeth.end)
-    outside = np.maximum(np.maximum(teeth.start - s, s - teeth.end), 0.0)
-    corner = sum(1.0 / r for r in teeth.base_radii) / (2.0 * teeth.rolling_radii[0] / teeth.base_radii[0])
+    outside = s - inside
+    corner = np.where(outside < 0.0, corner_gap(teeth, 1), corner_gap(teeth, 0))
     face = ((np.arange(SLICES) + 0.5) / SLICES - 0.5)[:, None] * teeth.face_width
     gap = np.repeat((corner * outside**2)[None, :], SLICES, axis=0)
     half, middle = 0.5 * (teeth.end - teeth.start), 0.5 * (teeth.start + teeth.end)
@@ -199,6 +201,17 @@ def path_gaps(teeth: Teeth, relief_scale: float = 1.0, relief: Sequence[float] =
             from_tip = teeth.end - inside if index == 0 else inside - teeth.start
             gap = gap + amount * np.maximum(1.0 - from_tip / length, 0.0)
     return gap
+
+
+def corner_gap(teeth: Teeth, index: int) -> float:
+    """Gap under the tip corner of gear ``index`` over the square of the path beyond its end [1/m].
+
+    Where involutes would still touch, the point of contact has left the tip by rho / r_b times that path; both flanks
+    part from there by half the sum of their curvatures times the distance squared.
+    """
+    at = teeth.end if index == 0 else teeth.start
+    radii = teeth.rolling_radii[0] + at, teeth.rolling_radii[1] - at
+    return 0.5 * (radii[index] / teeth.base_radii[index]) ** 2 * sum(1.0 / r for r in radii)
 
 
 def relief_length(teeth: Teeth, index: int) -> float:
