@@ -19,6 +19,7 @@ from tests.virtual_rig.heat_places import OffTheRigError, scattered
 from tests.virtual_rig.heat_truth import HeatTruth, boxes_of, rig
 from tests.virtual_rig.losses_mesh import Friction, mesh_power, path_of_contact
 from tests.virtual_rig.losses_rig import LossModel
+from tests.virtual_rig.losses_vibration import VibratingMesh, vibrating_mesh, vibration_power
 from tests.virtual_rig.oil_data import OILS
 
 ROOT = Path(__file__).parents[2]
@@ -278,6 +279,54 @@ def test_loss_factors_of_the_sheet():
     assert loss_factor(path_of_contact({"gears": gears}, mesh)) == pytest.approx(0.1986, rel=0.06)
 
 
+@pytest.mark.parametrize("ratio", [0.45, 1.0, 3.0])
+def test_vibration_of_one_pair_that_never_parts(ratio):
+    """Linear: the gap a (2 s / p)^2 as a Fourier series on one damped mass; ratio of mesh to natural frequency."""
+    pitch, mass, k, c, depth, a = 3e-3, 0.2, 1e8, 900.0, 2e-3, 20e-6
+    s = np.linspace(-0.5 * pitch, 0.5 * pitch, 401)
+    mesh = VibratingMesh(
+        key=(ratio,), mass=mass, pitch=pitch, start=s[0], step=s[1] - s[0], stiffness=np.full(401, k),
+        gaps=np.tile(a * (2.0 * s / pitch) ** 2, (3, 1)), mean_stiffness=k,
+    )  # fmt: skip
+    found = vibration_power(mesh, k * depth, ratio * mesh.frequency * pitch, c)
+    omega = 2.0 * math.pi * ratio * mesh.frequency * np.arange(1, 2000)
+    wave = 4.0 * a / (math.pi * np.arange(1, 2000)) ** 2
+    pressed = mass * omega**2 * wave / (k - mass * omega**2 + 1j * c * omega)
+    expected = float(np.sum(0.5 * c * omega**2 * np.abs(pressed) ** 2))
+    assert expected > 5.0
+    assert found == pytest.approx(expected, rel=0.015)
+
+
+def test_vibration_of_the_prototype():
+    """Far above resonance the mass stands still: the loss goes with the damping; it does not follow the time step."""
+    tree, _ = rig(PROTOTYPE)
+    mesh = vibrating_mesh(tree, "test", "main")
+    radius = 99e-3 / 2.0 * math.cos(math.radians(20.0))
+    # reduced mass of the two rings; resonance within a fifth of the printed 2953 rpm
+    assert mesh.frequency * 60.0 / 99.0 == pytest.approx(2953.0, rel=0.2)
+    powers = [vibration_power(mesh, 180.0 / radius, 1256.6 * radius, c) for c in (800.0, 1000.0)]
+    assert powers[1] / powers[0] == pytest.approx(1.25, abs=0.06)
+    assert vibration_power(mesh, 180.0 / radius, 0.0, 1000.0) == 0.0
+
+
+def test_vibration_is_paid_and_warms_gears_and_oil():
+    quiet = truth(constants=nominal() | {"mesh_damping": 0.0}).solve(FULL)
+    more = healthy()["motor_power"] - quiet["motor_power"]
+    losses = [
+        a["losses"]["test.vibration:main"] + a["losses"]["reference.vibration:main"]
+        for a in (quiet, healthy())
+    ]
+    assert losses[0] == 0.0
+    assert 400.0 < losses[1] < 600.0
+    # warmer oil lets the teeth rub a little more and the bearings a little less
+    assert more == pytest.approx(losses[1], rel=0.02)
+    assert (
+        quiet["temperatures"]["test.gear_test_pinion"]
+        < healthy()["temperatures"]["test.gear_test_pinion"] - 1.0
+    )
+    assert quiet["oil_outlets"]["test.gear_oil"] < healthy()["oil_outlets"]["test.gear_oil"] - 0.5
+
+
 def test_journal_bearing_limits():
     petroff = 2.0 * math.pi * 0.02 * 500.0 * 0.02**3 * 0.03 / 40e-6 * 500.0
     assert losses_parts.bearing_power(0.02, 500.0, 0.04, 0.03, 40e-6, 1.0, 1.0) == pytest.approx(
@@ -446,7 +495,7 @@ def test_finer_cells_converge():
         picked = [answer["temperatures"][k] for k in keys] + list(answer["thermocouples"].values())
         values.append([*picked, *list(answer["oil_outlets"].values())[:2]])
     coarse, fine = np.abs(np.diff(values, axis=0))
-    assert coarse.max() < 1.6
+    assert coarse.max() < 1.7
     assert fine.max() < 0.4 * coarse.max()
     assert np.median(coarse) < 0.8
 

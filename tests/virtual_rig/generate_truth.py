@@ -96,11 +96,13 @@ class RigTruth:
         self.rig, self.constants = rig, constants
         self.tree, boxes = case_of(rig)
         hot = {e["effect"]: e["size"] for e in effects if heat_key(e["effect"]) in EFFECTS}
-        self.heat = HeatTruth(self.tree, constants.heat, hot, boxes=boxes)
-        self.loop = None
+        self.loop, damping = None, {}
         if constants.loop is not None:
             moving = [e for e in effects if e["effect"].partition(":")[0] in CHANGES]
             self.loop = LoopTruth(self.tree, constants.loop, moving)
+            own = self.loop.constants.scale
+            damping = {name: value for name, value in own.items() if name.startswith("mesh_damping:")}
+        self.heat = HeatTruth(self.tree, {**constants.heat, **damping}, hot, boxes=boxes)
         self._start: dict[str, Any] = {}
 
     def values(self, points: Sequence[TruePoint], sensors: Sequence[Sensor], *, heat: bool = True, loop: bool = True

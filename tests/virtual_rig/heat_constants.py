@@ -48,6 +48,7 @@ CONSTANTS: Mapping[str, Constant] = {
     "film_weight": Constant(0.60, 0.05), "rim_drag": Constant(0.055, 0.08), "mist_density": Constant(1.0, 0.08),
     "mist_exponent": Constant(0.0, 0.05, True, 2.0, 0.05), "jet_carried": Constant(0.97, 0.03),
     "squeeze": Constant(1.0, 0.10), "seal_drag": Constant(1.0, 0.10), "into_gears": Constant(1.0, 0.06),
+    "mesh_damping": Constant(1.0, 0.22),
     "pinion_share": Constant(1.0, 0.04),
     # oil
     "oil_viscosity": Constant(1.0, 0.04), "oil_index": Constant(1.0, 0.02), "oil_heat_capacity": Constant(1.0, 0.02),

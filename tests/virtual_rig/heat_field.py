@@ -139,6 +139,8 @@ class FieldModel:
             loss = model.mesh(run, mesh, oil)
             squeeze = model.squeeze(run, loss)
             paid[f"mesh:{mesh.name}"], paid[f"squeeze:{mesh.name}"] = loss, squeeze
+            paid[f"vibration:{mesh.name}"] = vibration = model.vibration(run, mesh)
+            loss += vibration
             into = split.get("mesh_into_gears", 0.5) * c["into_gears"] * (1.0 + self.size("loss_split"))
             into = min(max(into, 0.0), 1.0)
             first = split.get("mesh_pinion_share", 0.5) * c["pinion_share"]

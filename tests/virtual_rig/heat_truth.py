@@ -102,6 +102,7 @@ class HeatTruth:
         for mesh in run.meshes:
             loss = model.mesh(run, mesh, run.gear_inlet + 15.0 * run.relative_torque)
             losses[f"mesh:{mesh.name}"], losses[f"squeeze:{mesh.name}"] = loss, model.squeeze(run, loss)
+            losses[f"vibration:{mesh.name}"] = model.vibration(run, mesh)
             for gear, power in zip((mesh.pinion, mesh.wheel), model.windage(run, mesh), strict=True):
                 losses[f"windage:{gear}"] = power
         losses["jet"] = model.jet(run)

@@ -14,6 +14,7 @@ from tests.virtual_rig.losses_parts import (
     jet_power,
     windage_power,
 )
+from tests.virtual_rig.losses_vibration import vibrating_mesh, vibration_power
 from tests.virtual_rig.oil_data import OilData, oil_of
 
 TOOTH_DEPTH = 2.25e-3
@@ -95,6 +96,7 @@ class LossModel:
             for name, box in tree["gearboxes"].items()
             for mesh, entry in box["meshes"].items()
         }
+        self.vibrating = {(name, mesh): vibrating_mesh(tree, name, mesh) for name, mesh in self.paths}
 
     def size(self, key: str, gearbox: str) -> float:
         """Size of an effect on a gearbox; zero where it is not."""
@@ -161,6 +163,14 @@ class LossModel:
         lubricant = value_at(self.tree, "losses.friction.lubricant_factor", box.gear_oil.lubricant_factor)
         eta = box.gear_oil.eta(oil)
         return mesh_power(mesh.path, mesh.torque, mesh.speed, eta, mesh.roughness, lubricant, friction)
+
+    def vibration(self, box: Gearbox, mesh: Mesh) -> float:
+        """Loss in the damping between the flanks of a mesh [W]; a loop may have a damping of its own for each."""
+        own = self.c.get(f"mesh_damping:{box.name}.{mesh.name}", self.c["mesh_damping"])
+        damping = box.entry["meshes"][mesh.name]["damping"] * own
+        radius = mesh.path.base_radius
+        vibrating = self.vibrating[box.name, mesh.name]
+        return vibration_power(vibrating, abs(mesh.torque) / radius, abs(mesh.speed) * radius, damping)
 
     def squeeze(self, box: Gearbox, mesh_loss: float) -> float:
         """Squeezing [W]: a share of the healthy mesh loss, and what the effect adds."""
