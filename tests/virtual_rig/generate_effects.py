@@ -87,6 +87,8 @@ def candidates(rig: str, own: Sequence[Sensor], *, catalogue: bool) -> list[str]
     gears = [f"{box}.{gear}" for box, entry in tree["gearboxes"].items() for gear in entry["gears"]]
     meshes = [f"{box}.{mesh}" for box, entry in tree["gearboxes"].items() for mesh in entry["meshes"]]
     couplings = list(tree["drivetrain"]["couplings"])
+    # a catalogue changes reliefs that a gear has; on another gear a relief is news to the case
+    relieved = [gear for gear in gears if _flank(tree, gear).get("tip_relief_length", 0.0) > 0.0]
     if catalogue:
         places = {
             "coupling_order_2": couplings, "coupling_stiffness": couplings, "coupling_damping": couplings,
@@ -94,6 +96,7 @@ def candidates(rig: str, own: Sequence[Sensor], *, catalogue: bool) -> list[str]
             "bracing_drift": [""],
         }  # fmt: skip
         kinds = [kind for kind, entry in LOOP.items() if entry.catalogue]
+        places["tip_relief"] = relieved
     else:
         cells = [s.name for s in own if s.quantity == "torque"]
         encoders = [s.name for s in own if s.quantity == "angle"]
@@ -103,9 +106,16 @@ def candidates(rig: str, own: Sequence[Sensor], *, catalogue: bool) -> list[str]
             "x_encoder_wobble": encoders, "x_alternate_teeth": gears if rig == "loop_1to1" else
             [g for g in gears if g.endswith("pinion")],
         }  # fmt: skip
-        kinds = [kind for kind, entry in LOOP.items() if not entry.catalogue]
+        kinds = [kind for kind, entry in LOOP.items() if not entry.catalogue] + ["tip_relief"]
+        places["tip_relief"] = [gear for gear in gears if gear not in relieved]
     found = [f"{kind}:{place}" if place else kind for kind in kinds for place in places.get(kind, gears)]
     return [*found, *heat]
+
+
+def _flank(tree: Mapping[str, Any], gear: str) -> Mapping[str, Any]:
+    box, name = gear.split(".")
+    flank: Mapping[str, Any] = tree["gearboxes"][box]["gears"][name].get("flank", {})
+    return flank
 
 
 def draw_effect(rig: str, own: Sequence[Sensor], rng: np.random.Generator, *, catalogue: bool, avoid: Sequence[str] = ()
