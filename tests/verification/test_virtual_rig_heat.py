@@ -309,7 +309,7 @@ def test_vibration_of_the_prototype():
     assert vibration_power(mesh, 180.0 / radius, 0.0, 1000.0) == 0.0
 
 
-def test_vibration_is_paid_and_warms_gears_and_oil():
+def test_vibration_is_paid_and_warms_the_oil():
     quiet = truth(constants=nominal() | {"mesh_damping": 0.0}).solve(FULL)
     more = healthy()["motor_power"] - quiet["motor_power"]
     losses = [

@@ -140,13 +140,12 @@ class FieldModel:
             squeeze = model.squeeze(run, loss)
             paid[f"mesh:{mesh.name}"], paid[f"squeeze:{mesh.name}"] = loss, squeeze
             paid[f"vibration:{mesh.name}"] = vibration = model.vibration(run, mesh)
-            loss += vibration
             into = split.get("mesh_into_gears", 0.5) * c["into_gears"] * (1.0 + self.size("loss_split"))
             into = min(max(into, 0.0), 1.0)
             first = split.get("mesh_pinion_share", 0.5) * c["pinion_share"]
             source[rims[0]] += loss * into * first
             source[rims[1]] += loss * into * (1.0 - first)
-            source[jet] += loss * (1.0 - into) + squeeze
+            source[jet] += loss * (1.0 - into) + squeeze + vibration
             for gear, power in zip((mesh.pinion, mesh.wheel), model.windage(run, mesh), strict=True):
                 paid[f"windage:{gear}"] = power
                 share = split.get("windage_into_gears", 0.1)

@@ -190,13 +190,19 @@ def _split(name: str, box: Gearbox) -> Iterator[Effect]:
     )
 
 
+IN_MIST = 0.8
+"""Healthy spread of the logarithm of a film on turning parts in a chamber: between dry air and mist, whose drops take
+the temperature of the wall, lies a factor of five (`thermal.convection_rotating`)."""
+
+
 def _films(name: str, housing: Housing) -> Iterator[Effect]:
     at = f"gearboxes.{name}.housing"
     for entry, condition in housing.boundary.items():
         fluid = getattr(condition, "fluid", None)
         if isinstance(condition, ThermalRadiation) or fluid is None or fluid == "ambient":
             continue
-        low, high = (0.3, 3.0) if isinstance(condition, ConstantFilm) else (0.2, 5.0)
+        given = isinstance(condition, ConstantFilm)
+        low, high = (0.3, 3.0) if given else (0.2, 5.0)
         yield Effect(
             name=f"film:{name}.{entry}",
             title=f"oil film {entry.replace('_', ' ')} of {name}",
@@ -204,7 +210,7 @@ def _films(name: str, housing: Housing) -> Iterator[Effect]:
             signature="moves the bodies it wets against the oil, leaves drive torque",
             parameters=(factor("factor", low, high),),
             change=Scaled(((f"{at}.boundary.{entry}.film_factor", getattr(condition, "film_factor", 1.0)),)),
-            healthy=0.25,
+            healthy=0.25 if given else IN_MIST,
         )
     yield _film(
         f"ambient_film:{name}", "film to room air", f"{at}.ambient_film_factor", housing.ambient_film_factor
