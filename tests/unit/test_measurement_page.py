@@ -17,6 +17,7 @@ from rigdesign.measurement import features, load_measurement
 from rigdesign.measurement.template import write_template
 from rigdesign.prediction import Feature
 from tests.measurement_example import replaced
+from tests.page_files import written_out
 
 CASES = Path(__file__).parents[2] / "cases"
 PAGE = (CASES / "measurement_sets.md").read_text(encoding="utf-8")
@@ -29,14 +30,6 @@ ZERO = math.radians(12.0)
 @pytest.fixture(scope="module")
 def case():
     return load_case(CASES / "loop_1to1")
-
-
-def written_out(folder: Path) -> None:
-    """Every file the page shows, by the name beside its fence."""
-    for name, text in re.findall(r"^```\w+ (\S+)\n(.*?)^```", PAGE, re.DOTALL | re.MULTILINE):
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
 
 
 def signals(seconds: float = 2.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -80,7 +73,7 @@ def write_csv(path: Path) -> None:
 )
 def test_the_labview_set_gives_the_orders_in_the_signal(tmp_path: Path, case, name: str, writer) -> None:
     """The page's low-pass of two poles is undone, so the orders come out larger by its gain."""
-    written_out(tmp_path)
+    written_out(PAGE, tmp_path)
     replaced(tmp_path / "labview", "measurement.toml", "P01_1.tdms", name)
     writer(tmp_path / "labview" / name)
     data = features(load_measurement(tmp_path / "labview", case))
@@ -94,7 +87,7 @@ def test_the_labview_set_gives_the_orders_in_the_signal(tmp_path: Path, case, na
 
 
 def test_the_spreadsheet_set_is_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    written_out(tmp_path)
+    written_out(PAGE, tmp_path)
     assert re.search(r"^ {4}rigdesign compare cases/loop_1to1 spreadsheet --out out$", PAGE, re.MULTILINE)
     arguments = [
         "compare",
@@ -141,7 +134,7 @@ def test_a_template_loads_once_it_is_filled_in(tmp_path: Path, name: str) -> Non
 
 
 def labview(tmp_path: Path, **changes: str) -> Path:
-    written_out(tmp_path)
+    written_out(PAGE, tmp_path)
     for old, new in changes.items():
         replaced(tmp_path / "labview", "measurement.toml", old, new)
     return tmp_path / "labview"
