@@ -11,7 +11,8 @@ import numpy as np
 
 from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.healthy import relative_speed, relative_torque
-from rigdesign.diagnosis.library import Library
+from rigdesign.diagnosis.levels import excess
+from rigdesign.diagnosis.library import NEAR_SENSOR, Library
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 
 Anonymous = tuple[str, Array]
@@ -25,11 +26,27 @@ def anonymous(library: Library, channels: Mapping[str, Channel]) -> Iterator[Ano
     laws = {"constant": np.ones_like(speed), "~n": speed, "~n2": speed**2, "~T n": torque * speed}
     for family, sources in (("heat", library.sources), ("heat unpaid", library.dry_sources)):
         for place, values in sources.items():
+            if place.startswith(NEAR_SENSOR):
+                continue
             for law, share in laws.items():
                 yield f"{family} at {place} {law}", (values * share)[:, None]
+    yield from _beside_sensors(library, channels)
     for name, values in library.links.items():
         yield f"conductance {name}", values[:, None]
     yield from _orders(library, channels, {"constant": laws["constant"], "~T": torque, "~n2": speed**2})
+
+
+def _beside_sensors(library: Library, channels: Mapping[str, Channel]) -> Iterator[Anonymous]:
+    """Heat from outside beside one thermocouple: a neighbour, a lamp; or a draught, as the wall is above ambient."""
+    warm = excess(library.features, library.base, channels, library.settings)
+    for place, values in library.dry_sources.items():
+        if not place.startswith(NEAR_SENSOR):
+            continue
+        name = place.removeprefix(NEAR_SENSOR)
+        above = {f.setting: warm[row] for row, f in enumerate(library.features) if f.channel == name}
+        share = np.array([above.get(feature.setting, 0.0) for feature in library.features])
+        yield f"heat near {name} constant", values[:, None]
+        yield f"heat near {name} ~T above ambient", (values * share)[:, None]
 
 
 def _orders(

@@ -13,7 +13,7 @@ from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.effects import Effect, Family
 from rigdesign.diagnosis.levels import levels
-from rigdesign.diagnosis.library import Library
+from rigdesign.diagnosis.library import NEAR_SENSOR, Library
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature, Setting
 
 
@@ -106,6 +106,7 @@ def _sources(library: Library) -> list[Column]:
     return [
         Column(name=name, kind="source", values=values * power, spread=1.0)
         for name, values in library.dry_sources.items()
+        if not name.startswith(NEAR_SENSOR)
     ]
 
 

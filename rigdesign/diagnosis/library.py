@@ -106,13 +106,16 @@ class Library:
             for (kind, where, point), values in inputs.items():
                 if point == run_of[at.name].name:
                     base += (value_of(run_of[at.name], kind, where) - value_of(at, kind, where)) * values
+        cut = self._cut(rows)
         return replace(
-            self._cut(rows),
+            cut,
             channels=channels,
             settings=settings,
             features=wanted,
             base=base,
             inputs=inputs,
+            sources=_of_sensors(cut.sources, names),
+            dry_sources=_of_sensors(cut.dry_sources, names),
             powers={run_of[point].name: power for point, power in self.powers.items() if point in run_of},
         )
 
@@ -143,6 +146,20 @@ K = TypeVar("K")
 
 def _of_rows(columns: Mapping[K, Array], rows: NDArray[np.intp]) -> dict[K, Array]:
     return {key: values[rows] for key, values in columns.items()}
+
+
+NEAR_SENSOR = "near:"
+"""How the name of a source begins that lies at a thermocouple."""
+
+
+def _of_sensors(sources: Mapping[str, Array], names: Mapping[str, str]) -> dict[str, Array]:
+    """Sources at the sensors of a set by the names they have there; ``names``: of the set -> of the library."""
+    own = {f"{NEAR_SENSOR}{kept}": f"{NEAR_SENSOR}{here}" for here, kept in names.items()}
+    return {
+        own.get(name, name): values
+        for name, values in sources.items()
+        if name in own or not name.startswith(NEAR_SENSOR)
+    }
 
 
 def value_of(setting: Setting, kind: str, place: str) -> float:

@@ -139,6 +139,14 @@ class Predictor:
         """(n_features,) first-order prediction for a changed case: one pass a point, the loop followed linearly.
 
         changes : as `values`
+
+        Raises
+        ------
+        CaseError
+            As `values`.
+        NotConvergedError
+            A pass that does not settle, or teeth so unlike that their contacts have to be followed exactly, as
+            `values` does.
         """
         made = self._changed_rigs(changes)
         with self._calm():
@@ -226,7 +234,7 @@ class Predictor:
         """Name -> (n_features,) answer per watt [1/W] put in at all operating points.
 
         Names: ``body:`` gearbox.body, ``rim:`` gearbox.gear, ``bore:`` and ``film:`` gearbox.bearing, ``oil:``
-        stream.
+        stream, ``near:`` thermocouple by its coordinates.
 
         paid : whether the motor gives that watt, so that its power and torque rise with it
         """

@@ -21,6 +21,9 @@ from rigdesign.prediction.growth_map import GrowthMap
 from rigdesign.prediction.housings import ReducedField, ReducedHousings
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.near_loop import Cause, NearLoop
+from rigdesign.prediction.places import place_weights
+from rigdesign.prediction.orders import Orders, is_ideal, shaft_orders
+from rigdesign.prediction.orders import numbers as order_numbers
 from rigdesign.prediction.readings import Reading, Settled
 from rigdesign.prediction.settle import SCALES, SettledPoint, flat, raw, unflat
 from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
@@ -169,7 +172,7 @@ class PointSlopes:
         return found
 
     def sources(self) -> dict[str, FloatArray]:
-        """Name -> (f,) answer per watt put in: bodies, rims, bearing bores and journals, films, oil streams."""
+        """Name -> (f,) answer per watt put in: bodies, rims, bearing bores and journals, films, oil streams, sensors."""
         found: dict[str, FloatArray] = {}
         for name, field in self._fields():
             reduced = self._housings.bases[name].reduced
@@ -182,6 +185,10 @@ class PointSlopes:
                 surface = f"bearing_bore_{entry.shaft}_{entry.side}"
                 if surface in reduced.setup.mesh.surfaces:
                     loads[f"bore:{name}.{bearing}"] = reduced.surface(surface).mean
+            for channel, _ in self._reads:
+                if channel.quantity == "temperature" and channel.place == name:
+                    _, (nodes, weights) = place_weights(self.rig, channel.place, channel.at)
+                    loads[f"near:{channel.name}"] = weights @ reduced.shapes[nodes]
             answers = system.answers(field.coefficients, np.array(list(loads.values())).T)
             handed = self._handed(name, system.links(field.coefficients)) @ answers
             whole = self.answer(handed, self._directions[name].readings @ answers)
@@ -236,15 +243,27 @@ class PointSlopes:
         parts = replace(self._parts, response=response)
         done = one_pass(rig, point, feedback, bracing, self.settled.last, parts=parts)
         settled = Settled(point, done, bracing)
-        orders = None if causes is None else iter(self.near.orders(causes).tolist())
+        near = None if causes is None else iter(self.near.orders(causes).tolist())
+        orders = {} if near is not None else self._orders(rig, done, bracing)
         read: list[float] = []
         for channel, reading in self._reads:
-            if orders is not None and channel.quantity in ORDER_QUANTITIES:
-                read += islice(orders, numbers_of(channel))
-            else:
+            if channel.quantity not in ORDER_QUANTITIES:
                 read += reading(rig, settled)
+            elif near is not None:
+                read += islice(near, numbers_of(channel))
+            else:
+                read += order_numbers(channel, orders)
         handed = flat(raw(rig, done, self._parts, self.feedback))
-        return Answer(readings=np.array(read), handed=handed, same_loop=orders is not None)
+        return Answer(readings=np.array(read), handed=handed, same_loop=near is not None)
+
+    def _orders(self, rig: Rig, done: PassResult, bracing: Bracing | None) -> Orders:
+        """Orders after a pass. Raises NotConverged where contacts would have to be followed exactly."""
+        read = [channel for channel, _ in self._reads if channel.quantity in ORDER_QUANTITIES]
+        if not read:
+            return {}
+        assert bracing is not None
+        ideal = done.response if is_ideal(rig) else None
+        return shaft_orders(rig, done.point, done.models, done.drags, bracing, read, base=ideal, exact=False)
 
 
 def link_name(gearbox: str, link: Link) -> str:
