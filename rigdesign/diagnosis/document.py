@@ -395,4 +395,8 @@ def leading_sentences(outcome: Outcome) -> list[str]:
     whole = float(shares.sum())
     weights = [(float(shares[list(item.features)].sum()), item) for item in outcome.before]
     ordered = sorted(weights, key=lambda pair: -pair[0])
-    return [sentence(item, outcome.result.measurement) for weight, item in ordered if weight > 0.15 * whole]
+    told = [item for weight, item in ordered if weight > 0.15 * whole]
+    return [
+        f"{sentence(item, outcome.result.measurement)} {item.rms:.2g} standard deviations of a healthy rig."
+        for item in told
+    ]
