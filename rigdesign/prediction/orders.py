@@ -43,7 +43,7 @@ Orders = dict[tuple[str, float], complex]
 SAME_ORDER = 1e-6
 """Relative difference below which two orders are the same."""
 UNSETTLED = 0.05
-"""Change of the approach in the last correction from which the contacts are followed exactly [-]."""
+"""Change of the approach in the last correction from which the corrections do not suffice [-]."""
 
 
 def shaft_orders(
@@ -55,7 +55,7 @@ def shaft_orders(
     channels: Sequence[Channel],
     *,
     base: CurvePoint | None = None,
-    exact: bool = False,
+    exact: bool | None = None,
     steps: int = CYCLE_STEPS,
 ) -> Orders:
     """Orders of the channels that read torque or angle; other channels are passed over. See `PointOrders`.
@@ -82,7 +82,7 @@ class PointOrders:
         setting: Setting,
         *,
         base: CurvePoint | None = None,
-        exact: bool = False,
+        exact: bool | None = None,
         steps: int = CYCLE_STEPS,
     ) -> None:
         """Take a point; nothing is solved yet.
@@ -93,10 +93,10 @@ class PointOrders:
             [N m]; setting : as in `rigdesign.loads.respond`
         base : response of the same point with all teeth alike and no torque that swings (`ideal_response`), where
             it is known
-        exact : follow all contacts over the hunting cycle instead (seconds, not milliseconds)
+        exact : follow all contacts over the hunting cycle instead (seconds to a minute, not milliseconds); left out,
+            where the corrections do not suffice (a tooth that is all but missing); False: never
         steps : corrections at most for what the contacts do beyond first order; 0 is the linear response about the
-            motion with all teeth alike. Where all of them do not suffice (a tooth that is all but missing) the exact
-            motion is taken
+            motion with all teeth alike
         """
         assert rig.system is not None and rig.drivetrain is not None
         self.rig, self.point, self.models, self.drags, self.setting = (
@@ -131,6 +131,11 @@ class PointOrders:
             response = DeviationResponse(self.system, self.laws, base, twist_held=held, steps=self.steps)
             if self.steps < CYCLE_STEPS or response.change < UNSETTLED:
                 return _Deviating(response, base)
+            if self.exact is False:
+                raise NotConverged(
+                    f"orders at {self.point.stage!r}: the last correction still moved the contacts by "
+                    f"{response.change:.2g} of their deviation (limit {UNSETTLED:g}); follow them exactly"
+                )
         return _Exact(exact_motion(self.rig, self.point, self.laws, self.drags, self.setting))
 
     @cached_property
@@ -185,6 +190,15 @@ class PointOrders:
             self.system, dict(zip(mean.dofs.tolist(), mean.torque.real.tolist())), twist=self.solved.twist,
             drive=self.solved.drive, speed=self.solved.speed * self.ratios, drags=self.drags,
         )  # fmt: skip
+
+
+def numbers(channel: Channel, orders: Orders) -> list[float]:
+    """Features of a channel in their order: means, real and imaginary parts."""
+    found: list[float] = []
+    for order in channel.orders:
+        value = complex(orders[channel.name, order])
+        found += [value.real, value.imag] if order else [value.real]
+    return found
 
 
 def ideal_response(
