@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.beside import Beside
+from rigdesign.beside import Beside, cores
 from rigdesign.case.model import Case
+from rigdesign.diagnosis.cache import Parts
 from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.library import Library, Response
@@ -18,6 +19,15 @@ Progress = Callable[[str], None]
 
 SHARES = (-1.0, -0.4, -0.12, 0.12, 0.4, 1.0)
 """Runs of a nonlinear effect, as shares of its bounds."""
+
+TOOTH_SHARES = (-1.0, -0.3, 0.3, 1.0)
+"""The same of the flanks of a gear, whose runs take longest."""
+
+GIVING_WAY = (0.12, 0.4, 0.7, 1.0)
+"""The same of a tooth that gives way: the model may refuse the largest sizes."""
+
+BATCH = 4
+"""Works a core between two notes of what is done."""
 
 DYNAMIC = frozenset({"excitation", "tooth", "stiffness", "inertia", "damping"})
 """Families that leave temperatures and losses nearly as they are."""
@@ -41,6 +51,8 @@ def build_library(
 ) -> Library:
     """Run the model at the plan for everything that may be off; on all cores.
 
+    Finished responses are kept until the library is whole, so that an interrupted run goes on there.
+
     Raises what the model raises at the base state; an effect that the model refuses at some size is kept up to the
     sizes it can compute.
     """
@@ -48,12 +60,9 @@ def build_library(
     predictor = Predictor(case, tuple(settings), (*channels, POWER))
     predictor.prepare()
     base = predictor.base
-    moving = sorted((effect for effect in effects if _reaches(effect, channels)), key=_haste)
-    work = [_Response(predictor, case, effect, base) for effect in moving]
-    say(f"responses to {len(moving)} effects")
-    with Beside(work) as beside:
-        found = beside.results()
-    responses = {effect.name: one for effect, one in zip(moving, found, strict=True) if one is not None}
+    parts = Parts.of(case, settings, channels, effects)
+    moving = [effect for effect in effects if _reaches(effect, channels)]
+    responses = _responses(predictor, case, moving, parts, say)
     say("local conductances, sources, settings")
     own = np.array([feature.channel != POWER.name for feature in predictor.features])
     powers = {
@@ -62,7 +71,7 @@ def build_library(
         if feature.channel == POWER.name
     }
     paid, unpaid = predictor.sources(paid=True), predictor.sources()
-    return Library(
+    library = Library(
         channels=tuple(channels),
         features=tuple(feature for feature, keep in zip(predictor.features, own, strict=True) if keep),
         settings=tuple(settings),
@@ -79,6 +88,8 @@ def build_library(
         powers=powers,
         error=predictor.error,
     )
+    parts.remove()
+    return library
 
 
 def _reaches(effect: Effect, channels: Sequence[Channel]) -> bool:
@@ -97,29 +108,60 @@ def _by_point(predictor: Predictor, own: NDArray[np.bool_]) -> dict[tuple[str, s
     }
 
 
-class _Response:
-    """The runs of one effect; a class, so that another core can be handed it."""
+def _responses(
+    predictor: Predictor, case: Case, effects: Sequence[Effect], parts: Parts, say: Progress
+) -> dict[str, Response]:
+    """Effect -> its runs, without those that the model refuses; finished ones are kept as ``parts``."""
+    found = parts.known()
+    left = [effect for effect in effects if effect.name not in found]
+    works = [_Runs(predictor, case, tuple(group)) for group in _together(left)]
+    size = BATCH * cores()
+    for start in range(0, len(works), size):
+        say(f"response {len(effects) - len(left) + 1} of {len(effects)}")
+        with Beside(works[start : start + size]) as beside:
+            new = {name: one for made in beside.results() for name, one in made.items()}
+        parts.keep(new)
+        found |= new
+        left = [effect for effect in left if effect.name not in new]
+    whole = ((effect.name, found[effect.name]) for effect in effects)
+    return {name: one for name, one in whole if one is not None}
 
-    def __init__(self, predictor: Predictor, case: Case, effect: Effect, base: Array) -> None:
-        self._predictor, self._case, self._effect, self._base = predictor, case, effect, base
 
-    def __call__(self) -> Response | None:
-        coordinates = [np.zeros(len(self._effect.parameters))]
-        answers = [np.zeros_like(self._base)]
-        for place in run_places(self._effect):
-            changes = self._effect.changes(self._case, tuple(float(value) for value in place))
-            try:
-                found = (
-                    self._predictor.swinging(changes)
-                    if swings(self._effect)
-                    else self._predictor.response(changes)
-                )
-                answer = found - self._base
-            except RigdesignError:
+def _together(effects: Sequence[Effect]) -> list[list[Effect]]:
+    """Effects that share what one process remembers: the same of both gears of a mesh may be one to its contacts."""
+    groups: dict[object, list[Effect]] = {}
+    for effect in sorted(effects, key=_haste):
+        flanks = effect.family == "tooth" and not effect.any_tooth
+        place = effect.claim.partition(":")[2].partition(".")[0]
+        groups.setdefault((effect.kind, place) if flanks else effect.name, []).append(effect)
+    return list(groups.values())
+
+
+class _Runs:
+    """The runs of some effects; a class, so that another core can be handed it."""
+
+    def __init__(self, predictor: Predictor, case: Case, effects: tuple[Effect, ...]) -> None:
+        self._predictor, self._case, self._effects = predictor, case, effects
+
+    def __call__(self) -> dict[str, Response | None]:
+        return {effect.name: self._response(effect) for effect in self._effects}
+
+    def _response(self, effect: Effect) -> Response | None:
+        """From the smallest run on: where the model refuses one, the larger ones are left out."""
+        base = self._predictor.base
+        coordinates, answers = [np.zeros(len(effect.parameters))], [np.zeros_like(base)]
+        refused: list[Array] = []
+        for place in sorted(run_places(effect), key=lambda one: float(np.abs(one).max())):
+            if any(np.all(np.sign(place) == np.sign(smaller)) for smaller in refused):
                 continue
-            coordinates.append(place)
-            answers.append(answer)
-        if len(coordinates) < 1 + len(self._effect.parameters):
+            changes = effect.changes(self._case, tuple(float(value) for value in place))
+            try:
+                run = self._predictor.swinging if swings(effect) else self._predictor.response
+                answers.append(run(changes) - base)
+                coordinates.append(place)
+            except RigdesignError:
+                refused.append(place)
+        if len(coordinates) < 1 + len(effect.parameters):
             return None
         return Response(coordinates=np.array(coordinates), answers=np.array(answers))
 
@@ -137,8 +179,11 @@ def run_places(effect: Effect) -> list[Array]:
         steps = [share * max(abs(low), abs(high)) for low, high in bounds]
         return list(np.diag(steps))
     low, high = bounds[0]
-    shares = (share * (high if share > 0.0 else -low) for share in SHARES)
-    return [np.array([share]) for share in shares if share != 0.0]
+    shares: tuple[float, ...] = SHARES
+    if effect.family == "tooth":
+        shares = TOOTH_SHARES if low < 0.0 else GIVING_WAY
+    places = (share * (high if share > 0.0 else -low) for share in shares)
+    return [np.array([place]) for place in places if place != 0.0]
 
 
 def _haste(effect: Effect) -> tuple[int, int]:

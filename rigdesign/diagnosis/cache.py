@@ -9,13 +9,15 @@ import hashlib
 import json
 import os
 import pickle
-from collections.abc import Callable, Sequence
+import shutil
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from rigdesign import __version__
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.effects import Effect
-from rigdesign.diagnosis.library import Library
+from rigdesign.diagnosis.library import Library, Response
 from rigdesign.prediction.model import Channel, Setting
 
 SCHEMA = 1
@@ -42,7 +44,7 @@ def library_of(
     if found is not None:
         return found
     made = build()
-    _write(_folder(case, effects), made)
+    _store(_folder(case, effects), made)
     serving = made.serving(tuple(settings), tuple(channels))
     assert serving is not None
     return serving
@@ -61,6 +63,38 @@ def stored_library(
     return None
 
 
+@dataclass(frozen=True)
+class Parts:
+    """Finished responses of a library in the making, kept beside the libraries: an interrupted run goes on there."""
+
+    folder: Path
+
+    @classmethod
+    def of(
+        cls, case: Case, settings: Sequence[Setting], channels: Sequence[Channel], effects: Sequence[Effect]
+    ) -> "Parts":
+        """Of one library: its rig, plan and sensors."""
+        plan = hashlib.sha256(repr((tuple(settings), tuple(channels))).encode()).hexdigest()[:16]
+        return cls(_folder(case, effects) / f"{plan}.parts")
+
+    def known(self) -> dict[str, Response | None]:
+        """Effect -> its response, None where the model refused it."""
+        found: dict[str, Response | None] = {}
+        for file in sorted(self.folder.glob("*.pickle")) if self.folder.is_dir() else ():
+            part = _unpickled(file)
+            if isinstance(part, dict):
+                found |= part
+        return found
+
+    def keep(self, responses: Mapping[str, Response | None]) -> None:
+        """Store responses by effect."""
+        _store(self.folder, dict(responses))
+
+    def remove(self) -> None:
+        """Forget them: the library is whole."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
 def _folder(case: Case, effects: Sequence[Effect]) -> Path:
     return cache_folder() / "diagnosis" / _key(case, effects)
 
@@ -76,17 +110,21 @@ def _key(case: Case, effects: Sequence[Effect]) -> str:
 
 
 def _read(file: Path) -> Library | None:
-    """A file that is cut or from another version is as good as none."""
-    try:
-        found = pickle.loads(file.read_bytes())
-    except (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, IndexError):
-        return None
+    found = _unpickled(file)
     return found if isinstance(found, Library) else None
 
 
-def _write(folder: Path, library: Library) -> None:
+def _unpickled(file: Path) -> object:
+    """A file that is cut or from another version is as good as none."""
+    try:
+        return pickle.loads(file.read_bytes())
+    except (OSError, pickle.UnpicklingError, EOFError, AttributeError, ImportError, IndexError):
+        return None
+
+
+def _store(folder: Path, what: object) -> None:
     """Beside, then renamed; a folder that cannot be written to costs time, not the result."""
-    content = pickle.dumps(library, protocol=5)
+    content = pickle.dumps(what, protocol=5)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         beside = folder / f".{os.getpid()}.part"
