@@ -21,9 +21,9 @@ from rigdesign.prediction.growth_map import GrowthMap
 from rigdesign.prediction.housings import ReducedField, ReducedHousings
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.near_loop import Cause, NearLoop
-from rigdesign.prediction.places import place_weights
 from rigdesign.prediction.orders import Orders, is_ideal, shaft_orders
 from rigdesign.prediction.orders import numbers as order_numbers
+from rigdesign.prediction.places import place_weights
 from rigdesign.prediction.readings import Reading, Settled
 from rigdesign.prediction.settle import SCALES, SettledPoint, flat, raw, unflat
 from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
@@ -172,7 +172,7 @@ class PointSlopes:
         return found
 
     def sources(self) -> dict[str, FloatArray]:
-        """Name -> (f,) answer per watt put in: bodies, rims, bearing bores and journals, films, oil streams, sensors."""
+        """Name -> (f,) answer per watt put in: bodies, rims, bearings, films, oil streams, sensors."""
         found: dict[str, FloatArray] = {}
         for name, field in self._fields():
             reduced = self._housings.bases[name].reduced
