@@ -1,5 +1,6 @@
 """Makes the library of a rig: runs of the model for every effect, derivatives for everything else."""
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
@@ -39,7 +40,7 @@ SWING_SHARE = 0.01
 """The same of an excitation: what grows with its square stays small beside."""
 
 POWER = Channel(name="losses of the rig", quantity="motor_power", place="motor")
-"""Read beside the channels of the measurement: all losses together."""
+"""Read beside the channels of the measurement: all losses together; without a drivetrain they are given."""
 
 
 def build_library(
@@ -57,7 +58,8 @@ def build_library(
     sizes it can compute.
     """
     say(f"model of {len(settings)} operating points and {len(channels)} sensors")
-    predictor = Predictor(case, tuple(settings), (*channels, POWER))
+    metered = (POWER,) if case.drivetrain is not None else ()
+    predictor = Predictor(case, tuple(settings), (*channels, *metered))
     predictor.prepare()
     base = predictor.base
     parts = Parts.of(case, settings, channels, effects)
@@ -65,7 +67,9 @@ def build_library(
     responses = _responses(predictor, case, moving, parts, say)
     say("local conductances, sources, settings")
     own = np.array([feature.channel != POWER.name for feature in predictor.features])
-    powers = {
+    given = math.fsum(loss.power for loss in case.losses.given.values())
+    powers = {setting.name: given for setting in settings}
+    powers |= {
         feature.setting: float(value)
         for feature, value in zip(predictor.features, base, strict=True)
         if feature.channel == POWER.name

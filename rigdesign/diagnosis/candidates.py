@@ -19,6 +19,7 @@ NOISE: dict[Quantity, float] = {
     "angle": 2e-6,
     "natural_frequency": 6.0,
     "backlash": 3e-6,
+    "seal_gap": 1e-5,
 }
 """Standard deviation of a reading of a sensor that would be added, its systematic part included [SI]."""
 
@@ -31,6 +32,7 @@ COST: dict[Quantity, float] = {
     "angle": 4.0,
     "natural_frequency": 3.0,
     "backlash": 1.0,
+    "seal_gap": 6.0,
 }
 """Relative to one thermocouple."""
 
@@ -79,22 +81,24 @@ def _thermocouples(places: Places) -> list[str]:
 
 
 def extra_points(settings: Sequence[Setting], meshes: Sequence[str]) -> tuple[Extra, ...]:
-    """Points beside the plan: other oil, other flow, other speed and torque, a wheel put on further."""
+    """Points beside the plan: its corners if it has several, other oil, other flow, a wheel put on further."""
     middle = sorted(settings, key=lambda one: one.speed * abs(one.torque))[len(settings) // 2]
     slow, fast = (pick(one.speed for one in settings) for pick in (min, max))
     light, heavy = (pick(abs(one.torque) for one in settings) for pick in (min, max))
-    found = [
-        Extra(
-            title="a point at the least speed and the greatest torque",
-            setting=replace(middle, name=f"{SPARE}slow", speed=slow, torque=heavy),
-            cost=1.0,
-        ),
-        Extra(
-            title="a point at the greatest speed and the least torque",
-            setting=replace(middle, name=f"{SPARE}fast", speed=fast, torque=light),
-            cost=1.0,
-        ),
-    ]
+    found = []
+    if len(settings) > 1:
+        found += [
+            Extra(
+                title="a point at the least speed and the greatest torque",
+                setting=replace(middle, name=f"{SPARE}slow", speed=slow, torque=heavy),
+                cost=1.0,
+            ),
+            Extra(
+                title="a point at the greatest speed and the least torque",
+                setting=replace(middle, name=f"{SPARE}fast", speed=fast, torque=light),
+                cost=1.0,
+            ),
+        ]
     if middle.inlet_temperature:
         colder = {stream: value - 20.0 for stream, value in middle.inlet_temperature.items()}
         found.append(

@@ -104,7 +104,7 @@ class Library:
         for place in points:
             at = self.settings[place]
             for (kind, where, point), values in inputs.items():
-                if point == run_of[at.name].name:
+                if point == run_of[at.name].name and states(at, kind, where):
                     base += (value_of(run_of[at.name], kind, where) - value_of(at, kind, where)) * values
         cut = self._cut(rows)
         return replace(
@@ -160,6 +160,15 @@ def _of_sensors(sources: Mapping[str, Array], names: Mapping[str, str]) -> dict[
         for name, values in sources.items()
         if name in own or not name.startswith(NEAR_SENSOR)
     }
+
+
+def states(setting: Setting, kind: str, place: str) -> bool:
+    """Whether a setting says this value or leaves it to the case."""
+    if kind in ("speed", "torque"):
+        return True
+    if place == "":
+        return setting.ambient_temperature is not None
+    return place in getattr(setting, kind)
 
 
 def value_of(setting: Setting, kind: str, place: str) -> float:

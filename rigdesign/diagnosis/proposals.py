@@ -24,7 +24,7 @@ RIVALS = 3
 
 def extras_of(case: Case, settings: Sequence[Setting]) -> tuple[Extra, ...]:
     """Points beside the plan of a set."""
-    return extra_points(settings, Places(case).meshes)
+    return extra_points(settings, Places(case).meshes if case.drivetrain is not None else ())
 
 
 def proposals(
@@ -32,20 +32,26 @@ def proposals(
 ) -> tuple[Ranked, ...]:
     """Measurements that tell the leading rivals apart, best first; none where something is named.
 
+    With too few data to name anything: those that tell the leading explanation from nothing at all.
+
     library : with the candidates, points and channels under the names of the set
     """
-    if found.decision.verdict not in ("alias_group", "too_small", "unknown_located"):
+    if found.decision.verdict not in ("alias_group", "too_small", "unknown_located", "data_insufficient"):
         return ()
     rivals = _rivals(found)
-    if len(rivals) < 2:
+    alone = found.decision.verdict == "data_insufficient"
+    if len(rivals) < (1 if alone else 2):
         return ()
     whole, measured = _with_candidates(problem.subject.rows(found.kept), library)
     answers = _answers(problem, whole, rivals)
+    told = [_rival(one, answers[one.hypothesis.name]) for one in rivals]
+    if alone:
+        told = [told[0], _nothing(len(whole.features))]
     return ranked(
         whole.covariance(amplitudes),
         measured,
         found.residual,
-        [_rival(one, answers[one.hypothesis.name]) for one in rivals],
+        told,
         _offers(whole.features[measured:], whole.channels, extras),
     )
 
@@ -116,6 +122,11 @@ def _rival(one: Evidence, hypothesis: Hypothesis) -> Rival:
         slopes = hypothesis.columns
         answer = slopes @ sizes
     return Rival(name=one.hypothesis.name, answer=answer, slopes=slopes, deviations=np.array(one.deviations))
+
+
+def _nothing(count: int) -> Rival:
+    """That nothing is at work: with too few data the first question is whether the leading explanation is real."""
+    return Rival(name="none", answer=np.zeros(count), slopes=np.zeros((count, 0)), deviations=np.zeros(0))
 
 
 def _offers(
