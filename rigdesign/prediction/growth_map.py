@@ -5,10 +5,12 @@ the rig, so that a clearance follows each shape in proportion to nanometres. Eac
 """
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
 from rigdesign.growth import HousingGrowth, read_growth
+from rigdesign.prediction.fields_beside import fields_beside
 from rigdesign.rig.model import Rig
 from thermal.expansion import read_expansion
 from thermal.fe.mesh import FloatArray
@@ -42,15 +44,16 @@ class GrowthMap:
         self.growth = read(field, start)
         """At the base."""
         first = numbers_of(self.growth)
-        columns = []
-        for shape, size in zip(shapes.T, sizes):
+
+        def follows(shape: FloatArray, size: float) -> FloatArray:
             if size < LEAST:
-                columns.append(np.zeros_like(first))
-                continue
+                return np.zeros_like(first)
             bent = setup.elastic.solve(AMPLITUDE * shape, 0.0, min(1e-2, ENOUGH / size), None).values
             moved = read(field + AMPLITUDE * shape, start + bent)
-            columns.append((numbers_of(moved) - first) / AMPLITUDE)
-        self.first, self.slope = first, np.array(columns).T
+            return np.asarray((numbers_of(moved) - first) / AMPLITUDE)
+
+        works = [partial(follows, shape, size) for shape, size in zip(shapes.T, sizes.tolist())]
+        self.first, self.slope = first, np.array(fields_beside(len(field), works)).T
         """Numbers of the growth at the base, and (k, m) how they follow the coefficients [m/K]."""
 
     def at(self, coefficients: FloatArray) -> HousingGrowth:

@@ -9,10 +9,12 @@ conditions are drawn at random (see `drawn`); those the model misses most become
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from scipy import sparse
 
+from rigdesign.prediction.fields_beside import fields_beside
 from rigdesign.prediction.places import Weights
 from thermal import convection
 from thermal.boundary import (
@@ -175,11 +177,11 @@ def build_basis(
     for last in [False] * (ROUNDS - 1) + [True]:
         shapes, sizes = shapes_of(snapshots, SHAPES_LEAST)
         reduced = ReducedConduction(setup, shapes)
-        missed = [_missed(full, reduced, read, states, random) for _ in range(UNSEEN)]
+        missed = _missed(full, reduced, read, states, random, UNSEEN)
         error = max(gap for gap, _ in missed)
         if error <= WANTED or last:
             break
-        missed += [_missed(full, reduced, read, states, random) for _ in range(DRAWS)]
+        missed += _missed(full, reduced, read, states, random, DRAWS)
         snapshots = np.hstack([snapshots, np.array([field for _, field in missed]).T])
     return Basis(reduced, sizes, error)
 
@@ -204,14 +206,19 @@ def _missed(
     read: sparse.csr_array,
     states: Sequence[Sequence[Condition]],
     random: np.random.Generator,
-) -> tuple[float, FloatArray]:
-    """Largest error that is read under randomly changed conditions [K], and the full field."""
-    conditions = drawn(states[int(random.integers(len(states)))], random)
+    count: int,
+) -> list[tuple[float, FloatArray]]:
+    """Largest error that is read under randomly changed conditions [K], and the full field; some of them."""
     start = np.zeros(reduced.size)
     start[0] = 330.0
-    found = reduced.field(reduced.solve(conditions, start).coefficients)
-    exact = full.solve(conditions, found)
-    return float(np.abs(read @ (exact - found)).max()), exact
+
+    def under(conditions: Sequence[Condition]) -> tuple[float, FloatArray]:
+        found = reduced.field(reduced.solve(conditions, start).coefficients)
+        exact = full.solve(conditions, found)
+        return float(np.abs(read @ (exact - found)).max()), exact
+
+    drawn_ones = [drawn(states[int(random.integers(len(states)))], random) for _ in range(count)]
+    return fields_beside(read.shape[1], [partial(under, conditions) for conditions in drawn_ones])
 
 
 def drawn(conditions: Sequence[Condition], random: np.random.Generator) -> list[Condition]:
