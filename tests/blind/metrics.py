@@ -115,6 +115,7 @@ def table(rows: Sequence[Row]) -> list[tuple[str, str, str]]:
     sizes = [row for row in kinds["single"] if right(row) and row["covered"] is not None]
     errors = [row["size_error"] for row in sizes]
     gaps = [row["gap_shrink"] for row in kinds["single"] if right(row) and row["gap_shrink"] is not None]
+    raw = [shrink for row in kinds["single"] if right(row) and (shrink := raw_shrink(row)) is not None]
     worse = [row for row in rows if row["gap_worse"] is not None]
     plain = [one for one in large if not easy(one)]
     return [
@@ -139,9 +140,19 @@ def table(rows: Sequence[Row]) -> list[tuple[str, str, str]]:
         ("95 % intervals cover", "90-98 %", str(rate(sizes, lambda r: r["covered"]))),
         ("median size error", "<= 10 % / 5 %", f"{median(errors):.1%}" if errors else "none"),
         ("median shrink of the gap above its floor", ">= 80 %", f"{median(gaps):.0%}" if gaps else "none"),
+        ("median shrink of the raw gap, own channels", ">= 80 % base", f"{median(raw):.0%}" if raw else "none"),
         ("gap never worse", ">= 97 %", str(rate(worse, lambda r: not r["gap_worse"]))),
         ("median time of a diagnosis", "<= 15 s", f"{median([r['seconds'] for r in rows] or [0.0]):.1f} s"),
     ]
+
+
+def raw_shrink(row: Row) -> float | None:
+    """How much of the raw gap on the held-out points went, of what was above the noise; None where none was."""
+    if not row.get("gap"):
+        return None
+    _, _, before, after, floor = row["gap"]
+    above = before - floor
+    return None if above <= 0.5 * floor else 1.0 - max(after - floor, 0.0) / above
 
 
 def spoke(row: Row) -> bool:
