@@ -21,8 +21,8 @@ Progress = Callable[[str], None]
 SHARES = (-1.0, -0.4, -0.12, 0.12, 0.4, 1.0)
 """Runs of a nonlinear effect, as shares of its bounds."""
 
-TOOTH_SHARES = (-1.0, -0.3, 0.3, 1.0)
-"""The same of the flanks of a gear, whose runs take longest."""
+FEWER_SHARES = (-1.0, -0.3, 0.3, 1.0)
+"""The same of the flanks of a gear, whose runs take longest, and of inertias, which move little."""
 
 GIVING_WAY = (0.12, 0.4, 0.7, 1.0)
 """The same of a tooth that gives way: the model may refuse the largest sizes."""
@@ -184,8 +184,8 @@ def run_places(effect: Effect) -> list[Array]:
         return list(np.diag(steps))
     low, high = bounds[0]
     shares: tuple[float, ...] = SHARES
-    if effect.family == "tooth":
-        shares = TOOTH_SHARES if low < 0.0 else GIVING_WAY
+    if effect.family in ("tooth", "inertia"):
+        shares = FEWER_SHARES if low < 0.0 else GIVING_WAY
     places = (share * (high if share > 0.0 else -low) for share in shares)
     return [np.array([place]) for place in places if place != 0.0]
 
