@@ -28,6 +28,7 @@ from rigdesign.prediction.readings import Reading, Settled
 from rigdesign.prediction.settle import SCALES, SettledPoint, flat, raw, unflat
 from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import gear_oil
 from rigdesign.state import Feedback, OperatingPoint
 from thermal.boundary import Exchange, Film, Radiation
 from thermal.contact import Contact
@@ -153,7 +154,7 @@ class PointSlopes:
         return replace(done, readings=self._y + self.answer(done.handed - self._g, done.readings - self._y))
 
     def links(self) -> dict[str, FloatArray]:
-        """Name -> (f,) answer to the logarithm of every local conductance of the housings."""
+        """Name -> (f,) answer to the logarithm of every local conductance of the housings, and to how oil mixes."""
         found: dict[str, FloatArray] = {}
         for name, field in self._fields():
             system = Projection(self._housings.bases[name].reduced, field.conditions)
@@ -169,7 +170,34 @@ class PointSlopes:
             for number, link in enumerate(links):
                 label = link_name(name, link)
                 found[label] = found.get(label, 0.0) + whole[:, number]
+            found[f"mixing:{name}.{GEAR_OIL}"] = self._unmixed(name, field, system)
         return found
+
+    def _unmixed(self, name: str, field: ReducedField, system: Projection) -> FloatArray:
+        """(f,) answer where turning parts see gear oil hotter than its mean by all that it takes from losses.
+
+        They are wetted as the oil leaves the teeth, before it mixes and before walls cool it.
+        """
+        reduced = self._housings.bases[name].reduced
+        hotter = _heating(self.rig, name, self.settled.last)
+        load, taken = np.zeros(reduced.size), 0.0
+        for condition in field.conditions:
+            if (
+                isinstance(condition, Film)
+                and condition.kind == GEAR_OIL
+                and condition.surface.startswith(TURNING)
+            ):
+                surface = reduced.surface(condition.surface)
+                wall = float(surface.mean @ field.coefficients)
+                heat = condition.law(wall, condition.fluid_temperature).value * surface.area * hotter
+                load += heat * surface.mean
+                taken += heat
+        answers = system.answers(field.coefficients, load[:, None])
+        handed = (self._handed(name, system.links(field.coefficients)) @ answers)[:, 0]
+        oil = self.index.get(("wall_heat", f"{name}.{GEAR_OIL}"))
+        if oil is not None:
+            handed[oil] -= taken / _scale(oil, self.index)
+        return self.answer(handed, (self._directions[name].readings @ answers)[:, 0])
 
     def sources(self) -> dict[str, FloatArray]:
         """Name -> (f,) answer per watt put in: bodies, rims, bearings, films, oil streams, sensors."""
@@ -264,6 +292,19 @@ class PointSlopes:
         assert bracing is not None
         ideal = done.response if is_ideal(rig) else None
         return shaft_orders(rig, done.point, done.models, done.drags, bracing, read, base=ideal, exact=False)
+
+
+TURNING = ("gear_", "shaft_")
+"""How the surfaces of turning parts begin."""
+
+
+def _heating(rig: Rig, name: str, last: PassResult) -> float:
+    """Rise of the gear oil of a gearbox [K] by the losses set free in it, before it meets walls and bodies."""
+    own = [placed for placed in last.losses if placed.gearbox == name]
+    heat = sum(placed.into_oil - placed.into_bearing_oil for placed in own)
+    box, oil = rig.case.gearboxes[name], gear_oil(rig, name)
+    inlet = box.oil.inlet_temperature
+    return heat / (oil.density(inlet) * oil.heat_capacity(inlet) * box.oil.flow * len(box.meshes))
 
 
 def link_name(gearbox: str, link: Link) -> str:
