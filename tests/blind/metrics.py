@@ -140,7 +140,11 @@ def table(rows: Sequence[Row]) -> list[tuple[str, str, str]]:
         ("95 % intervals cover", "90-98 %", str(rate(sizes, lambda r: r["covered"]))),
         ("median size error", "<= 10 % / 5 %", f"{median(errors):.1%}" if errors else "none"),
         ("median shrink of the gap above its floor", ">= 80 %", f"{median(gaps):.0%}" if gaps else "none"),
-        ("median shrink of the raw gap, own channels", ">= 80 % base", f"{median(raw):.0%}" if raw else "none"),
+        (
+            "median shrink of the raw gap, own channels",
+            ">= 80 % base",
+            f"{median(raw):.0%}" if raw else "none",
+        ),
         ("gap never worse", ">= 97 %", str(rate(worse, lambda r: not r["gap_worse"]))),
         ("median time of a diagnosis", "<= 15 s", f"{median([r['seconds'] for r in rows] or [0.0]):.1f} s"),
     ]

@@ -10,11 +10,14 @@ Every step goes on where it was stopped. Sets and results stay in WORK, outside 
 """
 
 import argparse
+import csv
 import json
+import shutil
 import time
+import tomllib
 from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -31,6 +34,7 @@ from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.run import diagnose_measurement, read_subject
 from rigdesign.diagnosis.subject import Comparison, plain
 from rigdesign.measurement import load_measurement
+from tests.blind.ablations import ABLATIONS
 from tests.blind.metrics import Row, canonical, table
 from tests.blind.splits import RIGS, Spec, specs
 from tests.virtual_rig.generate import make_set
@@ -133,7 +137,7 @@ def calibration_of(file: Path | None) -> Calibration:
 
 
 def run(
-    split: str, mode: str, out: Path, commit: str | None, file: Path | None, workers: int, tag: str
+    split: str, mode: str, out: Path, commit: str | None, method: "Method", workers: int, tag: str
 ) -> None:
     """Diagnose every set of a split that has no result yet."""
     target = out / "results" / f"{split}_{mode}{tag}.jsonl"
@@ -141,7 +145,7 @@ def run(
     done = (
         {json.loads(line)["name"] for line in target.read_text().splitlines()} if target.exists() else set()
     )
-    jobs = [(split, mode, out, spec, file) for spec in specs(split, mode, commit) if spec.name not in done]
+    jobs = [(split, mode, out, spec, method) for spec in specs(split, mode, commit) if spec.name not in done]
     with ProcessPoolExecutor(workers) as pool, target.open("a") as results:
         for row in pool.map(_run, jobs):
             if row is not None:
@@ -160,15 +164,32 @@ def run(
                 )
 
 
-def _run(job: tuple[str, str, Path, Spec, Path | None]) -> Row | None:
-    split, mode, out, spec, file = job
+@dataclass(frozen=True)
+class Method:
+    """How sets are diagnosed: calibration from a file or as frozen, with a part taken away, points shuffled."""
+
+    file: Path | None = None
+    ablation: str = ""
+    placebo: bool = False
+
+    @property
+    def calibration(self) -> Calibration:
+        """With what an ablation takes away gone."""
+        made = calibration_of(self.file)
+        return ABLATIONS[self.ablation](made) if self.ablation else made
+
+
+def _run(job: tuple[str, str, Path, Spec, Method]) -> Row | None:
+    split, mode, out, spec, method = job
     answer = out / "answers" / split / mode / f"{spec.name}.json"
     if not answer.exists():
         return None
     entry = json.loads(answer.read_text())
     started = time.perf_counter()
     folder = set_of(folder_of(out, split, mode, spec))
-    result = diagnose_measurement(case_of(spec.rig), folder, calibration=calibration_of(file))
+    if method.placebo:
+        folder = shuffled(folder, spec.seed)
+    result = diagnose_measurement(case_of(spec.rig), folder, calibration=method.calibration)
     found = result.diagnosis
     row: Row = {
         **entry,
@@ -201,6 +222,42 @@ def _run(job: tuple[str, str, Path, Spec, Path | None]) -> Row | None:
         if above > 0.05:
             row["gap_shrink"] = 1.0 - max(found.gap.after - 1.0, 0.0) / above
     return row
+
+
+def shuffled(folder: Path, seed: int) -> Path:
+    """A copy of a set beside it whose readings went to other operating points; it must be refused."""
+    target = folder.with_name(f"{folder.name}_shuffled")
+    if target.is_dir():
+        return target
+    shutil.copytree(folder, target)
+    for name in ("data.csv", "orders.csv"):
+        file = target / name
+        if file.is_file():
+            _shuffle(file, np.random.default_rng(seed), settings=len(_settings(target)))
+    return target
+
+
+def _settings(folder: Path) -> list[str]:
+    return list(tomllib.loads((folder / "measurement.toml").read_text())["settings"])
+
+
+def _shuffle(file: Path, rng: np.random.Generator, settings: int) -> None:
+    """Readings of each point to another one; the settings stay. Tables start with point and repeat."""
+    rows = list(csv.reader(file.read_text().splitlines()))
+    first = 2 if file.name == "data.csv" else 1
+    body = rows[first:]
+    points = list(dict.fromkeys(row[0] for row in body if row[0]))
+    other = dict(zip(points, rng.permutation(points).tolist(), strict=True))
+    if file.name == "orders.csv":
+        back = {source: point for point, source in other.items()}
+        changed = [[back.get(row[0], row[0]), *row[1:]] for row in body]
+    else:
+        start = 2 + settings
+        by_place = {(row[0], row[1]): row[start:] for row in body}
+        changed = [
+            [*row[:start], *by_place.get((other.get(row[0], row[0]), row[1]), row[start:])] for row in body
+        ]
+    file.write_text("\n".join(",".join(row) for row in (*rows[:first], *changed)) + "\n")
 
 
 def _sizes(row: Row, result: Any) -> None:
@@ -254,6 +311,8 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--commit")
     parser.add_argument("--calibration", type=Path)
+    parser.add_argument("--ablation", choices=sorted(ABLATIONS), default="")
+    parser.add_argument("--placebo", action="store_true", help="readings shuffled over the points")
     parser.add_argument("--without")
     parser.add_argument("--tag", default="")
     parser.add_argument("--workers", type=int, default=2)
@@ -267,7 +326,11 @@ def main() -> None:
             )
             calibrate(args.out, args.without, target)
         case "run":
-            run(args.split, args.mode, args.out, args.commit, args.calibration, args.workers, args.tag)
+            method = Method(args.calibration, args.ablation, args.placebo)
+            tag = args.tag or "".join(
+                f"_{part}" for part in (args.ablation, "placebo" * args.placebo) if part
+            )
+            run(args.split, args.mode, args.out, args.commit, method, args.workers, tag)
         case _:
             report(args.split, args.mode, args.out, args.tag)
 

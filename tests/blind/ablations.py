@@ -1,0 +1,84 @@
+"""What each part of the method is worth: the same sets diagnosed without it.
+
+    python -m tests.blind.score run dev plain --out WORK --ablation white
+
+Each takes one part away from the calibration that is frozen; ``twenty`` stands for a calibration file made from twenty
+healthy sets (``calibrate --sets 20``).
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from rigdesign.diagnosis import workflow
+from rigdesign.diagnosis.amplitudes import Amplitudes
+from rigdesign.diagnosis.defaults import Calibration
+
+OWN = ("point", "series_mesh_point", "series_shaft_point", "frequency")
+"""Amplitudes of what each number is off by itself: the hedge for what no simulator spans."""
+MODEL = (
+    "link",
+    "link_speed",
+    "source",
+    "channel",
+    "channel_speed",
+    "series_mean",
+    "series_mesh",
+    "series_shaft",
+)
+"""Amplitudes of what a model has wrong beside its constants."""
+STATED = ("sensor", "input")
+"""Those that the measurement states."""
+
+
+def white(calibration: Calibration) -> Calibration:
+    """Noise of the readings alone: the evidence of independent errors."""
+    return _only(calibration, ())
+
+
+def own_variants(calibration: Calibration) -> Calibration:
+    """What the tool's own uncertain constants, sensors and settings span."""
+    gone = Amplitudes(**dict.fromkeys(Amplitudes().as_dict(), 0.0))
+    kept = {
+        name: value for name, value in calibration.amplitudes.as_dict().items() if name not in (*MODEL, *OWN)
+    }
+    return replace(calibration, amplitudes=gone.with_values(kept), widening={})
+
+
+def bands(calibration: Calibration) -> Calibration:
+    """A variance for every number by itself, as large as calibration finds all parts together to be at most."""
+    level = max(calibration.amplitudes.channel, calibration.amplitudes.point, 0.03)
+    only = _only(calibration, (*STATED, *OWN))
+    return replace(only, amplitudes=replace(only.amplitudes, point=level))
+
+
+def no_hedge(calibration: Calibration) -> Calibration:
+    """Nothing that each number is off by itself."""
+    return replace(calibration, amplitudes=calibration.amplitudes.with_values(dict.fromkeys(OWN, 0.0)))
+
+
+def no_widening(calibration: Calibration) -> Calibration:
+    """No widening along single effects."""
+    return replace(calibration, widening={})
+
+
+def no_anonymous(calibration: Calibration) -> Calibration:
+    """No competitors without a name."""
+    workflow.anonymous = lambda library, channels: iter(())
+    return calibration
+
+
+def _only(calibration: Calibration, kept: tuple[str, ...]) -> Calibration:
+    values = calibration.amplitudes.as_dict()
+    gone = {name: 0.0 for name in values if name not in kept}
+    return replace(calibration, amplitudes=calibration.amplitudes.with_values(gone), widening={})
+
+
+ABLATIONS: dict[str, Callable[[Calibration], Calibration]] = {
+    "white": white,
+    "own_variants": own_variants,
+    "bands": bands,
+    "no_hedge": no_hedge,
+    "no_widening": no_widening,
+    "no_anonymous": no_anonymous,
+}
+"""By the name they have on the command line."""
