@@ -24,7 +24,7 @@ INVISIBLE = 1e-3
 
 
 def physical(
-    covariance: Covariance,
+    covariance: Covariance | None,
     features: Sequence[Feature],
     effects: Sequence[Effect],
     responses: Mapping[str, Response],
@@ -33,6 +33,7 @@ def physical(
 ) -> list[Hypothesis]:
     """Effects of the catalogue that the sensors answer to; of a tooth that may be any, one explanation each.
 
+    covariance : None leaves the answers in the units of the features
     least : whitened length of an effect at its bound below which it is left out
     """
     turning = Turning.of(features)
@@ -53,10 +54,10 @@ def physical(
     return [one for one in found if _reach(one) > least]
 
 
-def _whitened(covariance: Covariance, rows: Sequence[Array]) -> list[Array]:
+def _whitened(covariance: Covariance | None, rows: Sequence[Array]) -> list[Array]:
     """Blocks (m, n) of answers in the space of the covariance; all in one solve, which is what takes the time."""
-    if not rows:
-        return []
+    if not rows or covariance is None:
+        return list(rows)
     white = covariance.whiten(np.concatenate(rows).T).T
     return np.split(white, np.cumsum([len(block) for block in rows])[:-1])
 
@@ -98,8 +99,8 @@ def _reach(hypothesis: Hypothesis) -> float:
     return float(np.linalg.norm(hypothesis.columns) * hypothesis.half)
 
 
-def sensor(covariance: Covariance, errors: Sequence[SensorError]) -> list[Hypothesis]:
-    """Sensors and settings that may read wrong."""
+def sensor(covariance: Covariance | None, errors: Sequence[SensorError]) -> list[Hypothesis]:
+    """Sensors and settings that may read wrong; without a covariance in the units of the features."""
     columns = _whitened(covariance, [error.values[None, :] for error in errors])
     return [
         Hypothesis(

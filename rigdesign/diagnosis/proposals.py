@@ -8,7 +8,6 @@ import numpy as np
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.candidates import COST, NOISE, SPARE, Extra, extra_points
-from rigdesign.diagnosis.covariance import Covariance
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis
 from rigdesign.diagnosis.hypotheses import physical, sensor
 from rigdesign.diagnosis.library import Library
@@ -104,11 +103,12 @@ def _offered(feature: Feature) -> bool:
 
 
 def _answers(problem: Problem, whole: Comparison, rivals: Sequence[Evidence]) -> dict[str, Hypothesis]:
-    plain = Covariance(base=np.eye(len(whole.features)), columns=(), amplitudes={})
+    """Of the rivals at all numbers, in the units of the features."""
     names = {one.hypothesis.name for one in rivals}
+    effects = [one for one in whole.effects if any(f"{name}/".startswith(f"{one.name}/") for name in names)]
     everything = (
-        *physical(plain, whole.features, whole.effects, whole.library.responses, problem.teeth_a_turn, 0.0),
-        *sensor(plain, whole.errors),
+        *physical(None, whole.features, effects, whole.library.responses, problem.teeth_a_turn, 0.0),
+        *sensor(None, [error for error in whole.errors if error.name in names]),
     )
     return {one.name: one for one in everything if one.name in names}
 
