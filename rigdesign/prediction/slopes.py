@@ -174,12 +174,9 @@ class PointSlopes:
         return found
 
     def _unmixed(self, name: str, field: ReducedField, system: Projection) -> FloatArray:
-        """(f,) answer where turning parts see gear oil hotter than its mean by all that it takes from losses.
-
-        They are wetted as the oil leaves the teeth, before it mixes and before walls cool it.
-        """
+        """(f,) answer where turning parts are wetted by gear oil as it leaves the teeth, not by its mean."""
         reduced = self._housings.bases[name].reduced
-        hotter = _heating(self.rig, name, self.settled.last)
+        hotter = _fresh_over_mean(self.rig, name, self.settled.last)
         load, taken = np.zeros(reduced.size), 0.0
         for condition in field.conditions:
             if (
@@ -298,13 +295,15 @@ TURNING = ("gear_", "shaft_")
 """How the surfaces of turning parts begin."""
 
 
-def _heating(rig: Rig, name: str, last: PassResult) -> float:
-    """Rise of the gear oil of a gearbox [K] by the losses set free in it, before it meets walls and bodies."""
+def _fresh_over_mean(rig: Rig, name: str, last: PassResult) -> float:
+    """Gear oil as it leaves the teeth, warmed by all losses and not yet cooled by walls, over its mean [K]."""
     own = [placed for placed in last.losses if placed.gearbox == name]
     heat = sum(placed.into_oil - placed.into_bearing_oil for placed in own)
     box, oil = rig.case.gearboxes[name], gear_oil(rig, name)
     inlet = box.oil.inlet_temperature
-    return heat / (oil.density(inlet) * oil.heat_capacity(inlet) * box.oil.flow * len(box.meshes))
+    rise = heat / (oil.density(inlet) * oil.heat_capacity(inlet) * box.oil.flow * len(box.meshes))
+    chamber = next(stream.chamber for stream in last.streams if stream.name == f"{name}.{GEAR_OIL}")
+    return rise - 0.5 * (chamber - inlet)
 
 
 def link_name(gearbox: str, link: Link) -> str:
