@@ -280,12 +280,17 @@ def _log_sum(logs: Array) -> Array:
     return np.asarray(most + np.log(np.exp(logs - most).sum(axis=0)))
 
 
+ALIKE = 1e-10
+"""Share of the mean square below which a direction of columns of equal length is rounding."""
+
+
 def _inverse(gram: Array) -> Array:
-    """Of a symmetric matrix (k, k); zero along directions it does not see."""
-    values, vectors = np.linalg.eigh(gram)
-    seen = np.abs(values) > 1e-15 * np.abs(values).max()
-    inverse = np.divide(1.0, values, out=np.zeros_like(values), where=seen)
-    return np.asarray((vectors * inverse) @ vectors.T)
+    """Of a symmetric matrix (k, k), whatever the units of its columns; zero along directions it does not see."""
+    lengths = np.sqrt(np.diagonal(gram))
+    scale = np.divide(1.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
+    values, vectors = np.linalg.eigh(scale[:, None] * gram * scale)
+    inverse = np.divide(1.0, values, out=np.zeros_like(values), where=values > ALIKE)
+    return np.asarray(scale[:, None] * ((vectors * inverse) @ vectors.T) * scale)
 
 
 def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:

@@ -6,7 +6,7 @@ import pytest
 from rigdesign.diagnosis.columns import Column
 from rigdesign.diagnosis.covariance import Covariance, Release, Whitened
 from rigdesign.diagnosis.decision import Thresholds
-from rigdesign.diagnosis.evidence import Curve, Hypothesis, graded, mixture_density, weigh
+from rigdesign.diagnosis.evidence import Curve, Hypothesis, graded, mixture_density, weigh, weigh_pair
 from rigdesign.diagnosis.examine import Explanations, examine
 
 N = 120
@@ -141,3 +141,29 @@ def test_what_is_not_in_the_catalogue_stays_unknown():
         stranger = 1.5 * rng.normal(size=N)
         space = Whitened.of(covariance, draw(rng, covariance) + stranger)
         assert examine(space, found, Thresholds()).decision.verdict == "unknown_located"
+
+
+def test_a_pair_of_two_that_look_alike_gains_as_one_of_them_whatever_their_units():
+    rng, effects, covariance = toy(4)
+    space = Whitened.of(covariance, draw(rng, covariance) + 2.0 * effects[:, 1])
+
+    def alone(name, factor):
+        columns = covariance.whiten(factor * effects[:, [1]])
+        return weigh(
+            space,
+            Hypothesis(name=name, family="physical", parts=(name,), columns=columns, half=100.0 / factor),
+        )
+
+    first, twin, other_unit = alone("a", 1.0), alone("b", 1.0 + 1e-14), alone("c", 3e6)
+    for one in (twin, other_unit):
+        pair = weigh_pair(space, first, one)
+        assert pair.gain == pytest.approx(first.gain, rel=1e-8)
+        assert pair.coordinates[0] == pytest.approx(0.5 * first.coordinates[0], rel=1e-6)
+    apart = Hypothesis(
+        name="d", family="physical", parts=("d",), columns=covariance.whiten(1e7 * effects[:, [2]]), half=1e-5
+    )
+    both = np.stack([effects[:, 1], effects[:, 2]], axis=1)
+    white = covariance.whiten(both)
+    best = np.linalg.lstsq(white, space.residual, rcond=None)[0]
+    pair = weigh_pair(space, first, weigh(space, apart))
+    assert pair.coordinates == pytest.approx((best[0], 1e-7 * best[1]), rel=1e-8)
