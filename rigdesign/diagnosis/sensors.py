@@ -191,9 +191,9 @@ def setting_scatter(library: Library, noise: Mapping[str, Mapping[tuple[str, str
 
     noise : setting -> (kind, place) -> standard deviation of what was read [SI]
     """
-    total = np.zeros((len(library.features), len(library.features)))
-    for (kind, place, setting), derivative in library.inputs.items():
-        sigma = noise.get(setting, {}).get((kind, place), 0.0)
-        if sigma:
-            total += sigma**2 * np.outer(derivative, derivative)
-    return total
+    columns = [
+        noise.get(setting, {}).get((kind, place), 0.0) * derivative
+        for (kind, place, setting), derivative in library.inputs.items()
+    ]
+    spread = np.array(columns).reshape(-1, len(library.features))
+    return np.asarray(spread.T @ spread)

@@ -129,11 +129,8 @@ def compare(
 
     stated : systematic uncertainties of the settings, by (kind, place)
     """
-    usable = [
-        row
-        for row, feature in enumerate(data.features)
-        if data.usable[row] and feature in set(library.features)
-    ]
+    known = set(library.features)
+    usable = [row for row, feature in enumerate(data.features) if data.usable[row] and feature in known]
     features = tuple(data.features[row] for row in usable)
     cut = library.rows(features)
     channels = {name: entry.channel for name, entry in data.channels.items()}

@@ -63,8 +63,9 @@ def read_orders(
     unused: dict[str, set[float]] = {}
     orphans = 0
     order_channels = tuple(name for name, c in channels.items() if c.channel.quantity in ORDER_QUANTITIES)
-    for row, line in enumerate(table.lines):
-        point, name = table.column("point")[row].strip(), table.column("channel")[row].strip()
+    places = zip(table.lines, table.column("point"), table.column("channel"))
+    for row, (line, point, name) in enumerate(places):
+        point, name = point.strip(), name.strip()
         at = f"{table.file} line {line}"
         if rows.table.cut is not None and not _has(rows, point, values["repeat"][row]):
             orphans += 1

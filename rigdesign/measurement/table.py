@@ -37,7 +37,8 @@ class Table:
         """Cells of a column; KeyError when there is none."""
         if name not in self.names:
             raise KeyError(name)
-        return tuple(row[self.names.index(name)] for row in self.rows)
+        place = self.names.index(name)
+        return tuple(row[place] for row in self.rows)
 
 
 def read_table(folder: Path, name: str, data: Data, *, with_units: bool) -> Table:
