@@ -82,8 +82,6 @@ class Calibration:
     """Likeness of an effect -> spread of its coordinate that healthy sets asked for beyond the columns."""
     thresholds: Thresholds = field(default_factory=Thresholds)
     signature_error: Mapping[str, float] = field(default_factory=lambda: dict(SIGNATURE_ERROR))
-    response_error: float = 0.2
-    """With a baseline: share of an observed change by which the model may answer wrongly."""
     drift: float = 0.02
     """With a baseline: share of the shared errors that changes between the sets."""
 

@@ -113,6 +113,8 @@ class Evidence:
     columns: Array = field(repr=False)
     answer: Array = field(repr=False)
     """(n,) whitened answer at the best fit."""
+    spreads: Array = field(repr=False, default_factory=lambda: np.zeros((0, 0)))
+    """(m, k) standard deviations of the mixture of normals its sizes are integrated over."""
 
 
 def release_of(space: Whitened, own: Sequence[str]) -> Release:
@@ -186,6 +188,7 @@ def _weigh_curve(space: Whitened, hypothesis: Hypothesis, curve: Curve) -> Evide
         gain=space.chi_square - float(fit.squares(np.array([best]))[0]),
         columns=curve.slope(best)[:, None],
         answer=curve.at(np.array([best]))[0],
+        spreads=np.array(SPREADS)[:, None] * curve.half,
     )
 
 
@@ -247,8 +250,8 @@ def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> E
     spreads = np.outer(np.array(SPREADS) * hypothesis.half, np.ones(len(load)))
     before = float(release.product(residual, residual))
     shift = 0.5 * (space.chi_square - before)
-    log_bayes = _mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
-    inverse = _inverse(gram)
+    log_bayes = mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
+    inverse = inverse_of(gram)
     best = np.clip(inverse @ load, -hypothesis.half, hypothesis.half)
     return Evidence(
         hypothesis=hypothesis,
@@ -258,10 +261,11 @@ def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> E
         gain=space.chi_square - before + float(2.0 * best @ load - best @ gram @ best),
         columns=columns,
         answer=columns @ best,
+        spreads=spreads,
     )
 
 
-def _mixed(gram: Array, load: Array, spreads: Array) -> float:
+def mixed(gram: Array, load: Array, spreads: Array) -> float:
     """Mean over (m, k) spreads S of ln B of columns with normal sizes,
 
     ln B = .5 b'(G + S^-2)^-1 b - .5 ln|I + S G S|.
@@ -284,7 +288,7 @@ ALIKE = 1e-10
 """Share of the mean square below which a direction of columns of equal length is rounding."""
 
 
-def _inverse(gram: Array) -> Array:
+def inverse_of(gram: Array) -> Array:
     """Of a symmetric matrix (k, k), whatever the units of its columns; zero along directions it does not see."""
     lengths = np.sqrt(np.diagonal(gram))
     scale = np.divide(1.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
@@ -310,10 +314,9 @@ def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
     owner = np.repeat([0, 1], [first.columns.shape[1], second.columns.shape[1]])
     halves = np.array([_half(first.hypothesis), _half(second.hypothesis)])
     shift = 0.5 * (space.chi_square - float(release.product(left, left)))
-    log_bayes = (
-        _mixed(gram, load, (_PAIRS_OF_SPREADS * halves)[:, owner]) + shift - 0.5 * release.log_determinant
-    )
-    inverse = _inverse(gram)
+    spreads = (_PAIRS_OF_SPREADS * halves)[:, owner]
+    log_bayes = mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
+    inverse = inverse_of(gram)
     best = inverse @ load
     after = left - columns @ best
     hypothesis = Hypothesis(
@@ -331,6 +334,7 @@ def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
         gain=space.chi_square - float(release.product(after, after)),
         columns=columns,
         answer=base + columns @ best,
+        spreads=spreads,
     )
 
 

@@ -9,6 +9,7 @@ from rigdesign.diagnosis.covariance import Whitened
 from rigdesign.diagnosis.decision import PRIOR, Decision, Posterior, Thresholds, decide, posterior
 from rigdesign.diagnosis.detectability import Detectability, detectabilities
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis, weigh, weigh_pair
+from rigdesign.diagnosis.signature import Contest, Signature
 
 LEADERS = 12
 """Explanations that are joined with every other one."""
@@ -57,18 +58,21 @@ def examine(
     thresholds: Thresholds,
     priors: Mapping[str, float] = PRIOR,
     *,
+    signature: Signature | None = None,
     table: Sequence[Detectability] | None = None,
 ) -> Examination:
     """Weigh everything and decide.
 
+    signature : how wrong the model may answer to a right cause; left out, not at all
     table : detectability where it is known already; it depends on covariance and explanations alone
     """
     known = (*explanations.physical, *explanations.sensor)
     if table is None:
         table = detectabilities(space, known, explanations.anonymous)
-    singles = [weigh(space, one) for one in (*known, *explanations.anonymous)]
+    contest = None if signature is None else Contest(space, signature)
+    singles = _judged(contest, [weigh(space, one) for one in (*known, *explanations.anonymous)])
     data = [weigh(space, one) for one in explanations.data]
-    pairs = _pairs(space, singles)
+    pairs = _judged(contest, _pairs(space, singles))
     evidence = sorted((*singles, *data, *pairs), key=lambda one: -one.log_bayes)
     weights = posterior(evidence, explanations.members, priors)
     decision = decide(
@@ -88,6 +92,10 @@ def examine(
         chi_square=space.chi_square,
         count=len(space.residual),
     )
+
+
+def _judged(contest: Contest | None, evidence: list[Evidence]) -> list[Evidence]:
+    return evidence if contest is None else contest.judged(evidence)
 
 
 def _pairs(space: Whitened, singles: Sequence[Evidence]) -> list[Evidence]:

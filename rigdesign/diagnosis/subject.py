@@ -1,8 +1,8 @@
 """What is to be explained: readings less prediction, and the covariance of what a healthy rig leaves.
 
 With a healthy baseline of the same rig the same algebra asks what is left given that set: what both share (the model's
-errors, the sensors) is known from the first, and what remains is noise and a share of the change itself, by which
-a wrong model answers wrongly to a right cause.
+errors, the sensors) is known from the first, and what remains is noise and a drift. What the model answers wrongly to
+a right cause is weighed with each cause (`rigdesign.diagnosis.signature`).
 """
 
 from collections.abc import Mapping, Sequence
@@ -196,9 +196,6 @@ def _constants_at(covariance: Covariance, residual: Array, curves: Mapping[str, 
     return found
 
 
-RESPONSE_ERROR = 0.2
-"""Share of an observed change by which the model's answer to its cause may be off, coherent over a series."""
-
 DRIFT = 0.02
 """Share of the model's and sensors' errors that changes between two sets of one assembly."""
 
@@ -208,7 +205,6 @@ def differenced(
     baseline: Comparison,
     amplitudes: Amplitudes,
     *,
-    response_error: float = RESPONSE_ERROR,
     drift: float = DRIFT,
 ) -> Whitened:
     """The residual of a set given a healthy set of the same rig.
@@ -229,8 +225,7 @@ def differenced(
     )
     change = subject.residual - expected
     alone = np.diag(subject.noise**2) + subject.scatter + drift**2 * (after @ after.T + np.diag(own**2))
-    answer = _answer_error(subject, change, response_error)
-    total = Covariance(base=covariance + alone + answer, columns=(), amplitudes={})
+    total = Covariance(base=covariance + alone, columns=(), amplitudes={})
     return Whitened.of(total, change)
 
 
@@ -264,16 +259,3 @@ def _given(known: Array, cross: Array, own: Array, noise: Array, residual: Array
     """Mean (n,) and covariance (n, n) of the shared part given another set's residual (m,)."""
     solved = np.linalg.solve(known + noise, np.column_stack([residual, cross.T]))
     return np.asarray(cross @ solved[:, 0]), np.asarray(own - cross @ solved[:, 1:])
-
-
-def _answer_error(subject: Comparison, change: Array, share: float) -> Array:
-    """(n, n): every series may answer by a share more or less than the model says, and each number by itself."""
-    series: dict[tuple[str, float], list[int]] = {}
-    for row, feature in enumerate(subject.features):
-        series.setdefault((feature.channel, feature.order), []).append(row)
-    total = np.diag((0.5 * share * change) ** 2)
-    for rows in series.values():
-        part = np.zeros(len(change))
-        part[rows] = share * change[rows]
-        total += np.outer(part, part)
-    return total

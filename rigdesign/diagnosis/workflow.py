@@ -18,10 +18,12 @@ from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.detectability import Detectability, aliases
 from rigdesign.diagnosis.evidence import Evidence, weigh
 from rigdesign.diagnosis.examine import Examination, Explanations, examine
+from rigdesign.diagnosis.healthy import relative_speed
 from rigdesign.diagnosis.heldout import Gap, gap, held_out
 from rigdesign.diagnosis.hypotheses import physical, sensor, without_a_name, wrong_data
 from rigdesign.diagnosis.intervals import JointFit, fit_together
 from rigdesign.diagnosis.outliers import reject
+from rigdesign.diagnosis.signature import Contest, Signature
 from rigdesign.diagnosis.subject import Comparison, differenced, plain
 
 MOST_EFFECTS = 4
@@ -133,7 +135,6 @@ def _space(problem: Problem, subject: Comparison, calibration: Calibration) -> W
         subject,
         problem.baseline,
         calibration.amplitudes,
-        response_error=calibration.response_error,
         drift=calibration.drift,
     )
 
@@ -162,14 +163,15 @@ def _search(
     calibration: Calibration,
 ) -> tuple[list[Examination], tuple[Evidence, ...]]:
     """Examine, take what is named into the model, examine what is left."""
-    examinations = [examine(space, explanations, calibration.thresholds)]
+    signature = _signature(subject, calibration)
+    examinations = [examine(space, explanations, calibration.thresholds, signature=signature)]
     found: list[Evidence] = []
     while examinations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
         new = _best_of(examinations[-1])
         if not new:
             break
         found += new
-        after = _with_named(space, found)
+        after = _with_named(space, found, signature)
         claimed = {part for one in found for part in one.hypothesis.parts}
         rest = _explanations(problem, subject, after)
         left = Explanations(
@@ -178,8 +180,13 @@ def _search(
             anonymous=rest.anonymous,
             data=[],
         )
-        examinations.append(examine(after, left, calibration.thresholds))
+        examinations.append(examine(after, left, calibration.thresholds, signature=signature))
     return examinations, tuple(found)
+
+
+def _signature(subject: Comparison, calibration: Calibration) -> Signature:
+    trend = relative_speed(subject.features, subject.library.settings)
+    return Signature.of(subject.features, trend, calibration.signature_error)
 
 
 def _best_of(examination: Examination) -> list[Evidence]:
@@ -192,8 +199,8 @@ def _best_of(examination: Examination) -> list[Evidence]:
     return found
 
 
-def _with_named(space: Whitened, found: Sequence[Evidence]) -> Whitened:
-    """The space with the named effects in the model, their sizes left free."""
+def _with_named(space: Whitened, found: Sequence[Evidence], signature: Signature) -> Whitened:
+    """The space with the named effects in the model, their sizes left free, and what it may answer wrongly to them."""
     lower = space.covariance.lower
     columns = [
         Column(
@@ -205,6 +212,10 @@ def _with_named(space: Whitened, found: Sequence[Evidence]) -> Whitened:
         for one in found
         for number, slope in enumerate(one.columns.T)
     ]
+    for one in found:
+        error = signature.error_of(one.hypothesis)
+        if error > 0.0:
+            columns += signature.columns(one.hypothesis.name, lower @ one.answer, error)
     owns = [own for one in found for own in one.hypothesis.own]
     residual = lower @ (space.freed(owns) - sum((one.answer for one in found), np.zeros(len(space.residual))))
     bends = {effect: lower @ bend for effect, bend in space.bends.items() if effect not in owns}
@@ -237,7 +248,8 @@ def _wrong_data(
     """
     everything = _explanations(problem, subject, whole, rivals=False)
     singles = (*everything.physical, *everything.sensor, *everything.data)
-    evidence = [weigh(whole, one) for one in singles]
+    contest = Contest(whole, _signature(subject, calibration))
+    evidence = contest.judged([weigh(whole, one) for one in singles])
     weights = posterior(evidence, everything.members)
     if weights.families.get("input", 0.0) <= calibration.thresholds.input:
         return None
