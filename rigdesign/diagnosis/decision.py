@@ -27,6 +27,10 @@ PRIOR = {"none": 0.50, "physical": 0.22, "sensor": 0.08, "anonymous": 0.10, "pai
 """Prior weight of each family of explanations, split evenly among its members."""
 
 
+CHANCE = 10.0
+"""Gain that one of hundreds of anonymous causes finds beside the right one by chance."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Thresholds:
     """Numbers the verdict hangs on.
@@ -38,7 +42,7 @@ class Thresholds:
 
     named: float = 0.9
     input: float = 0.5
-    catalogue: float = 0.85
+    catalogue: float = 0.95
     misfit: float = 5.0
     group: int = 3
 
@@ -136,7 +140,7 @@ def decide(
     known = [one for one in evidence if set(one.hypothesis.parts) <= effects]
     most = max(one.gain for one in evidence)
     reached = max((one.gain for one in known), default=0.0)
-    if weights.masses["none"] < 0.5 and reached < thresholds.catalogue * most:
+    if weights.masses["none"] < 0.5 and most - reached > max((1.0 - thresholds.catalogue) * most, CHANCE):
         return Decision(
             verdict="unknown_located",
             named=(),

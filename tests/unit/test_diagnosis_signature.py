@@ -1,0 +1,104 @@
+"""An explanation under the error of its own answer: the same as with that error in the covariance."""
+
+import numpy as np
+import pytest
+
+from rigdesign.diagnosis.columns import Column
+from rigdesign.diagnosis.covariance import Covariance, Whitened
+from rigdesign.diagnosis.evidence import Hypothesis, weigh, weigh_pair
+from rigdesign.diagnosis.signature import Contest, Signature
+from rigdesign.prediction.model import Feature
+
+POINTS = 8
+FEATURES = tuple(
+    Feature(channel=channel, setting=f"P{point}") for point in range(POINTS) for channel in ("a", "b", "c")
+)
+TREND = np.repeat(np.linspace(-0.7, 0.7, POINTS), 3)
+SHARE = 0.2
+
+
+def signature() -> Signature:
+    return Signature.of(FEATURES, TREND, {"": SHARE, "known": 0.0})
+
+
+def healthy(own: float = 0.0) -> Covariance:
+    rng = np.random.default_rng(3)
+    base = np.diag(rng.uniform(0.5, 1.5, len(FEATURES)))
+    columns = [
+        Column(name="link", kind="link", values=rng.normal(size=len(FEATURES)), spread=0.7),
+        Column(name="film/0", kind="constant_film", values=trace(), spread=own, effect="film:x"),
+    ]
+    return Covariance(base=base, columns=tuple(columns if own else columns[:1]), amplitudes={})
+
+
+def trace() -> np.ndarray:
+    return np.random.default_rng(4).normal(size=len(FEATURES))
+
+
+def plane(
+    covariance: Covariance, values: np.ndarray, name: str = "film:x", family: str = "physical"
+) -> Hypothesis:
+    return Hypothesis(
+        name=name,
+        family=family,
+        parts=(name,),
+        columns=covariance.whiten(values[:, None]),
+        half=10.0,
+        own=(name,),
+    )
+
+
+def direct(covariance: Covariance, residual: np.ndarray, answer: np.ndarray, hypothesis_of) -> float:
+    """Evidence with the error columns of the answer put into the covariance, against the healthy one."""
+    errors = signature().columns("x", answer, SHARE)
+    kept = tuple(column for column in covariance.columns if column.effect != "film:x")
+    wide = Covariance(base=covariance.base, columns=kept, amplitudes={}).with_extra(errors)
+    space, plain = Whitened.of(wide, residual), Whitened.of(covariance, residual)
+    found = weigh(space, hypothesis_of(wide))
+    return (
+        found.log_bayes
+        + 0.5 * (plain.chi_square - space.chi_square)
+        - 0.5 * (wide.log_determinant - covariance.log_determinant)
+    )
+
+
+@pytest.mark.parametrize("own", [0.0, 0.4])
+def test_low_rank_algebra_is_the_whole_covariance(own):
+    """An explanation whose constant has its own healthy spread, and one without."""
+    covariance = healthy(own)
+    residual = 6.0 * trace() + np.random.default_rng(5).normal(size=len(FEATURES))
+    space = Whitened.of(covariance, residual)
+    first = weigh(space, plane(covariance, trace()))
+    found = Contest(space, signature()).again(first)
+    answer = covariance.lower @ first.answer
+    wanted = direct(covariance, residual, answer, lambda wide: plane(wide, trace()))
+    assert found.log_bayes == pytest.approx(wanted, rel=1e-9)
+    assert found.log_bayes != pytest.approx(first.log_bayes, abs=0.1)
+
+
+def test_an_answer_that_is_a_share_off_is_forgiven_and_noise_is_not():
+    covariance = healthy()
+    wrong = trace() * np.where([feature.channel == "b" for feature in FEATURES], 1.25, 0.9)
+    rival = (wrong - trace()) + 0.02 * np.random.default_rng(9).normal(size=len(FEATURES))
+    space = Whitened.of(covariance, 9.5 * wrong)
+    contest = Contest(space, signature())
+    right, other = (
+        plane(covariance, values, name) for values, name in ((trace(), "film:x"), (rival, "loss:y"))
+    )
+    both = weigh_pair(space, weigh(space, right), weigh(space, other))
+    assert both.log_bayes > weigh(space, right).log_bayes + 5.0
+    # what is left of that is less than the priors of a pair cost
+    assert contest.again(both).log_bayes < contest.again(weigh(space, right)).log_bayes + 1.0
+    left = space.chi_square - contest.again(weigh(space, right)).gain
+    assert left < 2.0 * len(FEATURES) < space.chi_square - weigh(space, right).gain
+
+
+def test_exact_explanations_keep_their_evidence():
+    covariance = healthy()
+    space = Whitened.of(covariance, 5.0 * trace())
+    contest = Contest(space, signature())
+    for hypothesis in (plane(covariance, trace(), "offset", "sensor"), plane(covariance, trace(), "known:x")):
+        one = weigh(space, hypothesis)
+        assert contest.again(one) is one
+    none = weigh(Whitened.of(covariance, np.zeros(len(FEATURES))), plane(covariance, trace()))
+    assert contest.again(none) is none
