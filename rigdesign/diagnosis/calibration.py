@@ -22,6 +22,10 @@ from rigdesign.diagnosis.subject import Comparison, plain
 PRIOR = 1.5
 """Standard deviation of the logarithm of an amplitude around its starting value."""
 
+HANDBOOK = 2.5
+"""Factor within which the healthy spreads of constants stay, which are stated with their sources: what two models
+disagree on beyond that is no constant of the rig."""
+
 WIDEN_ABOVE = 1.3
 """Mean square of a healthy set's answer along an effect [variances] above which the covariance is widened there."""
 
@@ -117,10 +121,15 @@ def fit_amplitudes(
         np.log([first[name] for name in names]),
         jac=True,
         method="L-BFGS-B",
-        bounds=[(c - 5.0, c + 5.0) for c in centre],
+        bounds=[(c - reach, c + reach) for c, reach in zip(centre, _reaches(names), strict=True)],
         options={"maxiter": 60},
     )
     return start.with_values(dict(zip(names, (float(value) for value in np.exp(found.x)), strict=True)))
+
+
+def _reaches(names: Sequence[str]) -> list[float]:
+    """How far the logarithm of each amplitude may go from its centre."""
+    return [float(np.log(HANDBOOK)) if name.startswith("constant") else 5.0 for name in names]
 
 
 def _misfit(group: Group, amplitudes: Mapping[str, float], names: Sequence[str]) -> tuple[float, Array]:

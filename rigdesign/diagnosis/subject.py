@@ -199,6 +199,16 @@ def _constants_at(covariance: Covariance, residual: Array, curves: Mapping[str, 
 DRIFT = 0.02
 """Share of the model's and sensors' errors that changes between two sets of one assembly."""
 
+TWINS = 10.0
+"""How much more two readings of one number may share than each is off by itself: what the model has wrong there in a
+way that no column spans is taken from the healthy set number by number."""
+
+DRIFT_SHAFT = 0.05
+"""The same of shaft orders and sidebands, from point to point."""
+
+DRIFT_MESH = 0.25
+"""The same of the orders of the meshes: the model has most of them wrong, differently at every speed."""
+
 
 def differenced(
     subject: Comparison,
@@ -206,25 +216,30 @@ def differenced(
     amplitudes: Amplitudes,
     *,
     drift: float = DRIFT,
+    drift_shaft: float = DRIFT_SHAFT,
+    drift_mesh: float = DRIFT_MESH,
 ) -> Whitened:
     """The residual of a set given a healthy set of the same rig.
 
     What both share is the covariance of the columns at either set's numbers; noise, the settings' scatter and a
-    drift of the shared part are each set's own.
+    drift of the shared part are each set's own. Orders change with each point by itself: near a resonance what
+    healthy teeth excite follows a speed that was met to a per cent only.
     """
     here, there = subject.covariance(amplitudes), baseline.covariance(amplitudes)
     after, before = here.deviations, _matched(there, here)
     own = own_spread(subject.library, subject.channels, subject.mesh_orders, amplitudes)
     other = own_spread(baseline.library, baseline.channels, baseline.mesh_orders, amplitudes)
     twins = _same_numbers(subject, baseline)
-    cross = after @ before.T + own[:, None] * twins * other[None, :]
-    known = before @ before.T + np.diag(other**2)
+    cross = after @ before.T + TWINS**2 * own[:, None] * twins * other[None, :]
+    known = before @ before.T + TWINS**2 * np.diag(other**2)
     noise_before = np.diag(baseline.noise**2) + baseline.scatter
     expected, covariance = _given(
-        known, cross, after @ after.T + np.diag(own**2), noise_before, baseline.residual
+        known, cross, after @ after.T + TWINS**2 * np.diag(own**2), noise_before, baseline.residual
     )
     change = subject.residual - expected
-    alone = np.diag(subject.noise**2) + subject.scatter + drift**2 * (after @ after.T + np.diag(own**2))
+    shared = after @ after.T + np.diag(own**2)
+    alone = np.diag(subject.noise**2) + subject.scatter + drift**2 * shared
+    alone += shared * _by_point(subject, drift_shaft, drift_mesh)
     total = Covariance(base=covariance + alone, columns=(), amplitudes={})
     return Whitened.of(total, change)
 
@@ -253,6 +268,16 @@ def _same_numbers(subject: Comparison, baseline: Comparison) -> Array:
         if key in others:
             found[row, others[key]] = 1.0
     return found
+
+
+def _by_point(subject: Comparison, shaft: float, mesh: float) -> Array:
+    """(n, n) product of the drifts of two orders read at the same operating point; zero for all other numbers."""
+    names = {setting.name: number for number, setting in enumerate(subject.library.settings)}
+    points = np.array([names[feature.setting] if feature.order else -1 for feature in subject.features])
+    drift = np.array(
+        [mesh if feature.order in subject.mesh_orders else shaft for feature in subject.features]
+    )
+    return np.asarray(np.outer(drift, drift) * ((points[:, None] == points) & (points[:, None] >= 0)))
 
 
 def _given(known: Array, cross: Array, own: Array, noise: Array, residual: Array) -> tuple[Array, Array]:

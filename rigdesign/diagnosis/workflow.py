@@ -136,6 +136,8 @@ def _space(problem: Problem, subject: Comparison, calibration: Calibration) -> W
         problem.baseline,
         calibration.amplitudes,
         drift=calibration.drift,
+        drift_shaft=calibration.drift_shaft,
+        drift_mesh=calibration.drift_mesh,
     )
 
 
