@@ -15,7 +15,7 @@ from tests.virtual_rig.generate_effects import LOOP, candidates
 from tests.virtual_rig.generate_plans import plan_points, sensors
 from tests.virtual_rig.generate_truth import RigTruth, draw_rig, nominal_constants, readings, true_points
 from tests.virtual_rig.loop import LoopTruth, Point
-from tests.virtual_rig.loop_model import read_circuit
+from tests.virtual_rig.loop_model import read_circuit, speed_ratio
 from tests.virtual_rig.teeth import pair_stiffness
 
 HERE = Path(__file__).resolve().parents[1] / "virtual_rig"
@@ -104,6 +104,61 @@ def test_wave_of_order_three_stays_order_three(equal):
     answer = truth.solve(Point(speed=105.0, torque=250.0), (1.0, 2.0, 3.0, 4.0)).torques["wheel_side"]
     assert abs(answer[3.0]) > 0.3
     assert max(abs(answer[k]) for k in (1.0, 2.0, 4.0)) < 0.02 * abs(answer[3.0])
+
+
+@pytest.mark.parametrize(
+    ("case", "effect", "order", "behind"),
+    [
+        ("loop_1to1", "run_out:test.pinion", 1.0, 0),
+        ("loop_1to1", "run_out:reference.wheel", 1.0, -1),
+        ("loop_1to1", "cumulative_pitch:test.pinion", 2.0, 0),
+        ("loop_hunting", "run_out:test.wheel", 0.64, 0),
+    ],
+)
+def test_deviations_swing_the_loop_against_its_inertia(case, effect, order, behind):
+    """Gears that run together have the torque -F e'(phi) on them, e what the flanks stand out: T e / (r_b J omega^2).
+
+    Between two torques what only winds the loop is the same.
+    """
+    tree = read_case(CASES / case / "case.toml")
+    change = {"effect": effect, "size": 8e-6, "phase": 0.7, "order": order}
+    truth = LoopTruth(tree, effects=[change])
+    speed = 60.0
+    gear = effect.partition(":")[2]
+    mesh = next(m for m in truth.meshes if gear in m.gears)
+    circuit = read_circuit(tree, truth.meshes, speed, 200.0, {})
+    running = np.zeros(circuit.size)
+    for line in np.unique(circuit.lines[circuit.lines >= 0]):
+        running[circuit.lines == line] = speed_ratio(tree, truth.meshes, circuit, line)
+    inertia = running @ circuit.mass @ running
+    wave = 8e-6 * np.exp(0.7j) * (-np.exp(2j * behind * mesh.working_angle) if behind else 1.0)
+    answers, torques = [], []
+    for torque in (100.0, 300.0):
+        point = Point(speed=speed, torque=torque)
+        answers.append(truth.solve(point, (order,)))
+        wound = truth._state(circuit, point, None)["place"][circuit.gears[gear]]
+        force = answers[-1].mesh_forces[mesh.name].mean()
+        turned = np.conj(wave) * np.exp(1j * (2.0 if order == 2.0 else 1.0) * wound)
+        torques.append(-force * 1j * order * turned)  # per turn of the gear that counts
+    expected = -(torques[1] - torques[0]) / (inertia * (order * speed) ** 2)
+    for shaft in answers[0].angles:
+        ratio = running[circuit.ends[shaft, "start"]]
+        found = (answers[1].angles[shaft][order] - answers[0].angles[shaft][order]) / ratio
+        assert found == pytest.approx(expected, rel=0.03)
+
+
+def test_force_is_the_slope_of_the_energy(equal):
+    step = {"effect": "single_pitch:test.pinion", "size": 5e-6, "tooth": 3}
+    truth = LoopTruth(equal, effects=[step])
+    circuit = read_circuit(equal, truth.meshes, 100.0, 200.0, {})
+    tables = truth._tables(circuit, 100.0, 1e-5, Point(speed=100.0, torque=200.0), (0.0, 0.0))
+    for mesh in (0, 1):
+        pitch = truth.meshes[mesh].base_pitch
+        for place in pitch * np.linspace(0.0, 5.0, 41):
+            for x in (3e-6, 12e-6, 40e-6):
+                ends = [kernel.pair_energy(x + h, place, mesh, *tables) for h in (-1e-9, 1e-9)]
+                force = kernel.pair_force(x, 0.0, place, mesh, *tables)[0]
+                assert (ends[1] - ends[0]) / 2e-9 == pytest.approx(force, rel=1e-3, abs=0.5)
 
 
 def test_drive_pays_friction_and_drags(equal):

@@ -4,7 +4,8 @@
     answer = truth.solve(Point(speed=314.0, torque=300.0), orders=(1.0, 2.0, 28.0))
 
 Twist locked at rest, static state under way, march over the hunting cycle to its periodic state (reduced rank
-extrapolation of the samples once a cycle), orders of the mesh forces, and from these every order of the circuit.
+extrapolation of the samples once a cycle), orders of the mesh forces, and from these every order of the circuit. What
+the teeth exchange with the rotation (`loop_rotation`) joins there; it is too small to come back to the teeth.
 """
 
 import math
@@ -18,6 +19,7 @@ from tests.virtual_rig import loop_march as kernel
 from tests.virtual_rig import teeth as tooth
 from tests.virtual_rig.loop_changes import LoopConstants, changed
 from tests.virtual_rig.loop_model import Circuit, read_circuit, speed_ratio, standing_frequencies
+from tests.virtual_rig.loop_rotation import Rotation, rotation_of
 
 TIME_STEP, LONG_STEP = 1.0e-5, 2.0e-5
 """Longest step where one turn is the cycle, and over a hunting cycle [s]; a mesh and its gears swing at 4 to 8 kHz."""
@@ -120,9 +122,11 @@ class LoopTruth:
         n_cycle = per_turn * self.cycle_turns
         dt = turn / per_turn
         tables = self._tables(circuit, point.speed, dt, point, state["angles"], state["growth"])
-        outer, outer_rate, loads = self._outer(circuit, point, state, n_cycle, dt)
-        forces, residual, steps = self._march(circuit, tables, state, outer, outer_rate, n_cycle, dt)
-        return self._read(circuit, point, state, forces, loads, orders, residual, steps)
+        outer, outer_rate, loads, levers = self._outer(circuit, point, state, n_cycle, dt)
+        record, residual, steps = self._march(circuit, tables, state, outer, outer_rate, n_cycle, dt)
+        stiff = [kernel.mean_approach(f, N_PHASES, m, *tables)[1] for m, f in enumerate(state["forces"])]
+        rotation = rotation_of(circuit, self.meshes, tables, stiff, levers, record, point.speed * dt)
+        return self._read(circuit, point, state, record, loads, rotation, orders, residual, steps)
 
     # ------------------------------------------------------------------ statics
 
@@ -257,11 +261,15 @@ class LoopTruth:
 
     def _outer(
         self, circuit: Circuit, point: Point, state: Mapping[str, Any], n_cycle: int, dt: float
-    ) -> tuple[np.ndarray, np.ndarray, list[tuple[float, np.ndarray]]]:
-        """Approach that run-out and harmonic torques impose, its rate, and the torques as (order, load) [N m]."""
+    ) -> tuple[np.ndarray, np.ndarray, list[tuple[float, np.ndarray]], np.ndarray]:
+        """Approach that run-out and harmonic torques impose, its rate, the torques as (order, load) [N m], and the
+
+        change of the approach by the run-out of each gear per its own angle (n_meshes, 2, n_cycle) [m].
+        """
         time = dt * np.arange(n_cycle)
         outer = np.zeros((len(self.meshes), n_cycle))
         rate = np.zeros_like(outer)
+        levers = np.zeros((len(self.meshes), 2, n_cycle))
         for i, (mesh, sign) in enumerate(zip(self.meshes, circuit.directions)):
             for side, gear in enumerate(mesh.gears):
                 error = self.constants.errors.get(gear)
@@ -274,13 +282,14 @@ class LoopTruth:
                 wave *= 1.0 if sign > 0 else _behind(mesh, side)
                 outer[i] += wave.real
                 rate[i] += speed * wave.imag
+                levers[i, side] = wave.imag
         loads = self._harmonic_loads(circuit, point, state)
         for order, load in loads:
             answer = circuit.approach @ circuit.receptance(order * point.speed, load)
             turning = np.exp(1j * order * point.speed * time)
             outer += (answer[:, None] * turning).real
             rate += (1j * order * point.speed * answer[:, None] * turning).real
-        return outer, rate, loads
+        return outer, rate, loads, levers
 
     def _harmonic_loads(
         self, circuit: Circuit, point: Point, state: Mapping[str, Any]
@@ -348,7 +357,7 @@ class LoopTruth:
         )  # fmt: skip
         vector = np.zeros(upper.sum(), dtype=complex)
         rho = np.zeros(2)
-        record = np.zeros((3 * n, n_cycle))
+        record = np.zeros((4 * n, n_cycle))
         size = np.concatenate(
             (np.abs(motion).max(0), [np.abs(fixed[4]).max(), np.abs(fixed[4]).max() / 400.0])
         )
@@ -392,12 +401,14 @@ class LoopTruth:
         circuit: Circuit,
         point: Point,
         state: Mapping[str, Any],
-        forces: np.ndarray,
+        record: np.ndarray,
         loads: Sequence[tuple[float, np.ndarray]],
+        rotation: Rotation,
         orders: Sequence[float],
         residual: float,
         steps: int,
     ) -> LoopAnswer:
+        forces = record[: 3 * len(self.meshes)]
         spectrum = np.fft.rfft(forces, axis=1) / forces.shape[1]
         port = state["port"]
         bracing = self.tree["drivetrain"]["bracing"]["coupling"]
@@ -425,7 +436,7 @@ class LoopTruth:
             own = [(o, one) for o, one in loads if abs(o - order) < 1e-9]
             for _, one in own:
                 load = load + one
-            motion = circuit.receptance(frequency, load)
+            motion = circuit.receptance(frequency, load) + rotation.answer(round(at), frequency)
             for name, joint in circuit.couplings.items():
                 stretch = motion[joint.a] - motion[joint.b]
                 torques[name][order] = complex((joint.stiffness + 1j * frequency * joint.damping) * stretch)

@@ -15,43 +15,56 @@ RATE, PITCH, START, STEP, OFFSET, DAMP, MU, ARM_1, ARM_2, HERTZ, DEEP, BACK_GAP,
 
 
 @njit(cache=True, fastmath=True)
+def pairs_at(place, m, numbers, tables):
+    """First and last pair of mesh ``m`` that stand within the tables.
+
+    place : path run through since zero angle, growing [m]; pair p stands at place - p pitch (front flank), or mirrored
+    """
+    pitch, start = numbers[m, PITCH], numbers[m, START]
+    reach = (tables.shape[1] - 1) * numbers[m, STEP]
+    if numbers[m, RATE] > 0.0:
+        return int(np.ceil((place - start - reach) / pitch)), int(np.floor((place - start) / pitch))
+    return int(np.ceil((start - place) / pitch)), int(np.floor((start + reach - place) / pitch))
+
+
+@njit(cache=True, fastmath=True)
+def pair_at(p, place, m, numbers, tables, tooth_gap, tooth_scale, tooth_slope, counts, shift):
+    """Pair ``p``: path position, place in the tables (whole, fraction), stiffness of all slices, gap of its teeth."""
+    pitch, start, step = numbers[m, PITCH], numbers[m, START], numbers[m, STEP]
+    n_path = tables.shape[1]
+    forward = numbers[m, RATE] > 0.0
+    s = place - p * pitch if forward else place + p * pitch
+    at = (s - start) / step
+    i = min(int(at), n_path - 2)
+    f = at - i
+    one = p % counts[m, 0]
+    # the back of a tooth meets the tooth of the wheel that comes after the one in front of it
+    two = (p + shift[m] if forward else p + shift[m] + 1) % counts[m, 1]
+    k = (1.0 - f) * tables[m, i] + f * tables[m, i + 1]
+    k *= tooth_scale[m, 0, one] * tooth_scale[m, 1, two]
+    run = 2.0 * at / (n_path - 1) - 1.0
+    own = tooth_gap[m, 0, one] + tooth_gap[m, 1, two]
+    own += 0.5 * run * (tooth_slope[m, 0, one] - tooth_slope[m, 1, two])
+    return s, i, f, k, own
+
+
+@njit(cache=True, fastmath=True)
 def pair_force(x, v, place, m, numbers, tables, gaps, tooth_gap, tooth_scale, tooth_slope, counts, shift):
     """Normal force of mesh ``m`` [N] and the sums of force times friction arm on pinion and wheel [N m].
 
     x, v : approach and its rate with all deviations that belong to the rotation [m], [m/s]
     place : path run through since zero angle, growing [m]
     """
-    pitch, start, step = numbers[m, PITCH], numbers[m, START], numbers[m, STEP]
-    n_path, n_slices = tables.shape[1], gaps.shape[1]
-    reach = (n_path - 1) * step
-    forward = numbers[m, RATE] > 0.0
+    n_slices = gaps.shape[1]
     force = 0.0
     torque_1 = 0.0
     torque_2 = 0.0
-    # pair p stands at s = place - p pitch (front flank), or mirrored
-    if forward:
-        first = int(np.ceil((place - start - reach) / pitch))
-        last = int(np.floor((place - start) / pitch))
-    else:
-        first = int(np.ceil((start - place) / pitch))
-        last = int(np.floor((start + reach - place) / pitch))
+    first, last = pairs_at(place, m, numbers, tables)
     for p in range(first, last + 1):
-        s = place - p * pitch if forward else place + p * pitch
-        at = (s - start) / step
-        i = min(int(at), n_path - 2)
-        f = at - i
-        one = p % counts[m, 0]
-        # the back of a tooth meets the tooth of the wheel that comes after the one in front of it
-        two = (p + shift[m] if forward else p + shift[m] + 1) % counts[m, 1]
-        run = 2.0 * at / (n_path - 1) - 1.0
-        k = (
-            ((1.0 - f) * tables[m, i] + f * tables[m, i + 1])
-            * tooth_scale[m, 0, one]
-            * tooth_scale[m, 1, two]
-            / n_slices
+        s, i, f, k, own = pair_at(
+            p, place, m, numbers, tables, tooth_gap, tooth_scale, tooth_slope, counts, shift
         )
-        own = tooth_gap[m, 0, one] + tooth_gap[m, 1, two]
-        own += 0.5 * run * (tooth_slope[m, 0, one] - tooth_slope[m, 1, two])
+        k /= n_slices
         pair = 0.0
         for j in range(n_slices):
             depth = x - own - (1.0 - f) * gaps[m, j, i] - f * gaps[m, j, i + 1]
@@ -73,6 +86,52 @@ def pair_force(x, v, place, m, numbers, tables, gaps, tooth_gap, tooth_scale, to
 
 
 @njit(cache=True, fastmath=True)
+def pair_energy(x, place, m, numbers, tables, gaps, tooth_gap, tooth_scale, tooth_slope, counts, shift):
+    """Elastic energy [J] of the working flanks of mesh ``m``: integral of `pair_force` over the approach at rest."""
+    n_slices = gaps.shape[1]
+    hertz, deep = numbers[m, HERTZ], numbers[m, DEEP]
+    energy = 0.0
+    first, last = pairs_at(place, m, numbers, tables)
+    for p in range(first, last + 1):
+        _, i, f, k, own = pair_at(
+            p, place, m, numbers, tables, tooth_gap, tooth_scale, tooth_slope, counts, shift
+        )
+        for j in range(n_slices):
+            depth = x - own - (1.0 - f) * gaps[m, j, i] - f * gaps[m, j, i + 1]
+            if depth > 0.0:
+                square = 0.5 * depth * depth
+                harder = square - 2.0 * deep * depth + 2.0 * deep * deep * np.log1p(depth / deep)
+                energy += k / n_slices * (square + hertz * harder)
+    return energy
+
+
+@njit(cache=True)
+def taken_up(approach, m, numbers, tables, gaps, tooth_gap, tooth_scale, tooth_slope, counts, shift):
+    """Energy (n_cycle,) [J] that the pairs take up as the gears turn by a step round each sample, the approach held.
+
+    approach (n_cycle,): with all deviations that belong to the rotation [m]
+    """
+    found = np.zeros(approach.shape[0])
+    for n in range(approach.shape[0]):
+        place = numbers[m, OFFSET] + numbers[m, RATE] * n
+        for way in (-1.0, 1.0):
+            found[n] += way * pair_energy(
+                approach[n],
+                place + 0.5 * way * numbers[m, RATE],
+                m,
+                numbers,
+                tables,
+                gaps,
+                tooth_gap,
+                tooth_scale,
+                tooth_slope,
+                counts,
+                shift,
+            )
+    return found
+
+
+@njit(cache=True, fastmath=True)
 def march(
     n_steps, first_step, dt, state, rho, flow, read_x, read_v, kick, rho_x, rho_kick, still, outer, outer_rate,
     preload, numbers, tables, gaps, tooth_gap, tooth_scale, tooth_slope, counts, shift, record,
@@ -83,7 +142,8 @@ def march(
     kick (3 n_meshes, n_modes) complex: answer to a unit impulse of normal force, friction on pinion, on wheel
     rho : relative turning of the two lines and its rate; rho_x (n_meshes,), rho_kick (3 n_meshes,)
     still (n_meshes,): approach in the static state; outer, outer_rate (n_meshes, n_cycle): what rotation imposes
-    preload (3 n_meshes,): forces of the static state; record (3 n_meshes, n_cycle): forces, written when not empty
+    preload (3 n_meshes,): forces of the static state
+    record (4 n_meshes, n_cycle): forces, then the approach of every mesh; written when not empty
     """
     n_meshes, n_cycle = outer.shape
     n_modes = state.shape[0]
@@ -107,6 +167,8 @@ def march(
             forces[3 * m + 1] = on_1
             forces[3 * m + 2] = on_2
             worst = max(worst, abs(x))
+            if writing:
+                record[3 * n_meshes + m, n] = x
         if writing:
             for i in range(3 * n_meshes):
                 record[i, n] = forces[i]
