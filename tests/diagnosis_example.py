@@ -16,6 +16,7 @@ import numpy as np
 from rigdesign.case import load_case
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.decision import Thresholds
 from rigdesign.diagnosis.defaults import Calibration
 from rigdesign.diagnosis.library import Library, Response
 from rigdesign.diagnosis.run import Result, mesh_orders, stated_settings, teeth_a_turn
@@ -240,10 +241,15 @@ def write_set(folder: Path, rig: Rig, *, title: str = "trial", baseline: str = "
     return folder
 
 
+DESIGN = Calibration(
+    amplitudes=Amplitudes(), widening={}, thresholds=Thresholds(named=0.9), evidence_plain=0.0
+)
+"""Numbers of the design: what is frozen for real rigs must not change these stories."""
+
+
 def result_of(folder: Path, *, without: Sequence[str] = (), calibration: Calibration | None = None) -> Result:
     """``diagnose_measurement`` with the formulas as the model."""
-    # amplitudes of the design: what is frozen for real rigs must not change these stories
-    case, calibration = the_case(), calibration or Calibration(amplitudes=Amplitudes(), widening={})
+    case, calibration = the_case(), calibration or DESIGN
     effects = effects_of(case)
     measurement = load_measurement(folder, case)
     healthy = None if measurement.baseline is None else load_measurement(measurement.baseline, case)

@@ -23,8 +23,8 @@ PRIOR = 1.5
 """Standard deviation of the logarithm of an amplitude around its starting value."""
 
 HANDBOOK = 2.5
-"""Factor within which the healthy spreads of constants stay, which are stated with their sources: what two models
-disagree on beyond that is no constant of the rig."""
+"""Factor within which the healthy spreads of constants and local conductances stay, which are stated with their
+sources: what two models disagree on beyond that is no constant of the rig."""
 
 WIDEN_ABOVE = 1.3
 """Mean square of a healthy set's answer along an effect [variances] above which the covariance is widened there."""
@@ -129,7 +129,8 @@ def fit_amplitudes(
 
 def _reaches(names: Sequence[str]) -> list[float]:
     """How far the logarithm of each amplitude may go from its centre."""
-    return [float(np.log(HANDBOOK)) if name.startswith("constant") else 5.0 for name in names]
+    stated = ("constant", "link")
+    return [float(np.log(HANDBOOK)) if name.startswith(stated) else 5.0 for name in names]
 
 
 def _misfit(group: Group, amplitudes: Mapping[str, float], names: Sequence[str]) -> tuple[float, Array]:

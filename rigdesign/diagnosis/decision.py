@@ -27,7 +27,7 @@ PRIOR = {"none": 0.50, "physical": 0.22, "sensor": 0.08, "anonymous": 0.10, "pai
 """Prior weight of each family of explanations, split evenly among its members."""
 
 
-CHANCE = 10.0
+CHANCE = 16.0
 """Gain that one of hundreds of anonymous causes finds beside the right one by chance."""
 
 
@@ -37,14 +37,16 @@ class Thresholds:
 
     named : inclusion probability of a name; input : mass of input errors; catalogue : share of the best gain that
     the best explanation of the catalogue must reach; misfit : standard deviations of the whitened square after the
-    best fit above which nothing known fits; group : most members of an alias group
+    best fit above which nothing known fits; group : most members of an alias group; evidence : logarithm of the
+    Bayes factor against a healthy rig that a name needs
     """
 
-    named: float = 0.9
+    named: float = 0.95
     input: float = 0.5
     catalogue: float = 0.95
     misfit: float = 5.0
     group: int = 3
+    evidence: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,6 +131,9 @@ def decide(
     best = weights.best
     if best is None:
         return _silent(weights, evidence, chi_square, count, thresholds, detectable)
+    if best.log_bayes < thresholds.evidence and weights.masses["none"] < 0.5:
+        reason = "something may be at work; healthy rigs have given as much evidence"
+        return Decision(verdict="too_small", named=(), reason=reason)
     left = chi_square - best.gain
     excess = (left - count) / (2.0 * count) ** 0.5
     if excess > thresholds.misfit:

@@ -162,9 +162,15 @@ def plain(
     covariance = subject.covariance(amplitudes, widening)
     curves = subject.curves()
     bends: dict[str, Array] = {}
+    sizes = dict.fromkeys(curves, 0.0)
     for _ in range(BENDING_STEPS if curves else 0):
         residual = subject.residual - sum(bends.values(), np.zeros(len(subject.features)))
-        sizes = _constants_at(covariance, residual, curves)
+        found = _constants_at(covariance, residual, curves)
+        sizes = {
+            effect: size + BENDING_SHARE * (found[effect] - size)
+            for effect, size in sizes.items()
+            if effect in found
+        }
         bends = {
             effect: curves[effect].at(np.array([size]))[0] - size * curves[effect].slope(size)
             for effect, size in sizes.items()
@@ -180,8 +186,10 @@ def plain(
     return Whitened.of(covariance, residual, bends)
 
 
-BENDING_STEPS = 3
+BENDING_STEPS = 5
 """Steps in which the slopes of the constants follow the data."""
+BENDING_SHARE = 0.6
+"""Of every step: a full one swings between two slopes where a course bends much."""
 
 
 def _constants_at(covariance: Covariance, residual: Array, curves: Mapping[str, Curve]) -> dict[str, float]:

@@ -5,7 +5,7 @@ readings -> single outliers out -> points held out -> evidence -> verdict, again
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -166,7 +166,10 @@ def _search(
 ) -> tuple[list[Examination], tuple[Evidence, ...]]:
     """Examine, take what is named into the model, examine what is left."""
     signature = _signature(subject, calibration)
-    examinations = [examine(space, explanations, calibration.thresholds, signature=signature)]
+    thresholds = calibration.thresholds
+    if problem.baseline is None:
+        thresholds = replace(thresholds, evidence=calibration.evidence_plain)
+    examinations = [examine(space, explanations, thresholds, signature=signature)]
     found: list[Evidence] = []
     while examinations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
         new = _best_of(examinations[-1])
@@ -182,7 +185,7 @@ def _search(
             anonymous=rest.anonymous,
             data=[],
         )
-        examinations.append(examine(after, left, calibration.thresholds, signature=signature))
+        examinations.append(examine(after, left, thresholds, signature=signature))
     return examinations, tuple(found)
 
 

@@ -200,6 +200,7 @@ def _run(job: tuple[str, str, Path, Spec, Method]) -> Row | None:
         "strength": found.strength,
         "top": [list(one.parts) for one in found.alternatives],
         "masses": [one.posterior for one in found.alternatives],
+        "evidence": max(one.log_bayes for one in found.examinations[0].evidence),
         "chi_square": found.examinations[0].chi_square / found.examinations[0].count,
         "rejected": len(found.rejected),
         "seconds": time.perf_counter() - started,

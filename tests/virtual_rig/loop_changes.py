@@ -218,9 +218,11 @@ def _cumulative(base, place, effect, meshes):  # type: ignore[no-untyped-def]
 
 
 def _single(base, place, effect, meshes):  # type: ignore[no-untyped-def]
+    """One tooth out of its place: its pitch longer, the next one shorter."""
     z = _teeth_of(meshes, place)
     steps = np.zeros(z)
     steps[int(effect["tooth"])] = effect["size"]
+    steps[(int(effect["tooth"]) + 1) % z] -= effect["size"]
     return _edit(base, place, place=tuple(np.array(_own(base, place).place or (0.0,) * z) + _closed(steps)))
 
 
