@@ -1,8 +1,8 @@
 """Libraries kept on disk by rig, sensors and plan, so that the next set of the same rig is quick.
 
-A library is found again by the hash of the case and its effects; of those stored, one serves whose channels and
-operating points hold those asked for (`Library.serving`). The folder is RIGDESIGN_CACHE_DIR or the user's cache
-folder; deleting it loses time only.
+A library is found again by the hash of the case and its effects with their bounds; of those stored, one serves whose
+channels and operating points hold those asked for (`Library.serving`). The folder is RIGDESIGN_CACHE_DIR or the user's
+cache folder; deleting it loses time only.
 """
 
 import hashlib
@@ -20,7 +20,7 @@ from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.library import Library, Response
 from rigdesign.prediction.model import Channel, Setting
 
-SCHEMA = 1
+SCHEMA = 2
 """Of the stored libraries; raise it with any change of what they hold."""
 
 
@@ -104,7 +104,7 @@ def _key(case: Case, effects: Sequence[Effect]) -> str:
         "schema": SCHEMA,
         "version": __version__,
         "case": case.hash,
-        "effects": [effect.name for effect in effects],
+        "effects": [[effect.name, *(part.bounds for part in effect.parameters)] for effect in effects],
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
 

@@ -161,6 +161,6 @@ def _limits(one: Evidence) -> tuple[Array, Array]:
     curve = one.hypothesis.curve
     if curve is not None:
         return np.array([curve.bounds[0]]), np.array([curve.bounds[1]])
-    widest = np.full(one.columns.shape[1], np.inf) if one.hypothesis.family == "pair" else None
-    half = np.full(one.columns.shape[1], one.hypothesis.half) if widest is None else widest
-    return -half, half
+    half = np.inf if one.hypothesis.family == "pair" else one.hypothesis.half
+    bound = np.full(one.columns.shape[1], half)
+    return -bound, bound
