@@ -257,7 +257,7 @@ def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> E
         hypothesis=hypothesis,
         log_bayes=log_bayes,
         coordinates=tuple(float(value) for value in best),
-        deviations=tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0))),
+        deviations=deviations_of(inverse),
         gain=space.chi_square - before + float(2.0 * best @ load - best @ gram @ best),
         columns=columns,
         answer=columns @ best,
@@ -297,6 +297,11 @@ def inverse_of(gram: Array) -> Array:
     return np.asarray(scale[:, None] * ((vectors * inverse) @ vectors.T) * scale)
 
 
+def deviations_of(inverse: Array) -> tuple[float, ...]:
+    """Standard deviations of coordinates from their covariance (k, k)."""
+    return tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0)))
+
+
 def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
     """Two explanations at once, in closed form around the best fit of the first.
 
@@ -330,7 +335,7 @@ def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
         hypothesis=hypothesis,
         log_bayes=log_bayes,
         coordinates=tuple(float(value) for value in best),
-        deviations=tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0))),
+        deviations=deviations_of(inverse),
         gain=space.chi_square - float(release.product(after, after)),
         columns=columns,
         answer=base + columns @ best,

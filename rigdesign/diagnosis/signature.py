@@ -18,7 +18,7 @@ from scipy.linalg import cho_solve, solve_triangular
 
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.covariance import Whitened
-from rigdesign.diagnosis.evidence import Evidence, Hypothesis, inverse_of, mixed, release_of
+from rigdesign.diagnosis.evidence import Evidence, Hypothesis, deviations_of, inverse_of, mixed, release_of
 from rigdesign.prediction.model import Feature
 
 EXACT = ("sensor", "input")
@@ -111,7 +111,7 @@ class Contest:
             one,
             log_bayes=log_bayes,
             coordinates=tuple(float(value) for value in best),
-            deviations=tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0))),
+            deviations=deviations_of(inverse),
             gain=space.chi_square - square + float(2.0 * best @ load - best @ gram @ best),
             answer=base + one.columns @ best,
         )

@@ -171,14 +171,13 @@ def plain(
             for effect, size in sizes.items()
             if effect in found
         }
+        slopes = {effect: curves[effect].slope(size) for effect, size in sizes.items()}
         bends = {
-            effect: curves[effect].at(np.array([size]))[0] - size * curves[effect].slope(size)
+            effect: curves[effect].at(np.array([size]))[0] - size * slopes[effect]
             for effect, size in sizes.items()
         }
         columns = tuple(
-            replace(column, values=curves[column.effect].slope(sizes[column.effect]))
-            if column.effect in sizes
-            else column
+            replace(column, values=slopes[column.effect]) if column.effect in slopes else column
             for column in covariance.columns
         )
         covariance = Covariance(base=covariance.base, columns=columns, amplitudes=covariance.amplitudes)
@@ -204,18 +203,9 @@ def _constants_at(covariance: Covariance, residual: Array, curves: Mapping[str, 
     return found
 
 
-DRIFT = 0.02
-"""Share of the model's and sensors' errors that changes between two sets of one assembly."""
-
 TWINS = 10.0
 """How much more two readings of one number may share than each is off by itself: what the model has wrong there in a
 way that no column spans is taken from the healthy set number by number."""
-
-DRIFT_SHAFT = 0.05
-"""The same of shaft orders and sidebands, from point to point."""
-
-DRIFT_MESH = 0.25
-"""The same of the orders of the meshes: the model has most of them wrong, differently at every speed."""
 
 
 def differenced(
@@ -223,15 +213,17 @@ def differenced(
     baseline: Comparison,
     amplitudes: Amplitudes,
     *,
-    drift: float = DRIFT,
-    drift_shaft: float = DRIFT_SHAFT,
-    drift_mesh: float = DRIFT_MESH,
+    drift: float,
+    drift_shaft: float,
+    drift_mesh: float,
 ) -> Whitened:
     """The residual of a set given a healthy set of the same rig.
 
     What both share is the covariance of the columns at either set's numbers; noise, the settings' scatter and a
     drift of the shared part are each set's own. Orders change with each point by itself: near a resonance what
     healthy teeth excite follows a speed that was met to a per cent only.
+
+    drift, drift_shaft, drift_mesh : shares of the shared part, see `rigdesign.diagnosis.defaults.Calibration`
     """
     here, there = subject.covariance(amplitudes), baseline.covariance(amplitudes)
     after, before = here.deviations, _matched(there, here)

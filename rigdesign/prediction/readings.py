@@ -12,7 +12,7 @@ from rigdesign.passes import PassResult
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
 from rigdesign.prediction.orders import is_ideal, shaft_orders
 from rigdesign.prediction.places import place_weights
-from rigdesign.rig.joints import shell_temperature
+from rigdesign.rig.joints import bearing_of_bore, shell_temperature
 from rigdesign.rig.model import Rig
 from rigdesign.state import OperatingPoint
 from thermal.fe.mesh import FloatArray
@@ -74,12 +74,14 @@ def _temperature(rig: Rig, channel: Channel) -> Reading:
     name, (nodes, weights) = place_weights(rig, channel.place, channel.at)
     surface = channel.place.partition(".")[2]
 
-    def read(_: Rig, settled: Settled) -> Numbers:
-        field = settled.last.fields[name]
-        body = float(weights @ settled.temperature(name)[nodes])
-        return (shell_temperature(surface, body, field.conditions),)
+    def body(_: Rig, settled: Settled) -> Numbers:
+        return (float(weights @ settled.temperature(name)[nodes]),)
 
-    return read
+    def shell(rig: Rig, settled: Settled) -> Numbers:
+        (bore,) = body(rig, settled)
+        return (shell_temperature(surface, bore, settled.last.fields[name].conditions),)
+
+    return body if bearing_of_bore(rig.case.gearboxes[name], surface) is None else shell
 
 
 def _outlet(rig: Rig, channel: Channel) -> Reading:

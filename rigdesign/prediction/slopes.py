@@ -23,7 +23,6 @@ from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.near_loop import Cause, NearLoop
 from rigdesign.prediction.orders import Orders, is_ideal, shaft_orders
 from rigdesign.prediction.orders import numbers as order_numbers
-from rigdesign.prediction.places import place_weights
 from rigdesign.prediction.readings import Reading, Settled
 from rigdesign.prediction.settle import SCALES, SettledPoint, flat, raw, unflat
 from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
@@ -160,7 +159,8 @@ class PointSlopes:
             system = Projection(self._housings.bases[name].reduced, field.conditions)
             links = system.links(field.coefficients)
             answers = -system.answers(field.coefficients, np.array([link.column for link in links]).T)
-            handed = self._handed(name, links) @ answers
+            by_field = self._handed(name, links)
+            handed = by_field @ answers
             for number, link in enumerate(links):
                 heat = self._heat_of(name, link)
                 if heat is not None:
@@ -170,11 +170,16 @@ class PointSlopes:
             for number, link in enumerate(links):
                 label = link_name(name, link)
                 found[label] = found.get(label, 0.0) + whole[:, number]
-            found[f"mixing:{name}.{GEAR_OIL}"] = self._unmixed(name, field, system)
+            found[f"mixing:{name}.{GEAR_OIL}"] = self._unmixed(name, field, system, by_field)
         return found
 
-    def _unmixed(self, name: str, field: ReducedField, system: Projection) -> FloatArray:
-        """(f,) answer where turning parts are wetted by gear oil as it leaves the teeth, not by its mean."""
+    def _unmixed(
+        self, name: str, field: ReducedField, system: Projection, by_field: FloatArray
+    ) -> FloatArray:
+        """(f,) answer where turning parts are wetted by gear oil as it leaves the teeth, not by its mean.
+
+        by_field : (n, m) what a pass hands on by the coefficients of the housing
+        """
         reduced = self._housings.bases[name].reduced
         hotter = _fresh_over_mean(self.rig, name, self.settled.last)
         load, taken = np.zeros(reduced.size), 0.0
@@ -190,7 +195,7 @@ class PointSlopes:
                 load += heat * surface.mean
                 taken += heat
         answers = system.answers(field.coefficients, load[:, None])
-        handed = (self._handed(name, system.links(field.coefficients)) @ answers)[:, 0]
+        handed = (by_field @ answers)[:, 0]
         oil = self.index.get(("wall_heat", f"{name}.{GEAR_OIL}"))
         if oil is not None:
             handed[oil] -= taken / _scale(oil, self.index)
@@ -210,10 +215,7 @@ class PointSlopes:
                 surface = f"bearing_bore_{entry.shaft}_{entry.side}"
                 if surface in reduced.setup.mesh.surfaces:
                     loads[f"bore:{name}.{bearing}"] = reduced.surface(surface).mean
-            for channel, _ in self._reads:
-                if channel.quantity == "temperature" and channel.place == name:
-                    _, (nodes, weights) = place_weights(self.rig, channel.place, channel.at)
-                    loads[f"near:{channel.name}"] = weights @ reduced.shapes[nodes]
+            loads |= self._at_sensors(name)
             answers = system.answers(field.coefficients, np.array(list(loads.values())).T)
             handed = self._handed(name, system.links(field.coefficients)) @ answers
             whole = self.answer(handed, self._directions[name].readings @ answers)
@@ -224,6 +226,16 @@ class PointSlopes:
                 scale = _scale(number, self.index)
                 answer = self.answer(self.loop[:, number], self.follow[:, number])
                 found[f"{kind}:{place}"] = answer / scale
+        return found
+
+    def _at_sensors(self, name: str) -> dict[str, FloatArray]:
+        """Source -> (m,) load of a watt at each thermocouple of a housing: as the shapes are read there."""
+        found = {}
+        row = 0
+        for channel, _ in self._reads:
+            if channel.quantity == "temperature" and channel.place == name:
+                found[f"near:{channel.name}"] = self._directions[name].readings[row]
+            row += numbers_of(channel)
         return found
 
     def _fields(self) -> list[tuple[str, ReducedField]]:

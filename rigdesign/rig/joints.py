@@ -56,7 +56,7 @@ def _pressed(rig: Rig, joint: PressedJoint, materials: tuple[str, str]) -> Excha
 
 def behind_shell(rig: Rig, name: str, surface: str, law: FilmLaw) -> FilmLaw:
     """Film of a surface; on a bearing bore in series with the joint of its shell."""
-    part = _bearing_of_bore(rig.case.gearboxes[name], surface)
+    part = bearing_of_bore(rig.case.gearboxes[name], surface)
     if part is None:
         return law
     conductance = rig.case.gearboxes[name].bearings[part].shell_conductance
@@ -86,6 +86,7 @@ def shell_temperature(surface: str, wall: float, conditions: Sequence[Condition]
     return wall
 
 
-def _bearing_of_bore(box: Gearbox, surface: str) -> str | None:
+def bearing_of_bore(box: Gearbox, surface: str) -> str | None:
+    """The bearing whose bore in the housing a surface is; None for another surface."""
     bores = {f"bearing_bore_{b.shaft}_{b.side}": name for name, b in box.bearings.items()}
     return bores.get(surface)
