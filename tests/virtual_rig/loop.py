@@ -26,6 +26,8 @@ TIME_STEP, LONG_STEP = 1.0e-5, 2.0e-5
 CUT = 1.5e5
 """Modes of the circuit above it [rad/s] stay out of the march."""
 MATERIAL_GROWTH = 11.5e-6
+COLD = 293.15
+"""Temperature at which the case gives sizes and locked torque, where it says nothing else [K]."""
 N_PHASES = 24
 SETTLED = 1e-5
 """Change of the state over a cycle, share of the tooth deflection, at which the march ends."""
@@ -112,8 +114,8 @@ class LoopTruth:
         """Periodic state at a point. RuntimeError when the march leaves the tables."""
         circuit = read_circuit(self.tree, self.meshes, point.speed, point.torque, self.constants.scale)
         at_rest = self._state(circuit, point, None)
-        reference = self.tree["gearboxes"][self.meshes[0].name.split(".")[0]]["oil"]["inlet_temperature"]
-        lock = self.constants.lock * (1.0 + self.constants.drift * (point.oil - reference))
+        warmer = point.oil - self.tree["ambient"].get("reference_temperature", COLD)
+        lock = self.constants.lock * (1.0 + self.constants.drift * warmer)
         state = self._state(circuit, point, at_rest["twist"] * lock)
         turn = 2.0 * math.pi / point.speed
         teeth = self.meshes[0].z[0]
@@ -143,7 +145,7 @@ class LoopTruth:
         cold = self._tables(circuit, point.speed, 1e-5, point, (0.0,) * len(self.meshes))
         growth = [0.0] * len(self.meshes)
         if running:
-            growth = [MATERIAL_GROWTH * (point.oil - 293.15) * 0.5 * m.module for m in self.meshes]
+            growth = [MATERIAL_GROWTH * (point.oil - COLD) * 0.5 * m.module for m in self.meshes]
         port = _ports(circuit, self.meshes)
         n_meshes = len(self.meshes)
         coupling = circuit.couplings[self.tree["drivetrain"]["bracing"]["coupling"]]
