@@ -55,18 +55,19 @@ class Constants:
 
 def constants(space: Whitened, effects: Sequence[Effect]) -> Constants:
     """Constants of one parameter that the residual of a healthy set narrows, clipped to their bounds."""
-    entries, kept = [], []
+    entries: list[Constant] = []
+    kept: list[Array] = []
     for effect in effects:
         places = space.covariance.own(effect.name)
-        if len(places) != 1 or len(effect.parameters) != 1:
+        if not places or len(effect.parameters) != 1:
             continue
-        column = space.covariance.columns[places[0]]
-        spread = space.covariance.amplitudes.get(column.kind, 1.0) * column.spread
-        white = space.columns[:, places[0]]
-        deviation = spread * float(np.sqrt(max(1.0 - float(white @ white), 0.0)))
+        spreads = np.array([space.covariance.spread(place) for place in places])
+        spread = float(np.linalg.norm(spreads))
+        white = space.columns[:, places] @ spreads
+        deviation = float(np.sqrt(max(spread**2 - float(white @ white), 0.0)))
         if deviation >= NARROWED * spread:
             continue
-        mean = spread * float(white @ space.residual)
+        mean = float(white @ space.residual)
         entries.append(
             Constant(
                 effect=effect,
@@ -75,8 +76,7 @@ def constants(space: Whitened, effects: Sequence[Effect]) -> Constants:
                 before=spread,
             )
         )
-        kept.append(places[0])
-    white = space.columns[:, kept]
-    spreads = np.array([entry.before for entry in entries])
-    left = np.eye(len(kept)) - white.T @ white
-    return Constants(entries=tuple(entries), covariance=np.asarray(spreads[:, None] * left * spreads))
+        kept.append(white)
+    seen = np.array(kept).reshape(len(kept), -1)
+    before = np.diag([entry.before**2 for entry in entries])
+    return Constants(entries=tuple(entries), covariance=np.asarray(before - seen @ seen.T))

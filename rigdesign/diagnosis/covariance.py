@@ -71,6 +71,11 @@ class Covariance:
         """With further columns."""
         return Covariance(base=self.base, columns=(*self.columns, *columns), amplitudes=self.amplitudes)
 
+    def spread(self, place: int) -> float:
+        """Standard deviation of the cause of a column."""
+        column = self.columns[place]
+        return self.amplitudes.get(column.kind, 1.0) * column.spread
+
     def own(self, effect: str) -> list[int]:
         """Places of the columns that spread what ``effect`` moves."""
         return [i for i, column in enumerate(self.columns) if effect and column.effect == effect]

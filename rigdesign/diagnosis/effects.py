@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from math import exp, log
 from typing import Literal
 
@@ -77,6 +78,13 @@ class Effect:
     number of the tooth, says otherwise."""
     linear: bool = False
     """The numbers answer in proportion: one small step is enough."""
+    links: tuple[str, ...] = ()
+    """Local conductances that its first parameter, a factor, scales all at once (``film:gearbox.surface``); ``*``
+    stands for any run of characters."""
+
+    def scales(self, link: str) -> bool:
+        """Whether a local conductance is one of those it scales."""
+        return any(fnmatchcase(link, pattern) for pattern in self.links)
 
     def changes(self, case: Case, coordinates: tuple[float, ...]) -> Changes:
         """Change of the case at coordinates."""

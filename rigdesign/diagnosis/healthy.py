@@ -29,7 +29,7 @@ def healthy_columns(
     return (
         *_constants(library, effects),
         *_exponents(library),
-        *_links(library, speed),
+        *_links(library, effects, speed),
         *_sources(library),
         *_channels(library.features, level, speed, channels),
         *_series(library.features, level, speed, channels, mesh_orders),
@@ -92,10 +92,30 @@ def _exponents(library: Library) -> list[Column]:
     ]
 
 
-def _links(library: Library, speed: Array) -> list[Column]:
+def _links(library: Library, effects: Sequence[Effect], speed: Array) -> list[Column]:
+    """Every local conductance by itself, what those of one film share as the film's own.
+
+    A film that an effect scales and the conductances it is made of are one logarithm: what they share belongs to the
+    effect, and with it goes out of the covariance while that effect is tested. Left in, its straight answer would
+    cancel the effect's own, and any size could be had for its curvature alone.
+    """
+    shared: dict[str, Array] = {}
     columns = []
+    for effect in effects:
+        scaled = [name for name in library.links if effect.scales(name)]
+        if not scaled or effect.name not in library.responses:
+            continue
+        whole = np.sum([library.links[name] for name in scaled], axis=0)
+        spread = len(scaled) ** -0.5
+        columns.append(
+            Column(
+                name=f"{effect.name} as a whole", kind="link", values=whole, spread=spread, effect=effect.name
+            )
+        )
+        shared |= dict.fromkeys(scaled, whole / len(scaled))
     for name, values in library.links.items():
-        columns.append(Column(name=name, kind="link", values=values, spread=1.0))
+        alone = values - shared[name] if name in shared else values
+        columns.append(Column(name=name, kind="link", values=alone, spread=1.0))
         columns.append(Column(name=f"{name} by speed", kind="link_speed", values=values * speed, spread=1.0))
     return columns
 

@@ -192,15 +192,14 @@ BENDING_SHARE = 0.6
 
 
 def _constants_at(covariance: Covariance, residual: Array, curves: Mapping[str, Curve]) -> dict[str, float]:
-    """Where the data put every constant that has a curve, kept within its bounds."""
+    """Where the data put every constant that has a curve, all its columns together, kept within its bounds."""
     solved = cho_solve((covariance.lower, True), residual)
-    found = {}
-    for column in covariance.columns:
+    found: dict[str, float] = {}
+    for place, column in enumerate(covariance.columns):
         if column.effect in curves:
-            spread = covariance.amplitudes.get(column.kind, 1.0) * column.spread
-            size = spread**2 * float(column.values @ solved)
-            found[column.effect] = float(np.clip(size, *curves[column.effect].bounds))
-    return found
+            size = covariance.spread(place) ** 2 * float(column.values @ solved)
+            found[column.effect] = found.get(column.effect, 0.0) + size
+    return {effect: float(np.clip(size, *curves[effect].bounds)) for effect, size in found.items()}
 
 
 TWINS = 10.0

@@ -40,7 +40,7 @@ LOOP: Mapping[str, Kind] = {
     "inertia": Kind("1", -0.2, 0.2, "inertia", "relative change, gear or motor"),
     "tip_relief": Kind("m", 0.0, 25e-6, "flank", "relief beyond that of the case"),
     "profile_slope": Kind("m", -25e-6, 25e-6, "flank", "f_Halpha of all teeth"),
-    "bracing_drift": Kind("1/K", -4e-3, 4e-3, "bracing", "locked twist per kelvin of gear oil above the reference temperature"),
+    "bracing_drift": Kind("1/K", -4e-3, 4e-3, "bracing", "locked twist per kelvin of gear oil above the reference"),
     # ---------------------------------------------------------------- outside the catalogue
     "x_torque_squared": Kind("N m", 0.0, 20.0, "order 3", "torque at order 3, with the bracing torque squared", False),
     "x_mains": Kind("N m", 0.0, 20.0, "order near 100 Hz", "inverter's 100 Hz, leaking into the nearest order", False),

@@ -4,10 +4,21 @@ Bounds are starting values of rig practice (design of the workflow, section 4); 
 and suppliers leave open.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.housing import ConstantFilm, Housing, ThermalRadiation
+from rigdesign.case.housing import (
+    BearingFilm,
+    Condition,
+    ConstantFilm,
+    FixedTemperature,
+    FlankFilm,
+    GapExchange,
+    Housing,
+    Insulated,
+    SeriesExchange,
+    ThermalRadiation,
+)
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, Scaled, factor, share
 from rigdesign.diagnosis.effects import Changes, Effect, Family, Parameter
@@ -223,15 +234,21 @@ def _films(name: str, housing: Housing) -> Iterator[Effect]:
             parameters=(factor("factor", low, high),),
             change=Scaled(((f"{at}.boundary.{entry}.film_factor", getattr(condition, "film_factor", 1.0)),)),
             healthy=0.25 if given else IN_MIST,
+            links=_wetted(name, condition.surfaces),
         )
     yield _film(
-        f"ambient_film:{name}", "film to room air", f"{at}.ambient_film_factor", housing.ambient_film_factor
+        f"ambient_film:{name}",
+        "film to room air",
+        f"{at}.ambient_film_factor",
+        housing.ambient_film_factor,
+        tuple(link for c in housing.boundary.values() if _in_air(c) for link in _wetted(name, c.surfaces)),
     )
     yield _film(
         f"bearing_film:{name}",
         "film in the bearings",
         f"{at}.bearing_film_factor",
         housing.bearing_film_factor,
+        (f"bearing_film:{name}.*",),
     )
     painted = {
         entry: condition
@@ -260,6 +277,22 @@ def _films(name: str, housing: Housing) -> Iterator[Effect]:
         )
 
 
+def _wetted(name: str, surfaces: Sequence[str]) -> tuple[str, ...]:
+    """Local conductances of the films on surfaces."""
+    return tuple(f"film:{name}.{surface}" for surface in surfaces)
+
+
+NOT_IN_AIR = (
+    BearingFilm, FixedTemperature, FlankFilm, GapExchange, Insulated, SeriesExchange, ThermalRadiation,
+)  # fmt: skip
+"""Conditions that are no film to the room's air whatever they say of a fluid."""
+
+
+def _in_air(condition: Condition) -> bool:
+    """Whether a film is one to room air, as `rigdesign.rig.boundary` takes it."""
+    return not isinstance(condition, NOT_IN_AIR) and getattr(condition, "fluid", "ambient") == "ambient"
+
+
 class _Shifted:
     """Adds the same to the values at several paths."""
 
@@ -270,7 +303,7 @@ class _Shifted:
         return {path: now + values[0] for path, now in self._paths.items()}
 
 
-def _film(name: str, title: str, path: str, now: float) -> Effect:
+def _film(name: str, title: str, path: str, now: float, links: tuple[str, ...]) -> Effect:
     outside = name.startswith("ambient")
     return Effect(
         name=name,
@@ -280,6 +313,7 @@ def _film(name: str, title: str, path: str, now: float) -> Effect:
         parameters=(factor("factor", 0.5, 3.0) if outside else factor("factor", 0.2, 3.0),),
         change=Scaled(((path, now),)),
         healthy=0.15 if outside else IN_BEARING,
+        links=links,
     )
 
 
