@@ -27,6 +27,8 @@ class Amplitudes:
     """Of every local conductance: its logarithm."""
     link_speed: float = 0.10
     """Of the same per factor e of speed."""
+    answer: float = 0.15
+    """Error of the answers to constants of the heat, over the answers at their healthy spreads."""
     source: float = 0.03
     """Heat that enters elsewhere than the model says, over all losses of the point."""
     channel: float = 0.02

@@ -23,8 +23,8 @@ PRIOR = 1.5
 """Standard deviation of the logarithm of an amplitude around its starting value."""
 
 HANDBOOK = 2.5
-"""Factor within which the healthy spreads of constants and local conductances stay, which are stated with their
-sources: what two models disagree on beyond that is no constant of the rig."""
+"""Factor within which the healthy spreads of constants, the error of their answers and local conductances stay, which
+are stated with their sources: what two models disagree on beyond that is no constant of the rig."""
 
 WIDEN_ABOVE = 1.3
 """Mean square of a healthy set's answer along an effect [variances] above which the covariance is widened there."""
@@ -58,7 +58,8 @@ class Group:
         for column in spaces[0].covariance.columns:
             values = column.spread * column.values
             parts[column.kind] = parts.get(column.kind, 0.0) + np.outer(values, values)
-        nothing = Amplitudes(**dict.fromkeys(OWN_KINDS, 0.0))
+        parts["answer"] = first.answer_error
+        nothing = Amplitudes(**dict.fromkeys((*OWN_KINDS, "answer"), 0.0))
         for kind in OWN_KINDS:
             alone = nothing.with_values({kind: 1.0})
             own = own_spread(first.library, first.channels, first.mesh_orders, alone)
@@ -129,7 +130,7 @@ def fit_amplitudes(
 
 def _reaches(names: Sequence[str]) -> list[float]:
     """How far the logarithm of each amplitude may go from its centre."""
-    stated = ("constant", "link")
+    stated = ("constant", "link", "answer")
     return [float(np.log(HANDBOOK)) if name.startswith(stated) else 5.0 for name in names]
 
 

@@ -180,6 +180,37 @@ def series_kind(order: float, mesh_orders: frozenset[float]) -> str:
     return "series_mesh" if order in mesh_orders else "series_shaft"
 
 
+HEAT: frozenset[Family] = frozenset({"loss", "split", "film", "contact", "flow", "oil"})
+"""Families of constants that move the heat."""
+
+TREND = 0.5
+"""Error of an answer along the speed (per factor e) over that at all points alike."""
+
+
+def answer_error(library: Library, effects: Sequence[Effect]) -> Array:
+    """(n, n) covariance of answers to constants of the heat that are wrong by as much as they are, series by series.
+
+    A healthy rig has its constants off by their spreads, and no model passes that on exactly: what is admitted to an
+    explanation (`rigdesign.diagnosis.signature`) a healthy rig has as well.
+    """
+    answers = [
+        effect.healthy * library.responses[effect.name].slope()
+        for effect in effects
+        if effect.healthy > 0.0 and effect.family in HEAT and effect.name in library.responses
+    ]
+    count = len(library.features)
+    if not answers:
+        return np.zeros((count, count))
+    speed = relative_speed(library.features, library.settings)
+    names = [(feature.channel, feature.order, feature.part) for feature in library.features]
+    places = {name: number for number, name in enumerate(dict.fromkeys(names))}
+    series = np.array([places[name] for name in names])
+    both = np.hstack(answers)
+    along = TREND * speed
+    share = (series[:, None] == series) * (1.0 + np.outer(along, along))
+    return np.asarray(both @ both.T * share)
+
+
 def own_spread(
     library: Library,
     channels: Mapping[str, Channel],

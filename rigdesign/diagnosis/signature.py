@@ -19,13 +19,11 @@ from scipy.linalg import cho_solve, solve_triangular
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.covariance import Whitened
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis, deviations_of, inverse_of, mixed, release_of
+from rigdesign.diagnosis.healthy import TREND
 from rigdesign.prediction.model import Feature
 
 EXACT = ("sensor", "input")
 """Families whose trace is known exactly."""
-
-TREND = 0.5
-"""Error along the speed (per factor e) over that at all points alike."""
 
 CONTENDERS = 60
 """Explanations, best first, whose own error is admitted; the others are too far behind."""

@@ -7,6 +7,7 @@ a right cause is weighed with each cause (`rigdesign.diagnosis.signature`).
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cho_solve
@@ -16,7 +17,7 @@ from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.evidence import Curve
-from rigdesign.diagnosis.healthy import healthy_columns, own_spread
+from rigdesign.diagnosis.healthy import answer_error, healthy_columns, own_spread
 from rigdesign.diagnosis.library import Library
 from rigdesign.diagnosis.sensors import SensorError, Stated, input_errors, sensor_errors, setting_scatter
 from rigdesign.measurement import Data
@@ -65,9 +66,13 @@ class Comparison:
     def base_noise(self, amplitudes: Amplitudes) -> Array:
         """(n, n) covariance of noise, settings read and what each number is off by itself."""
         own = own_spread(self.library, self.channels, self.mesh_orders, amplitudes)
-        return np.asarray(
-            np.diag(self.noise**2 + own**2 + self.library.error**2 * self._thermal) + self.scatter
-        )
+        alone = np.diag(self.noise**2 + own**2 + self.library.error**2 * self._thermal)
+        return np.asarray(alone + amplitudes.answer**2 * self.answer_error + self.scatter)
+
+    @cached_property
+    def answer_error(self) -> Array:
+        """(n, n) covariance of what the answers to its constants have wrong, at an amplitude of one."""
+        return answer_error(self.library, self.effects)
 
     def columns(self) -> tuple[Column, ...]:
         """Columns of the model, of sensors and of settings."""
