@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize
+from scipy.optimize import brentq, minimize
 
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.columns import Array
@@ -160,39 +160,77 @@ def widen(subjects: Sequence[Comparison], amplitudes: Amplitudes) -> dict[str, f
     effect with the largest is widened until it is `WIDEN_ABOVE`, then the next: one direction two models disagree on
     shows in many effects and is mended once.
     """
+    seen = [_Seen.of(subject, plain(subject, amplitudes)) for subject in subjects]
     found: dict[str, float] = {}
     for _ in range(WIDEST):
         scores: dict[str, list[tuple[float, float]]] = {}
-        for subject in subjects:
-            _score(subject, plain(subject, amplitudes, found), scores)
-        worst, square, length = "", WIDEN_ABOVE, 1.0
-        for likeness, pairs in scores.items():
-            mean = float(np.mean([one for one, _ in pairs]))
-            if mean > square * (1.0 + 1e-6):
-                worst, square, length = likeness, mean, float(np.median([one for _, one in pairs]))
-        if not worst:
+        for one in seen:
+            one.score(found, scores)
+        means = {likeness: float(np.mean(pairs, axis=0)[0]) for likeness, pairs in scores.items()}
+        worst = max(means, key=lambda likeness: means[likeness], default="")
+        if not worst or means[worst] <= WIDEN_ABOVE * (1.0 + 1e-3):
             break
-        more = (square / WIDEN_ABOVE - 1.0) / length**2
-        found[worst] = float(np.sqrt(found.get(worst, 0.0) ** 2 + more))
+        squares, lengths = np.array(scores[worst]).T
+        more = _missing(squares, lengths)
+        found[worst] = float(np.hypot(found.get(worst, 0.0), more))
     return found
 
 
-WIDEST = 30
-"""Effects that are widened at most, one at a time."""
+def _missing(squares: Array, lengths: Array) -> float:
+    """Spread that takes the mean of squares (k,) along columns of whitened lengths (k,) down to `WIDEN_ABOVE`."""
 
-UNSEEN = 0.3
-"""Whitened length of an effect at its bound below which healthy sets say nothing of it."""
+    def left(logarithm: float) -> float:
+        return float(np.mean(squares / (1.0 + (np.exp(logarithm) * lengths) ** 2))) - WIDEN_ABOVE
+
+    span = np.log(np.array([1e-3 / lengths.max(), 1e3 / lengths.min()]))
+    return float(np.exp(brentq(left, *span)))
 
 
-def _score(subject: Comparison, space: Whitened, scores: dict[str, list[tuple[float, float]]]) -> None:
-    for effect in subject.effects:
-        response = subject.library.responses.get(effect.name)
-        if response is None:
-            continue
-        white = space.covariance.whiten(response.slope())
-        reach = max(abs(bound) for parameter in effect.parameters for bound in parameter.bounds)
-        for column in white.T:
-            length = float(np.linalg.norm(column))
-            if length * reach > UNSEEN:
-                score = float(column @ space.residual) / length
-                scores.setdefault(effect.likeness, []).append((score**2, length))
+WIDEST = 60
+"""Times that an effect is widened at most, one at a time."""
+
+UNSEEN = 2.0
+"""Whitened length of an effect at its bound below which it can explain too little to be named, and healthy sets say
+nothing of it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Seen:
+    """What one healthy set says along the effects: products of their whitened slopes (k, k) and with the residual (k,).
+
+    likeness : of each slope; judged : (k,) whether it is seen
+    """
+
+    gram: Array
+    load: Array
+    likeness: tuple[str, ...]
+    judged: tuple[bool, ...]
+
+    @classmethod
+    def of(cls, subject: Comparison, space: Whitened) -> "_Seen":
+        """Of a set in the white space of a healthy rig."""
+        own = [effect for effect in subject.effects if effect.name in subject.library.responses]
+        slopes = [subject.library.responses[effect.name].slope() for effect in own]
+        white = space.covariance.whiten(np.hstack(slopes))
+        each = [effect for effect, slope in zip(own, slopes, strict=True) for _ in slope.T]
+        reaches = [max(abs(bound) for p in effect.parameters for bound in p.bounds) for effect in each]
+        lengths = np.linalg.norm(white, axis=0)
+        return cls(
+            gram=white.T @ white,
+            load=white.T @ space.residual,
+            likeness=tuple(effect.likeness for effect in each),
+            judged=tuple(lengths * np.array(reaches) > UNSEEN),
+        )
+
+    def score(self, widening: Mapping[str, float], scores: dict[str, list[tuple[float, float]]]) -> None:
+        """Adds the square and the whitened length of every slope with some likenesses widened."""
+        spread = np.array([widening.get(likeness, 0.0) for likeness in self.likeness])
+        inner = np.eye(len(spread)) + spread[:, None] * self.gram * spread
+        taken = np.linalg.solve(inner, spread[:, None] * np.column_stack([self.gram, self.load]))
+        left = np.column_stack([self.gram, self.load]) - (self.gram * spread) @ taken
+        squares = np.maximum(np.diagonal(left[:, :-1]), 1e-30)
+        for likeness, judged, square, load in zip(
+            self.likeness, self.judged, squares, left[:, -1], strict=True
+        ):
+            if judged:
+                scores.setdefault(likeness, []).append((float(load**2 / square), float(np.sqrt(square))))

@@ -2,8 +2,7 @@
 
 Fitted by `rigdesign.diagnosis.calibration` to 76 healthy sets of the virtual rig: 36 of the prototype, 24 of the 1:1
 loop and 16 of the loop with a hunting ratio, those with up to 700 numbers; dimensionless, so that they serve rigs that
-nobody has simulated. Those of the loops predate the virtual rig's torque of eccentric gears and are to be fitted anew;
-how they transfer from rig to rig is not measured yet. Drifts and thresholds come from the development split.
+nobody has simulated. Drifts and thresholds come from the development split.
 """
 
 from collections.abc import Mapping
@@ -13,46 +12,45 @@ from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.decision import Thresholds
 
 AMPLITUDES = Amplitudes(
-    constant_loss=1.87,
-    constant_film=1.62,
-    constant_oil=2.5,
+    constant_loss=1.95,
+    constant_film=0.932,
+    constant_oil=2.25,
     constant_loop=2.5,
-    tooth=1.97,
-    exponent=0.0862,
+    tooth=1.85,
+    exponent=0.0798,
     link=0.625,
-    link_speed=0.152,
-    source=0.00504,
-    channel=0.00558,
-    channel_speed=0.000437,
-    point=0.00442,
-    series_mean=0.000708,
-    series_mesh=0.0424,
-    series_mesh_point=0.445,
-    series_shaft=0.0792,
-    series_shaft_point=0.0132,
-    frequency=0.034,
+    link_speed=0.147,
+    answer=0.375,
+    source=0.00109,
+    channel=0.00298,
+    channel_speed=0.00072,
+    point=0.00366,
+    series_mean=0.000851,
+    series_mesh=0.0567,
+    series_mesh_point=0.451,
+    series_shaft=0.0111,
+    series_shaft_point=0.00915,
+    frequency=0.0158,
     sensor=1.0,
     input=1.0,
 )
 
 WIDENING = {
-    "shell_contact": 0.000384,
-    "single_pitch": 4e-05,
-    "seal_loss": 0.181,
-    "bypass": 1.18,
-    "bracing_drift": 0.000321,
-    "motor_ripple": 0.0791,
-    "weak_tooth": 0.182,
-    "squeeze_loss": 4.99,
-    "inertia": 0.26,
-    "bearing_film": 1.08,
-    "leak_warm_cold": 0.00565,
-    "spline_stiffness": 0.428,
-    "short_circuit": 0.593,
-    "windage_loss": 0.45,
-    "mesh_damping": 1.57,
-    "run_out": 2.88e-06,
-    "film.cold_oil": 0.176,
+    "bypass": 0.324,
+    "shell_contact": 0.000255,
+    "single_pitch": 3.42e-06,
+    "seal_loss": 0.12,
+    "bracing_drift": 0.000264,
+    "weak_tooth": 0.0743,
+    "bearing_film": 0.601,
+    "spline_stiffness": 0.333,
+    "windage_loss": 0.369,
+    "motor_ripple": 0.00121,
+    "not_steady": 8.81e-06,
+    "jet_loss": 0.198,
+    "leak_warm_cold": 0.00299,
+    "inertia": 0.0545,
+    "run_out": 2.37e-06,
 }
 """Spread of a coordinate beyond the columns, by likeness of the effect."""
 
