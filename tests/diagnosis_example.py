@@ -257,12 +257,12 @@ def result_of(folder: Path, *, without: Sequence[str] = (), calibration: Calibra
     def compared(one):
         data = features(one)
         made = library(data.settings, [entry.channel for entry in one.channels.values()], without=without)
-        return data, compare(data, made, effects, stated_settings(one), mesh_orders(case))
+        return data, compare(data, made, effects, stated_settings(one), mesh_orders(case), teeth_a_turn(case))
 
     data, subject = compared(measurement)
     before = None if healthy is None else compared(healthy)[1]
     problem = Problem(
-        subject=subject, baseline=before, teeth_a_turn=teeth_a_turn(case), seed=measurement.hash,
+        subject=subject, baseline=before, seed=measurement.hash,
         repeated=data.strength == "proven",
     )  # fmt: skip
     return Result(

@@ -8,12 +8,14 @@ Source: type II maximum likelihood, Rasmussen and Williams 2006, ch. 5.4; the gr
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import solve_triangular
 from scipy.optimize import brentq, minimize
 
 from rigdesign.diagnosis.amplitudes import Amplitudes
+from rigdesign.diagnosis.baseline import Change, Drift
 from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.covariance import Whitened
 from rigdesign.diagnosis.healthy import own_spread
@@ -160,7 +162,40 @@ def widen(subjects: Sequence[Comparison], amplitudes: Amplitudes) -> dict[str, f
     effect with the largest is widened until it is `WIDEN_ABOVE`, then the next: one direction two models disagree on
     shows in many effects and is mended once.
     """
-    seen = [_Seen.of(subject, plain(subject, amplitudes)) for subject in subjects]
+    return _widen([_Seen.of(subject, plain(subject, amplitudes)) for subject in subjects])
+
+
+def calibrate_drift(
+    pairs: Sequence[tuple[Comparison, Comparison]], amplitudes: Amplitudes, start: Drift
+) -> Drift:
+    """What a healthy rig changes from set to set, from pairs of healthy sets (the second is the baseline).
+
+    The shares maximise the likelihood of all changes; the widening is found as without a baseline.
+    """
+    changes = [Change.of(subject, baseline, amplitudes) for subject, baseline in pairs]
+    residuals = [change.subject.residual - change.expected for change in changes]
+
+    def misfit(logs: Array) -> float:
+        drift = Drift(**dict(zip(SHARES, np.exp(logs).tolist(), strict=True)))
+        value = 0.5 * float(np.sum(((logs - centre) / PRIOR) ** 2))
+        for change, residual in zip(changes, residuals, strict=True):
+            lower = np.linalg.cholesky(change.covariance(drift))
+            white = solve_triangular(lower, residual, lower=True, check_finite=False)
+            value += float(np.log(np.diagonal(lower)).sum()) + 0.5 * float(white @ white)
+        return value
+
+    centre = np.log([getattr(start, name) for name in SHARES])
+    best = minimize(misfit, centre, method="Nelder-Mead", options={"xatol": 0.02, "fatol": 0.05})
+    found = Drift(**dict(zip(SHARES, np.exp(best.x).tolist(), strict=True)))
+    seen = [_Seen.of(change.subject, change.whitened(found)) for change in changes]
+    return replace(found, widening=_widen(seen))
+
+
+SHARES = ("shared", "shaft", "mesh", "amplitude")
+"""Numbers of a drift that are fitted."""
+
+
+def _widen(seen: Sequence["_Seen"]) -> dict[str, float]:
     found: dict[str, float] = {}
     for _ in range(WIDEST):
         scores: dict[str, list[tuple[float, float]]] = {}
@@ -209,10 +244,9 @@ class _Seen:
     @classmethod
     def of(cls, subject: Comparison, space: Whitened) -> "_Seen":
         """Of a set in the white space of a healthy rig."""
-        own = [effect for effect in subject.effects if effect.name in subject.library.responses]
-        slopes = [subject.library.responses[effect.name].slope() for effect in own]
-        white = space.covariance.whiten(np.hstack(slopes))
-        each = [effect for effect, slope in zip(own, slopes, strict=True) for _ in slope.T]
+        slopes = list(subject.slopes())
+        white = space.covariance.whiten(np.hstack([slope for _, slope in slopes]))
+        each = [effect for effect, slope in slopes for _ in slope.T]
         reaches = [max(abs(bound) for p in effect.parameters for bound in p.bounds) for effect in each]
         lengths = np.linalg.norm(white, axis=0)
         return cls(

@@ -92,6 +92,7 @@ def _with_candidates(subject: Comparison, library: Library) -> tuple[Comparison,
             errors=errors,
             scatter=scatter,
             mesh_orders=subject.mesh_orders,
+            teeth_a_turn=subject.teeth_a_turn,
         ),
         measured,
     )
@@ -107,7 +108,7 @@ def _answers(problem: Problem, whole: Comparison, rivals: Sequence[Evidence]) ->
     names = {one.hypothesis.name for one in rivals}
     effects = [one for one in whole.effects if any(f"{name}/".startswith(f"{one.name}/") for name in names)]
     everything = (
-        *physical(None, whole.features, effects, whole.library.responses, problem.teeth_a_turn, 0.0),
+        *physical(None, whole.features, effects, whole.library.responses, whole.teeth_a_turn, 0.0),
         *sensor(None, [error for error in whole.errors if error.name in names]),
     )
     return {one.name: one for one in everything if one.name in names}

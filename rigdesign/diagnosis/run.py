@@ -68,7 +68,6 @@ def diagnose_measurement(
         problem = Problem(
             subject=subject,
             baseline=before,
-            teeth_a_turn=teeth_a_turn(case),
             seed=measurement.hash,
             repeated=data.strength == "proven",
         )
@@ -163,7 +162,9 @@ def read_subject(
         return build_library(case, (*data.settings, *extras), (*channels, *spare), effects, say)
 
     library = library_of(case, data.settings, channels, effects, build)
-    return data, compare(data, library, effects, stated_settings(measurement), mesh_orders(case))
+    return data, compare(
+        data, library, effects, stated_settings(measurement), mesh_orders(case), teeth_a_turn(case)
+    )
 
 
 def stated_settings(measurement: MeasurementSet) -> Mapping[tuple[str, str], Stated]:

@@ -1,11 +1,10 @@
 """What is to be explained: readings less prediction, and the covariance of what a healthy rig leaves.
 
-With a healthy baseline of the same rig the same algebra asks what is left given that set: what both share (the model's
-errors, the sensors) is known from the first, and what remains is noise and a drift. What the model answers wrongly to
+What is left given a healthy set of the same rig is in `rigdesign.diagnosis.baseline`. What the model answers wrongly to
 a right cause is weighed with each cause (`rigdesign.diagnosis.signature`).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,6 +19,7 @@ from rigdesign.diagnosis.evidence import Curve
 from rigdesign.diagnosis.healthy import answer_error, healthy_columns, own_spread
 from rigdesign.diagnosis.library import Library
 from rigdesign.diagnosis.sensors import SensorError, Stated, input_errors, sensor_errors, setting_scatter
+from rigdesign.diagnosis.turning import Turning
 from rigdesign.measurement import Data
 from rigdesign.prediction.model import Channel, Feature
 
@@ -41,6 +41,8 @@ class Comparison:
     scatter: Array
     """(n, n) covariance from the random error of the settings read."""
     mesh_orders: frozenset[float]
+    teeth_a_turn: int
+    """Of the gear that counts."""
 
     @property
     def residual(self) -> Array:
@@ -61,6 +63,7 @@ class Comparison:
             errors=tuple(replace(error, values=error.values[places]) for error in self.errors),
             scatter=self.scatter[np.ix_(places, places)],
             mesh_orders=self.mesh_orders,
+            teeth_a_turn=self.teeth_a_turn,
         )  # fmt: skip
 
     def base_noise(self, amplitudes: Amplitudes) -> Array:
@@ -81,8 +84,8 @@ class Comparison:
 
     def covariance(self, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None) -> Covariance:
         """Of a healthy rig; ``widening``: likeness of effect -> spread [coordinate] that calibration found missing."""
-        columns = (*self.columns(), *self._widened(widening or {}))
-        return Covariance(base=self.base_noise(amplitudes), columns=columns, amplitudes=amplitudes.as_dict())
+        base = self.base_noise(amplitudes) + self.widened(widening or {})
+        return Covariance(base=base, columns=self.columns(), amplitudes=amplitudes.as_dict())
 
     def curves(self) -> dict[str, Curve]:
         """Effect -> its answer over its size, of constants of one parameter that bend."""
@@ -109,18 +112,27 @@ class Comparison:
         quantities = (self.channels[feature.channel].quantity for feature in self.features)
         return np.array(["temperature" in quantity for quantity in quantities], dtype=np.float64)
 
-    def _widened(self, widening: Mapping[str, float]) -> list[Column]:
-        return [
-            Column(
-                name=f"{effect.name} widened/{number}",
-                kind="widening",
-                values=values,
-                spread=widening[effect.likeness],
-            )
-            for effect in self.effects
-            if effect.likeness in widening and effect.name in self.library.responses
-            for number, values in enumerate(self.library.responses[effect.name].slope().T)
+    def slopes(self) -> Iterator[tuple[Effect, Array]]:
+        """Effects with their slopes (n, k); of a tooth that may be any, one for each."""
+        turning = Turning.of(self.features)
+        for effect in self.effects:
+            response = self.library.responses.get(effect.name)
+            if response is None:
+                continue
+            slope = response.slope()
+            yield effect, slope
+            for tooth in range(1, effect.any_tooth):
+                yield effect, turning.turned(slope.T, tooth, self.teeth_a_turn).T
+
+    def widened(self, widening: Mapping[str, float]) -> Array:
+        """(n, n) covariance from spreads [coordinate] by likeness of effect."""
+        columns = [
+            widening[effect.likeness] * slope
+            for effect, slope in self.slopes()
+            if effect.likeness in widening
         ]
+        both = np.hstack(columns) if columns else np.zeros((len(self.features), 0))
+        return np.asarray(both @ both.T)
 
 
 def compare(
@@ -129,6 +141,7 @@ def compare(
     effects: Sequence[Effect],
     stated: Mapping[tuple[str, str], Stated],
     mesh_orders: frozenset[float],
+    teeth_a_turn: int,
 ) -> Comparison:
     """Hold the usable numbers of a set against its library.
 
@@ -153,6 +166,7 @@ def compare(
         errors=(*sensor_errors(cut, channels, own), *input_errors(cut, data.settings, stated)),
         scatter=setting_scatter(cut, noise),
         mesh_orders=mesh_orders,
+        teeth_a_turn=teeth_a_turn,
     )
 
 
@@ -205,86 +219,3 @@ def _constants_at(covariance: Covariance, residual: Array, curves: Mapping[str, 
             size = covariance.spread(place) ** 2 * float(column.values @ solved)
             found[column.effect] = found.get(column.effect, 0.0) + size
     return {effect: float(np.clip(size, *curves[effect].bounds)) for effect, size in found.items()}
-
-
-TWINS = 10.0
-"""How much more two readings of one number may share than each is off by itself: what the model has wrong there in a
-way that no column spans is taken from the healthy set number by number."""
-
-
-def differenced(
-    subject: Comparison,
-    baseline: Comparison,
-    amplitudes: Amplitudes,
-    *,
-    drift: float,
-    drift_shaft: float,
-    drift_mesh: float,
-) -> Whitened:
-    """The residual of a set given a healthy set of the same rig.
-
-    What both share is the covariance of the columns at either set's numbers; noise, the settings' scatter and a
-    drift of the shared part are each set's own. Orders change with each point by itself: near a resonance what
-    healthy teeth excite follows a speed that was met to a per cent only.
-
-    drift, drift_shaft, drift_mesh : shares of the shared part, see `rigdesign.diagnosis.defaults.Calibration`
-    """
-    here, there = subject.covariance(amplitudes), baseline.covariance(amplitudes)
-    after, before = here.deviations, _matched(there, here)
-    own = own_spread(subject.library, subject.channels, subject.mesh_orders, amplitudes)
-    other = own_spread(baseline.library, baseline.channels, baseline.mesh_orders, amplitudes)
-    twins = _same_numbers(subject, baseline)
-    cross = after @ before.T + TWINS**2 * own[:, None] * twins * other[None, :]
-    known = before @ before.T + TWINS**2 * np.diag(other**2)
-    noise_before = np.diag(baseline.noise**2) + baseline.scatter
-    expected, covariance = _given(
-        known, cross, after @ after.T + TWINS**2 * np.diag(own**2), noise_before, baseline.residual
-    )
-    change = subject.residual - expected
-    shared = after @ after.T + np.diag(own**2)
-    alone = np.diag(subject.noise**2) + subject.scatter + drift**2 * shared
-    alone += shared * _by_point(subject, drift_shaft, drift_mesh)
-    total = Covariance(base=covariance + alone, columns=(), amplitudes={})
-    return Whitened.of(total, change)
-
-
-def _matched(there: Covariance, here: Covariance) -> Array:
-    """Deviations of the other set in the order of the columns of this one; zero where it has none."""
-    place = {column.name: number for number, column in enumerate(there.columns)}
-    deviations = there.deviations
-    rows = [
-        deviations[:, place[column.name]] if column.name in place else np.zeros(len(deviations))
-        for column in here.columns
-    ]
-    return np.stack(rows, axis=1)
-
-
-def _same_numbers(subject: Comparison, baseline: Comparison) -> Array:
-    """(n, m) one where two numbers are the same channel, order and operating point (by its place in the plan)."""
-    first = {setting.name: i for i, setting in enumerate(subject.library.settings)}
-    second = {setting.name: i for i, setting in enumerate(baseline.library.settings)}
-    keys = [(f.channel, first.get(f.setting, -1), f.order, f.part) for f in subject.features]
-    others = {
-        (f.channel, second.get(f.setting, -1), f.order, f.part): j for j, f in enumerate(baseline.features)
-    }
-    found = np.zeros((len(keys), len(baseline.features)))
-    for row, key in enumerate(keys):
-        if key in others:
-            found[row, others[key]] = 1.0
-    return found
-
-
-def _by_point(subject: Comparison, shaft: float, mesh: float) -> Array:
-    """(n, n) product of the drifts of two orders read at the same operating point; zero for all other numbers."""
-    names = {setting.name: number for number, setting in enumerate(subject.library.settings)}
-    points = np.array([names[feature.setting] if feature.order else -1 for feature in subject.features])
-    drift = np.array(
-        [mesh if feature.order in subject.mesh_orders else shaft for feature in subject.features]
-    )
-    return np.asarray(np.outer(drift, drift) * ((points[:, None] == points) & (points[:, None] >= 0)))
-
-
-def _given(known: Array, cross: Array, own: Array, noise: Array, residual: Array) -> tuple[Array, Array]:
-    """Mean (n,) and covariance (n, n) of the shared part given another set's residual (m,)."""
-    solved = np.linalg.solve(known + noise, np.column_stack([residual, cross.T]))
-    return np.asarray(cross @ solved[:, 0]), np.asarray(own - cross @ solved[:, 1:])

@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from rigdesign.diagnosis.anonymous import anonymous
+from rigdesign.diagnosis.baseline import differenced
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.decision import Decision, posterior
@@ -24,7 +25,7 @@ from rigdesign.diagnosis.hypotheses import physical, sensor, without_a_name, wro
 from rigdesign.diagnosis.intervals import JointFit, fit_together
 from rigdesign.diagnosis.outliers import reject
 from rigdesign.diagnosis.signature import Contest, Signature
-from rigdesign.diagnosis.subject import Comparison, differenced, plain
+from rigdesign.diagnosis.subject import Comparison, plain
 
 MOST_EFFECTS = 4
 """Effects that are looked for one after the other."""
@@ -37,13 +38,12 @@ LEAST_RUNNING_POINTS = 3
 class Problem:
     """A set to be explained, with a healthy one of the same rig if there is one.
 
-    teeth_a_turn : of the gear that counts; seed : fixes the held-out points, the hash of the measurement
+    seed : fixes the held-out points, the hash of the measurement
     repeated : the noise is known from repeats
     """
 
     subject: Comparison
     baseline: Comparison | None
-    teeth_a_turn: int
     seed: str
     repeated: bool
 
@@ -135,9 +135,7 @@ def _space(problem: Problem, subject: Comparison, calibration: Calibration) -> W
         subject,
         problem.baseline,
         calibration.amplitudes,
-        drift=calibration.drift,
-        drift_shaft=calibration.drift_shaft,
-        drift_mesh=calibration.drift_mesh,
+        calibration.drift,
     )
 
 
@@ -149,7 +147,7 @@ def _explanations(
     expected = subject.values - space.raw
     return Explanations(
         physical=physical(
-            covariance, subject.features, subject.effects, subject.library.responses, problem.teeth_a_turn
+            covariance, subject.features, subject.effects, subject.library.responses, subject.teeth_a_turn
         ),
         sensor=sensor(covariance, subject.errors),
         anonymous=without_a_name(covariance, anonymous(subject.library, subject.channels)) if rivals else [],
@@ -282,7 +280,7 @@ def _answer(problem: Problem, subject: Comparison, found: Sequence[Evidence], fi
     plain_space = Covariance(base=np.eye(len(subject.features)), columns=(), amplitudes={})
     claimed = {one.hypothesis.name for one in found}
     effects = physical(
-        plain_space, subject.features, subject.effects, subject.library.responses, problem.teeth_a_turn, 0.0
+        plain_space, subject.features, subject.effects, subject.library.responses, subject.teeth_a_turn, 0.0
     )
     by_name = {
         one.name: one for one in (*effects, *sensor(plain_space, subject.errors)) if one.name in claimed
