@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg import cho_solve, solve_triangular
 
 from rigdesign.diagnosis.columns import Array, Column, stacked
 
@@ -117,6 +117,12 @@ class Whitened:
     def raw(self) -> Array:
         """(n,) the residual in the units of the features."""
         return np.asarray(self.covariance.lower @ self.residual)
+
+    @cached_property
+    def precision(self) -> Array:
+        """(n, n) inverse of the covariance."""
+        lower = self.covariance.lower
+        return np.asarray(cho_solve((lower, True), np.eye(len(lower)), check_finite=False))
 
     @cached_property
     def columns(self) -> Array:

@@ -27,26 +27,24 @@ PRIOR = {"none": 0.50, "physical": 0.22, "sensor": 0.08, "anonymous": 0.10, "pai
 """Prior weight of each family of explanations, split evenly among its members."""
 
 
-CHANCE = 16.0
-"""Gain that one of hundreds of anonymous causes finds beside the right one by chance."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class Thresholds:
     """Numbers the verdict hangs on.
 
-    named : inclusion probability of a name; input : mass of input errors; catalogue : share of the best gain that
-    the best explanation of the catalogue must reach; misfit : standard deviations of the whitened square after the
-    best fit above which nothing known fits; group : most members of an alias group; evidence : logarithm of the
-    Bayes factor against a healthy rig that a name needs
+    named : inclusion probability of a name; input : mass of input errors; catalogue : logarithm of the Bayes factor
+    by which an explanation outside the catalogue may lead the best one within; misfit : standard deviations of the
+    whitened square after the best fit above which nothing known fits; group : most members of an alias group;
+    evidence : logarithm of the Bayes factor against a healthy rig that a name needs; support : fall of the whitened
+    square that must be left of a name's explanation without the operating point that speaks for it most
     """
 
     named: float = 0.95
     input: float = 0.5
-    catalogue: float = 0.95
+    catalogue: float = 5.0
     misfit: float = 5.0
     group: int = 3
     evidence: float = 0.0
+    support: float = 12.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,13 +141,12 @@ def decide(
             reason=f"the best explanation leaves {excess:.1f} standard deviations more than a healthy rig does",
         )
     known = [one for one in evidence if set(one.hypothesis.parts) <= effects]
-    most = max(one.gain for one in evidence)
-    reached = max((one.gain for one in known), default=0.0)
-    if weights.masses["none"] < 0.5 and most - reached > max((1.0 - thresholds.catalogue) * most, CHANCE):
+    leads = best.log_bayes - max((one.log_bayes for one in known), default=0.0)
+    if weights.masses["none"] < 0.5 and leads > thresholds.catalogue:
         return Decision(
             verdict="unknown_located",
             named=(),
-            reason=f"an effect outside the catalogue explains more: the catalogue reaches {reached / most:.0%} of it",
+            reason=f"an effect outside the catalogue explains more: ln B {leads:.0f} above the best known one",
         )
     named = tuple(
         part

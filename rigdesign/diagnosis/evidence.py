@@ -115,6 +115,15 @@ class Evidence:
     """(n,) whitened answer at the best fit."""
     spreads: Array = field(repr=False, default_factory=lambda: np.zeros((0, 0)))
     """(m, k) standard deviations of the mixture of normals its sizes are integrated over."""
+    joined: int = 0
+    """Where two explanations are joined: columns of the first."""
+
+    def share_of(self, part: str) -> Array:
+        """(n,) what one of its parts adds to the answer."""
+        if not self.joined:
+            return self.answer
+        second = self.columns[:, self.joined :] @ np.array(self.coordinates[self.joined :])
+        return np.asarray(second if part == self.hypothesis.parts[-1] else self.answer - second)
 
 
 def release_of(space: Whitened, own: Sequence[str]) -> Release:
@@ -340,6 +349,7 @@ def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
         columns=columns,
         answer=base + columns @ best,
         spreads=spreads,
+        joined=first.columns.shape[1],
     )
 
 

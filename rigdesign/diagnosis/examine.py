@@ -1,7 +1,7 @@
 """One look at a residual: every explanation weighed, the best of them joined in pairs, a verdict."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from rigdesign.diagnosis.decision import PRIOR, Decision, Posterior, Thresholds,
 from rigdesign.diagnosis.detectability import Detectability, detectabilities
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis, weigh, weigh_pair
 from rigdesign.diagnosis.signature import Contest, Signature
+from rigdesign.diagnosis.support import support
 
 LEADERS = 12
 """Explanations that are joined with every other one."""
@@ -58,11 +59,13 @@ def examine(
     thresholds: Thresholds,
     priors: Mapping[str, float] = PRIOR,
     *,
+    points: Sequence[str] = (),
     signature: Signature | None = None,
     table: Sequence[Detectability] | None = None,
 ) -> Examination:
     """Weigh everything and decide.
 
+    points : (n,) operating point of each number; left out, a name may rest on one
     signature : how wrong the model may answer to a right cause; left out, not at all
     table : detectability where it is known already; it depends on covariance and explanations alone
     """
@@ -87,11 +90,37 @@ def examine(
     return Examination(
         evidence=tuple(evidence),
         weights=weights,
-        decision=decision,
+        decision=_supported(space, points, decision, evidence, weights, thresholds),
         detectability=tuple(table),
         chi_square=space.chi_square,
         count=len(space.residual),
     )
+
+
+def _supported(
+    space: Whitened,
+    points: Sequence[str],
+    decision: Decision,
+    evidence: Sequence[Evidence],
+    weights: Posterior,
+    thresholds: Thresholds,
+) -> Decision:
+    """The decision without the names that rest on one operating point; of an alias group its leader is asked."""
+    if not points or decision.verdict not in ("named", "alias_group"):
+        return decision
+    ordered = sorted(evidence, key=lambda one: -weights.masses[one.hypothesis.name])
+    resting: dict[str, str] = {}
+    for part in decision.named if decision.verdict == "named" else decision.named[:1]:
+        best = next(one for one in ordered if part in one.hypothesis.parts)
+        least, where = support(space, points, best, part)
+        if least < thresholds.support:
+            resting[part] = where
+    kept = tuple(part for part in decision.named if part not in resting)
+    if not resting or (decision.verdict == "named" and kept):
+        return replace(decision, named=kept)
+    part, where = next(iter(resting.items()))
+    reason = f"what speaks for {part} comes from {'operating point ' + where if where else 'chance'} alone"
+    return Decision(verdict="too_small", named=(), reason=reason)
 
 
 def _judged(contest: Contest | None, evidence: list[Evidence]) -> list[Evidence]:

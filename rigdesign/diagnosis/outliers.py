@@ -1,5 +1,7 @@
 """Single readings that fit nothing around them: rejected one at a time and listed, never silently."""
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +23,12 @@ class Outlier:
 
 
 def reject(
-    matrix: Array, residual: Array, *, limit: float = LIMIT, most: float = 0.05
+    matrix: Array,
+    residual: Array,
+    series: Sequence[object],
+    *,
+    limit: float = LIMIT,
+    most: float = 0.05,
 ) -> tuple[Outlier, ...]:
     """Readings that the others contradict.
 
@@ -29,8 +36,15 @@ def reject(
     the others say is (P r)_i / sqrt(P_ii) (leave-one-out prediction of a Gaussian, Rasmussen and Williams, 2006,
     eq. 5.12).
 
+    series : (n,) what each reading is one of; where several of a series stand out they are a trace and no outliers
     most : share of the readings that may go; if more would have to, nothing is an outlier and none is rejected
     """
+    found = _standing_out(matrix, residual, limit, most)
+    count = Counter(series[one.place] for one in found)
+    return tuple(one for one in found if count[series[one.place]] == 1)
+
+
+def _standing_out(matrix: Array, residual: Array, limit: float, most: float) -> tuple[Outlier, ...]:
     kept = np.arange(len(residual))
     precision = _inverse(matrix)
     found: list[Outlier] = []

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_solve, solve_triangular
+from scipy.linalg import solve_triangular
 
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.covariance import Whitened
@@ -118,8 +118,7 @@ class Contest:
     def precision(self) -> Array:
         """(n, n) inverse covariance, sorted by series."""
         order = self.signature.order
-        whole = cho_solve((self.space.covariance.lower, True), np.eye(len(order)), check_finite=False)
-        return np.asarray(whole[np.ix_(order, order)])
+        return np.asarray(self.space.precision[np.ix_(order, order)])
 
 
 @dataclass(frozen=True, kw_only=True)

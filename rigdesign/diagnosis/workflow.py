@@ -91,7 +91,8 @@ class Diagnosis:
 def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
     """Find what the model lacks, or say that these data cannot tell."""
     everything = _space(problem, problem.subject, calibration)
-    outliers = reject(everything.covariance.matrix, everything.raw)
+    series = [(one.channel, one.order) for one in problem.subject.features]
+    outliers = reject(everything.covariance.matrix, everything.raw, series)
     gone = {outlier.place for outlier in outliers}
     kept = [row for row in range(len(problem.subject.features)) if row not in gone]
     subject = problem.subject.rows(kept)
@@ -167,7 +168,8 @@ def _search(
     thresholds = calibration.thresholds
     if problem.baseline is None:
         thresholds = replace(thresholds, evidence=calibration.evidence_plain)
-    examinations = [examine(space, explanations, thresholds, signature=signature)]
+    points = [feature.setting for feature in subject.features]
+    examinations = [examine(space, explanations, thresholds, points=points, signature=signature)]
     found: list[Evidence] = []
     while examinations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
         new = _best_of(examinations[-1])
@@ -183,7 +185,7 @@ def _search(
             anonymous=rest.anonymous,
             data=[],
         )
-        examinations.append(examine(after, left, thresholds, signature=signature))
+        examinations.append(examine(after, left, thresholds, points=points, signature=signature))
     return examinations, tuple(found)
 
 

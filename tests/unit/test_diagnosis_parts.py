@@ -52,9 +52,17 @@ def test_one_wild_reading_is_rejected_and_a_wild_set_is_not():
     matrix = np.eye(40) + smooth @ smooth.T
     residual = np.linalg.cholesky(matrix) @ rng.normal(size=40)
     residual[17] += 9.0
-    assert [outlier.place for outlier in reject(matrix, residual)] == [17]
+    each = range(40)
+    assert [outlier.place for outlier in reject(matrix, residual, each)] == [17]
     residual[:10] += 12.0 * rng.normal(size=10)
-    assert reject(matrix, residual) == ()
+    assert reject(matrix, residual, each) == ()
+
+
+def test_readings_of_one_series_that_stand_out_together_are_a_trace_and_stay():
+    residual = np.zeros(40)
+    residual[[4, 7, 20]] = 9.0
+    series = ["a" if row < 10 else row for row in range(40)]
+    assert [outlier.place for outlier in reject(np.eye(40), residual, series, most=0.1)] == [20]
 
 
 def test_points_held_out_follow_from_the_hash_alone():
