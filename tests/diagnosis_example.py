@@ -242,7 +242,7 @@ def write_set(folder: Path, rig: Rig, *, title: str = "trial", baseline: str = "
 
 
 DESIGN = Calibration(
-    amplitudes=Amplitudes(), widening={}, thresholds=Thresholds(named=0.9), evidence_plain=0.0
+    amplitudes=Amplitudes(), widening={}, plain=Thresholds(named=0.9), given_baseline=Thresholds(named=0.9)
 )
 """Numbers of the design: what is frozen for real rigs must not change these stories."""
 

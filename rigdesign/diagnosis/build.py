@@ -10,7 +10,7 @@ from rigdesign.beside import Beside, cores
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.cache import Parts
 from rigdesign.diagnosis.columns import Array
-from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.effects import DYNAMIC, Effect
 from rigdesign.diagnosis.library import Library, Response
 from rigdesign.errors import RigdesignError
 from rigdesign.prediction import Predictor
@@ -29,9 +29,6 @@ GIVING_WAY = (0.12, 0.4, 0.7, 1.0)
 
 BATCH = 4
 """Works a core between two notes of what is done."""
-
-DYNAMIC = frozenset({"excitation", "tooth", "stiffness", "inertia", "damping"})
-"""Families that leave temperatures and losses nearly as they are."""
 
 LINEAR_SHARE = 0.1
 """Run of an effect that the numbers answer to in proportion."""

@@ -34,7 +34,8 @@ class Thresholds:
     named : inclusion probability of a name; input : mass of input errors; catalogue : logarithm of the Bayes factor
     by which an explanation outside the catalogue may lead the best one within; misfit : standard deviations of the
     whitened square after the best fit above which nothing known fits; group : most members of an alias group;
-    evidence : logarithm of the Bayes factor against a healthy rig that a name needs; support : fall of the whitened
+    evidence, evidence_loop : logarithm of the Bayes factor against a healthy rig that a name needs, in the heat and in
+    orders and natural frequencies; support : fall of the whitened
     square that must be left of a name's explanation without the operating point that speaks for it most
     """
 
@@ -44,6 +45,7 @@ class Thresholds:
     misfit: float = 5.0
     group: int = 3
     evidence: float = 0.0
+    evidence_loop: float = 0.0
     support: float = 12.0
 
 
@@ -110,6 +112,7 @@ def decide(
     effects: frozenset[str],
     detectable: Mapping[str, bool],
     thresholds: Thresholds,
+    loop: frozenset[str] = frozenset(),
 ) -> Decision:
     """The verdict.
 
@@ -118,6 +121,7 @@ def decide(
     chi_square, count : whitened square of the residual and number of readings
     effects : names that may be named: catalogue and sensors, not the anonymous ones
     detectable : effect -> whether these sensors could see it within its bounds at all
+    loop : those of the names that show in orders and natural frequencies
     """
     if weights.families.get("input", 0.0) > thresholds.input:
         named = _parts_of_family(evidence, weights, "input")
@@ -129,7 +133,8 @@ def decide(
     best = weights.best
     if best is None:
         return _silent(weights, evidence, chi_square, count, thresholds, detectable)
-    if best.log_bayes < thresholds.evidence and weights.masses["none"] < 0.5:
+    floor = thresholds.evidence if loop.isdisjoint(best.hypothesis.parts) else thresholds.evidence_loop
+    if best.log_bayes < floor and weights.masses["none"] < 0.5:
         reason = "something may be at work; healthy rigs have given as much evidence"
         return Decision(verdict="too_small", named=(), reason=reason)
     left = chi_square - best.gain

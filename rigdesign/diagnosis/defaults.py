@@ -74,8 +74,11 @@ SIGNATURE_ERROR = {
 run-out, ripple and coupling torques, lie from those of the virtual rig with nominal constants."""
 
 
-EVIDENCE_PLAIN = 30.0
-"""More than any healthy set of the prototype gave without a baseline."""
+PLAIN = Thresholds(evidence=10.0, evidence_loop=30.0)
+"""Without a baseline; the evidence is more than healthy sets gave."""
+
+GIVEN_BASELINE = Thresholds(evidence=6.0, evidence_loop=12.0)
+"""With one."""
 
 DRIFT = Drift(
     shared=0.00399,
@@ -108,9 +111,9 @@ class Calibration:
     amplitudes: Amplitudes = AMPLITUDES
     widening: Mapping[str, float] = field(default_factory=lambda: dict(WIDENING))
     """Likeness of an effect -> spread of its coordinate that healthy sets asked for beyond the columns."""
-    thresholds: Thresholds = field(default_factory=Thresholds)
-    evidence_plain: float = EVIDENCE_PLAIN
-    """Without a baseline: logarithm of the Bayes factor that a name needs (`Thresholds.evidence`)."""
+    plain: Thresholds = PLAIN
+    """Without a baseline."""
+    given_baseline: Thresholds = GIVEN_BASELINE
     signature_error: Mapping[str, float] = field(default_factory=lambda: dict(SIGNATURE_ERROR))
     drift: Drift = DRIFT
     """With a baseline."""

@@ -25,6 +25,10 @@ Family = Literal[
 """Kind of thing that is off: it names the amplitude of what cannot be told from it."""
 
 
+DYNAMIC: frozenset[Family] = frozenset({"excitation", "tooth", "stiffness", "inertia", "damping"})
+"""Families that leave temperatures and losses nearly as they are: they show in orders and natural frequencies."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Parameter:
     """One number of an effect.

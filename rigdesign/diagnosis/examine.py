@@ -60,12 +60,14 @@ def examine(
     priors: Mapping[str, float] = PRIOR,
     *,
     points: Sequence[str] = (),
+    loop: frozenset[str] = frozenset(),
     signature: Signature | None = None,
     table: Sequence[Detectability] | None = None,
 ) -> Examination:
     """Weigh everything and decide.
 
     points : (n,) operating point of each number; left out, a name may rest on one
+    loop : names of effects that show in orders and natural frequencies
     signature : how wrong the model may answer to a right cause; left out, not at all
     table : detectability where it is known already; it depends on covariance and explanations alone
     """
@@ -86,6 +88,7 @@ def examine(
         effects=frozenset(part for one in known for part in one.parts),
         detectable={row.effect: row.detectable <= row.bound for row in table},
         thresholds=thresholds,
+        loop=loop,
     )
     return Examination(
         evidence=tuple(evidence),

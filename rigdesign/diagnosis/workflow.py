@@ -5,7 +5,8 @@ readings -> single outliers out -> points held out -> evidence -> verdict, again
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.decision import Decision, posterior
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.detectability import Detectability, aliases
+from rigdesign.diagnosis.effects import DYNAMIC
 from rigdesign.diagnosis.evidence import Evidence, weigh
 from rigdesign.diagnosis.examine import Examination, Explanations, examine
 from rigdesign.diagnosis.healthy import relative_speed
@@ -165,11 +167,14 @@ def _search(
 ) -> tuple[list[Examination], tuple[Evidence, ...]]:
     """Examine, take what is named into the model, examine what is left."""
     signature = _signature(subject, calibration)
-    thresholds = calibration.thresholds
-    if problem.baseline is None:
-        thresholds = replace(thresholds, evidence=calibration.evidence_plain)
-    points = [feature.setting for feature in subject.features]
-    examinations = [examine(space, explanations, thresholds, points=points, signature=signature)]
+    look = partial(
+        examine,
+        thresholds=calibration.plain if problem.baseline is None else calibration.given_baseline,
+        points=[feature.setting for feature in subject.features],
+        loop=frozenset(effect.claim for effect in subject.effects if effect.family in DYNAMIC),
+        signature=signature,
+    )
+    examinations = [look(space, explanations)]
     found: list[Evidence] = []
     while examinations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
         new = _best_of(examinations[-1])
@@ -185,7 +190,7 @@ def _search(
             anonymous=rest.anonymous,
             data=[],
         )
-        examinations.append(examine(after, left, thresholds, points=points, signature=signature))
+        examinations.append(look(after, left))
     return examinations, tuple(found)
 
 
@@ -256,7 +261,7 @@ def _wrong_data(
     contest = Contest(whole, _signature(subject, calibration))
     evidence = contest.judged([weigh(whole, one) for one in singles])
     weights = posterior(evidence, everything.members)
-    if weights.families.get("input", 0.0) <= calibration.thresholds.input:
+    if weights.families.get("input", 0.0) <= calibration.plain.input:
         return None
     best = max(evidence, key=lambda one: weights.masses[one.hypothesis.name])
     return Decision(

@@ -18,6 +18,7 @@ OWN = ("point", "series_mesh_point", "series_shaft_point", "frequency")
 MODEL = (
     "link",
     "link_speed",
+    "answer",
     "source",
     "channel",
     "channel_speed",
@@ -58,7 +59,7 @@ def no_hedge(calibration: Calibration) -> Calibration:
 
 def no_widening(calibration: Calibration) -> Calibration:
     """No widening along single effects."""
-    return replace(calibration, widening={})
+    return replace(calibration, widening={}, drift=replace(calibration.drift, widening={}))
 
 
 def no_anonymous(calibration: Calibration) -> Calibration:
