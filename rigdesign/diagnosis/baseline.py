@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.linalg import cho_factor, cho_solve
 
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.columns import Array
@@ -146,5 +147,5 @@ def _by_point(subject: Comparison, shaft: float, mesh: float) -> Array:
 
 def _given(known: Array, cross: Array, own: Array, noise: Array, residual: Array) -> tuple[Array, Array]:
     """Mean (n,) and covariance (n, n) of the shared part given another set's residual (m,)."""
-    solved = np.linalg.solve(known + noise, np.column_stack([residual, cross.T]))
+    solved = cho_solve(cho_factor(known + noise), np.column_stack([residual, cross.T]), check_finite=False)
     return np.asarray(cross @ solved[:, 0]), np.asarray(own - cross @ solved[:, 1:])

@@ -104,6 +104,11 @@ class Whitened:
             bends={effect: covariance.whiten(bend) for effect, bend in (bends or {}).items()},
         )
 
+    def rows(self, keep: Sequence[int]) -> "Whitened":
+        """Some of the numbers, their covariance as it is; without the causes behind it."""
+        matrix = self.covariance.matrix[np.ix_(keep, keep)]
+        return Whitened.of(Covariance(base=matrix, columns=(), amplitudes={}), self.raw[np.array(keep)])
+
     def freed(self, own: Sequence[str]) -> Array:
         """(n,) the residual while these effects are tested."""
         return np.asarray(self.residual + sum((self.bends[one] for one in own if one in self.bends), 0.0))

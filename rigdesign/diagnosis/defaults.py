@@ -77,7 +77,7 @@ run-out, ripple and coupling torques, lie from those of the virtual rig with nom
 PLAIN = Thresholds(evidence=10.0, evidence_loop=30.0)
 """Without a baseline; the evidence is more than healthy sets gave."""
 
-GIVEN_BASELINE = Thresholds(evidence=6.0, evidence_loop=12.0)
+GIVEN_BASELINE = Thresholds(evidence=6.0, evidence_loop=30.0)
 """With one."""
 
 DRIFT = Drift(

@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
+from scipy.sparse import csr_array
 
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.covariance import Whitened
@@ -63,6 +64,14 @@ class Signature:
         """(n,) the error of every number, alike at all points and along the speed; sorted by series."""
         alike = error * answer[self.order]
         return alike, TREND * alike * self.trend[self.order]
+
+    def sums(self, weights: Sequence[Array]) -> csr_array:
+        """(m s, n) weighted sums over every series, for each of m weights."""
+        count = len(self.order)
+        starts = [number * count + self.starts for number in range(len(weights))]
+        ends = np.concatenate([*starts, [count * len(weights)]])
+        places = np.tile(np.arange(count), len(weights))
+        return csr_array((np.concatenate(weights), places, ends), shape=(len(ends) - 1, count))
 
     def columns(self, name: str, answer: Array, error: float) -> list[Column]:
         """The error of an answer (n,) as columns of a covariance."""
@@ -134,16 +143,9 @@ class _Inner:
         weights = signature.weights(lower @ one.answer, error)
         white = np.hstack([own, columns])
         solved = solve_triangular(lower, white, lower=True, trans="T", check_finite=False)[signature.order]
-        reached = np.vstack(
-            [np.add.reduceat(weight[:, None] * solved, signature.starts, axis=0) for weight in weights]
-        )
-        rows = [
-            np.add.reduceat(weight[:, None] * contest.precision, signature.starts, axis=0)
-            for weight in weights
-        ]
-        errors = np.block(
-            [[np.add.reduceat(row * weight, signature.starts, axis=1) for weight in weights] for row in rows]
-        )
+        sums = signature.sums(weights)
+        reached = sums @ solved
+        errors = sums @ (sums @ contest.precision).T
         taken = own.shape[1]
         inside = np.block([[own.T @ own, reached[:, :taken].T], [reached[:, :taken], errors]])
         signs = np.diag(np.concatenate([-np.ones(taken), np.ones(len(errors))]))

@@ -98,10 +98,11 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
     gone = {outlier.place for outlier in outliers}
     kept = [row for row in range(len(problem.subject.features)) if row not in gone]
     subject = problem.subject.rows(kept)
-    whole = _space(problem, subject, calibration) if gone else everything
+    whole = _cut(problem, everything, subject, kept, calibration) if gone else everything
     points = held_out([setting.name for setting in subject.library.settings], problem.seed)
-    seen = subject.rows([row for row, one in enumerate(subject.features) if one.setting not in points])
-    space = _space(problem, seen, calibration)
+    open_rows = [row for row, one in enumerate(subject.features) if one.setting not in points]
+    seen = subject.rows(open_rows)
+    space = _cut(problem, whole, seen, open_rows, calibration)
     explanations = _explanations(problem, seen, space)
     examinations, found = _search(problem, seen, space, explanations, calibration)
     decision = (
@@ -139,6 +140,21 @@ def _space(problem: Problem, subject: Comparison, calibration: Calibration) -> W
         problem.baseline,
         calibration.amplitudes,
         calibration.drift,
+    )
+
+
+def _cut(
+    problem: Problem, space: Whitened, subject: Comparison, rows: Sequence[int], calibration: Calibration
+) -> Whitened:
+    """The space of some of its numbers.
+
+    What a baseline foretells of a number does not hang on the other numbers of the set; where constants are bent to the
+    data it does.
+    """
+    return (
+        plain(subject, calibration.amplitudes, calibration.widening)
+        if problem.baseline is None
+        else space.rows(rows)
     )
 
 
