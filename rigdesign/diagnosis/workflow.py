@@ -148,8 +148,8 @@ def _cut(
 ) -> Whitened:
     """The space of some of its numbers.
 
-    What a baseline foretells of a number does not hang on the other numbers of the set; where constants are bent to the
-    data it does.
+    What a baseline foretells of a number does not hang on the others of the set; where constants are bent to the data
+    it does.
     """
     return (
         plain(subject, calibration.amplitudes, calibration.widening)
