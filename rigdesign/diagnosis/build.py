@@ -71,7 +71,7 @@ def build_library(
         for feature, value in zip(predictor.features, base, strict=True)
         if feature.channel == POWER.name
     }
-    paid, unpaid = predictor.sources(paid=True), predictor.sources()
+    unpaid, watt = predictor.sources(), predictor.motor_watt()
     library = Library(
         channels=tuple(channels),
         features=tuple(feature for feature, keep in zip(predictor.features, own, strict=True) if keep),
@@ -84,7 +84,7 @@ def build_library(
         },
         exponents={name: values[own] for name, values in _exponents(predictor, case, responses)},
         links={name: values[own] for name, values in predictor.links().items()},
-        sources={name: values[own] for name, values in paid.items()},
+        sources={name: (values + watt)[own] for name, values in unpaid.items()},
         dry_sources={name: values[own] for name, values in unpaid.items()},
         powers=powers,
         error=predictor.error,

@@ -230,17 +230,15 @@ class Predictor:
         with self._calm():
             return self._joined([slopes.links() for slopes in self._slopes()])
 
-    def sources(self, *, paid: bool = False) -> dict[str, FloatArray]:
+    def sources(self) -> dict[str, FloatArray]:
         """Name -> (n_features,) answer per watt [1/W] put in at all operating points.
 
         Names: ``body:`` gearbox.body, ``rim:`` gearbox.gear, ``bore:`` and ``film:`` gearbox.bearing, ``oil:``
-        stream, ``near:`` thermocouple by its coordinates.
-
-        paid : whether the motor gives that watt, so that its power and torque rise with it
+        stream, ``near:`` thermocouple by its coordinates. Nothing says where the watt comes from; where the motor
+        gives it, `motor_watt` comes on top.
         """
         with self._calm():
-            found = self._joined([slopes.sources() for slopes in self._slopes()])
-        return {name: values + self._motor() for name, values in found.items()} if paid else found
+            return self._joined([slopes.sources() for slopes in self._slopes()])
 
     def inputs(self) -> dict[tuple[str, str], FloatArray]:
         """(kind, place) -> (n_features,) derivative by each value of the settings, SI.
@@ -258,8 +256,8 @@ class Predictor:
         standing = np.zeros(len(self.base) - sum(len(part) for part in next(iter(found.values()), [])))
         return {key: np.concatenate([*parts, standing]) for key, parts in found.items()}
 
-    def _motor(self) -> FloatArray:
-        """(n_features,) what one watt more of the motor reads."""
+    def motor_watt(self) -> FloatArray:
+        """(n_features,) what one watt more of the motor changes: its power and torque."""
         speeds = {
             s.name: rig.drive_speed(s.speed)
             for s, rig in zip(self.settings, self._rigs)

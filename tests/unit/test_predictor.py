@@ -97,7 +97,7 @@ def test_a_watt_of_oil_warms_the_stream_by_its_heat_capacity(predictor):
     alone = 1.0 / (oil.density(inlet) * oil.heat_capacity(inlet) * feed.flow)
     column = _by_point(predictor.sources()["oil:test.gear_oil"])
     assert 0.7 * alone < column[0, 4] < alone
-    paid = _by_point(predictor.sources(paid=True)["oil:test.gear_oil"])
+    paid = _by_point(predictor.sources()["oil:test.gear_oil"] + predictor.motor_watt())
     assert paid[0, 6] - column[0, 6] == pytest.approx(1.0)
 
 
