@@ -176,6 +176,10 @@ def print_constants(found: "Calibrated", out: Path) -> None:
     console.print(Text(f"calibrated case: {out / 'calibrated' / 'case.toml'}"))
 
 
+MOST_DOUBTS = 4
+"""Suspected input errors that are printed."""
+
+
 def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     """Verdict, where, what and how big, the gap, what remains, what next, and where the files are."""
     from rigdesign.diagnosis.advice import VERDICTS, certainty, headline, steps
@@ -197,6 +201,11 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
         share = f"{100.0 * suspect.inclusion:.0f} %"
         size = "" if suspect.size is None else f"; alone {told(suspect.size.shown[0])}"
         console.print(Text("perhaps   ", "bold") + Text(f"{suspect.name}: posterior {share}{size}"))
+    doubts = [one.text for one in outcome.result.data.findings if one.weight == "suspect"]
+    for text in doubts[:MOST_DOUBTS]:
+        console.print(Text("suspect   ", "bold yellow") + Text(text))
+    if len(doubts) > MOST_DOUBTS:
+        console.print(Text(f"          {len(doubts) - MOST_DOUBTS} more in the report", "dim"))
     if found.gap is not None and outcome.named:
         text = (
             f"{found.gap.before:.2f} -> {found.gap.after:.2f} standard deviations on points the fit never saw "

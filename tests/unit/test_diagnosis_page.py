@@ -101,6 +101,8 @@ def test_the_terminal_names_verdict_and_report(
     assert told.result.diagnosis.strength in text and "diagnosis.html" in text
     assert ("patched case" in text) == (told.case_patch is not None)
     assert ("perhaps" in text) == (bool(told.suspects) and told.verdict != "within_noise")
+    doubted = any(one.weight == "suspect" for one in told.result.data.findings)
+    assert ("suspect " in text) == doubted
 
 
 def run_command(monkeypatch: pytest.MonkeyPatch, name: str, *arguments: str) -> int:
