@@ -27,7 +27,9 @@ import numpy as np
 from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.amplitudes import Amplitudes
+from rigdesign.diagnosis.baseline import Drift
 from rigdesign.diagnosis.calibration import calibrate as fit_all
+from rigdesign.diagnosis.calibration import calibrate_drift
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.effects import Effect
@@ -90,32 +92,50 @@ def effects_for(rig: str) -> tuple[Effect, ...]:
     return effects_of(case_of(rig))
 
 
+MOST_NUMBERS = {"plain": 700, "baseline": 900}
+"""Healthy sets with more numbers take too long to fit; they are left out."""
+
+
 def calibrate(out: Path, without: str | None, target: Path) -> None:
-    """Amplitudes and widening from the null split, rigs but one if asked; written as JSON."""
-    sets: dict[tuple[str, str, int], list[Comparison]] = {}
-    for spec in specs("null", "plain"):
-        folder = folder_of(out, "null", "plain", spec)
-        if spec.rig == without or not folder.is_dir():
-            continue
-        subject = _subject(spec.rig, folder)
-        key = (spec.rig, spec.wanted["sensors"], spec.wanted["plan"])
-        sets.setdefault(key, []).append(subject)
-    alike = [same for own in sets.values() for same in _alike(own)]
+    """Amplitudes, widening and drifts from the null split in both modes, rigs but one if asked; written as JSON."""
+    wanted = [spec for spec in specs("null", "plain") if spec.rig != without]
+    folders = [(spec.rig, folder_of(out, "null", "plain", spec)) for spec in wanted]
+    subjects = (_subject(rig, folder) for rig, folder in folders if folder.is_dir())
+    alike = list(_alike(one for one in subjects if len(one.features) < MOST_NUMBERS["plain"]))
     amplitudes, widening = fit_all(alike, Amplitudes(), FIXED)
-    subjects = [subject for same in alike for subject in same]
-    spaces = [plain(subject, amplitudes, widening) for subject in subjects]
-    squares = [space.chi_square / len(space.residual) for space in spaces]
+    fitted = [subject for same in alike for subject in same]
+    squares = [
+        space.chi_square / len(space.residual)
+        for space in (plain(subject, amplitudes, widening) for subject in fitted)
+    ]
+    pairs = [pair for spec in specs("null", "baseline") if spec.rig != without for pair in _pairs(out, spec)]
+    drift = calibrate_drift(pairs, amplitudes, FIRST_DRIFT)
     content = {
-        "sets": len(spaces),
+        "sets": len(fitted),
+        "pairs": len(pairs),
         "chi_square": [float(np.median(squares)), float(np.max(squares))],
         "amplitudes": asdict(amplitudes),
         "widening": widening,
+        "drift": asdict(drift),
     }
     target.write_text(json.dumps(content, indent=1))
     print(json.dumps(content, indent=1))
 
 
-def _alike(subjects: list[Comparison]) -> Iterable[list[Comparison]]:
+FIRST_DRIFT = Drift(shared=0.03, shaft=0.05, mesh=0.25, amplitude=0.05)
+"""Where the fit of the drifts starts, and the centre of its prior."""
+
+
+def _pairs(out: Path, spec: Spec) -> Iterable[tuple[Comparison, Comparison]]:
+    """A healthy set and its healthy baseline."""
+    folder = folder_of(out, "null", "baseline", spec)
+    if (folder / "set_1").is_dir():
+        subject = _subject(spec.rig, folder / "set_1")
+        if len(subject.features) < MOST_NUMBERS["baseline"]:
+            yield subject, _subject(spec.rig, folder / "set_0")
+
+
+def _alike(subjects: Iterable[Comparison]) -> Iterable[list[Comparison]]:
     """Sets with the very same numbers."""
     groups: dict[tuple[object, ...], list[Comparison]] = {}
     for subject in subjects:
@@ -133,7 +153,12 @@ def calibration_of(file: Path | None) -> Calibration:
     if file is None:
         return DEFAULT
     content = json.loads(file.read_text())
-    return replace(DEFAULT, amplitudes=Amplitudes(**content["amplitudes"]), widening=content["widening"])
+    return replace(
+        DEFAULT,
+        amplitudes=Amplitudes(**content["amplitudes"]),
+        widening=content["widening"],
+        drift=Drift(**content["drift"]),
+    )
 
 
 def run(
