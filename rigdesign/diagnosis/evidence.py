@@ -40,6 +40,19 @@ class Curve:
     answers: Array
     bounds: tuple[float, float]
 
+    @classmethod
+    def of(
+        cls, coordinates: Array, answers: Array, bounds: tuple[float, float] = (-np.inf, np.inf)
+    ) -> "Curve":
+        """From runs in any order, (m,) and (m, n); it ends where its bounds or its runs end."""
+        order = np.argsort(coordinates)
+        ends = float(coordinates[order[0]]), float(coordinates[order[-1]])
+        return cls(
+            coordinates=coordinates[order],
+            answers=answers[order],
+            bounds=(max(bounds[0], ends[0]), min(bounds[1], ends[1])),
+        )
+
     @property
     def half(self) -> float:
         """The wider side of the bounds."""

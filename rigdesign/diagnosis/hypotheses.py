@@ -45,10 +45,10 @@ def physical(
     ]
     runs = []
     for _, response, _, tooth in copies:
-        rows = response.answers if _is_curve(response) else response.slope().T
+        rows = response.answers if response.bends else response.slope().T
         runs.append(turning.turned(rows, tooth, teeth_a_turn) if tooth else rows)
     found = [
-        _curve(effect, response, name, white) if _is_curve(response) else _plane(effect, name, white)
+        _curve(effect, response, name, white) if response.bends else _plane(effect, name, white)
         for (effect, response, name, _), white in zip(copies, _whitened(covariance, runs), strict=True)
     ]
     return [one for one in found if _reach(one) > least]
@@ -62,20 +62,12 @@ def _whitened(covariance: Covariance | None, rows: Sequence[Array]) -> list[Arra
     return np.split(white, np.cumsum([len(block) for block in rows])[:-1])
 
 
-def _is_curve(response: Response) -> bool:
-    return response.coordinates.shape[1] == 1 and not response.linear
-
-
 def _curve(effect: Effect, response: Response, name: str, white: Array) -> Hypothesis:
-    order = np.argsort(response.coordinates[:, 0])
-    coordinates = response.coordinates[order, 0]
-    low, high = effect.parameters[0].bounds
-    bounds = (max(low, float(coordinates[0])), min(high, float(coordinates[-1])))
     return Hypothesis(
         name=name,
         family="physical",
         parts=(effect.claim,),
-        curve=Curve(coordinates=coordinates, answers=white[order], bounds=bounds),
+        curve=Curve.of(response.coordinates[:, 0], white, effect.parameters[0].bounds),
         own=(effect.name,),
     )
 

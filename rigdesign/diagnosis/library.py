@@ -31,6 +31,11 @@ class Response:
         """One run a parameter: the answer is taken as proportional."""
         return bool(len(self.coordinates) == self.coordinates.shape[1] + 1)
 
+    @property
+    def bends(self) -> bool:
+        """Several runs of one parameter: the answer is a curve over it."""
+        return self._count == 1 and not self.linear
+
     def slope(self) -> Array:
         """(n, k) derivative at zero, from the smallest runs."""
         if self.linear:

@@ -92,19 +92,8 @@ class Comparison:
         found = {}
         for effect in self.effects:
             response = self.library.responses.get(effect.name)
-            if (
-                effect.healthy == 0.0
-                or response is None
-                or response.linear
-                or response.coordinates.shape[1] > 1
-            ):
-                continue
-            order = np.argsort(response.coordinates[:, 0])
-            coordinates = response.coordinates[order, 0]
-            bounds = (float(coordinates[0]), float(coordinates[-1]))
-            found[effect.name] = Curve(
-                coordinates=coordinates, answers=response.answers[order], bounds=bounds
-            )
+            if effect.healthy > 0.0 and response is not None and response.bends:
+                found[effect.name] = Curve.of(response.coordinates[:, 0], response.answers)
         return found
 
     @property
