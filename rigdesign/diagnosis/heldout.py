@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.covariance import Covariance
@@ -33,8 +34,8 @@ class Gap:
     """How far prediction and readings lie apart on points the fit never saw.
 
     before, after : root mean square of the whitened residual, each number by its marginal covariance, 1 in the mean
-        of healthy rigs; raw_before, raw_after : of the residual in the effect's own channels over the noise floor of
-        their readings
+        of healthy rigs; raw_before, raw_after : of the residual in the effect's own readings, of the one quantity it
+        moves most, in the unit of that quantity [SI]; raw_floor : of their noise
     """
 
     before: float
@@ -45,21 +46,36 @@ class Gap:
     points: tuple[str, ...]
 
 
-def gap(covariance: Covariance, residual: Array, answer: Array, noise: Array, points: tuple[str, ...]) -> Gap:
+def gap(
+    covariance: Covariance,
+    residual: Array,
+    answer: Array,
+    noise: Array,
+    quantities: Sequence[str],
+    points: tuple[str, ...],
+) -> Gap:
     """Gap on the held-out numbers before and after the answer (n,) of the named effects is taken into the model.
 
-    noise : (n,) standard deviation of the readings
+    noise : (n,) standard deviation of the readings; quantities : (n,) what they are of
     """
-    strong = (
-        np.abs(answer) > 0.25 * np.abs(answer / noise).max() * noise
-        if np.any(answer)
-        else np.ones_like(noise, bool)
-    )
+    strong = _own(answer / noise, quantities) if np.any(answer) else np.ones_like(noise, bool)
     before, after = (_whitened(covariance, values) for values in (residual, residual - answer))
     raw = [float(np.sqrt(np.mean(values[strong] ** 2))) for values in (residual, residual - answer, noise)]
     return Gap(
         before=before, after=after, raw_before=raw[0], raw_after=raw[1], raw_floor=raw[2], points=points
     )
+
+
+OWN = 0.25
+"""Answer over that of the reading moved most, both in noise, from which on a reading is the effect's own."""
+
+
+def _own(seen: Array, quantities: Sequence[str]) -> NDArray[np.bool_]:
+    """(n,) readings that an answer, in noise, moves, of the quantity it moves most."""
+    size = np.abs(seen)
+    most = int(np.argmax(size))
+    alike = np.array([quantity == quantities[most] for quantity in quantities])
+    return np.asarray(alike & (size > OWN * size[most]))
 
 
 def _whitened(covariance: Covariance, values: Array) -> float:

@@ -326,6 +326,7 @@ def _proof(whole: Whitened, subject: Comparison, points: tuple[str, ...], answer
         whole.raw[rows],
         answer[rows],
         subject.noise[rows],
+        [subject.channels[subject.features[row].channel].quantity for row in rows],
         points,
     )
 

@@ -82,7 +82,10 @@ def test_gap_is_one_for_healthy_numbers_and_falls_with_the_answer():
     healthy = 0.5 * rng.normal(size=400)
     answer = np.zeros(400)
     answer[:100] = 3.0
-    found = gap(covariance, healthy + answer, answer, np.full(400, 0.5), ("P1",))
+    answer[300:] = 1000.0
+    quantities = ["temperature"] * 300 + ["motor_power"] * 100
+    noise = np.where(answer > 10.0, 500.0, 0.5)
+    found = gap(covariance, healthy + answer, answer, noise, quantities, ("P1",))
     assert found.after == pytest.approx(1.0, abs=0.1)
     assert found.before > 3.0
     assert found.raw_before == pytest.approx(3.0, abs=0.2)
