@@ -38,7 +38,7 @@ from rigdesign.diagnosis.subject import Comparison, plain
 from rigdesign.measurement import load_measurement
 from tests.blind.ablations import ABLATIONS
 from tests.blind.metrics import Row, canonical, table
-from tests.blind.splits import RIGS, Spec, specs
+from tests.blind.splits import RIGS, SENSORS, Spec, specs
 from tests.virtual_rig.generate import make_set
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -316,12 +316,12 @@ def _sizes(row: Row, result: Any) -> None:
 
 
 def report(split: str, mode: str, out: Path, tag: str) -> None:
-    """Print the table of a split in one mode."""
+    """Print the table of a split in one mode: all sets, by rig, by the sensors they have."""
     text = (out / "results" / f"{split}_{mode}{tag}.jsonl").read_text()
     rows = [json.loads(line) for line in text.splitlines()]
-    for chosen in (None, *RIGS):
-        own = [row for row in rows if chosen in (None, row["rig"])]
-        print(f"\n{split}, {mode}, {chosen or 'all rigs'}: {len(own)} sets")
+    for chosen in (None, *RIGS, *SENSORS):
+        own = [row for row in rows if chosen in (None, row["rig"], row["sensors"])]
+        print(f"\n{split}, {mode}, {chosen or 'all'}: {len(own)} sets")
         for name, target, measured in table(own):
             print(f"  {name:48s} {target:14s} {measured}")
 
