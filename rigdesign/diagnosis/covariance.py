@@ -134,10 +134,6 @@ class Whitened:
         """(n, n_columns) whitened deviations."""
         return self.covariance.whiten(self.covariance.deviations)
 
-    def without(self, effect: str) -> "Release":
-        """The space without the spread of what ``effect`` moves."""
-        return Release.of(self.columns[:, self.covariance.own(effect)])
-
 
 @dataclass(frozen=True)
 class Release:

@@ -6,7 +6,15 @@ import pytest
 from rigdesign.diagnosis.columns import Column
 from rigdesign.diagnosis.covariance import Covariance, Release, Whitened
 from rigdesign.diagnosis.decision import Thresholds
-from rigdesign.diagnosis.evidence import Curve, Hypothesis, graded, mixture_density, weigh, weigh_pair
+from rigdesign.diagnosis.evidence import (
+    Curve,
+    Hypothesis,
+    graded,
+    mixture_density,
+    release_of,
+    weigh,
+    weigh_pair,
+)
 from rigdesign.diagnosis.examine import Explanations, examine
 
 N = 120
@@ -60,7 +68,7 @@ def test_release_takes_a_column_out_of_the_covariance():
     plain = Covariance(base=covariance.base, columns=covariance.columns[:-1], amplitudes={})
     residual = rng.normal(size=N)
     space = Whitened.of(covariance, residual)
-    release = space.without("effect 0")
+    release = release_of(space, ["effect 0"])
     bare = Whitened.of(plain, residual)
     assert release.product(space.residual, space.residual) == pytest.approx(bare.chi_square, rel=1e-10)
     assert release.log_determinant == pytest.approx(

@@ -1,0 +1,50 @@
+"""From weighed explanations to a verdict: what a name needs beside its posterior."""
+
+import numpy as np
+import pytest
+
+from rigdesign.diagnosis.decision import Thresholds, decide, posterior
+from rigdesign.diagnosis.evidence import Evidence, Hypothesis
+
+COUNTS = {"physical": 50, "anonymous": 100, "pair": 1000, "sensor": 20}
+
+
+def evidence(name, log_bayes, family="physical"):
+    parts = tuple(name.split(" + "))
+    return Evidence(
+        hypothesis=Hypothesis(name=name, family=family, parts=parts),
+        log_bayes=log_bayes, coordinates=(1.0,), deviations=(0.1,), gain=2.0 * log_bayes + 5.0,
+        columns=np.zeros((60, 1)), answer=np.zeros(60),
+    )  # fmt: skip
+
+
+def verdict(*weighed, thresholds, loop=()):
+    ordered = sorted(weighed, key=lambda one: -one.log_bayes)
+    return decide(
+        ordered,
+        posterior(ordered, COUNTS),
+        chi_square=ordered[0].gain + 60.0,
+        count=60,
+        effects=frozenset({"leak", "ripple"}),
+        detectable={"leak": True},
+        thresholds=thresholds,
+        loop=frozenset(loop),
+    )
+
+
+def test_a_cause_without_a_name_that_leads_by_too_much_forbids_one():
+    pair = "leak + unknown: heat"
+    near = verdict(evidence("leak", 40.0), evidence(pair, 44.0, "pair"), thresholds=Thresholds(catalogue=5.0))
+    assert (near.verdict, near.named) == ("named", ("leak",))
+    far = verdict(evidence("leak", 40.0), evidence(pair, 46.0, "pair"), thresholds=Thresholds(catalogue=5.0))
+    assert (far.verdict, far.named) == ("unknown_located", ())
+    assert "outside the catalogue" in far.reason
+
+
+@pytest.mark.parametrize(("name", "loop", "named"), [("leak", (), True), ("ripple", ("ripple",), False)])
+def test_orders_ask_for_more_evidence_than_heat(name, loop, named):
+    floors = Thresholds(evidence=10.0, evidence_loop=30.0)
+    found = verdict(evidence(name, 20.0), thresholds=floors, loop=loop)
+    assert (found.verdict == "named") is named
+    if not named:
+        assert "healthy rigs have given as much" in found.reason
