@@ -53,14 +53,17 @@ def library_of(
 def stored_library(
     case: Case, settings: Sequence[Setting], channels: Sequence[Channel], effects: Sequence[Effect]
 ) -> Library | None:
-    """A stored library that serves these points and channels; None if there is none."""
+    """Of the stored libraries that serve these points and channels the one nearest to them; None if there is none."""
     folder = _folder(case, effects)
+    nearest, least = None, float("inf")
     for file in sorted(folder.glob("*.pickle")) if folder.is_dir() else ():
         found = _read(file)
-        serving = None if found is None else found.serving(tuple(settings), tuple(channels))
+        if found is None or (distance := found.distance(settings)) >= least:
+            continue
+        serving = found.serving(tuple(settings), tuple(channels))
         if serving is not None:
-            return serving
-    return None
+            nearest, least = serving, distance
+    return nearest
 
 
 @dataclass(frozen=True)

@@ -124,6 +124,13 @@ class Library:
             powers={run_of[point].name: power for point, power in self.powers.items() if point in run_of},
         )
 
+    def distance(self, settings: Sequence[Setting]) -> float:
+        """How far points lie from those of the plan that serve them: one at the limit, infinite where none does."""
+        points = _matches(settings, self.settings, _close)
+        if points is None:
+            return float("inf")
+        return max((_close(self.settings[place], run) for run, place in zip(settings, points)), default=0.0)
+
     def rows(self, features: tuple[Feature, ...]) -> "Library":
         """The library cut to some of its features."""
         place = {feature: row for row, feature in enumerate(self.features)}

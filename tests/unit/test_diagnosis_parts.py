@@ -216,6 +216,14 @@ def test_library_serves_a_nearby_point_of_fewer_channels_under_other_names():
     assert set(served.inputs) == {("inlet_temperature", "test.gear_oil", "late")}
 
 
+def test_distance_of_a_library_is_that_of_its_farthest_point():
+    run = Setting(name="late", speed=202.0, torque=79.0, inlet_temperature={"test.gear_oil": 362.0})
+    assert library().distance(SETTINGS) == 0.0
+    near = [abs(run.speed / 200.0 - 1.0) / 0.05, abs(run.torque / SETTINGS[1].torque - 1.0) / 0.05, 2.0 / 8.0]
+    assert library().distance([run]) == pytest.approx(max(near))
+    assert library().distance([SETTINGS[0], SETTINGS[0]]) == float("inf")
+
+
 def test_library_does_not_serve_what_it_does_not_hold():
     far = (Setting(name="P1", speed=150.0, torque=50.0, inlet_temperature={"test.gear_oil": 350.0}),)
     assert library().serving(far, CHANNELS) is None
