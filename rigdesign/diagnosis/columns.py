@@ -10,6 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.prediction.model import Feature
+
 Array = NDArray[np.float64]
 
 
@@ -34,3 +36,10 @@ def stacked(columns: Sequence[Column], amplitudes: Mapping[str, float]) -> Array
         raise ValueError("no columns to stack; a comparison has at least its noise and its inputs")
     scaled = [amplitudes.get(column.kind, 1.0) * column.spread * column.values for column in columns]
     return np.stack(scaled, axis=1)
+
+
+def series_numbers(features: Sequence[Feature]) -> NDArray[np.intp]:
+    """(n,) number of the series of every feature, one channel and one order, from zero in the order they appear."""
+    names = [(one.channel, one.order, one.part) for one in features]
+    numbers = {name: number for number, name in enumerate(dict.fromkeys(names))}
+    return np.array([numbers[name] for name in names], dtype=np.intp)

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cho_solve, solve_triangular
+from scipy.linalg import solve_triangular
+from scipy.linalg.lapack import dpotri
 
 from rigdesign.diagnosis.columns import Array, Column, stacked
 
@@ -81,6 +82,13 @@ class Covariance:
         return [i for i, column in enumerate(self.columns) if effect and column.effect == effect]
 
 
+def inverse_of_factor(lower: Array) -> Array:
+    """(n, n) inverse of a covariance from its Cholesky factor."""
+    half, _ = dpotri(lower, lower=1)
+    below = np.tril(half, -1)
+    return np.asarray(below + below.T + np.diag(np.diagonal(half)))
+
+
 @dataclass(frozen=True, kw_only=True)
 class Whitened:
     """A covariance with a residual in its space; what an effect's own spread hid can be given back.
@@ -126,8 +134,7 @@ class Whitened:
     @cached_property
     def precision(self) -> Array:
         """(n, n) inverse of the covariance."""
-        lower = self.covariance.lower
-        return np.asarray(cho_solve((lower, True), np.eye(len(lower)), check_finite=False))
+        return inverse_of_factor(self.covariance.lower)
 
     @cached_property
     def columns(self) -> Array:

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rigdesign.diagnosis.amplitudes import Amplitudes
-from rigdesign.diagnosis.columns import Array, Column
+from rigdesign.diagnosis.columns import Array, Column, series_numbers
 from rigdesign.diagnosis.effects import Effect, Family
 from rigdesign.diagnosis.levels import levels
 from rigdesign.diagnosis.library import NEAR_SENSOR, Library
@@ -202,9 +202,7 @@ def answer_error(library: Library, effects: Sequence[Effect]) -> Array:
     if not answers:
         return np.zeros((count, count))
     speed = relative_speed(library.features, library.settings)
-    names = [(feature.channel, feature.order, feature.part) for feature in library.features]
-    places = {name: number for number, name in enumerate(dict.fromkeys(names))}
-    series = np.array([places[name] for name in names])
+    series = series_numbers(library.features)
     both = np.hstack(answers)
     along = TREND * speed
     share = (series[:, None] == series) * (1.0 + np.outer(along, along))

@@ -5,10 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import cho_factor
-from scipy.linalg.lapack import dpotri
 
 from rigdesign.diagnosis.columns import Array
+from rigdesign.diagnosis.covariance import inverse_of_factor
 
 LIMIT = 5.5
 """Leave-one-out deviation [standard deviations] above which a reading is left out."""
@@ -46,7 +45,7 @@ def reject(
 
 def _standing_out(matrix: Array, residual: Array, limit: float, most: float) -> tuple[Outlier, ...]:
     kept = np.arange(len(residual))
-    precision = _inverse(matrix)
+    precision = inverse_of_factor(np.asarray(np.linalg.cholesky(matrix), dtype=np.float64))
     found: list[Outlier] = []
     while True:
         deviations = precision @ residual[kept] / np.sqrt(np.diagonal(precision))
@@ -58,14 +57,6 @@ def _standing_out(matrix: Array, residual: Array, limit: float, most: float) -> 
         found.append(Outlier(int(kept[worst]), float(deviations[worst])))
         kept = np.delete(kept, worst)
         precision = _without(precision, worst)
-
-
-def _inverse(matrix: Array) -> Array:
-    """Of a covariance. Raises numpy.linalg.LinAlgError where it is none."""
-    factor, _ = cho_factor(matrix, lower=True)
-    lower, _ = dpotri(factor, lower=1)
-    below = np.tril(lower, -1)
-    return np.asarray(below + below.T + np.diag(np.diagonal(lower)))
 
 
 def _without(precision: Array, place: int) -> Array:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.sparse import csr_array
 
-from rigdesign.diagnosis.columns import Array, Column
+from rigdesign.diagnosis.columns import Array, Column, series_numbers
 from rigdesign.diagnosis.covariance import Whitened
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis, deviations_of, inverse_of, mixed, release_of
 from rigdesign.diagnosis.healthy import TREND
@@ -46,11 +46,9 @@ class Signature:
     @classmethod
     def of(cls, features: Sequence[Feature], trend: Array, errors: Mapping[str, float]) -> "Signature":
         """Of the numbers of a comparison."""
-        names = [(one.channel, one.order, one.part) for one in features]
-        numbers = {name: number for number, name in enumerate(dict.fromkeys(names))}
-        series = np.array([numbers[name] for name in names], dtype=np.intp)
+        series = series_numbers(features)
         order = np.argsort(series, kind="stable")
-        starts = np.searchsorted(series[order], np.arange(len(numbers)))
+        starts = np.searchsorted(series[order], np.arange(series.max(initial=-1) + 1))
         return cls(order=order, starts=starts, trend=trend, errors=errors)
 
     def error_of(self, hypothesis: Hypothesis) -> float:
