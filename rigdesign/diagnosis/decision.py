@@ -23,8 +23,16 @@ Verdict = Literal[
     "data_insufficient",
 ]
 
-PRIOR = {"none": 0.50, "physical": 0.22, "sensor": 0.08, "anonymous": 0.10, "pair": 0.10, "input": 0.03}
-"""Prior weight of each family of explanations, split evenly among its members."""
+PRIOR = {
+    "none": 0.50, "physical": 0.22, "sensor": 0.08, "local": 0.08, "anonymous": 0.10, "pair": 0.10, "input": 0.03,
+}  # fmt: skip
+"""Prior weight of each family of explanations, split evenly among its members.
+
+Heat that one thermometer alone feels is as likely as an error of that thermometer.
+"""
+
+UNNAMED = frozenset({"anonymous", "local"})
+"""Families of what is outside the catalogue."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,10 +41,12 @@ class Thresholds:
 
     named : inclusion probability of a name; input : mass of input errors; catalogue : logarithm of the Bayes factor
     by which an explanation outside the catalogue may lead the best one within; misfit : standard deviations of the
-    whitened square after the best fit above which nothing known fits; group : most members of an alias group;
-    evidence, evidence_loop : logarithm of the Bayes factor against a healthy rig that a name needs, in the heat and in
-    orders and natural frequencies; support : fall of the whitened
-    square that must be left of a name's explanation without the operating point that speaks for it most
+    whitened square after the best fit above which nothing known fits, unless that is less than a share of the fall;
+    group : most members of an alias group; evidence, evidence_loop : logarithm of the Bayes factor against a
+    healthy rig that each name of an explanation needs, in the heat and in orders and natural frequencies; support :
+    fall of the whitened square that must be left of a name's explanation without the operating point that speaks
+    for it most; share : of the largest fall explained so far that this must be, as no answer of the model is more
+    exact
     """
 
     named: float = 0.95
@@ -47,6 +57,7 @@ class Thresholds:
     evidence: float = 0.0
     evidence_loop: float = 0.0
     support: float = 12.0
+    share: float = 0.05
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,6 +124,7 @@ def decide(
     detectable: Mapping[str, bool],
     thresholds: Thresholds,
     loop: frozenset[str] = frozenset(),
+    sensors: frozenset[str] = frozenset(),
 ) -> Decision:
     """The verdict.
 
@@ -122,6 +134,7 @@ def decide(
     effects : names that may be named: catalogue and sensors, not the anonymous ones
     detectable : effect -> whether these sensors could see it within its bounds at all
     loop : those of the names that show in orders and natural frequencies
+    sensors : those that are errors of sensors and settings
     """
     if weights.families.get("input", 0.0) > thresholds.input:
         named = _parts_of_family(evidence, weights, "input")
@@ -134,18 +147,18 @@ def decide(
     if best is None:
         return _silent(weights, evidence, chi_square, count, thresholds, detectable)
     floor = thresholds.evidence if loop.isdisjoint(best.hypothesis.parts) else thresholds.evidence_loop
-    if best.log_bayes < floor and weights.masses["none"] < 0.5:
+    if best.log_bayes < floor * len(set(best.hypothesis.parts)) and weights.masses["none"] < 0.5:
         reason = "something may be at work; healthy rigs have given as much evidence"
         return Decision(verdict="too_small", named=(), reason=reason)
-    left = chi_square - best.gain
-    excess = (left - count) / (2.0 * count) ** 0.5
-    if excess > thresholds.misfit:
+    left = chi_square - best.gain - count
+    if left > max(thresholds.misfit * (2.0 * count) ** 0.5, thresholds.share * best.gain):
+        excess = left / (2.0 * count) ** 0.5
         return Decision(
             verdict="unknown_located",
             named=(),
             reason=f"the best explanation leaves {excess:.1f} standard deviations more than a healthy rig does",
         )
-    known = [one for one in evidence if set(one.hypothesis.parts) <= effects]
+    known = [one for one in evidence if _credible(one, effects, sensors)]
     leads = best.log_bayes - max((one.log_bayes for one in known), default=0.0)
     if weights.masses["none"] < 0.5 and leads > thresholds.catalogue:
         return Decision(
@@ -174,6 +187,12 @@ def decide(
             verdict="unknown_located", named=(), reason="something is at work that no few effects account for"
         )
     return _silent(weights, evidence, chi_square, count, thresholds, detectable)
+
+
+def _credible(one: Evidence, effects: frozenset[str], sensors: frozenset[str]) -> bool:
+    """Of the catalogue alone; an error of a sensor by itself, not to mend what something else leaves."""
+    parts = frozenset(one.hypothesis.parts)
+    return parts <= effects and (len(parts) == 1 or parts.isdisjoint(sensors))
 
 
 def _smallest_group(

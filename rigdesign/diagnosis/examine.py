@@ -6,14 +6,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rigdesign.diagnosis.covariance import Whitened
-from rigdesign.diagnosis.decision import PRIOR, Decision, Posterior, Thresholds, decide, posterior
+from rigdesign.diagnosis.decision import PRIOR, UNNAMED, Decision, Posterior, Thresholds, decide, posterior
 from rigdesign.diagnosis.detectability import Detectability, detectabilities
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis, weigh, weigh_pair
 from rigdesign.diagnosis.signature import Contest, Signature
 from rigdesign.diagnosis.support import support
 
 LEADERS = 12
-"""Explanations that are joined with every other one."""
+"""Explanations of the catalogue that are joined with every other one."""
+
+UNNAMED_LEADERS = 4
+"""Anonymous ones that are."""
+
+COPY = 0.99
+"""Cosine of two answers above which they are one explanation: what bears a name keeps it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,14 +33,16 @@ class Explanations:
 
     @property
     def members(self) -> dict[str, int]:
-        """Number of explanations by family; a pair joins something of the catalogue with anything."""
-        known = len(self.physical) + len(self.sensor)
+        """Number of explanations by family; a pair joins any two."""
+        known, unnamed = len(self.physical) + len(self.sensor), len(self.anonymous)
+        local = sum(1 for one in self.anonymous if one.family == "local")
         return {
             "physical": len(self.physical),
             "sensor": len(self.sensor),
-            "anonymous": len(self.anonymous),
+            "anonymous": unnamed - local,
+            "local": local,
             "input": len(self.data),
-            "pair": known * (known - 1) // 2 + known * len(self.anonymous),
+            "pair": (known + unnamed) * (known + unnamed - 1) // 2,
         }
 
 
@@ -63,6 +71,7 @@ def examine(
     loop: frozenset[str] = frozenset(),
     signature: Signature | None = None,
     table: Sequence[Detectability] | None = None,
+    explained: float = 0.0,
 ) -> Examination:
     """Weigh everything and decide.
 
@@ -70,12 +79,14 @@ def examine(
     loop : names of effects that show in orders and natural frequencies
     signature : how wrong the model may answer to a right cause; left out, not at all
     table : detectability where it is known already; it depends on covariance and explanations alone
+    explained : largest fall of the whitened square by what was named before
     """
     known = (*explanations.physical, *explanations.sensor)
     if table is None:
         table = detectabilities(space, known, explanations.anonymous)
     contest = None if signature is None else Contest(space, signature)
     singles = _judged(contest, [weigh(space, one) for one in (*known, *explanations.anonymous)])
+    singles = _without_copies(singles)
     data = [weigh(space, one) for one in explanations.data]
     pairs = _judged(contest, _pairs(space, singles))
     evidence = sorted((*singles, *data, *pairs), key=lambda one: -one.log_bayes)
@@ -89,11 +100,12 @@ def examine(
         detectable={row.effect: row.detectable <= row.bound for row in table},
         thresholds=thresholds,
         loop=loop,
+        sensors=frozenset(part for one in explanations.sensor for part in one.parts),
     )
     return Examination(
         evidence=tuple(evidence),
         weights=weights,
-        decision=_supported(space, points, decision, evidence, weights, thresholds),
+        decision=_supported(space, points, decision, evidence, weights, thresholds, explained),
         detectability=tuple(table),
         chi_square=space.chi_square,
         count=len(space.residual),
@@ -107,33 +119,57 @@ def _supported(
     evidence: Sequence[Evidence],
     weights: Posterior,
     thresholds: Thresholds,
+    explained: float,
 ) -> Decision:
-    """The decision without the names that rest on one operating point; of an alias group its leader is asked."""
+    """The decision without the names that rest on one operating point or explain next to nothing beside the others.
+
+    Of an alias group its leader is asked.
+    """
     if not points or decision.verdict not in ("named", "alias_group"):
         return decision
     ordered = sorted(evidence, key=lambda one: -weights.masses[one.hypothesis.name])
-    resting: dict[str, str] = {}
+    refused: dict[str, str] = {}
     for part in decision.named if decision.verdict == "named" else decision.named[:1]:
         best = next(one for one in ordered if part in one.hypothesis.parts)
         least, where = support(space, points, best, part)
         if least < thresholds.support:
-            resting[part] = where
-    kept = tuple(part for part in decision.named if part not in resting)
-    if not resting or (decision.verdict == "named" and kept):
+            alone = f"operating point {where}" if where else "chance"
+            refused[part] = f"what speaks for {part} comes from {alone} alone"
+        elif least < thresholds.share * max(explained, best.gain):
+            refused[part] = f"{part} explains next to nothing beside what is known already"
+    kept = tuple(part for part in decision.named if part not in refused)
+    if not refused or (decision.verdict == "named" and kept):
         return replace(decision, named=kept)
-    part, where = next(iter(resting.items()))
-    reason = f"what speaks for {part} comes from {'operating point ' + where if where else 'chance'} alone"
-    return Decision(verdict="too_small", named=(), reason=reason)
+    return Decision(verdict="too_small", named=(), reason=next(iter(refused.values())))
 
 
 def _judged(contest: Contest | None, evidence: list[Evidence]) -> list[Evidence]:
     return evidence if contest is None else contest.judged(evidence)
 
 
+def _without_copies(singles: Sequence[Evidence]) -> list[Evidence]:
+    """Explanations less the anonymous ones that answer as one of the catalogue does.
+
+    An error of a sensor has no claim to what is heat just as well: it keeps its anonymous rivals.
+    """
+    known = [one.answer for one in singles if one.hypothesis.family == "physical" and np.any(one.answer)]
+    if not known:
+        return list(singles)
+    directions = np.array([answer / np.linalg.norm(answer) for answer in known])
+
+    def copied(one: Evidence) -> bool:
+        length = float(np.linalg.norm(one.answer))
+        return length > 0.0 and float((directions @ one.answer).max()) > COPY * length
+
+    return [one for one in singles if one.hypothesis.family not in UNNAMED or not copied(one)]
+
+
 def _pairs(space: Whitened, singles: Sequence[Evidence]) -> list[Evidence]:
-    """The leading effects of the catalogue joined with everything else; anonymous partners included."""
-    named = [one for one in singles if one.hypothesis.family != "anonymous"]
-    leaders = sorted(named, key=lambda one: -one.log_bayes)[:LEADERS]
+    """The leading explanations joined with everything else, those without a name among them."""
+    ordered = sorted(singles, key=lambda one: -one.log_bayes)
+    unnamed = [one for one in ordered if one.hypothesis.family in UNNAMED]
+    leaders = [one for one in ordered if one.hypothesis.family not in UNNAMED][:LEADERS]
+    leaders += unnamed[:UNNAMED_LEADERS]
     done: set[frozenset[str]] = set()
     pairs = []
     for first in leaders:

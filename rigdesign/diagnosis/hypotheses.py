@@ -111,16 +111,15 @@ def without_a_name(covariance: Covariance, causes: Iterable[Anonymous]) -> list[
     """Anonymous competitors; each may be as large as something that is seen at `SIGMAS`."""
     causes = list(causes)
     found = []
-    for (name, _), white in zip(
-        causes, _whitened(covariance, [columns.T for _, columns in causes]), strict=True
-    ):
+    whitened = _whitened(covariance, [columns.T for _, _, columns in causes])
+    for (family, name, _), white in zip(causes, whitened, strict=True):
         longest = float(np.linalg.norm(white, axis=1).max())
         if longest <= 1e-9:
             continue
         found.append(
             Hypothesis(
                 name=f"unknown: {name}",
-                family="anonymous",
+                family=family,
                 parts=(f"unknown: {name}",),
                 columns=white.T / longest,
                 half=SIGMAS,

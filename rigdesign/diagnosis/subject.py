@@ -14,12 +14,12 @@ from scipy.linalg import cho_solve
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.covariance import Covariance, Whitened
+from rigdesign.diagnosis.directions import Direction, directions
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.evidence import Curve
 from rigdesign.diagnosis.healthy import answer_error, healthy_columns, own_spread
 from rigdesign.diagnosis.library import Library
 from rigdesign.diagnosis.sensors import SensorError, Stated, input_errors, sensor_errors, setting_scatter
-from rigdesign.diagnosis.turning import Turning
 from rigdesign.measurement import Data
 from rigdesign.prediction.model import Channel, Feature
 
@@ -83,7 +83,7 @@ class Comparison:
         return (*model, *(error.column() for error in self.errors))
 
     def covariance(self, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None) -> Covariance:
-        """Of a healthy rig; ``widening``: likeness of effect -> spread [coordinate] that calibration found missing."""
+        """Of a healthy rig; ``widening``: likeness of cause -> spread [coordinate] that calibration found missing."""
         base = self.base_noise(amplitudes) + self.widened(widening or {})
         return Covariance(base=base, columns=self.columns(), amplitudes=amplitudes.as_dict())
 
@@ -101,24 +101,16 @@ class Comparison:
         quantities = (self.channels[feature.channel].quantity for feature in self.features)
         return np.array(["temperature" in quantity for quantity in quantities], dtype=np.float64)
 
-    def slopes(self) -> Iterator[tuple[Effect, Array]]:
-        """Effects with their slopes (n, k); of a tooth that may be any, one for each."""
-        turning = Turning.of(self.features)
-        for effect in self.effects:
-            response = self.library.responses.get(effect.name)
-            if response is None:
-                continue
-            slope = response.slope()
-            yield effect, slope
-            for tooth in range(1, effect.any_tooth):
-                yield effect, turning.turned(slope.T, tooth, self.teeth_a_turn).T
+    def directions(self) -> Iterator[Direction]:
+        """In which its numbers go with one cause each."""
+        return directions(self.library, self.effects, self.teeth_a_turn)
 
     def widened(self, widening: Mapping[str, float]) -> Array:
-        """(n, n) covariance from spreads [coordinate] by likeness of effect."""
+        """(n, n) covariance from spreads [coordinate] by likeness of cause."""
         columns = [
-            widening[effect.likeness] * slope
-            for effect, slope in self.slopes()
-            if effect.likeness in widening
+            widening[one.likeness] * one.values
+            for one in (self.directions() if widening else ())
+            if one.likeness in widening
         ]
         both = np.hstack(columns) if columns else np.zeros((len(self.features), 0))
         return np.asarray(both @ both.T)

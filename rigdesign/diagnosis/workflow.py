@@ -206,7 +206,7 @@ def _search(
             anonymous=rest.anonymous,
             data=[],
         )
-        examinations.append(look(after, left))
+        examinations.append(look(after, left, explained=max(one.gain for one in found)))
     return examinations, tuple(found)
 
 

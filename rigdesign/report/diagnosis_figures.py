@@ -37,11 +37,11 @@ MOST_EFFECTS = 30
 """Effects of the detectability picture."""
 FAMILY_COLOURS = {
     "none": MUTED, "physical": SERIES[0], "sensor": SERIES[2], "input": SERIES[4], "anonymous": SERIES[1],
-    "pair": SERIES[3], "rest": GRID,
+    "local": SERIES[1], "pair": SERIES[3], "rest": GRID,
 }  # fmt: skip
 FAMILY_WORDS = {
     "none": "nothing", "physical": "catalogue", "sensor": "sensor or setting", "input": "wrong data",
-    "anonymous": "not in the catalogue", "pair": "two at once", "rest": "the rest",
+    "anonymous": "not in the catalogue", "local": "not in the catalogue", "pair": "two at once", "rest": "the rest",
 }  # fmt: skip
 
 

@@ -29,7 +29,7 @@ from rigdesign.case.model import Case
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.baseline import Drift
 from rigdesign.diagnosis.calibration import calibrate as fit_all
-from rigdesign.diagnosis.calibration import calibrate_drift
+from rigdesign.diagnosis.calibration import calibrate_drift, widen_drift
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.effects import Effect
@@ -93,26 +93,29 @@ def effects_for(rig: str) -> tuple[Effect, ...]:
 
 
 MOST_NUMBERS = {"plain": 700, "baseline": 900}
-"""Healthy sets with more numbers take too long to fit; they are left out."""
+"""Healthy sets with more numbers take too long to fit amplitudes and drifts to; the widening counts them too."""
 
 
 def calibrate(out: Path, without: str | None, target: Path) -> None:
     """Amplitudes, widening and drifts from the null split in both modes, rigs but one if asked; written as JSON."""
     wanted = [spec for spec in specs("null", "plain") if spec.rig != without]
     folders = [(spec.rig, folder_of(out, "null", "plain", spec)) for spec in wanted]
-    subjects = (_subject(rig, folder) for rig, folder in folders if folder.is_dir())
+    subjects = [_subject(rig, folder) for rig, folder in folders if folder.is_dir()]
+    larger = [one for one in subjects if len(one.features) >= MOST_NUMBERS["plain"]]
     alike = list(_alike(one for one in subjects if len(one.features) < MOST_NUMBERS["plain"]))
-    amplitudes, widening = fit_all(alike, Amplitudes(), FIXED)
-    fitted = [subject for same in alike for subject in same]
+    amplitudes, widening = fit_all(alike, Amplitudes(), FIXED, larger)
     squares = [
         space.chi_square / len(space.residual)
-        for space in (plain(subject, amplitudes, widening) for subject in fitted)
+        for space in (plain(subject, amplitudes, widening) for subject in subjects)
     ]
-    pairs = [pair for spec in specs("null", "baseline") if spec.rig != without for pair in _pairs(out, spec)]
-    drift = calibrate_drift(pairs, amplitudes, FIRST_DRIFT)
+    wanted = [spec for spec in specs("null", "baseline") if spec.rig != without]
+    wanted = [spec for spec in wanted if folder_of(out, "null", "baseline", spec).is_dir()]
+    small = [pair for pair in _pairs(out, wanted) if len(pair[0].features) < MOST_NUMBERS["baseline"]]
+    shares = calibrate_drift(small, amplitudes, FIRST_DRIFT)
+    drift = widen_drift(_pairs(out, wanted), amplitudes, shares)
     content = {
-        "sets": len(fitted),
-        "pairs": len(pairs),
+        "sets": [len(subjects) - len(larger), len(subjects)],
+        "pairs": [len(small), len(wanted)],
         "chi_square": [float(np.median(squares)), float(np.max(squares))],
         "amplitudes": asdict(amplitudes),
         "widening": widening,
@@ -126,13 +129,11 @@ FIRST_DRIFT = Drift(shared=0.03, shaft=0.05, mesh=0.25, amplitude=0.05)
 """Where the fit of the drifts starts, and the centre of its prior."""
 
 
-def _pairs(out: Path, spec: Spec) -> Iterable[tuple[Comparison, Comparison]]:
-    """A healthy set and its healthy baseline."""
-    folder = folder_of(out, "null", "baseline", spec)
-    if (folder / "set_1").is_dir():
-        subject = _subject(spec.rig, folder / "set_1")
-        if len(subject.features) < MOST_NUMBERS["baseline"]:
-            yield subject, _subject(spec.rig, folder / "set_0")
+def _pairs(out: Path, wanted: Iterable[Spec]) -> Iterable[tuple[Comparison, Comparison]]:
+    """Healthy sets with their healthy baselines."""
+    for spec in wanted:
+        folder = folder_of(out, "null", "baseline", spec)
+        yield _subject(spec.rig, folder / "set_1"), _subject(spec.rig, folder / "set_0")
 
 
 def _alike(subjects: Iterable[Comparison]) -> Iterable[list[Comparison]]:
@@ -222,6 +223,7 @@ def _run(job: tuple[str, str, Path, Spec, Method]) -> Row | None:
         "rig": spec.rig,
         "verdict": found.decision.verdict,
         "named": list(found.named),
+        "reason": found.decision.reason,
         "strength": found.strength,
         "top": [list(one.parts) for one in found.alternatives],
         "masses": [one.posterior for one in found.alternatives],

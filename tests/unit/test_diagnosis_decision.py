@@ -18,17 +18,21 @@ def evidence(name, log_bayes, family="physical"):
     )  # fmt: skip
 
 
-def verdict(*weighed, thresholds, loop=()):
+USUAL = Thresholds()
+
+
+def verdict(*weighed, thresholds=USUAL, loop=(), sensors=(), left=0.0):
     ordered = sorted(weighed, key=lambda one: -one.log_bayes)
     return decide(
         ordered,
         posterior(ordered, COUNTS),
-        chi_square=ordered[0].gain + 60.0,
+        chi_square=ordered[0].gain + 60.0 + left,
         count=60,
-        effects=frozenset({"leak", "ripple"}),
+        effects=frozenset({"leak", "ripple", *sensors}),
         detectable={"leak": True},
         thresholds=thresholds,
         loop=frozenset(loop),
+        sensors=frozenset(sensors),
     )
 
 
@@ -48,3 +52,20 @@ def test_orders_ask_for_more_evidence_than_heat(name, loop, named):
     assert (found.verdict == "named") is named
     if not named:
         assert "healthy rigs have given as much" in found.reason
+
+
+def test_errors_of_sensors_do_not_mend_what_an_effect_leaves():
+    offset, other = "sensor_offset:TC01", "sensor_offset:TC02"
+    alone = verdict(evidence(offset, 60.0, "sensor"), sensors=(offset, other))
+    assert alone.named == (offset,)
+    for pair in (f"leak + {offset}", f"{offset} + {other}"):
+        found = verdict(
+            evidence("leak", 40.0), evidence(offset, 40.0, "sensor"), evidence(pair, 60.0, "pair"),
+            sensors=(offset, other),
+        )  # fmt: skip
+        assert (found.verdict, found.named) == ("unknown_located", ())
+
+
+@pytest.mark.parametrize(("log_bayes", "named"), [(100.0, ()), (2000.0, ("leak",))])
+def test_what_is_left_is_held_against_what_was_explained(log_bayes, named):
+    assert verdict(evidence("leak", log_bayes), left=100.0).named == named

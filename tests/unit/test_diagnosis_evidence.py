@@ -1,5 +1,7 @@
 """Evidence and verdict on linear toys whose answer is known in closed form."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -149,6 +151,59 @@ def test_what_is_not_in_the_catalogue_stays_unknown():
         stranger = 1.5 * rng.normal(size=N)
         space = Whitened.of(covariance, draw(rng, covariance) + stranger)
         assert examine(space, found, Thresholds()).decision.verdict == "unknown_located"
+
+
+def unnamed(covariance, column, family="anonymous"):
+    white = covariance.whiten(column[:, None])
+    return Hypothesis(name="unknown: copy", family=family, parts=("unknown: copy",), columns=white, half=3.0)
+
+
+def test_a_copy_without_a_name_does_not_hide_what_has_one():
+    rng, effects, covariance = toy(6)
+    found = explanations(covariance, effects, rng)
+    rivals = [*found.anonymous, unnamed(covariance, 2.0 * effects[:, 3])]
+    space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
+    result = examine(space, replace(found, anonymous=rivals), Thresholds())
+    assert result.decision.named == ("effect 3",)
+    assert not any("copy" in one.hypothesis.name for one in result.evidence)
+
+
+def test_an_error_of_a_sensor_is_not_told_from_heat_that_looks_the_same():
+    rng, effects, covariance = toy(6)
+    found = explanations(covariance, effects, rng)
+    reads_wrong = replace(
+        found.physical[3], family="sensor", parts=("sensor_offset:T",), name="sensor_offset:T"
+    )
+    catalogue = [one for one in found.physical if one.name != "effect 3"]
+    space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
+    named = {}
+    for rivals in ([], [unnamed(covariance, effects[:, 3], "local")]):
+        both = Explanations(physical=catalogue, sensor=[reads_wrong], anonymous=rivals, data=[])
+        named[len(rivals)] = examine(space, both, Thresholds()).decision
+    assert named[0].named == ("sensor_offset:T",)
+    assert named[1].verdict == "unknown_located"
+
+
+def test_two_without_a_name_are_weighed_together():
+    rng, effects, covariance = toy(7)
+    found = explanations(covariance, effects, rng)
+    both = [one.columns[:, 0] / np.linalg.norm(one.columns) for one in found.anonymous[:2]]
+    hidden = covariance.lower @ (14.0 * both[0] + 11.0 * both[1])
+    result = examine(Whitened.of(covariance, draw(rng, covariance) + hidden), found, Thresholds())
+    assert result.evidence[0].hypothesis.parts == ("unknown: 0", "unknown: 1")
+    assert result.decision.verdict == "unknown_located"
+
+
+def test_a_further_effect_must_explain_a_share_of_what_the_first_did():
+    rng, effects, covariance = toy(8)
+    found = explanations(covariance, effects, rng)
+    space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
+    points = [f"P{row % 6}" for row in range(N)]
+    alone = examine(space, found, Thresholds(), points=points)
+    assert alone.decision.named == ("effect 3",)
+    beside = examine(space, found, Thresholds(), points=points, explained=25.0 * alone.evidence[0].gain)
+    assert (beside.decision.verdict, beside.decision.named) == ("too_small", ())
+    assert "beside" in beside.decision.reason
 
 
 def test_a_pair_of_two_that_look_alike_gains_as_one_of_them_whatever_their_units():

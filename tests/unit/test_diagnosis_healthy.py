@@ -8,11 +8,11 @@ import pytest
 from rigdesign.diagnosis import subject as subjects
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.baseline import Change, Drift, differenced
-from rigdesign.diagnosis.calibration import WIDEN_ABOVE, calibrate_drift, widen
+from rigdesign.diagnosis.calibration import LARGEST, WIDEN_ABOVE, calibrate_drift, widen, widen_drift
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.effects import Effect, Parameter
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis, weigh
-from rigdesign.diagnosis.healthy import TREND, answer_error, healthy_columns
+from rigdesign.diagnosis.healthy import TREND, answer_error, healthy_columns, relative_speed
 from rigdesign.diagnosis.library import Library, Response
 from rigdesign.diagnosis.subject import plain
 from rigdesign.diagnosis.support import support
@@ -200,4 +200,50 @@ def test_an_effect_is_widened_by_what_is_missing_and_no_more(monkeypatch):
         space = plain(one, DESIGN.amplitudes, found)
         along = space.covariance.whiten(slope)
         squares.append(float(along @ space.residual) ** 2 / float(along @ along))
-    assert np.mean(squares) == pytest.approx(WIDEN_ABOVE, rel=0.01)
+    assert np.mean(squares) == pytest.approx(WIDEN_ABOVE, rel=0.02)
+
+
+def test_the_healthy_rig_that_goes_furthest_counts_beside_the_mean(monkeypatch):
+    monkeypatch.setattr(subjects, "BENDING_STEPS", 0)
+    subject = story("healthy").problem.subject
+    still = replace(subject, values=subject.library.base)
+    slope = subject.library.responses["mesh_loss:test"].slope()[:, 0]
+    white = plain(subject, DESIGN.amplitudes).covariance.whiten(slope)
+    far = replace(still, values=still.values + 8.0 / float(np.linalg.norm(white)) * slope)
+    sets = [far] + 99 * [still]
+    assert 64.0 / len(sets) < WIDEN_ABOVE
+    found = widen(sets, DESIGN.amplitudes)
+    space = plain(far, DESIGN.amplitudes, found)
+    along = space.covariance.whiten(slope)
+    assert float(along @ space.residual) ** 2 / float(along @ along) <= LARGEST * 1.01
+
+
+def test_heat_without_a_name_is_widened_by_its_share_of_the_losses(monkeypatch):
+    monkeypatch.setattr(subjects, "BENDING_STEPS", 0)
+    subject = story("healthy").problem.subject
+    unpaid = next(one for one in subject.directions() if one.likeness == "heat unpaid at gear oil ~n2")
+    losses = np.mean(list(subject.library.powers.values()))
+    watts = subject.library.dry_sources["gear oil"]
+    at_mean = np.exp(relative_speed(subject.features, subject.library.settings)) ** 2
+    assert unpaid.values[:, 0] == pytest.approx(losses * watts * at_mean)
+    only = subject.widened({unpaid.likeness: 0.1})
+    assert only == pytest.approx(0.01 * np.outer(unpaid.values, unpaid.values))
+
+
+def test_a_course_that_bends_is_widened_along_its_ends_too(pair):
+    subject = pair[0]
+    response = subject.library.responses["mesh_loss:test"]
+    own = next(one for one in subject.directions() if one.likeness == "mesh_loss")
+    runs = [run for run, place in enumerate(response.coordinates[:, 0]) if place]
+    assert own.values.shape[1] == 1 + len(runs)
+    for column, run in enumerate(runs, start=1):
+        assert own.values[:, column] * response.coordinates[run, 0] == pytest.approx(response.answers[run])
+
+
+def test_the_drift_is_widened_along_what_changed_from_set_to_set(pair):
+    subject, baseline = pair
+    drift = Drift(shared=0.01, shaft=0.01, mesh=0.01, amplitude=0.01)
+    found = widen_drift([(subject, baseline)] * 3, Amplitudes(), drift)
+    assert replace(found, widening={}) == drift
+    before = differenced(subject, baseline, Amplitudes(), drift).chi_square
+    assert found.widening and differenced(subject, baseline, Amplitudes(), found).chi_square < 0.5 * before
