@@ -59,17 +59,7 @@ def test_every_set_ends_as_it_should(name, verdict):
         assert hidden(name) <= set(found.named)
 
 
-INVENTS = pytest.mark.xfail(reason="the rest of a leak is taken for a film in the bearings", strict=True)
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=INVENTS if name == "set_01" else ())
-        for name, v in VERDICTS.items()
-        if v == "named"
-    ],
-)
+@pytest.mark.parametrize("name", [name for name, verdict in VERDICTS.items() if verdict == "named"])
 def test_nothing_is_named_that_is_not_hidden(name):
     assert set(diagnosed(name).named) <= hidden(name)
 
