@@ -127,5 +127,9 @@ class Calibration:
     drift: Drift = DRIFT
     """With a baseline."""
 
+    def thresholds(self, baseline: bool) -> Thresholds:
+        """Those of a set with a baseline or without one."""
+        return self.given_baseline if baseline else self.plain
+
 
 DEFAULT = Calibration()

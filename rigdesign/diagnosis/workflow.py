@@ -185,7 +185,7 @@ def _search(
     signature = _signature(subject, calibration)
     look = partial(
         examine,
-        thresholds=calibration.plain if problem.baseline is None else calibration.given_baseline,
+        thresholds=calibration.thresholds(problem.baseline is not None),
         points=[feature.setting for feature in subject.features],
         loop=frozenset(effect.claim for effect in subject.effects if effect.family in DYNAMIC),
         signature=signature,
@@ -277,7 +277,7 @@ def _wrong_data(
     contest = Contest(whole, _signature(subject, calibration))
     evidence = contest.judged([weigh(whole, one) for one in singles])
     weights = posterior(evidence, everything.members)
-    if weights.families.get("input", 0.0) <= calibration.plain.input:
+    if weights.families.get("input", 0.0) <= calibration.thresholds(problem.baseline is not None).input:
         return None
     best = max(evidence, key=lambda one: weights.masses[one.hypothesis.name])
     return Decision(

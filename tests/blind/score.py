@@ -29,12 +29,13 @@ from rigdesign.case.model import Case
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.baseline import Drift
 from rigdesign.diagnosis.calibration import calibrate as fit_all
-from rigdesign.diagnosis.calibration import calibrate_drift, widen_drift
+from rigdesign.diagnosis.calibration import calibrate_drift
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.run import diagnose_measurement, read_subject
 from rigdesign.diagnosis.subject import Comparison, plain
+from rigdesign.diagnosis.widening import widen_drift
 from rigdesign.measurement import load_measurement
 from tests.blind.ablations import ABLATIONS
 from tests.blind.metrics import Row, canonical, table

@@ -8,7 +8,7 @@ import pytest
 from rigdesign.diagnosis import subject as subjects
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.baseline import Change, Drift, differenced
-from rigdesign.diagnosis.calibration import LARGEST, WIDEN_ABOVE, calibrate_drift, widen, widen_drift
+from rigdesign.diagnosis.calibration import calibrate_drift
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.effects import Effect, Parameter
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis, weigh
@@ -16,6 +16,7 @@ from rigdesign.diagnosis.healthy import TREND, answer_error, healthy_columns, re
 from rigdesign.diagnosis.library import Library, Response
 from rigdesign.diagnosis.subject import plain
 from rigdesign.diagnosis.support import support
+from rigdesign.diagnosis.widening import LARGEST, WIDEN_ABOVE, widen, widen_drift
 from rigdesign.prediction.model import Channel, Feature, Setting, features_of
 from tests.diagnosis_example import DESIGN, story
 
