@@ -149,9 +149,10 @@ def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
         best = _best(result, names, name)
         size = None if best is None else from_evidence(names, best, result.calibration.signature_error)
         title = names.title(name) if size is None else size.title
-        suspects.append(
-            Suspect(name=name, title=title, inclusion=weights.inclusion.get(name, 0.0), size=size)
-        )
+        mass = weights.inclusion.get(name, 0.0)
+        if found.decision.verdict == "input_error_suspected":
+            mass = max(mass, found.wrong_data)
+        suspects.append(Suspect(name=name, title=title, inclusion=mass, size=size))
     return tuple(suspects)
 
 

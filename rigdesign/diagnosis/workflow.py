@@ -79,6 +79,8 @@ class Diagnosis:
     aliases: tuple[tuple[str, str, float], ...]
     rejected: tuple[tuple[int, float], ...]
     held_out_points: tuple[str, ...]
+    wrong_data: float
+    """Posterior mass of wrong data, all numbers seen at once, held-out points included."""
     examinations: tuple[Examination, ...] = field(repr=False)
     covariance: Covariance = field(repr=False)
     """Of all numbers that were kept, held-out ones included."""
@@ -105,9 +107,9 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
     space = _cut(problem, whole, seen, open_rows, calibration)
     explanations = _explanations(problem, seen, space)
     examinations, found = _search(problem, seen, space, explanations, calibration)
-    decision = (
-        _refused(subject) or _wrong_data(problem, subject, whole, calibration) or examinations[0].decision
-    )
+    refused = _refused(subject)
+    wrong, mass = (None, 0.0) if refused else _wrong_data(problem, subject, whole, calibration)
+    decision = refused or wrong or examinations[0].decision
     if decision.verdict != "named":
         found = ()
     fit = _fitted(space, found, calibration) if found else None
@@ -125,6 +127,7 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
         rejected=tuple((outlier.place, outlier.deviation) for outlier in outliers),
         held_out_points=points,
         examinations=tuple(examinations),
+        wrong_data=mass,
         covariance=whole.covariance,
         answer=answer,
         kept=tuple(kept),
@@ -267,8 +270,8 @@ def _refused(subject: Comparison) -> Decision | None:
 
 def _wrong_data(
     problem: Problem, subject: Comparison, whole: Whitened, calibration: Calibration
-) -> Decision | None:
-    """Whether all data together, held-out points included, fit once something in them is undone.
+) -> tuple[Decision | None, float]:
+    """Whether all data together, held-out points included, fit once something in them is undone; its posterior mass.
 
     An exchange with a held-out point would not show in the others; no effect is looked for in this step.
     """
@@ -277,14 +280,12 @@ def _wrong_data(
     contest = Contest(whole, _signature(subject, calibration))
     evidence = contest.judged([weigh(whole, one) for one in singles])
     weights = posterior(evidence, everything.members)
-    if weights.families.get("input", 0.0) <= calibration.thresholds(problem.baseline is not None).input:
-        return None
+    mass = weights.families.get("input", 0.0)
+    if mass <= calibration.thresholds(problem.baseline is not None).input:
+        return None, mass
     best = max(evidence, key=lambda one: weights.masses[one.hypothesis.name])
-    return Decision(
-        verdict="input_error_suspected",
-        named=best.hypothesis.parts,
-        reason=f"the data fit the rig once {best.hypothesis.parts[0]} is undone",
-    )
+    reason = f"the data fit the rig once {best.hypothesis.parts[0]} is undone"
+    return Decision(verdict="input_error_suspected", named=best.hypothesis.parts, reason=reason), mass
 
 
 def _fitted(space: Whitened, found: Sequence[Evidence], calibration: Calibration) -> JointFit:

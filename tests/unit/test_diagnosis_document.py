@@ -78,6 +78,11 @@ def test_only_what_is_named_stands_under_named(name: str, verdict: str, named: l
     assert [row["effect"] for row in found["named"]] == named
 
 
+def test_suspected_data_are_told_with_the_mass_that_all_numbers_give_them() -> None:
+    (suspect,) = document("exchanged")["suspects"]
+    assert suspect["posterior"] > 0.5
+
+
 def test_a_harmonic_is_told_by_amplitude_and_phase() -> None:
     (row,) = document("run-out")["named"]
     values = {parameter["name"]: parameter for parameter in row["parameters"]}
