@@ -88,7 +88,7 @@ def _missing(along: Sequence["_Along"]) -> float:
         return _excess(np.concatenate([one.squares(spread) for one in along])) - 1.0
 
     low, high = np.log([1e-3 / lengths.max(), 1e3 / lengths.min()])
-    return float(np.exp(brentq(excess, float(low), float(high), xtol=5e-3)))
+    return float(np.exp(brentq(excess, float(low), float(high), xtol=1e-4)))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -109,14 +109,13 @@ def calibrate(out: Path, without: str | None, target: Path) -> None:
         space.chi_square / len(space.residual)
         for space in (plain(subject, amplitudes, widening) for subject in subjects)
     ]
-    wanted = [spec for spec in specs("null", "baseline") if spec.rig != without]
-    wanted = [spec for spec in wanted if folder_of(out, "null", "baseline", spec).is_dir()]
-    small = [pair for pair in _pairs(out, wanted) if len(pair[0].features) < MOST_NUMBERS["baseline"]]
+    pairs = [pair for spec in specs("null", "baseline") if spec.rig != without for pair in _pairs(out, spec)]
+    small = [pair for pair in pairs if len(pair[0].features) < MOST_NUMBERS["baseline"]]
     shares = calibrate_drift(small, amplitudes, FIRST_DRIFT)
-    drift = widen_drift(_pairs(out, wanted), amplitudes, shares)
+    drift = widen_drift(pairs, amplitudes, shares)
     content = {
         "sets": [len(subjects) - len(larger), len(subjects)],
-        "pairs": [len(small), len(wanted)],
+        "pairs": [len(small), len(pairs)],
         "chi_square": [float(np.median(squares)), float(np.max(squares))],
         "amplitudes": asdict(amplitudes),
         "widening": widening,
@@ -130,10 +129,10 @@ FIRST_DRIFT = Drift(shared=0.03, shaft=0.05, mesh=0.25, amplitude=0.05)
 """Where the fit of the drifts starts, and the centre of its prior."""
 
 
-def _pairs(out: Path, wanted: Iterable[Spec]) -> Iterable[tuple[Comparison, Comparison]]:
-    """Healthy sets with their healthy baselines."""
-    for spec in wanted:
-        folder = folder_of(out, "null", "baseline", spec)
+def _pairs(out: Path, spec: Spec) -> Iterable[tuple[Comparison, Comparison]]:
+    """A healthy set and its healthy baseline, if they were made."""
+    folder = folder_of(out, "null", "baseline", spec)
+    if (folder / "set_1").is_dir():
         yield _subject(spec.rig, folder / "set_1"), _subject(spec.rig, folder / "set_0")
 
 
