@@ -59,14 +59,25 @@ class Heat:
 
 def heats(library: Library) -> Iterator[Heat]:
     """Heat at every place by itself, those beside sensors left out."""
-    speed = np.exp(relative_speed(library.features, library.settings))
-    torque = np.exp(relative_torque(library.features, library.settings))
-    laws = {"constant": np.ones_like(speed), "~n": speed, "~n2": speed**2, "~T n": torque * speed}
+    laws = _laws(library)
     for family, sources in (("heat", library.sources), ("heat unpaid", library.dry_sources)):
         for place, values in sources.items():
             if not place.startswith(NEAR_SENSOR):
-                for law, share in laws.items():
-                    yield Heat(family=family, place=place, law=law, values=values * share)
+                for law in HEAT_LAWS:
+                    yield Heat(family=family, place=place, law=law, values=values * laws[law])
+
+
+HEAT_LAWS = ("constant", "~n", "~n2", "~T n")
+ORDER_LAWS = ("constant", "~T", "~n2")
+
+
+def _laws(library: Library) -> dict[str, Array]:
+    """(n,) speed n and torque T of every number over their means, in the powers that losses and excitations follow."""
+    speed = np.exp(relative_speed(library.features, library.settings))
+    torque = np.exp(relative_torque(library.features, library.settings))
+    return {
+        "constant": np.ones_like(speed), "~n": speed, "~n2": speed**2, "~T": torque, "~T n": torque * speed,
+    }  # fmt: skip
 
 
 def _in_the_pipes(library: Library, channels: Mapping[str, Channel]) -> Iterator[Anonymous]:
@@ -103,9 +114,7 @@ def _beside_sensors(library: Library, channels: Mapping[str, Channel]) -> Iterat
 
 def _orders(library: Library, channels: Mapping[str, Channel]) -> Iterator[Anonymous]:
     """An order of one channel, or of all channels of its kind, free in phase but the same at all points."""
-    speed = np.exp(relative_speed(library.features, library.settings))
-    torque = np.exp(relative_torque(library.features, library.settings))
-    laws = {"constant": np.ones_like(speed), "~T": torque, "~n2": speed**2}
+    laws = _laws(library)
     found = dict.fromkeys(
         (feature.channel, feature.order)
         for feature in library.features
@@ -119,9 +128,6 @@ def _orders(library: Library, channels: Mapping[str, Channel]) -> Iterator[Anony
             )
             for part in ("real", "imaginary")
         ]
-        for law, share in laws.items():
-            yield (
-                "anonymous",
-                f"order {order:g} of {name} {law}",
-                np.stack([part * share for part in parts], axis=1),
-            )
+        for law in ORDER_LAWS:
+            columns = np.stack([part * laws[law] for part in parts], axis=1)
+            yield "anonymous", f"order {order:g} of {name} {law}", columns

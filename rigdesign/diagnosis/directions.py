@@ -40,11 +40,10 @@ def directions(library: Library, effects: Sequence[Effect], teeth_a_turn: int) -
         response = library.responses.get(effect.name)
         if response is None:
             continue
-        reach = max(abs(bound) for parameter in effect.parameters for bound in parameter.bounds)
         rows = _courses(response)
         for tooth in range(max(effect.any_tooth, 1)):
             turned = turning.turned(rows, tooth, teeth_a_turn) if tooth else rows
-            yield Direction(likeness=effect.likeness, reach=reach, values=turned.T)
+            yield Direction(likeness=effect.likeness, reach=effect.reach, values=turned.T)
     losses = float(np.mean(list(library.powers.values()))) if library.powers else 0.0
     if losses > 0.0:
         for heat in heats(library):

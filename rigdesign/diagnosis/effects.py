@@ -96,6 +96,11 @@ class Effect:
         return self.change(case, values)
 
     @property
+    def reach(self) -> float:
+        """Largest coordinate within its bounds."""
+        return max(abs(bound) for parameter in self.parameters for bound in parameter.bounds)
+
+    @property
     def claim(self) -> str:
         """What is named: the entry without its order, ``cumulative_pitch:test.pinion`` of ``.../2``."""
         return self.name.split("/")[0]

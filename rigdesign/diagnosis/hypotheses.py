@@ -78,7 +78,7 @@ def _plane(effect: Effect, name: str, white: Array) -> Hypothesis:
         family="physical",
         parts=(effect.claim,),
         columns=white.T,
-        half=max(abs(bound) for parameter in effect.parameters for bound in parameter.bounds),
+        half=effect.reach,
         own=(effect.name,),
     )
 
