@@ -155,10 +155,10 @@ def _value(value: Value) -> dict[str, Any]:
 def _alternatives(outcome: Outcome) -> list[dict[str, Any]]:
     """Explanations that were weighed, by posterior mass; that nothing is at work among them."""
     found = outcome.result.diagnosis
-    evidence = {one.hypothesis.name: one for one in found.examinations[0].evidence}
+    evidence = {one.hypothesis.name: one for one in found.deciding.evidence}
     rows: list[dict[str, Any]] = [
         {"explanation": "none", "title": "nothing but what a healthy rig leaves", "family": "none", "effects": [],
-         "posterior": found.examinations[0].weights.masses["none"], "gain": 0.0, "parameters": []}
+         "posterior": found.deciding.weights.masses["none"], "gain": 0.0, "parameters": []}
     ]  # fmt: skip
     for one in found.alternatives:
         own = evidence[one.name]

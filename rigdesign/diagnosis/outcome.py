@@ -134,11 +134,11 @@ def _nearest(pick: str, known: Sequence[str]) -> str:
 def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
     """Members of the group the verdict gives, or the leading explanations."""
     found = result.diagnosis
-    weights = found.examinations[0].weights
+    weights = found.deciding.weights
     if found.decision.named:
         wanted = list(found.decision.named)
     elif found.decision.verdict == "data_insufficient":
-        singles = [one for one in found.examinations[0].evidence if _single(one)]
+        singles = [one for one in found.deciding.evidence if _single(one)]
         ordered = sorted(singles, key=lambda one: -weights.masses[one.hypothesis.name])
         wanted = list(dict.fromkeys(one.hypothesis.parts[0] for one in ordered))[:SHOWN]
     else:
@@ -149,10 +149,9 @@ def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
         best = _best(result, names, name)
         size = None if best is None else from_evidence(names, best, result.calibration.signature_error)
         title = names.title(name) if size is None else size.title
-        mass = weights.inclusion.get(name, 0.0)
-        if found.decision.verdict == "input_error_suspected":
-            mass = max(mass, found.wrong_data)
-        suspects.append(Suspect(name=name, title=title, inclusion=mass, size=size))
+        suspects.append(
+            Suspect(name=name, title=title, inclusion=weights.inclusion.get(name, 0.0), size=size)
+        )
     return tuple(suspects)
 
 

@@ -79,8 +79,8 @@ class Diagnosis:
     aliases: tuple[tuple[str, str, float], ...]
     rejected: tuple[tuple[int, float], ...]
     held_out_points: tuple[str, ...]
-    wrong_data: float
-    """Posterior mass of wrong data, all numbers seen at once, held-out points included."""
+    deciding: Examination = field(repr=False)
+    """The look that the verdict rests on: the first one, or that at all points at once where the data are wrong."""
     examinations: tuple[Examination, ...] = field(repr=False)
     covariance: Covariance = field(repr=False)
     """Of all numbers that were kept, held-out ones included."""
@@ -108,8 +108,9 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
     explanations = _explanations(problem, seen, space)
     examinations, found = _search(problem, seen, space, explanations, calibration)
     refused = _refused(subject)
-    wrong, mass = (None, 0.0) if refused else _wrong_data(problem, subject, whole, calibration)
-    decision = refused or wrong or examinations[0].decision
+    wrong = None if refused else _wrong_data(problem, subject, whole, calibration)
+    deciding = wrong or examinations[0]
+    decision = refused or deciding.decision
     if decision.verdict != "named":
         found = ()
     fit = _fitted(space, found, calibration) if found else None
@@ -121,13 +122,13 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
         found=found,
         fit=fit,
         gap=_proof(whole, subject, points, answer) if points else None,
-        alternatives=_alternatives(examinations[0]),
+        alternatives=_alternatives(deciding),
         detectability=examinations[0].detectability,
         aliases=tuple(aliases(space, explanations.physical)),
         rejected=tuple((outlier.place, outlier.deviation) for outlier in outliers),
         held_out_points=points,
         examinations=tuple(examinations),
-        wrong_data=mass,
+        deciding=deciding,
         covariance=whole.covariance,
         answer=answer,
         kept=tuple(kept),
@@ -270,22 +271,32 @@ def _refused(subject: Comparison) -> Decision | None:
 
 def _wrong_data(
     problem: Problem, subject: Comparison, whole: Whitened, calibration: Calibration
-) -> tuple[Decision | None, float]:
-    """Whether all data together, held-out points included, fit once something in them is undone; its posterior mass.
+) -> Examination | None:
+    """A look at all data together, held-out points included, if they fit once something in them is undone.
 
     An exchange with a held-out point would not show in the others; no effect is looked for in this step.
     """
     everything = _explanations(problem, subject, whole, rivals=False)
     singles = (*everything.physical, *everything.sensor, *everything.data)
     contest = Contest(whole, _signature(subject, calibration))
-    evidence = contest.judged([weigh(whole, one) for one in singles])
+    judged = contest.judged([weigh(whole, one) for one in singles])
+    evidence = sorted(judged, key=lambda one: -one.log_bayes)
     weights = posterior(evidence, everything.members)
-    mass = weights.families.get("input", 0.0)
-    if mass <= calibration.thresholds(problem.baseline is not None).input:
-        return None, mass
+    if weights.families.get("input", 0.0) <= calibration.thresholds(problem.baseline is not None).input:
+        return None
     best = max(evidence, key=lambda one: weights.masses[one.hypothesis.name])
-    reason = f"the data fit the rig once {best.hypothesis.parts[0]} is undone"
-    return Decision(verdict="input_error_suspected", named=best.hypothesis.parts, reason=reason), mass
+    return Examination(
+        evidence=tuple(evidence),
+        weights=weights,
+        decision=Decision(
+            verdict="input_error_suspected",
+            named=best.hypothesis.parts,
+            reason=f"the data fit the rig once {best.hypothesis.parts[0]} is undone",
+        ),
+        detectability=(),
+        chi_square=whole.chi_square,
+        count=len(whole.residual),
+    )
 
 
 def _fitted(space: Whitened, found: Sequence[Evidence], calibration: Calibration) -> JointFit:

@@ -79,8 +79,11 @@ def test_only_what_is_named_stands_under_named(name: str, verdict: str, named: l
 
 
 def test_suspected_data_are_told_with_the_mass_that_all_numbers_give_them() -> None:
-    (suspect,) = document("exchanged")["suspects"]
+    found = document("exchanged")
+    (suspect,) = found["suspects"]
     assert suspect["posterior"] > 0.5
+    first = found["alternatives"][0]
+    assert (first["effects"], first["posterior"]) == ([suspect["effect"]], suspect["posterior"])
 
 
 def test_a_harmonic_is_told_by_amplitude_and_phase() -> None:
