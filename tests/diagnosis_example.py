@@ -29,6 +29,8 @@ CASE = Path(__file__).parents[1] / "cases" / "loop_1to1"
 RPM = np.pi / 30.0
 SPEEDS = (800.0, 1800.0, 3500.0)
 TORQUES = (80.0, 200.0, 350.0)
+MODES = 2.0 * np.pi * np.array([60.0, 900.0])
+"""Natural frequencies [rad/s]."""
 ORDERS = (0.0, 1.0, 2.0, 27.0, 28.0, 29.0)
 HEAD = """
 schema_version = 1
@@ -205,7 +207,7 @@ def library(runs: Sequence[Setting], channels, *, without: Sequence[str] = ()) -
     return Library(
         channels=tuple(channels), settings=tuple(runs), features=names, base=column(base), inputs=inputs,
         responses=responses, exponents={}, links={}, sources=heat, dry_sources=dry,
-        powers={run.name: 60.0 + mesh_loss(run) + 0.006 * run.speed**2 for run in runs}, error=0.0,
+        powers={run.name: 60.0 + mesh_loss(run) + 0.006 * run.speed**2 for run in runs}, modes=MODES, error=0.0,
     )  # fmt: skip
 
 

@@ -13,7 +13,8 @@ from scipy.linalg import cho_factor, cho_solve
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.covariance import Covariance, Whitened
-from rigdesign.diagnosis.healthy import own_spread
+from rigdesign.diagnosis.library import apart
+from rigdesign.diagnosis.resonance import amplitudes_of, steepness
 from rigdesign.diagnosis.subject import Comparison
 
 TWINS = 10.0
@@ -23,20 +24,25 @@ way that no column spans is taken from the healthy set number by number."""
 
 @dataclass(frozen=True, kw_only=True)
 class Drift:
-    """What a healthy rig changes from one set to the next: shares of what both sets share.
+    """What a healthy rig changes from one set to the next.
+
+    A point is met again at a speed a little off, and orders follow it, whatever excites them and whether the model
+    knows of it or not.
 
     widening : likeness of an effect -> spread of its coordinate from set to set that healthy pairs asked for
     """
 
     shared: float
     """Of everything."""
+    slope: float
+    """Of what the model says that an order changes with the speed from one set to the other."""
     shaft: float
-    """Of shaft orders and sidebands, from point to point."""
+    """Of what the natural frequencies make of a shaft order or sideband that the healthy set reads
+    (`rigdesign.diagnosis.resonance`)."""
     mesh: float
-    """Of the orders of the meshes, from point to point."""
+    """The same of an order of the meshes."""
     amplitude: float
-    """Of the amplitude of each order at each point, as the healthy set reads it: near a resonance it follows the speed,
-    whatever excites it and whether the model knows of it or not."""
+    """Of an order of the meshes that the healthy set reads, at the same speed: torque and oil differ as well."""
     widening: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -45,23 +51,29 @@ class Change:
     """What one set leaves given a healthy one, and of what it may consist.
 
     expected : (n,) residual that the healthy set foretells; known : (n, n) its covariance, with noise and scatter
-    shared : (n, n) covariance of what both sets share; amplitude : (n,) of the orders in the healthy set, else zero
+    shared : (n, n) covariance of what both sets share
+    slope, steep : (n,) what speeds met differently make of an order, by the model's derivative and by the natural
+        frequencies near it; amplitude : (n,) of the orders in the healthy set; all zero for all other numbers
     """
 
     subject: Comparison
     expected: Array
     known: Array
     shared: Array
+    slope: Array
+    steep: Array
     amplitude: Array
 
     @classmethod
     def of(cls, subject: Comparison, baseline: Comparison, amplitudes: Amplitudes) -> "Change":
         """By the columns both have: what they span is known from it, and errors number by number."""
+        subject = subject.on_the_scale_of(baseline)
         here, there = subject.covariance(amplitudes), baseline.covariance(amplitudes)
         after, before = here.deviations, _matched(there, here)
-        own = own_spread(subject.library, subject.channels, subject.mesh_orders, amplitudes)
-        other = own_spread(baseline.library, baseline.channels, baseline.mesh_orders, amplitudes)
-        twins = _same_numbers(subject, baseline)
+        own, other = subject.own_spread(amplitudes), baseline.own_spread(amplitudes)
+        again = _met_again(subject, baseline)
+        twins, step = _same_numbers(subject, baseline, again), _speed_steps(subject, baseline, again)
+        amplitude = twins @ amplitudes_of(baseline.features, baseline.values)
         cross = after @ before.T + TWINS**2 * own[:, None] * twins * other[None, :]
         known = before @ before.T + TWINS**2 * np.diag(other**2)
         noise_before = np.diag(baseline.noise**2) + baseline.scatter
@@ -69,20 +81,29 @@ class Change:
         expected, covariance = _given(
             known, cross, both + TWINS**2 * np.diag(own**2), noise_before, baseline.residual
         )
+        steep = steepness(subject.features, subject.library.settings, subject.library.modes)
         alone = np.diag(subject.noise**2) + subject.scatter
         return cls(
             subject=subject,
             expected=expected,
             known=covariance + alone,
             shared=both + np.diag(own**2),
-            amplitude=twins @ _amplitudes(baseline),
+            slope=step * amplitudes_of(subject.features, _by_speed(subject)),
+            steep=step * steep * amplitude,
+            amplitude=amplitude,
         )
 
     def covariance(self, drift: Drift) -> Array:
         """(n, n) of the change in a rig that stayed healthy."""
-        by_point = self.shared * _by_point(self.subject, drift.shaft, drift.mesh)
-        alone = np.diag((drift.amplitude * self.amplitude) ** 2) + self.subject.widened(drift.widening)
-        return np.asarray(self.known + drift.shared**2 * self.shared + by_point + alone)
+        subject = self.subject
+        mesh = np.array([feature.order in subject.mesh_orders for feature in subject.features])
+        follows = (drift.slope * self.slope) ** 2 + (
+            np.where(mesh, drift.mesh, drift.shaft) * self.steep
+        ) ** 2
+        alone = np.diag(follows + mesh * (drift.amplitude * self.amplitude) ** 2)
+        return np.asarray(
+            self.known + drift.shared**2 * self.shared + alone + subject.widened(drift.widening)
+        )
 
     def whitened(self, drift: Drift) -> Whitened:
         """The change where a healthy rig is white noise."""
@@ -94,8 +115,7 @@ def differenced(subject: Comparison, baseline: Comparison, amplitudes: Amplitude
     """The residual of a set given a healthy set of the same rig.
 
     What both share is the covariance of the columns at either set's numbers; noise, the settings' scatter and a
-    drift of the shared part are each set's own. Orders change with each point by itself: near a resonance what
-    healthy teeth excite follows a speed that was met to a per cent only.
+    drift are each set's own.
     """
     return Change.of(subject, baseline, amplitudes).whitened(drift)
 
@@ -111,38 +131,52 @@ def _matched(there: Covariance, here: Covariance) -> Array:
     return np.stack(rows, axis=1)
 
 
-def _same_numbers(subject: Comparison, baseline: Comparison) -> Array:
-    """(n, m) one where two numbers are the same channel, order and operating point (by its place in the plan)."""
-    first = {setting.name: i for i, setting in enumerate(subject.library.settings)}
-    second = {setting.name: i for i, setting in enumerate(baseline.library.settings)}
-    keys = [(f.channel, first.get(f.setting, -1), f.order, f.part) for f in subject.features]
-    others = {
-        (f.channel, second.get(f.setting, -1), f.order, f.part): j for j, f in enumerate(baseline.features)
-    }
-    found = np.zeros((len(keys), len(baseline.features)))
-    for row, key in enumerate(keys):
-        if key in others:
-            found[row, others[key]] = 1.0
+AGAIN = 2.0
+"""How far a point may lie from one of the baseline to be the same, met again (`rigdesign.diagnosis.library.apart`)."""
+
+
+def _met_again(subject: Comparison, baseline: Comparison) -> dict[str, str]:
+    """Operating point -> that of the baseline it is; the rig at rest is one of them."""
+    found = {"": ""}
+    free = list(baseline.library.settings)
+    for setting in subject.library.settings:
+        nearest = min(free, key=lambda one: apart(one, setting), default=None)
+        if nearest is not None and apart(nearest, setting) <= AGAIN:
+            found[setting.name] = nearest.name
+            free.remove(nearest)
     return found
 
 
-def _amplitudes(comparison: Comparison) -> Array:
-    """(n,) amplitude of the order that a number is part of, as measured; zero for all other numbers."""
-    squares: dict[tuple[str, str, float], float] = {}
-    keys = [(one.channel, one.setting, one.order) for one in comparison.features]
-    for key, value in zip(keys, comparison.values, strict=True):
-        squares[key] = squares.get(key, 0.0) + float(value) ** 2
-    return np.array([squares[key] ** 0.5 if key[2] else 0.0 for key in keys])
+def _same_numbers(subject: Comparison, baseline: Comparison, again: Mapping[str, str]) -> Array:
+    """(n, m) one where two numbers are the same channel and order at a point that was met again."""
+    others = {(f.channel, f.setting, f.order, f.part): j for j, f in enumerate(baseline.features)}
+    found = np.zeros((len(subject.features), len(baseline.features)))
+    for row, f in enumerate(subject.features):
+        twin = others.get((f.channel, again[f.setting], f.order, f.part)) if f.setting in again else None
+        if twin is not None:
+            found[row, twin] = 1.0
+    return found
 
 
-def _by_point(subject: Comparison, shaft: float, mesh: float) -> Array:
-    """(n, n) product of the drifts of two orders read at the same operating point; zero for all other numbers."""
-    names = {setting.name: number for number, setting in enumerate(subject.library.settings)}
-    points = np.array([names[feature.setting] if feature.order else -1 for feature in subject.features])
-    drift = np.array(
-        [mesh if feature.order in subject.mesh_orders else shaft for feature in subject.features]
-    )
-    return np.asarray(np.outer(drift, drift) * ((points[:, None] == points) & (points[:, None] >= 0)))
+def _speed_steps(subject: Comparison, baseline: Comparison, again: Mapping[str, str]) -> Array:
+    """(n,) by how much each number's point was met at another speed: logarithm of the ratio, without sign."""
+    before = {setting.name: setting.speed for setting in baseline.library.settings}
+    steps = {
+        setting.name: abs(float(np.log(setting.speed / before[again[setting.name]])))
+        for setting in subject.library.settings
+        if setting.name in again
+    }
+    return np.array([steps.get(feature.setting, 0.0) for feature in subject.features])
+
+
+def _by_speed(subject: Comparison) -> Array:
+    """(n,) derivative of the prediction by the logarithm of the speed of its point."""
+    speeds = {setting.name: setting.speed for setting in subject.library.settings}
+    found = np.zeros(len(subject.features))
+    for (kind, _, point), values in subject.library.inputs.items():
+        if kind == "speed":
+            found += speeds[point] * values
+    return found
 
 
 def _given(known: Array, cross: Array, own: Array, noise: Array, residual: Array) -> tuple[Array, Array]:

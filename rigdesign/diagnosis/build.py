@@ -87,6 +87,7 @@ def build_library(
         sources={name: (values + watt)[own] for name, values in unpaid.items()},
         dry_sources={name: values[own] for name, values in unpaid.items()},
         powers=powers,
+        modes=predictor.natural_frequencies(),
         error=predictor.error,
     )
     parts.remove()

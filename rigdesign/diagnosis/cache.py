@@ -20,7 +20,7 @@ from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.library import Library, Response
 from rigdesign.prediction.model import Channel, Setting
 
-SCHEMA = 2
+SCHEMA = 3
 """Of the stored libraries; raise it with any change of what they hold."""
 
 

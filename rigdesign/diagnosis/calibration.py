@@ -17,7 +17,6 @@ from scipy.optimize import minimize
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.baseline import Change, Drift
 from rigdesign.diagnosis.columns import Array
-from rigdesign.diagnosis.healthy import own_spread
 from rigdesign.diagnosis.subject import Comparison, plain
 from rigdesign.diagnosis.widening import widen
 
@@ -61,7 +60,7 @@ class Group:
         nothing = Amplitudes(**dict.fromkeys((*OWN_KINDS, "answer"), 0.0))
         for kind in OWN_KINDS:
             alone = nothing.with_values({kind: 1.0})
-            own = own_spread(first.library, first.channels, first.mesh_orders, alone)
+            own = first.own_spread(alone)
             if own.any():
                 parts[kind] = np.diag(own**2)
         return cls(
@@ -181,5 +180,5 @@ def calibrate_drift(
     return Drift(**dict(zip(SHARES, np.exp(best.x).tolist(), strict=True)))
 
 
-SHARES = ("shared", "shaft", "mesh", "amplitude")
+SHARES = ("shared", "slope", "shaft", "mesh", "amplitude")
 """Numbers of a drift that are fitted."""

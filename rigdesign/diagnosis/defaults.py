@@ -91,22 +91,21 @@ GIVEN_BASELINE = Thresholds(evidence=6.0, evidence_loop=18.0)
 """With one."""
 
 DRIFT = Drift(
-    shared=0.00399,
-    shaft=0.00162,
-    mesh=0.17,
-    amplitude=0.0394,
+    shared=0.00375,
+    slope=0.592,
+    shaft=0.982,
+    mesh=1.33,
+    amplitude=0.0216,
     widening={
-        "weak_tooth": 0.00152,
-        "single_pitch": 6.16e-08,
-        "inertia": 0.0717,
-        "spline_stiffness": 0.106,
-        "coupling_stiffness": 0.112,
-        "film.chamber_oil": 0.000566,
-        "bearing_film": 0.00595,
-        "film.chamber_sump": 0.00219,
-        "heat unpaid at rim ~T n": 5.11e-05,
-        "short_circuit": 0.000797,
-        "heat unpaid at rim ~n2": 2.72e-05,
+        "film.chamber_oil": 0.000609,
+        "coupling_stiffness": 0.0168,
+        "bearing_film": 0.00605,
+        "film.chamber_sump": 0.00222,
+        "heat at rim ~T n": 5.03e-05,
+        "weak_tooth": 0.000149,
+        "coupling_damping": 0.0847,
+        "heat unpaid at rim ~n2": 3e-05,
+        "short_circuit": 0.000814,
     },
 )
 """Fitted to 80 pairs of healthy sets, those with up to 900 numbers: 36 of the prototype, 28 of the 1:1 loop, 16 of the

@@ -12,7 +12,6 @@ import numpy as np
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.columns import Array, Column, series_numbers
 from rigdesign.diagnosis.effects import Effect, Family
-from rigdesign.diagnosis.levels import levels
 from rigdesign.diagnosis.library import NEAR_SENSOR, Library
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature, Setting
 
@@ -22,9 +21,12 @@ def healthy_columns(
     effects: Sequence[Effect],
     channels: Mapping[str, Channel],
     mesh_orders: frozenset[float],
+    level: Array,
 ) -> tuple[Column, ...]:
-    """All columns of the model itself; those of sensors and inputs come from the measurement."""
-    level = levels(library.features, library.base, channels, library.settings, mesh_orders)
+    """All columns of the model itself; those of sensors and inputs come from the measurement.
+
+    level : (n,) of every number (`rigdesign.diagnosis.levels`)
+    """
     speed = relative_speed(library.features, library.settings)
     return (
         *_constants(library, effects),
@@ -210,15 +212,15 @@ def answer_error(library: Library, effects: Sequence[Effect]) -> Array:
 
 
 def own_spread(
-    library: Library,
+    features: Sequence[Feature],
     channels: Mapping[str, Channel],
     mesh_orders: frozenset[float],
+    level: Array,
     amplitudes: Amplitudes,
 ) -> Array:
     """(n,) standard deviation of what each number is off by itself, noise left out."""
-    level = levels(library.features, library.base, channels, library.settings, mesh_orders)
     share = []
-    for feature in library.features:
+    for feature in features:
         quantity = channels[feature.channel].quantity
         if quantity == "natural_frequency":
             share.append(amplitudes.frequency)

@@ -66,6 +66,7 @@ class Library:
     exponents, links, sources, dry_sources : name -> (n,): by the exponent of a loss over speed or torque; by the
         logarithm of a local conductance; per watt at a place, paid by the motor; the same unpaid
     powers : setting -> losses [W]
+    modes : natural frequencies of the rig at rest [rad/s]; none without a drivetrain
     error : stated error of the temperatures [K]
     """
 
@@ -80,6 +81,7 @@ class Library:
     sources: Mapping[str, Array]
     dry_sources: Mapping[str, Array]
     powers: Mapping[str, float]
+    modes: Array
     error: float
 
     def serving(self, settings: tuple[Setting, ...], channels: tuple[Channel, ...]) -> "Library | None":
@@ -87,7 +89,7 @@ class Library:
 
         Names of points and channels may differ: a channel is known by what and where it reads.
         """
-        points = _matches(settings, self.settings, _close)
+        points = _matches(settings, self.settings, apart)
         sensors = _matches(channels, self.channels, _reads_as)
         if points is None or sensors is None:
             return None
@@ -126,10 +128,10 @@ class Library:
 
     def distance(self, settings: Sequence[Setting]) -> float:
         """How far points lie from those of the plan that serve them: one at the limit, infinite where none does."""
-        points = _matches(settings, self.settings, _close)
+        points = _matches(settings, self.settings, apart)
         if points is None:
             return float("inf")
-        return max((_close(self.settings[place], run) for run, place in zip(settings, points)), default=0.0)
+        return max((apart(self.settings[place], run) for run, place in zip(settings, points)), default=0.0)
 
     def rows(self, features: tuple[Feature, ...]) -> "Library":
         """The library cut to some of its features."""
@@ -202,13 +204,15 @@ def value_of(setting: Setting, kind: str, place: str) -> float:
 T = TypeVar("T")
 
 
-def _matches(wanted: Sequence[T], offered: Sequence[T], apart: Callable[[T, T], float]) -> list[int] | None:
+def _matches(
+    wanted: Sequence[T], offered: Sequence[T], distance: Callable[[T, T], float]
+) -> list[int] | None:
     """For each wanted one the place of the nearest offered one, none used twice; None if one is a distance of 1 off."""
     found: list[int] = []
     for one in wanted:
         free = [place for place in range(len(offered)) if place not in found]
-        nearest = min(free, key=lambda place: apart(offered[place], one), default=None)
-        if nearest is None or apart(offered[nearest], one) > 1.0:
+        nearest = min(free, key=lambda place: distance(offered[place], one), default=None)
+        if nearest is None or distance(offered[nearest], one) > 1.0:
             return None
         found.append(nearest)
     return found
@@ -224,8 +228,8 @@ NEAR = {"speed": 0.05, "torque": 0.05, "flow": 0.15, "temperature": 8.0}
 """How far a point may lie from the plan for derivatives to carry it over: relative, temperatures in kelvin."""
 
 
-def _close(planned: Setting, run: Setting) -> float:
-    """Distance of a point from one of the plan, at most one where derivatives serve; infinite where they state
+def apart(planned: Setting, run: Setting) -> float:
+    """Distance of a point from one of a plan, at most one where derivatives serve; infinite where they state
     different things."""
     if dict(planned.tooth_offset) != dict(run.tooth_offset):
         return float("inf")

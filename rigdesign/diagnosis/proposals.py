@@ -10,6 +10,7 @@ from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.candidates import COST, NOISE, SPARE, Extra, extra_points
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis
 from rigdesign.diagnosis.hypotheses import physical, sensor
+from rigdesign.diagnosis.levels import levels
 from rigdesign.diagnosis.library import Library
 from rigdesign.diagnosis.next_measurement import Proposal, Ranked, Rival, ranked
 from rigdesign.diagnosis.subject import Comparison
@@ -80,19 +81,21 @@ def _with_candidates(subject: Comparison, library: Library) -> tuple[Comparison,
     )
     scatter = np.zeros((len(features), len(features)))
     measured = len(subject.features)
+    cut = library.rows(features)
     scatter[:measured, :measured] = subject.scatter
     return (
         Comparison(
             features=features,
             values=np.concatenate([subject.values, np.zeros(count)]),
             noise=np.concatenate([subject.noise, noise]),
-            library=library.rows(features),
+            library=cut,
             channels=channels,
             effects=subject.effects,
             errors=errors,
             scatter=scatter,
             mesh_orders=subject.mesh_orders,
             teeth_a_turn=subject.teeth_a_turn,
+            level=levels(features, cut.base, channels, cut.settings, subject.mesh_orders),
         ),
         measured,
     )

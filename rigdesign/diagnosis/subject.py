@@ -18,6 +18,7 @@ from rigdesign.diagnosis.directions import Direction, directions
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.evidence import Curve
 from rigdesign.diagnosis.healthy import answer_error, healthy_columns, own_spread
+from rigdesign.diagnosis.levels import levels
 from rigdesign.diagnosis.library import Library
 from rigdesign.diagnosis.sensors import SensorError, Stated, input_errors, sensor_errors, setting_scatter
 from rigdesign.measurement import Data
@@ -43,6 +44,8 @@ class Comparison:
     mesh_orders: frozenset[float]
     teeth_a_turn: int
     """Of the gear that counts."""
+    level: Array
+    """(n,) over which errors of the model are relative (`rigdesign.diagnosis.levels`)."""
 
     @property
     def residual(self) -> Array:
@@ -64,11 +67,30 @@ class Comparison:
             scatter=self.scatter[np.ix_(places, places)],
             mesh_orders=self.mesh_orders,
             teeth_a_turn=self.teeth_a_turn,
+            level=self.level[places],
         )  # fmt: skip
+
+    def on_the_scale_of(self, other: "Comparison") -> "Comparison":
+        """The same with orders over the levels that they have in another set of the rig.
+
+        What the model has wrong in both is the same amount; its own levels follow speeds that were met differently.
+        """
+        there = {
+            (one.channel, one.order): level for one, level in zip(other.features, other.level, strict=True)
+        }
+        level = [
+            there.get((one.channel, one.order), own) if one.order else own
+            for one, own in zip(self.features, self.level, strict=True)
+        ]
+        return replace(self, level=np.array(level))
+
+    def own_spread(self, amplitudes: Amplitudes) -> Array:
+        """(n,) standard deviation of what each number is off by itself, noise left out."""
+        return own_spread(self.features, self.channels, self.mesh_orders, self.level, amplitudes)
 
     def base_noise(self, amplitudes: Amplitudes) -> Array:
         """(n, n) covariance of noise, settings read and what each number is off by itself."""
-        own = own_spread(self.library, self.channels, self.mesh_orders, amplitudes)
+        own = self.own_spread(amplitudes)
         alone = np.diag(self.noise**2 + own**2 + self.library.error**2 * self._thermal)
         return np.asarray(alone + amplitudes.answer**2 * self.answer_error + self.scatter)
 
@@ -79,7 +101,7 @@ class Comparison:
 
     def columns(self) -> tuple[Column, ...]:
         """Columns of the model, of sensors and of settings."""
-        model = healthy_columns(self.library, self.effects, self.channels, self.mesh_orders)
+        model = healthy_columns(self.library, self.effects, self.channels, self.mesh_orders, self.level)
         return (*model, *(error.column() for error in self.errors))
 
     def covariance(self, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None) -> Covariance:
@@ -148,6 +170,7 @@ def compare(
         scatter=setting_scatter(cut, noise),
         mesh_orders=mesh_orders,
         teeth_a_turn=teeth_a_turn,
+        level=levels(features, cut.base, channels, cut.settings, mesh_orders),
     )
 
 

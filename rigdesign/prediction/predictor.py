@@ -33,6 +33,7 @@ from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
 from rigdesign.prediction.settle import CLOSE, SettledPoint, settle
 from rigdesign.prediction.slopes import Directions, Named, PointSlopes, SlopeNumbers, directions_of
+from rigdesign.prediction.standstill import standing_modes
 from rigdesign.results import Fidelity
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run import solver_errors
@@ -218,6 +219,13 @@ class Predictor:
             if any(channel.quantity in ORDER_QUANTITIES for channel in self.channels):
                 for number in range(len(self.settings)):
                     self._still_swings(number)
+
+    def natural_frequencies(self) -> FloatArray:
+        """(k,) of the rig at rest, all of them, rising [rad/s]; none without a drivetrain."""
+        if self._rig.drivetrain is None:
+            return np.zeros(0)
+        with self._calm():
+            return np.array([2.0 * np.pi * mode.frequency for mode in standing_modes(self._rig)])
 
     def links(self) -> dict[str, FloatArray]:
         """Name -> (n_features,) derivative by the logarithm of every local conductance of the housings.

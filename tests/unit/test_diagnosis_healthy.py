@@ -1,4 +1,4 @@
-"""What a healthy rig leaves: films and their conductances, errors of answers, drifts; and its calibration."""
+"""What a healthy rig leaves: films and their conductances, errors of answers; and its widening."""
 
 from dataclasses import replace
 
@@ -6,9 +6,6 @@ import numpy as np
 import pytest
 
 from rigdesign.diagnosis import subject as subjects
-from rigdesign.diagnosis.amplitudes import Amplitudes
-from rigdesign.diagnosis.baseline import Change, Drift, differenced
-from rigdesign.diagnosis.calibration import calibrate_drift
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.effects import Effect, Parameter
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis, weigh
@@ -16,8 +13,8 @@ from rigdesign.diagnosis.healthy import TREND, answer_error, healthy_columns, re
 from rigdesign.diagnosis.library import Library, Response
 from rigdesign.diagnosis.subject import plain
 from rigdesign.diagnosis.support import support
-from rigdesign.diagnosis.widening import LARGEST, WIDEN_ABOVE, widen, widen_drift
-from rigdesign.prediction.model import Channel, Feature, Setting, features_of
+from rigdesign.diagnosis.widening import LARGEST, WIDEN_ABOVE, widen
+from rigdesign.prediction.model import Channel, Setting, features_of
 from tests.diagnosis_example import DESIGN, story
 
 SETTINGS = tuple(
@@ -52,13 +49,13 @@ def library():
     return Library(
         channels=CHANNELS, settings=SETTINGS, features=features_of(SETTINGS, CHANNELS), base=np.full(6, 380.0),
         responses={"film:test.wall_oil": Response(coordinates=np.array([[0.0], [0.1]]), answers=answers)},
-        inputs={}, exponents={}, links=BY_LINK, sources={}, dry_sources={}, powers={}, error=0.0,
+        inputs={}, exponents={}, links=BY_LINK, sources={}, dry_sources={}, powers={}, modes=np.zeros(0), error=0.0,
     )  # fmt: skip
 
 
 def columns_of(kind):
     channels = {one.name: one for one in CHANNELS}
-    found = healthy_columns(library(), (film(),), channels, frozenset())
+    found = healthy_columns(library(), (film(),), channels, frozenset(), np.ones(6))
     return [column for column in found if column.kind == kind]
 
 
@@ -142,50 +139,6 @@ def test_parts_of_two_joined_explanations_add_up():
     assert joined.share_of("a") == pytest.approx([2.5, 0.0])
 
 
-@pytest.fixture(scope="module")
-def pair():
-    problem = story("mesh loss").problem
-    return problem.subject, problem.baseline
-
-
-def test_orders_drift_by_a_share_of_what_the_healthy_set_reads(pair):
-    change = Change.of(*pair, Amplitudes())
-    still = Drift(shared=0.01, shaft=0.0, mesh=0.0, amplitude=0.0)
-    more = np.diag(change.covariance(replace(still, amplitude=0.1)) - change.covariance(still))
-    read = dict(zip(pair[1].features, pair[1].values, strict=True))
-    for feature, variance in zip(pair[0].features, more, strict=True):
-        parts = [read[Feature(feature.channel, feature.setting, feature.order, part)] for part in ("real", "imaginary")
-                 if feature.order]  # fmt: skip
-        assert variance == pytest.approx(0.01 * sum(part**2 for part in parts), abs=1e-12)
-
-
-def test_some_numbers_of_a_change_keep_what_is_known_of_them(pair):
-    drift = Drift(shared=0.02, shaft=0.03, mesh=0.1, amplitude=0.05)
-    whole = differenced(*pair, Amplitudes(), drift)
-    keep = list(range(0, len(whole.raw), 2))
-    part = whole.rows(keep)
-    matrix = Change.of(*pair, Amplitudes()).covariance(drift)[np.ix_(keep, keep)]
-    assert part.raw == pytest.approx(whole.raw[keep])
-    assert part.chi_square == pytest.approx(float(whole.raw[keep] @ np.linalg.solve(matrix, whole.raw[keep])))
-
-
-def test_drifts_of_healthy_pairs_are_found_again(pair):
-    rng = np.random.default_rng(4)
-    subject, baseline = pair
-    true = Drift(shared=0.02, shaft=0.004, mesh=0.004, amplitude=0.08)
-    drawn = []
-    for _ in range(6):
-        covariance = baseline.covariance(Amplitudes())
-        before = baseline.library.base + covariance.lower @ rng.normal(size=len(baseline.features))
-        healthy = replace(baseline, values=before)
-        change = Change.of(subject, healthy, Amplitudes())
-        spread = np.linalg.cholesky(change.covariance(true)) @ rng.normal(size=len(subject.features))
-        drawn.append((replace(subject, values=subject.library.base + change.expected + spread), healthy))
-    found = calibrate_drift(drawn, Amplitudes(), Drift(shared=0.05, shaft=0.02, mesh=0.02, amplitude=0.03))
-    assert found.amplitude == pytest.approx(true.amplitude, rel=0.2)
-    assert found.shared == pytest.approx(true.shared, rel=0.4)
-
-
 def test_an_effect_is_widened_by_what_is_missing_and_no_more(monkeypatch):
     monkeypatch.setattr(subjects, "BENDING_STEPS", 0)
     subject = story("healthy").problem.subject
@@ -231,20 +184,11 @@ def test_heat_without_a_name_is_widened_by_its_share_of_the_losses(monkeypatch):
     assert only == pytest.approx(0.01 * np.outer(unpaid.values, unpaid.values))
 
 
-def test_a_course_that_bends_is_widened_along_its_ends_too(pair):
-    subject = pair[0]
+def test_a_course_that_bends_is_widened_along_its_ends_too():
+    subject = story("mesh loss").problem.subject
     response = subject.library.responses["mesh_loss:test"]
     own = next(one for one in subject.directions() if one.likeness == "mesh_loss")
     runs = [run for run, place in enumerate(response.coordinates[:, 0]) if place]
     assert own.values.shape[1] == 1 + len(runs)
     for column, run in enumerate(runs, start=1):
         assert own.values[:, column] * response.coordinates[run, 0] == pytest.approx(response.answers[run])
-
-
-def test_the_drift_is_widened_along_what_changed_from_set_to_set(pair):
-    subject, baseline = pair
-    drift = Drift(shared=0.01, shaft=0.01, mesh=0.01, amplitude=0.01)
-    found = widen_drift([(subject, baseline)] * 3, Amplitudes(), drift)
-    assert replace(found, widening={}) == drift
-    before = differenced(subject, baseline, Amplitudes(), drift).chi_square
-    assert found.widening and differenced(subject, baseline, Amplitudes(), found).chi_square < 0.5 * before

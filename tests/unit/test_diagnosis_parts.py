@@ -201,6 +201,7 @@ def library():
         sources={},
         dry_sources={},
         powers={"P1": 1.0, "P2": 2.0},
+        modes=np.zeros(0),
         error=0.0,
     )  # fmt: skip
 

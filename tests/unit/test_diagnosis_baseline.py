@@ -1,0 +1,161 @@
+"""What a set leaves given a healthy set of the same rig: points met again, drifts, their calibration."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rigdesign.diagnosis.amplitudes import Amplitudes
+from rigdesign.diagnosis.baseline import Change, Drift, differenced
+from rigdesign.diagnosis.calibration import calibrate_drift
+from rigdesign.diagnosis.library import Library
+from rigdesign.diagnosis.resonance import steepness
+from rigdesign.diagnosis.subject import Comparison
+from rigdesign.diagnosis.widening import widen_drift
+from rigdesign.prediction.model import Feature, Setting
+from tests.diagnosis_example import story
+
+STEP = 0.01
+"""By how much the subject ran faster than its baseline, as a logarithm."""
+
+STILL = Drift(shared=0.01, slope=0.0, shaft=0.0, mesh=0.0, amplitude=0.0)
+
+
+def moved(library: Library, settings: tuple[Setting, ...]) -> Library:
+    """The library for points met elsewhere; its numbers stay."""
+    return replace(library, settings=settings)
+
+
+def faster(subject: Comparison, step: float) -> Comparison:
+    """The same readings at points run faster."""
+    runs = tuple(replace(one, speed=one.speed * float(np.exp(step))) for one in subject.library.settings)
+    return replace(subject, library=moved(subject.library, runs))
+
+
+@pytest.fixture(scope="module")
+def pair() -> tuple[Comparison, Comparison]:
+    problem = story("mesh loss").problem
+    return faster(problem.subject, STEP), problem.baseline
+
+
+def more_by(pair: tuple[Comparison, Comparison], drift: Drift) -> np.ndarray:
+    """(n, n) what a drift adds to the covariance."""
+    change = Change.of(*pair, Amplitudes())
+    return change.covariance(drift) - change.covariance(STILL)
+
+
+def amplitude(feature: Feature, read) -> float:
+    """Of the order that a number is part of, zero for others."""
+    parts = ("real", "imaginary") if feature.order else ()
+    return float(np.linalg.norm([read[replace(feature, part=part)] for part in parts]))
+
+
+def test_orders_follow_the_speed_as_natural_frequencies_near_them_make_them(pair):
+    subject, baseline = pair
+    more = more_by(pair, replace(STILL, shaft=0.3, mesh=2.0, amplitude=0.05))
+    read = dict(zip(baseline.features, baseline.values, strict=True))
+    steep = steepness(subject.features, subject.library.settings, subject.library.modes)
+    kinds = set()
+    for feature, near, variance in zip(subject.features, steep, np.diag(more), strict=True):
+        mesh = feature.order in subject.mesh_orders
+        kinds.add((bool(feature.order), mesh))
+        follows = STEP * near * (2.0 if mesh else 0.3)
+        alone = 0.05 if mesh else 0.0
+        assert variance == pytest.approx((follows**2 + alone**2) * amplitude(feature, read) ** 2, abs=1e-12)
+    assert kinds == {(False, False), (True, False), (True, True)}
+    assert more == pytest.approx(np.diag(np.diag(more)), abs=1e-12)
+
+
+def test_orders_follow_the_speed_by_a_share_of_what_the_model_says(pair):
+    subject, baseline = pair
+    first = subject.library.settings[0]
+    slope = np.array([0.02 if one.order and one.setting == first.name else 0.0 for one in subject.features])
+    library = replace(subject.library, inputs={("speed", "", first.name): slope})
+    more = more_by((replace(subject, library=library), baseline), replace(STILL, slope=0.5))
+    both = np.sqrt(2.0) * first.speed * slope
+    assert np.diag(more) == pytest.approx((0.5 * STEP * both) ** 2)
+
+
+def test_a_point_met_at_the_same_speed_drifts_by_the_shared_part_alone(pair):
+    same = faster(pair[0], -STEP), pair[1]
+    assert more_by(same, replace(STILL, slope=1.0, shaft=1.0, mesh=1.0)) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_points_are_known_by_their_settings_whatever_their_names_and_order(pair):
+    subject, baseline = pair
+    runs = baseline.library.settings
+    names = {one.name: f"Q{number}" for number, one in enumerate(runs)}
+    other = tuple(replace(one, name=names[one.name]) for one in reversed(runs))
+    features = tuple(replace(one, setting=names.get(one.setting, "")) for one in baseline.features)
+    powers = {names[name]: power for name, power in baseline.library.powers.items()}
+    library = replace(baseline.library, settings=other, features=features, powers=powers)
+    renamed = replace(baseline, features=features, library=library)
+    whole, again = (Change.of(subject, one, Amplitudes()) for one in (baseline, renamed))
+    assert again.expected == pytest.approx(whole.expected, rel=1e-9)
+    assert again.known == pytest.approx(whole.known, rel=1e-9)
+    assert again.steep == pytest.approx(whole.steep)
+
+
+def test_an_order_the_model_does_not_know_is_foretold_as_it_was_read(pair):
+    """Even where the model's own mesh orders, over which its errors count, follow the other speeds."""
+    subject, baseline = pair
+    once = np.array([one.order == 2.0 and one.part == "real" for one in subject.features])
+    mesh = np.array([one.order in subject.mesh_orders for one in subject.features])
+    base = subject.library.base * np.where(mesh, 1.3, 1.0)
+    library = replace(subject.library, base=base)
+    level = np.where([bool(one.order) for one in subject.features], 1.3, 1.0) * subject.level
+    steeper = replace(subject, library=library, level=level)
+    healthy = replace(baseline, values=baseline.library.base + 2.0 * once)
+    assert Change.of(steeper, healthy, Amplitudes()).expected[once] == pytest.approx(2.0, rel=0.03)
+
+
+def test_a_point_that_the_baseline_lacks_is_known_less_well(pair):
+    subject, baseline = pair
+    gone = baseline.library.settings[0].name
+    fewer = baseline.rows([row for row, one in enumerate(baseline.features) if one.setting != gone])
+    fewer = replace(fewer, library=moved(fewer.library, fewer.library.settings[1:]))
+    own = [row for row, one in enumerate(subject.features) if one.setting == gone]
+    with_it, without = (
+        np.diag(Change.of(subject, one, Amplitudes()).known)[own] for one in (baseline, fewer)
+    )
+    assert (without > with_it).all()
+    assert not Change.of(subject, fewer, Amplitudes()).steep[own].any()
+
+
+def test_some_numbers_of_a_change_keep_what_is_known_of_them(pair):
+    drift = Drift(shared=0.02, slope=1.0, shaft=0.5, mesh=0.5, amplitude=0.03)
+    whole = differenced(*pair, Amplitudes(), drift)
+    keep = list(range(0, len(whole.raw), 2))
+    part = whole.rows(keep)
+    matrix = Change.of(*pair, Amplitudes()).covariance(drift)[np.ix_(keep, keep)]
+    assert part.raw == pytest.approx(whole.raw[keep])
+    assert part.chi_square == pytest.approx(float(whole.raw[keep] @ np.linalg.solve(matrix, whole.raw[keep])))
+
+
+def test_drifts_of_healthy_pairs_are_found_again(pair):
+    rng = np.random.default_rng(4)
+    subject, baseline = pair
+    true = Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05)
+    drawn = []
+    for _ in range(6):
+        covariance = baseline.covariance(Amplitudes())
+        before = baseline.library.base + covariance.lower @ rng.normal(size=len(baseline.features))
+        healthy = replace(baseline, values=before)
+        change = Change.of(subject, healthy, Amplitudes())
+        spread = np.linalg.cholesky(change.covariance(true)) @ rng.normal(size=len(subject.features))
+        drawn.append((replace(subject, values=subject.library.base + change.expected + spread), healthy))
+    found = calibrate_drift(
+        drawn, Amplitudes(), Drift(shared=0.05, slope=0.5, shaft=2.0, mesh=2.0, amplitude=0.02)
+    )
+    assert found.shaft == pytest.approx(true.shaft, rel=0.2)
+    assert found.amplitude == pytest.approx(true.amplitude, rel=0.4)
+    assert found.shared == pytest.approx(true.shared, rel=0.4)
+
+
+def test_the_drift_is_widened_along_what_changed_from_set_to_set(pair):
+    subject, baseline = pair
+    drift = Drift(shared=0.01, slope=1.0, shaft=0.1, mesh=0.1, amplitude=0.01)
+    found = widen_drift([(subject, baseline)] * 3, Amplitudes(), drift)
+    assert replace(found, widening={}) == drift
+    before = differenced(subject, baseline, Amplitudes(), drift).chi_square
+    assert found.widening and differenced(subject, baseline, Amplitudes(), found).chi_square < 0.5 * before
