@@ -45,8 +45,8 @@ class Thresholds:
     group : most members of an alias group; evidence, evidence_loop : logarithm of the Bayes factor against a
     healthy rig that each name of an explanation needs, in the heat and in orders and natural frequencies; support :
     fall of the whitened square that must be left of a name's explanation without the operating point that speaks
-    for it most; share : of the largest fall explained so far that this must be, as no answer of the model is more
-    exact
+    for it most; share, share_loop : of the largest fall explained so far that this must be, as no answer of the model
+    is more exact, in the heat and in orders and natural frequencies
     """
 
     named: float = 0.95
@@ -58,6 +58,7 @@ class Thresholds:
     evidence_loop: float = 0.0
     support: float = 12.0
     share: float = 0.05
+    share_loop: float = 0.25
 
 
 @dataclass(frozen=True, kw_only=True)

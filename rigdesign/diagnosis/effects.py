@@ -28,6 +28,9 @@ Family = Literal[
 DYNAMIC: frozenset[Family] = frozenset({"excitation", "tooth", "stiffness", "inertia", "damping"})
 """Families that leave temperatures and losses nearly as they are: they show in orders and natural frequencies."""
 
+CIRCUIT: frozenset[Family] = frozenset({"stiffness", "inertia", "damping"})
+"""Those of them that change how the circuit passes on what the teeth excite."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Parameter:

@@ -105,7 +105,7 @@ def examine(
     return Examination(
         evidence=tuple(evidence),
         weights=weights,
-        decision=_supported(space, points, decision, evidence, weights, thresholds, explained),
+        decision=_supported(space, points, decision, evidence, weights, thresholds, explained, loop),
         detectability=tuple(table),
         chi_square=space.chi_square,
         count=len(space.residual),
@@ -120,6 +120,7 @@ def _supported(
     weights: Posterior,
     thresholds: Thresholds,
     explained: float,
+    loop: frozenset[str],
 ) -> Decision:
     """The decision without the names that rest on one operating point or explain next to nothing beside the others.
 
@@ -132,10 +133,11 @@ def _supported(
     for part in decision.named if decision.verdict == "named" else decision.named[:1]:
         best = next(one for one in ordered if part in one.hypothesis.parts)
         least, where = support(space, points, best, part)
+        share = thresholds.share_loop if part in loop else thresholds.share
         if least < thresholds.support:
             alone = f"operating point {where}" if where else "chance"
             refused[part] = f"what speaks for {part} comes from {alone} alone"
-        elif least < thresholds.share * max(explained, best.gain):
+        elif least < share * max(explained, best.gain):
             refused[part] = f"{part} explains next to nothing beside what is known already"
     kept = tuple(part for part in decision.named if part not in refused)
     if not refused or (decision.verdict == "named" and kept):

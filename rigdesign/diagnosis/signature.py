@@ -1,16 +1,16 @@
 """What a model may answer wrongly to a right cause, admitted to every explanation alike.
 
-A cause in the model never leaves exactly the trace it leaves on the rig. An explanation with the answer a is therefore
-weighed under C + E E': every series of numbers (one channel, one order) may be off by a share of its own answer, the
-same over all points and along the speed. With no cause there is no answer and no such error, so that a small effect
-is not hidden by it; rivals that differ by less than the model's own error are told apart by their priors alone.
+A cause in the model never leaves exactly the trace it leaves on the rig. An explanation with the answer a is
+therefore weighed under C + E E': every series of numbers (one channel, one order) may be off by a share of its own
+answer, the same over all points and along the speed, and orders by themselves (`rigdesign.diagnosis.own_error`). With
+no cause there is no answer and no such error, so that a small effect is not hidden by it; rivals that differ by less
+than the model's own error are told apart by their priors alone.
 
 C^-1 is known; E is of low rank, so that all products follow from block sums (Woodbury's identity).
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from rigdesign.diagnosis.columns import Array, Column, series_numbers
 from rigdesign.diagnosis.covariance import Whitened
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis, deviations_of, inverse_of, mixed, release_of
 from rigdesign.diagnosis.healthy import TREND
+from rigdesign.diagnosis.own_error import OwnError
 from rigdesign.prediction.model import Feature
 
 EXACT = ("sensor", "input")
@@ -30,26 +31,43 @@ CONTENDERS = 60
 """Explanations, best first, whose own error is admitted; the others are too far behind."""
 
 
+SLIGHT = 0.1
+"""Error of one number by itself that is left out [standard deviations of what a healthy rig leaves of it]."""
+
+MOST_ALONE = 400
+"""Numbers whose own error counts, those with the largest."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Signature:
     """Series of the numbers of a comparison, and how wrong answers may be.
 
     order : (n,) places of the numbers sorted by series; starts : (s,) where each begins in it
     trend : (n,) logarithm of the relative speed; errors : kind of effect -> relative error, "" for the others
+    own : error of every number by itself; circuit : effects that change what passes through the circuit
     """
 
     order: NDArray[np.intp]
     starts: NDArray[np.intp]
     trend: Array
     errors: Mapping[str, float]
+    own: OwnError
+    circuit: frozenset[str]
 
     @classmethod
-    def of(cls, features: Sequence[Feature], trend: Array, errors: Mapping[str, float]) -> "Signature":
+    def of(
+        cls,
+        features: Sequence[Feature],
+        trend: Array,
+        errors: Mapping[str, float],
+        own: OwnError,
+        circuit: frozenset[str] = frozenset(),
+    ) -> "Signature":
         """Of the numbers of a comparison."""
         series = series_numbers(features)
         order = np.argsort(series, kind="stable")
         starts = np.searchsorted(series[order], np.arange(series.max(initial=-1) + 1))
-        return cls(order=order, starts=starts, trend=trend, errors=errors)
+        return cls(order=order, starts=starts, trend=trend, errors=errors, own=own, circuit=circuit)
 
     def error_of(self, hypothesis: Hypothesis) -> float:
         """Relative error of the answer of an explanation; the largest of its parts."""
@@ -58,31 +76,39 @@ class Signature:
         kinds = [part.split(":")[0].split("/")[0] for part in hypothesis.parts]
         return max(self.errors.get(kind, self.errors.get("", 0.0)) for kind in kinds)
 
-    def weights(self, answer: Array, error: float) -> tuple[Array, Array]:
-        """(n,) the error of every number, alike at all points and along the speed; sorted by series."""
-        alike = error * answer[self.order]
-        return alike, TREND * alike * self.trend[self.order]
+    def rows(self, hypothesis: Hypothesis, answer: Array, precision: Array) -> csr_array:
+        """(m, n) rows of E' for an answer (n,): series alike at all points, along the speed, numbers by themselves.
 
-    def sums(self, weights: Sequence[Array]) -> csr_array:
-        """(m s, n) weighted sums over every series, for each of m weights."""
-        count = len(self.order)
-        starts = [number * count + self.starts for number in range(len(weights))]
-        ends = np.concatenate([*starts, [count * len(weights)]])
-        places = np.tile(np.arange(count), len(weights))
-        return csr_array((np.concatenate(weights), places, ends), shape=(len(ends) - 1, count))
+        precision : (n,) diagonal of the inverse covariance of a healthy rig
+        """
+        alike = self.error_of(hypothesis) * answer
+        along = TREND * alike * self.trend
+        errors = self.own.at(answer, circuit=not self.circuit.isdisjoint(hypothesis.parts))
+        places, alone = _largest(errors, precision)
+        values = np.concatenate([alike[self.order], along[self.order], alone])
+        count = len(answer)
+        ends = np.concatenate([self.starts, count + self.starts, 2 * count + np.arange(len(places) + 1)])
+        across = np.concatenate([self.order, self.order, places])
+        return csr_array((values, across, ends), shape=(len(ends) - 1, count))
 
-    def columns(self, name: str, answer: Array, error: float) -> list[Column]:
-        """The error of an answer (n,) as columns of a covariance."""
-        found = []
-        ends = [*self.starts[1:], len(self.order)]
-        for kind, values in zip(("", " by speed"), self.weights(answer, error), strict=True):
-            for number, (start, end) in enumerate(zip(self.starts, ends, strict=True)):
-                own = np.zeros(len(answer))
-                own[self.order[start:end]] = values[start:end]
-                if own.any():
-                    label = f"answer to {name}, series {number}{kind}"
-                    found.append(Column(name=label, kind="signature", values=own, spread=1.0))
-        return found
+    def columns(self, hypothesis: Hypothesis, answer: Array, precision: Array) -> list[Column]:
+        """The error of an answer (n,) as columns of a covariance; none where it is exact."""
+        if self.error_of(hypothesis) == 0.0:
+            return []
+        rows = self.rows(hypothesis, answer, precision).toarray()
+        return [
+            Column(name=f"answer to {hypothesis.name}, {number}", kind="signature", values=row, spread=1.0)
+            for number, row in enumerate(rows)
+            if row.any()
+        ]
+
+
+def _largest(errors: Array, precision: Array) -> tuple[NDArray[np.intp], Array]:
+    """Places (k,) of numbers whose own error counts beside what a healthy rig leaves, and the errors (k,)."""
+    seen = errors * np.sqrt(precision)
+    largest = np.argsort(-seen, kind="stable")[:MOST_ALONE]
+    places = np.sort(largest[seen[largest] > SLIGHT])
+    return places, errors[places]
 
 
 @dataclass(frozen=True)
@@ -99,14 +125,17 @@ class Contest:
 
     def again(self, one: Evidence) -> Evidence:
         """One explanation, linear about its best fit, with the error of its answer there."""
-        error = self.signature.error_of(one.hypothesis)
-        if error == 0.0 or not one.columns.shape[1] or not np.any(one.answer):
+        if (
+            self.signature.error_of(one.hypothesis) == 0.0
+            or not one.columns.shape[1]
+            or not np.any(one.answer)
+        ):
             return one
         space, count = self.space, one.columns.shape[1]
         own = release_of(space, one.hypothesis.own).directions
         base = one.answer - one.columns @ np.array(one.coordinates)
         left = space.freed(one.hypothesis.own) - base
-        inner = _Inner.of(self, one, error, own, np.column_stack([one.columns, left]))
+        inner = _Inner.of(self, one, own, np.column_stack([one.columns, left]))
         gram, load = inner.products[:count, :count], inner.products[:count, count]
         square = float(inner.products[count, count])
         log_bayes = mixed(gram, load, one.spreads) + 0.5 * (space.chi_square - square) - 0.5 * inner.logarithm
@@ -121,12 +150,6 @@ class Contest:
             answer=base + one.columns @ best,
         )
 
-    @cached_property
-    def precision(self) -> Array:
-        """(n, n) inverse covariance, sorted by series."""
-        order = self.signature.order
-        return np.asarray(self.space.precision[np.ix_(order, order)])
-
 
 @dataclass(frozen=True, kw_only=True)
 class _Inner:
@@ -136,14 +159,14 @@ class _Inner:
     logarithm: float
 
     @classmethod
-    def of(cls, contest: Contest, one: Evidence, error: float, own: Array, columns: Array) -> "_Inner":
+    def of(cls, contest: Contest, one: Evidence, own: Array, columns: Array) -> "_Inner":
         signature, lower = contest.signature, contest.space.covariance.lower
-        weights = signature.weights(lower @ one.answer, error)
+        precision = contest.space.precision
+        rows = signature.rows(one.hypothesis, lower @ one.answer, np.diagonal(precision))
         white = np.hstack([own, columns])
-        solved = solve_triangular(lower, white, lower=True, trans="T", check_finite=False)[signature.order]
-        sums = signature.sums(weights)
-        reached = sums @ solved
-        errors = sums @ (sums @ contest.precision).T
+        solved = solve_triangular(lower, white, lower=True, trans="T", check_finite=False)
+        reached = rows @ solved
+        errors = rows @ (rows @ precision).T
         taken = own.shape[1]
         inside = np.block([[own.T @ own, reached[:, :taken].T], [reached[:, :taken], errors]])
         signs = np.diag(np.concatenate([-np.ones(taken), np.ones(len(errors))]))

@@ -18,7 +18,7 @@ from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.decision import Decision, posterior
 from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.detectability import Detectability, aliases
-from rigdesign.diagnosis.effects import DYNAMIC
+from rigdesign.diagnosis.effects import CIRCUIT, DYNAMIC
 from rigdesign.diagnosis.evidence import Evidence, weigh
 from rigdesign.diagnosis.examine import Examination, Explanations, examine
 from rigdesign.diagnosis.healthy import relative_speed
@@ -26,6 +26,8 @@ from rigdesign.diagnosis.heldout import Gap, gap, held_out
 from rigdesign.diagnosis.hypotheses import physical, sensor, without_a_name, wrong_data
 from rigdesign.diagnosis.intervals import JointFit, fit_together
 from rigdesign.diagnosis.outliers import reject
+from rigdesign.diagnosis.own_error import OwnError
+from rigdesign.diagnosis.resonance import amplitudes_of, steepness
 from rigdesign.diagnosis.signature import Contest, Signature
 from rigdesign.diagnosis.subject import Comparison, plain
 
@@ -186,7 +188,7 @@ def _search(
     calibration: Calibration,
 ) -> tuple[list[Examination], tuple[Evidence, ...]]:
     """Examine, take what is named into the model, examine what is left."""
-    signature = _signature(subject, calibration)
+    signature = _signature(problem, subject, calibration)
     look = partial(
         examine,
         thresholds=calibration.thresholds(problem.baseline is not None),
@@ -214,9 +216,24 @@ def _search(
     return examinations, tuple(found)
 
 
-def _signature(subject: Comparison, calibration: Calibration) -> Signature:
-    trend = relative_speed(subject.features, subject.library.settings)
-    return Signature.of(subject.features, trend, calibration.signature_error)
+def _signature(problem: Problem, subject: Comparison, calibration: Calibration) -> Signature:
+    """An order is answered as badly as the model knows it: the frequencies near it, and of a mesh its own size.
+
+    Without a baseline what a healthy rig leaves is as wide as that by itself.
+    """
+    features, settings = subject.features, subject.library.settings
+    mesh = np.array([feature.order in subject.mesh_orders for feature in features])
+    placed = calibration.amplitudes.frequency * steepness(features, settings, subject.library.modes)
+    share = np.hypot(placed, np.where(mesh, calibration.amplitudes.series_mesh_point, 0.0))
+    read = amplitudes_of(features, subject.values)
+    known = 0.0 if problem.baseline is None else 1.0
+    return Signature.of(
+        features,
+        relative_speed(features, settings),
+        calibration.signature_error,
+        OwnError.of(features, known * share, subject.mesh_orders, known * read),
+        circuit=frozenset(effect.claim for effect in subject.effects if effect.family in CIRCUIT),
+    )
 
 
 def _best_of(examination: Examination) -> list[Evidence]:
@@ -242,10 +259,9 @@ def _with_named(space: Whitened, found: Sequence[Evidence], signature: Signature
         for one in found
         for number, slope in enumerate(one.columns.T)
     ]
+    precision = np.diagonal(space.precision)
     for one in found:
-        error = signature.error_of(one.hypothesis)
-        if error > 0.0:
-            columns += signature.columns(one.hypothesis.name, lower @ one.answer, error)
+        columns += signature.columns(one.hypothesis, lower @ one.answer, precision)
     owns = [own for one in found for own in one.hypothesis.own]
     residual = lower @ (space.freed(owns) - sum((one.answer for one in found), np.zeros(len(space.residual))))
     bends = {effect: lower @ bend for effect, bend in space.bends.items() if effect not in owns}
@@ -278,7 +294,7 @@ def _wrong_data(
     """
     everything = _explanations(problem, subject, whole, rivals=False)
     singles = (*everything.physical, *everything.sensor, *everything.data)
-    contest = Contest(whole, _signature(subject, calibration))
+    contest = Contest(whole, _signature(problem, subject, calibration))
     judged = contest.judged([weigh(whole, one) for one in singles])
     evidence = sorted(judged, key=lambda one: -one.log_bayes)
     weights = posterior(evidence, everything.members)

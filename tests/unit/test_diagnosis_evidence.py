@@ -206,6 +206,20 @@ def test_a_further_effect_must_explain_a_share_of_what_the_first_did():
     assert "beside" in beside.decision.reason
 
 
+def test_in_orders_a_further_effect_must_explain_more():
+    rng, effects, covariance = toy(8)
+    found = explanations(covariance, effects, rng)
+    space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
+    points = [f"P{row % 6}" for row in range(N)]
+    before = 8.0 * examine(space, found, Thresholds()).evidence[0].gain
+    heat, orders = (
+        examine(space, found, Thresholds(), points=points, explained=before, loop=loop).decision
+        for loop in (frozenset[str](), frozenset({"effect 3"}))
+    )
+    assert heat.named == ("effect 3",)
+    assert (orders.verdict, orders.named) == ("too_small", ())
+
+
 def test_a_pair_of_two_that_look_alike_gains_as_one_of_them_whatever_their_units():
     rng, effects, covariance = toy(4)
     space = Whitened.of(covariance, draw(rng, covariance) + 2.0 * effects[:, 1])

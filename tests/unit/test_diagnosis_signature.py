@@ -6,19 +6,24 @@ import pytest
 from rigdesign.diagnosis.columns import Column
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.evidence import Hypothesis, weigh, weigh_pair
+from rigdesign.diagnosis.own_error import OwnError
 from rigdesign.diagnosis.signature import Contest, Signature
 from rigdesign.prediction.model import Feature
 
 POINTS = 8
+NUMBERS = (("a", 0.0, "value"), ("b", 27.0, "real"), ("b", 27.0, "imaginary"))
 FEATURES = tuple(
-    Feature(channel=channel, setting=f"P{point}") for point in range(POINTS) for channel in ("a", "b", "c")
+    Feature(name, f"P{point}", order, part) for point in range(POINTS) for name, order, part in NUMBERS
 )
+STEEP = np.array([0.3 if feature.order else 0.0 for feature in FEATURES])
+"""Relative error of orders by themselves."""
 TREND = np.repeat(np.linspace(-0.7, 0.7, POINTS), 3)
 SHARE = 0.2
 
 
-def signature() -> Signature:
-    return Signature.of(FEATURES, TREND, {"": SHARE, "known": 0.0})
+def signature(alone: float = 0.0) -> Signature:
+    own = OwnError.of(FEATURES, alone * STEEP, frozenset({28.0}), np.zeros(len(FEATURES)))
+    return Signature.of(FEATURES, TREND, {"": SHARE, "known": 0.0}, own)
 
 
 def healthy(own: float = 0.0) -> Covariance:
@@ -48,9 +53,12 @@ def plane(
     )
 
 
-def direct(covariance: Covariance, residual: np.ndarray, answer: np.ndarray, hypothesis_of) -> float:
+def direct(
+    covariance: Covariance, residual: np.ndarray, answer: np.ndarray, hypothesis_of, alone: float
+) -> float:
     """Evidence with the error columns of the answer put into the covariance, against the healthy one."""
-    errors = signature().columns("x", answer, SHARE)
+    hypothesis = plane(covariance, answer)
+    errors = signature(alone).columns(hypothesis, answer, np.diagonal(np.linalg.inv(covariance.matrix)))
     kept = tuple(column for column in covariance.columns if column.effect != "film:x")
     wide = Covariance(base=covariance.base, columns=kept, amplitudes={}).with_extra(errors)
     space, plain = Whitened.of(wide, residual), Whitened.of(covariance, residual)
@@ -62,16 +70,17 @@ def direct(covariance: Covariance, residual: np.ndarray, answer: np.ndarray, hyp
     )
 
 
+@pytest.mark.parametrize("alone", [0.0, 1.0])
 @pytest.mark.parametrize("own", [0.0, 0.4])
-def test_low_rank_algebra_is_the_whole_covariance(own):
-    """An explanation whose constant has its own healthy spread, and one without."""
+def test_low_rank_algebra_is_the_whole_covariance(own, alone):
+    """An explanation whose constant has its own healthy spread, and one without; orders off by themselves, or not."""
     covariance = healthy(own)
     residual = 6.0 * trace() + np.random.default_rng(5).normal(size=len(FEATURES))
     space = Whitened.of(covariance, residual)
     first = weigh(space, plane(covariance, trace()))
-    found = Contest(space, signature()).again(first)
+    found = Contest(space, signature(alone)).again(first)
     answer = covariance.lower @ first.answer
-    wanted = direct(covariance, residual, answer, lambda wide: plane(wide, trace()))
+    wanted = direct(covariance, residual, answer, lambda wide: plane(wide, trace()), alone)
     assert found.log_bayes == pytest.approx(wanted, rel=1e-9)
     assert found.log_bayes != pytest.approx(first.log_bayes, abs=0.1)
 
@@ -91,6 +100,17 @@ def test_an_answer_that_is_a_share_off_is_forgiven_and_noise_is_not():
     assert contest.again(both).log_bayes < contest.again(weigh(space, right)).log_bayes + 1.0
     left = space.chi_square - contest.again(weigh(space, right)).gain
     assert left < 2.0 * len(FEATURES) < space.chi_square - weigh(space, right).gain
+
+
+def test_an_order_near_a_resonance_is_off_by_a_share_of_its_amplitude():
+    """Whatever its phase; numbers of which a healthy rig leaves more are left out."""
+    answer = np.tile([5.0, 3.0, -4.0], POINTS)
+    precision = np.where([feature.setting == "P0" for feature in FEATURES], 1e-4, 1.0)
+    own = signature(1.0).rows(plane(healthy(), answer), answer, precision).toarray()[2 * len(NUMBERS) :]
+    assert len(own) == 2 * (POINTS - 1)
+    variances = np.einsum("kn,kn->n", own, own)
+    near = (STEEP > 0.0) & (precision == 1.0)
+    assert variances == pytest.approx(np.where(near, (0.3 * 5.0) ** 2, 0.0))
 
 
 def test_exact_explanations_keep_their_evidence():
