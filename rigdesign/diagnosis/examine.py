@@ -133,16 +133,24 @@ def _supported(
     for part in decision.named if decision.verdict == "named" else decision.named[:1]:
         best = next(one for one in ordered if part in one.hypothesis.parts)
         least, where = support(space, points, best, part)
-        share = thresholds.share_loop if part in loop else thresholds.share
         if least < thresholds.support:
             alone = f"operating point {where}" if where else "chance"
             refused[part] = f"what speaks for {part} comes from {alone} alone"
-        elif least < share * max(explained, best.gain):
+        elif least < thresholds.share * max(explained, best.gain) or (
+            part in loop and _added(best, part, evidence) < thresholds.share_loop * max(explained, best.gain)
+        ):
             refused[part] = f"{part} explains next to nothing beside what is known already"
     kept = tuple(part for part in decision.named if part not in refused)
     if not refused or (decision.verdict == "named" and kept):
         return replace(decision, named=kept)
     return Decision(verdict="too_small", named=(), reason=next(iter(refused.values())))
+
+
+def _added(best: Evidence, part: str, evidence: Sequence[Evidence]) -> float:
+    """Fall of the whitened square that a part adds to the rest of an explanation."""
+    rest = tuple(other for other in best.hypothesis.parts if other != part)
+    alone = max((one.gain for one in evidence if rest and one.hypothesis.parts == rest), default=0.0)
+    return best.gain - alone
 
 
 def _judged(contest: Contest | None, evidence: list[Evidence]) -> list[Evidence]:
