@@ -122,7 +122,7 @@ def _supported(
     explained: float,
     loop: frozenset[str],
 ) -> Decision:
-    """The decision without the names that rest on one operating point or explain next to nothing beside the others.
+    """The decision without the names that rest on one operating point or explain too little beside the others.
 
     Of an alias group its leader is asked.
     """
@@ -139,7 +139,7 @@ def _supported(
         elif least < thresholds.share * max(explained, best.gain) or (
             part in loop and _added(best, part, evidence) < thresholds.share_loop * max(explained, best.gain)
         ):
-            refused[part] = f"{part} explains next to nothing beside what is known already"
+            refused[part] = f"{part} explains too little beside what is known already"
     kept = tuple(part for part in decision.named if part not in refused)
     if not refused or (decision.verdict == "named" and kept):
         return replace(decision, named=kept)
