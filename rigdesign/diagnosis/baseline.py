@@ -11,10 +11,9 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from rigdesign.diagnosis.amplitudes import Amplitudes
-from rigdesign.diagnosis.columns import Array
+from rigdesign.diagnosis.columns import Array, amplitudes_of
 from rigdesign.diagnosis.covariance import Covariance, Whitened
-from rigdesign.diagnosis.library import apart
-from rigdesign.diagnosis.resonance import amplitudes_of, steepness
+from rigdesign.diagnosis.library import apart, nearest_of
 from rigdesign.diagnosis.subject import Comparison
 
 TWINS = 10.0
@@ -81,7 +80,6 @@ class Change:
         expected, covariance = _given(
             known, cross, both + TWINS**2 * np.diag(own**2), noise_before, baseline.residual
         )
-        steep = steepness(subject.features, subject.library.settings, subject.library.modes)
         alone = np.diag(subject.noise**2) + subject.scatter
         return cls(
             subject=subject,
@@ -89,21 +87,18 @@ class Change:
             known=covariance + alone,
             shared=both + np.diag(own**2),
             slope=step * amplitudes_of(subject.features, _by_speed(subject)),
-            steep=step * steep * amplitude,
+            steep=step * subject.steepness * amplitude,
             amplitude=amplitude,
         )
 
     def covariance(self, drift: Drift) -> Array:
         """(n, n) of the change in a rig that stayed healthy."""
-        subject = self.subject
-        mesh = np.array([feature.order in subject.mesh_orders for feature in subject.features])
-        follows = (drift.slope * self.slope) ** 2 + (
-            np.where(mesh, drift.mesh, drift.shaft) * self.steep
-        ) ** 2
-        alone = np.diag(follows + mesh * (drift.amplitude * self.amplitude) ** 2)
-        return np.asarray(
-            self.known + drift.shared**2 * self.shared + alone + subject.widened(drift.widening)
-        )
+        mesh = self.subject.of_mesh
+        steep = np.where(mesh, drift.mesh, drift.shaft) * self.steep
+        still = np.where(mesh, drift.amplitude, 0.0) * self.amplitude
+        alone = np.diag((drift.slope * self.slope) ** 2 + steep**2 + still**2)
+        widened = self.subject.widened(drift.widening)
+        return np.asarray(self.known + drift.shared**2 * self.shared + alone + widened)
 
     def whitened(self, drift: Drift) -> Whitened:
         """The change where a healthy rig is white noise."""
@@ -137,14 +132,9 @@ AGAIN = 2.0
 
 def _met_again(subject: Comparison, baseline: Comparison) -> dict[str, str]:
     """Operating point -> that of the baseline it is; the rig at rest is one of them."""
-    found = {"": ""}
-    free = list(baseline.library.settings)
-    for setting in subject.library.settings:
-        nearest = min(free, key=lambda one: apart(one, setting), default=None)
-        if nearest is not None and apart(nearest, setting) <= AGAIN:
-            found[setting.name] = nearest.name
-            free.remove(nearest)
-    return found
+    now, before = subject.library.settings, baseline.library.settings
+    pairs = nearest_of(now, before, apart, AGAIN)
+    return {"": ""} | {now[here].name: before[there].name for here, there in pairs.items()}
 
 
 def _same_numbers(subject: Comparison, baseline: Comparison, again: Mapping[str, str]) -> Array:

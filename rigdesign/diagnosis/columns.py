@@ -43,3 +43,17 @@ def series_numbers(features: Sequence[Feature]) -> NDArray[np.intp]:
     names = [(one.channel, one.order, one.part) for one in features]
     numbers = {name: number for number, name in enumerate(dict.fromkeys(names))}
     return np.array([numbers[name] for name in names], dtype=np.intp)
+
+
+def order_numbers(features: Sequence[Feature]) -> NDArray[np.intp]:
+    """(n,) number of the order that every feature is a part of, at its channel and point, in the order they appear."""
+    names = [(one.channel, one.setting, one.order) for one in features]
+    numbers = {name: number for number, name in enumerate(dict.fromkeys(names))}
+    return np.array([numbers[name] for name in names], dtype=np.intp)
+
+
+def amplitudes_of(features: Sequence[Feature], values: Array) -> Array:
+    """(n,) amplitude of the order that a number is a part of; zero for means and all other numbers."""
+    orders = order_numbers(features)
+    squares = np.bincount(orders, weights=values**2)
+    return np.where([feature.order != 0.0 for feature in features], np.sqrt(squares[orders]), 0.0)

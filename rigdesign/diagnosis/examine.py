@@ -133,11 +133,12 @@ def _supported(
     for part in decision.named if decision.verdict == "named" else decision.named[:1]:
         best = next(one for one in ordered if part in one.hypothesis.parts)
         least, where = support(space, points, best, part)
+        whole = max(explained, best.gain)
         if least < thresholds.support:
             alone = f"operating point {where}" if where else "chance"
             refused[part] = f"what speaks for {part} comes from {alone} alone"
-        elif least < thresholds.share * max(explained, best.gain) or (
-            part in loop and _added(best, part, evidence) < thresholds.share_loop * max(explained, best.gain)
+        elif least < thresholds.share * whole or (
+            part in loop and _added(best, part, evidence) < thresholds.share_loop * whole
         ):
             refused[part] = f"{part} explains too little beside what is known already"
     kept = tuple(part for part in decision.named if part not in refused)

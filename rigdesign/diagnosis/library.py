@@ -208,13 +208,20 @@ def _matches(
     wanted: Sequence[T], offered: Sequence[T], distance: Callable[[T, T], float]
 ) -> list[int] | None:
     """For each wanted one the place of the nearest offered one, none used twice; None if one is a distance of 1 off."""
-    found: list[int] = []
-    for one in wanted:
-        free = [place for place in range(len(offered)) if place not in found]
+    found = nearest_of(wanted, offered, distance, 1.0)
+    return list(found.values()) if len(found) == len(wanted) else None
+
+
+def nearest_of(
+    wanted: Sequence[T], offered: Sequence[T], distance: Callable[[T, T], float], most: float
+) -> dict[int, int]:
+    """Place of a wanted one -> that of the nearest offered one, none used twice; without those that are farther off."""
+    found: dict[int, int] = {}
+    for number, one in enumerate(wanted):
+        free = [place for place in range(len(offered)) if place not in found.values()]
         nearest = min(free, key=lambda place: distance(offered[place], one), default=None)
-        if nearest is None or distance(offered[nearest], one) > 1.0:
-            return None
-        found.append(nearest)
+        if nearest is not None and distance(offered[nearest], one) <= most:
+            found[number] = nearest
     return found
 
 

@@ -7,12 +7,12 @@ much, and no model knows those errors.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.diagnosis.columns import Array
+from rigdesign.diagnosis.columns import Array, order_numbers
 from rigdesign.prediction.model import Feature
 
 
@@ -20,50 +20,42 @@ from rigdesign.prediction.model import Feature
 class OwnError:
     """Error by itself of every number.
 
-    share : (n,) of its answer; twin : (n,) place of the other part of the same order, of what has none its own
-    mesh : (n,) whether it is of a mesh order; group : (n,) number of its channel and point
-    read : (n,) amplitude of the order as measured, zero for other numbers
+    share : (n,) of its answer, zero for what is of no order; mesh : (n,) whether it is of a mesh order
+    values : (n,) as measured; orders, places : (n,) number of its order, and of its channel and point
     """
 
     share: Array
-    twin: NDArray[np.intp]
     mesh: NDArray[np.bool_]
-    group: NDArray[np.intp]
-    read: Array
+    values: Array
+    orders: NDArray[np.intp]
+    places: NDArray[np.intp]
 
     @classmethod
     def of(
-        cls, features: Sequence[Feature], share: Array, mesh_orders: frozenset[float], read: Array
+        cls, features: Sequence[Feature], share: Array, mesh: NDArray[np.bool_], values: Array
     ) -> "OwnError":
         """Of the numbers of a comparison."""
         names = [(one.channel, one.setting) for one in features]
-        groups = {name: number for number, name in enumerate(dict.fromkeys(names))}
+        places = {name: number for number, name in enumerate(dict.fromkeys(names))}
         return cls(
             share=share,
-            twin=_twins(features),
-            mesh=np.array([one.order in mesh_orders for one in features], dtype=bool),
-            group=np.array([groups[name] for name in names], dtype=np.intp),
-            read=read,
+            mesh=mesh,
+            values=np.where([one.order != 0.0 for one in features], values, 0.0),
+            orders=order_numbers(features),
+            places=np.array([places[name] for name in names], dtype=np.intp),
         )
 
     def at(self, answer: Array, circuit: bool) -> Array:
         """(n,) standard deviations beside an answer (n,); ``circuit``: whether its cause changes the circuit."""
-        own = self.share * np.hypot(answer, answer[self.twin])
+        own = self.share * _together(answer, self.orders)
         if not circuit:
             return np.asarray(own)
-        excited = np.where(self.mesh, 0.0, self.read)
-        return np.asarray(np.hypot(own, self._passed_on(answer)[self.group] * excited))
-
-    def _passed_on(self, answer: Array) -> Array:
-        """Relative change of the mesh orders of every channel and point, one at most."""
-        count = int(self.group.max(initial=-1)) + 1
-        changed = np.bincount(self.group, weights=self.mesh * answer**2, minlength=count)
-        # an order has two numbers, and both know its amplitude
-        before = np.bincount(self.group, weights=0.5 * self.mesh * self.read**2, minlength=count)
-        return np.minimum(np.sqrt(changed / np.maximum(before, 1e-300)), 1.0)
+        changed, before = (_together(self.mesh * one, self.places) for one in (answer, self.values))
+        passed_on = np.minimum(changed / np.maximum(before, 1e-150), 1.0)
+        excited = np.where(self.mesh, 0.0, _together(self.values, self.orders))
+        return np.asarray(np.hypot(own, passed_on * excited))
 
 
-def _twins(features: Sequence[Feature]) -> NDArray[np.intp]:
-    places = {feature: place for place, feature in enumerate(features)}
-    other = [replace(one, part="imaginary" if one.part == "real" else "real") for one in features]
-    return np.array([places.get(one, place) for place, one in enumerate(other)], dtype=np.intp)
+def _together(values: Array, groups: NDArray[np.intp]) -> Array:
+    """(n,) root of the sum of squares over the group of each number."""
+    return np.asarray(np.sqrt(np.bincount(groups, weights=values**2))[groups])

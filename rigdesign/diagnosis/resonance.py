@@ -27,12 +27,3 @@ def steepness(features: Sequence[Feature], settings: Sequence[Setting], modes: A
         return np.zeros(len(features))
     away = np.abs(1.0 - frequencies[:, None] / modes).min(axis=1)
     return np.where(frequencies > 0.0, 1.0 / np.hypot(away, BLURRED), 0.0)
-
-
-def amplitudes_of(features: Sequence[Feature], values: Array) -> Array:
-    """(n,) amplitude of the order that a number is a part of; zero for means and all other numbers."""
-    squares: dict[tuple[str, str, float], float] = {}
-    keys = [(one.channel, one.setting, one.order) for one in features]
-    for key, value in zip(keys, values, strict=True):
-        squares[key] = squares.get(key, 0.0) + float(value) ** 2
-    return np.array([squares[key] ** 0.5 if key[2] else 0.0 for key in keys])

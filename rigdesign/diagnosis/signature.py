@@ -44,14 +44,15 @@ class Signature:
 
     order : (n,) places of the numbers sorted by series; starts : (s,) where each begins in it
     trend : (n,) logarithm of the relative speed; errors : kind of effect -> relative error, "" for the others
-    own : error of every number by itself; circuit : effects that change what passes through the circuit
+    own : error of every number by itself, if there is one
+    circuit : effects that change what passes through the circuit
     """
 
     order: NDArray[np.intp]
     starts: NDArray[np.intp]
     trend: Array
     errors: Mapping[str, float]
-    own: OwnError
+    own: OwnError | None
     circuit: frozenset[str]
 
     @classmethod
@@ -60,7 +61,7 @@ class Signature:
         features: Sequence[Feature],
         trend: Array,
         errors: Mapping[str, float],
-        own: OwnError,
+        own: OwnError | None = None,
         circuit: frozenset[str] = frozenset(),
     ) -> "Signature":
         """Of the numbers of a comparison."""
@@ -83,13 +84,24 @@ class Signature:
         """
         alike = self.error_of(hypothesis) * answer
         along = TREND * alike * self.trend
-        errors = self.own.at(answer, circuit=not self.circuit.isdisjoint(hypothesis.parts))
-        places, alone = _largest(errors, precision)
+        places, alone = self._alone(hypothesis, answer, precision)
         values = np.concatenate([alike[self.order], along[self.order], alone])
         count = len(answer)
         ends = np.concatenate([self.starts, count + self.starts, 2 * count + np.arange(len(places) + 1)])
         across = np.concatenate([self.order, self.order, places])
         return csr_array((values, across, ends), shape=(len(ends) - 1, count))
+
+    def _alone(
+        self, hypothesis: Hypothesis, answer: Array, precision: Array
+    ) -> tuple[NDArray[np.intp], Array]:
+        """Places (k,) of numbers whose own error counts beside what a healthy rig leaves, and the errors (k,)."""
+        if self.own is None:
+            return np.zeros(0, dtype=np.intp), np.zeros(0)
+        errors = self.own.at(answer, circuit=not self.circuit.isdisjoint(hypothesis.parts))
+        seen = errors * np.sqrt(precision)
+        largest = np.argsort(-seen, kind="stable")[:MOST_ALONE]
+        places = np.sort(largest[seen[largest] > SLIGHT])
+        return places, errors[places]
 
     def columns(self, hypothesis: Hypothesis, answer: Array, precision: Array) -> list[Column]:
         """The error of an answer (n,) as columns of a covariance; none where it is exact."""
@@ -101,14 +113,6 @@ class Signature:
             for number, row in enumerate(rows)
             if row.any()
         ]
-
-
-def _largest(errors: Array, precision: Array) -> tuple[NDArray[np.intp], Array]:
-    """Places (k,) of numbers whose own error counts beside what a healthy rig leaves, and the errors (k,)."""
-    seen = errors * np.sqrt(precision)
-    largest = np.argsort(-seen, kind="stable")[:MOST_ALONE]
-    places = np.sort(largest[seen[largest] > SLIGHT])
-    return places, errors[places]
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_solve
 
 from rigdesign.diagnosis.amplitudes import Amplitudes
@@ -20,6 +21,7 @@ from rigdesign.diagnosis.evidence import Curve
 from rigdesign.diagnosis.healthy import answer_error, healthy_columns, own_spread
 from rigdesign.diagnosis.levels import levels
 from rigdesign.diagnosis.library import Library
+from rigdesign.diagnosis.resonance import steepness
 from rigdesign.diagnosis.sensors import SensorError, Stated, input_errors, sensor_errors, setting_scatter
 from rigdesign.measurement import Data
 from rigdesign.prediction.model import Channel, Feature
@@ -46,6 +48,16 @@ class Comparison:
     """Of the gear that counts."""
     level: Array
     """(n,) over which errors of the model are relative (`rigdesign.diagnosis.levels`)."""
+
+    @cached_property
+    def of_mesh(self) -> NDArray[np.bool_]:
+        """(n,) whether a number is of an order of the meshes."""
+        return np.array([feature.order in self.mesh_orders for feature in self.features], dtype=bool)
+
+    @cached_property
+    def steepness(self) -> Array:
+        """(n,) of the orders (`rigdesign.diagnosis.resonance`)."""
+        return steepness(self.features, self.library.settings, self.library.modes)
 
     @property
     def residual(self) -> Array:

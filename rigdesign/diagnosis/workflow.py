@@ -27,7 +27,6 @@ from rigdesign.diagnosis.hypotheses import physical, sensor, without_a_name, wro
 from rigdesign.diagnosis.intervals import JointFit, fit_together
 from rigdesign.diagnosis.outliers import reject
 from rigdesign.diagnosis.own_error import OwnError
-from rigdesign.diagnosis.resonance import amplitudes_of, steepness
 from rigdesign.diagnosis.signature import Contest, Signature
 from rigdesign.diagnosis.subject import Comparison, plain
 
@@ -221,17 +220,14 @@ def _signature(problem: Problem, subject: Comparison, calibration: Calibration) 
 
     Without a baseline what a healthy rig leaves is as wide as that by itself.
     """
-    features, settings = subject.features, subject.library.settings
-    mesh = np.array([feature.order in subject.mesh_orders for feature in features])
-    placed = calibration.amplitudes.frequency * steepness(features, settings, subject.library.modes)
-    share = np.hypot(placed, np.where(mesh, calibration.amplitudes.series_mesh_point, 0.0))
-    read = amplitudes_of(features, subject.values)
-    known = 0.0 if problem.baseline is None else 1.0
+    placed = calibration.amplitudes.frequency * subject.steepness
+    share = np.hypot(placed, np.where(subject.of_mesh, calibration.amplitudes.series_mesh_point, 0.0))
+    own = OwnError.of(subject.features, share, subject.of_mesh, subject.values)
     return Signature.of(
-        features,
-        relative_speed(features, settings),
+        subject.features,
+        relative_speed(subject.features, subject.library.settings),
         calibration.signature_error,
-        OwnError.of(features, known * share, subject.mesh_orders, known * read),
+        None if problem.baseline is None else own,
         circuit=frozenset(effect.claim for effect in subject.effects if effect.family in CIRCUIT),
     )
 

@@ -8,7 +8,7 @@ from rigdesign.prediction.model import Feature
 
 PARTS = [(order, part) for order in (27.0, 28.0) for part in ("real", "imaginary")]
 FEATURES = (*(Feature("M", point, *part) for point in ("P1", "P2") for part in PARTS), Feature("T", "P1"))
-MESH = frozenset({28.0})
+MESH = np.array([one.order == 28.0 for one in FEATURES])
 
 
 def error(share: float, read: np.ndarray) -> OwnError:
@@ -42,7 +42,7 @@ def test_a_cause_outside_the_circuit_changes_nothing_of_what_passes_through_it()
 
 
 def test_nothing_follows_by_more_than_itself():
-    read = np.array([2.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0, 0.0, 0.0])
+    read = np.array([2.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0])
     answer = np.array([0.0, 0.0, 30.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0])
     assert error(0.0, read).at(answer, circuit=True) == pytest.approx(
         [2.0, 2.0, 0.0, 0.0, 2.0, 2.0, 0.0, 0.0, 0.0]

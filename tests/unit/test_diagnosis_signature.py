@@ -22,7 +22,7 @@ SHARE = 0.2
 
 
 def signature(alone: float = 0.0) -> Signature:
-    own = OwnError.of(FEATURES, alone * STEEP, frozenset({28.0}), np.zeros(len(FEATURES)))
+    own = OwnError.of(FEATURES, alone * STEEP, np.zeros(len(FEATURES), dtype=bool), np.zeros(len(FEATURES)))
     return Signature.of(FEATURES, TREND, {"": SHARE, "known": 0.0}, own)
 
 
