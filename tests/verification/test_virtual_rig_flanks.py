@@ -17,7 +17,7 @@ from tests.virtual_rig.case_reader import read_case
 from tests.virtual_rig.loop import LoopTruth, Point
 from tests.virtual_rig.loop_changes import LoopConstants
 from tests.virtual_rig.loop_model import read_circuit
-from tests.virtual_rig.teeth import ToothErrors, corner_gap, read_teeth
+from tests.virtual_rig.teeth import ToothErrors, corner_gap, path_gaps, read_teeth
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 TEETH = range(-3, 4)
@@ -143,6 +143,27 @@ def test_rigid_gears_touch_where_their_outlines_do(case, mesh):
     expected -= own.backlash if mesh == 1 else 0.0
     assert np.ptp(found) > 25e-6
     assert found == pytest.approx(expected, abs=5e-8)
+
+
+@pytest.mark.parametrize("side", [0, 1], ids=["pinion", "wheel"])
+def test_a_profile_slope_stands_out_at_the_tip(side):
+    """f_Halpha of ISO 1328-1 counts plus where the tip has metal beyond the design, of the case and of one tooth."""
+    tree, slope = read_case(CASES / "loop_1to1" / "case.toml"), 8e-6
+    plain = LoopTruth(tree).meshes[0]
+    path = plain.grid(0.0)
+    flanks = tuple({"profile_slope": slope} if index == side else {} for index in (0, 1))
+    bare = replace(plain, flanks=({}, {}))
+    closer = path_gaps(bare, margin=0.0)[0] - path_gaps(replace(plain, flanks=flanks), margin=0.0)[0]
+    tip, root = (-1, 0) if side == 0 else (0, -1)
+    assert [closer[tip], closer[root]] == pytest.approx([0.5 * slope, -0.5 * slope])
+    truth = LoopTruth(
+        tree, LoopConstants(errors={plain.gears[side]: ToothErrors(slope=(slope,) * plain.z[side])})
+    )
+    circuit = read_circuit(tree, truth.meshes, 1.0, 100.0, {})
+    tables = truth._tables(circuit, 1.0, 1e-4, Point(speed=1.0, torque=100.0), [0.0, 0.0])
+    numbers, courses, _, *teeth = tables
+    own = [-kernel.pair_at(0, place, 0, numbers, courses, *teeth)[-1] for place in path]
+    assert own == pytest.approx(closer, abs=1e-12)
 
 
 @pytest.mark.parametrize("case", ["loop_1to1", "loop_hunting", "uhcf_prototype"])

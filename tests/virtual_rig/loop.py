@@ -242,7 +242,8 @@ class LoopTruth:
                 z = mesh.z[side]
                 tooth_gap[i, side, :z] = -sign * error.places(z)
                 tooth_scale[i, side, :z] = error.stiffness or 1.0
-                tooth_slope[i, side, :z] = error.slope or 0.0
+                over_tables = (grid[-1] - grid[0]) / (mesh.end - mesh.start)
+                tooth_slope[i, side, :z] = over_tables * np.array(error.slope or 0.0)
             numbers[i, kernel.RATE] = sign * mesh.base_radii[0] * speed * dt
             numbers[i, kernel.PITCH] = mesh.base_pitch
             numbers[i, kernel.START], numbers[i, kernel.STEP] = grid[0], grid[1] - grid[0]

@@ -44,7 +44,7 @@ def pair_at(p, place, m, numbers, tables, tooth_gap, tooth_scale, tooth_slope, c
     k *= tooth_scale[m, 0, one] * tooth_scale[m, 1, two]
     run = 2.0 * at / (n_path - 1) - 1.0
     own = tooth_gap[m, 0, one] + tooth_gap[m, 1, two]
-    own += 0.5 * run * (tooth_slope[m, 0, one] - tooth_slope[m, 1, two])
+    own -= 0.5 * run * (tooth_slope[m, 0, one] - tooth_slope[m, 1, two])
     return s, i, f, k, own
 
 

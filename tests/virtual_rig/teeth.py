@@ -37,7 +37,7 @@ class ToothErrors:
     stiffness: tuple[float, ...] = ()
     """Stiffness scale of each tooth, (z,)."""
     slope: tuple[float, ...] = ()
-    """Profile slope f_Halpha of each tooth: relief at its tip against its root, (z,)."""
+    """Profile slope f_Halpha of each tooth, positive where the tip stands out (ISO 1328-1), (z,)."""
     tip_relief: float = 0.0
     """Relief at the tip beyond that of the case."""
     waves: Mapping[int, complex] = field(default_factory=dict)
@@ -192,7 +192,7 @@ def path_gaps(
         sign = 1.0 if index == 0 else -1.0
         share = sign * (inside - middle) / half
         gap = gap + relief_scale * flank.get("profile_crowning", 0.0) * share**2
-        gap = gap + 0.5 * flank.get("profile_slope", 0.0) * share
+        gap = gap - 0.5 * flank.get("profile_slope", 0.0) * share
         across = 2.0 * face / teeth.face_widths[index]
         gap = gap + flank.get("lead_crowning", 0.0) * across**2 + 0.5 * flank.get("helix_slope", 0.0) * across
         amount = relief_scale * flank.get("tip_relief", 0.0) + relief[index]
