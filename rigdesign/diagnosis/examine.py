@@ -72,6 +72,7 @@ def examine(
     signature: Signature | None = None,
     table: Sequence[Detectability] | None = None,
     explained: float = 0.0,
+    earlier: "Earlier | None" = None,
 ) -> Examination:
     """Weigh everything and decide.
 
@@ -80,6 +81,7 @@ def examine(
     signature : how wrong the model may answer to a right cause; left out, not at all
     table : detectability where it is known already; it depends on covariance and explanations alone
     explained : largest fall of the whitened square by what was named before
+    earlier : the look that named it
     """
     known = (*explanations.physical, *explanations.sensor)
     if table is None:
@@ -105,11 +107,49 @@ def examine(
     return Examination(
         evidence=tuple(evidence),
         weights=weights,
-        decision=_supported(space, points, decision, evidence, weights, thresholds, explained, loop),
+        decision=_undivided(
+            _supported(space, points, decision, evidence, weights, thresholds, explained, loop),
+            earlier,
+            thresholds,
+        ),
         detectability=tuple(table),
         chi_square=space.chi_square,
         count=len(space.residual),
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Earlier:
+    """The first look, and what was named since."""
+
+    look: Examination
+    named: frozenset[str]
+
+    def rivals(self, part: str) -> tuple[float, float]:
+        """Posterior mass of what added anything at all to the names, and of that part of it that added ``part``."""
+        masses = self.look.weights.masses
+        more = [one.hypothesis for one in self.look.evidence if self.named < frozenset(one.hypothesis.parts)]
+        return sum(masses[one.name] for one in more), sum(
+            masses[one.name] for one in more if part in one.parts
+        )
+
+
+def _undivided(decision: Decision, earlier: Earlier | None, thresholds: Thresholds) -> Decision:
+    """The decision without a further name that the first look left divided: it knew the names and their rivals at once.
+
+    With the sizes of the names left free, a later look sees less of what tells the rivals apart.
+    """
+    if earlier is None or decision.verdict != "named":
+        return decision
+    kept = []
+    for part in decision.named:
+        whole, own = earlier.rivals(part)
+        if whole < 1.0 - thresholds.named or own >= thresholds.named * whole:
+            kept.append(part)
+    if kept:
+        return replace(decision, named=tuple(kept))
+    reason = f"{decision.named[0]} or another one explains what is left, the names before it taken at once"
+    return Decision(verdict="too_small", named=(), reason=reason)
 
 
 def _supported(

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
+from scipy.linalg import lu_factor, lu_solve, solve_triangular
 from scipy.sparse import csr_array
 
 from rigdesign.diagnosis.columns import Array, Column, series_numbers
@@ -173,11 +173,13 @@ class _Inner:
         errors = rows @ (rows @ precision).T
         taken = own.shape[1]
         inside = np.block([[own.T @ own, reached[:, :taken].T], [reached[:, :taken], errors]])
-        signs = np.diag(np.concatenate([-np.ones(taken), np.ones(len(errors))]))
+        diagonal = np.arange(len(inside))
+        inside[diagonal, diagonal] += np.where(diagonal < taken, -1.0, 1.0)
         through = np.vstack([own.T @ columns, reached[:, taken:]])
-        products = columns.T @ columns - through.T @ np.linalg.solve(signs + inside, through)
-        _, logarithm = np.linalg.slogdet(np.eye(len(inside)) + signs @ inside)
-        return cls(products=products, logarithm=float(logarithm))
+        factors = lu_factor(inside, overwrite_a=True, check_finite=False)
+        products = columns.T @ columns - through.T @ lu_solve(factors, through, check_finite=False)
+        logarithm = float(np.log(np.abs(np.diagonal(factors[0]))).sum())
+        return cls(products=products, logarithm=logarithm)
 
 
 def _limits(one: Evidence) -> tuple[Array, Array]:

@@ -20,7 +20,7 @@ from rigdesign.diagnosis.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.detectability import Detectability, aliases
 from rigdesign.diagnosis.effects import CIRCUIT, DYNAMIC
 from rigdesign.diagnosis.evidence import Evidence, weigh
-from rigdesign.diagnosis.examine import Examination, Explanations, examine
+from rigdesign.diagnosis.examine import Earlier, Examination, Explanations, examine
 from rigdesign.diagnosis.healthy import relative_speed
 from rigdesign.diagnosis.heldout import Gap, gap, held_out
 from rigdesign.diagnosis.hypotheses import physical, sensor, without_a_name, wrong_data
@@ -211,7 +211,8 @@ def _search(
             anonymous=rest.anonymous,
             data=[],
         )
-        examinations.append(look(after, left, explained=max(one.gain for one in found)))
+        earlier = Earlier(look=examinations[0], named=frozenset(claimed))
+        examinations.append(look(after, left, explained=max(one.gain for one in found), earlier=earlier))
     return examinations, tuple(found)
 
 

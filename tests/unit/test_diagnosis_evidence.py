@@ -17,7 +17,7 @@ from rigdesign.diagnosis.evidence import (
     weigh,
     weigh_pair,
 )
-from rigdesign.diagnosis.examine import Explanations, examine
+from rigdesign.diagnosis.examine import Earlier, Explanations, examine
 
 N = 120
 
@@ -218,6 +218,26 @@ def test_in_orders_a_further_effect_must_explain_more():
     )
     assert heat.named == ("effect 3",)
     assert (orders.verdict, orders.named) == ("too_small", ())
+
+
+@pytest.mark.parametrize(("twin", "named"), [(True, ()), (False, ("effect 4",))])
+def test_a_later_look_does_not_decide_what_the_first_left_divided(twin, named):
+    rng, effects, covariance = toy(9)
+    if twin:
+        effects[:, 6] = effects[:, 4] + 1e-4 * rng.normal(size=N)
+    found = explanations(covariance, effects, rng)
+    residual = draw(rng, covariance) + 2.0 * effects[:, 3] + 1.2 * effects[:, 4]
+    first = examine(Whitened.of(covariance, residual), found, Thresholds())
+    assert first.decision.verdict == "named" and "effect 3" in first.decision.named
+    left = replace(
+        found, physical=[one for one in found.physical if one.name not in ("effect 3", "effect 6")]
+    )
+    after = Whitened.of(covariance, residual - 2.0 * effects[:, 3])
+    assert examine(after, left, Thresholds()).decision.named == ("effect 4",)
+    earlier = Earlier(look=first, named=frozenset({"effect 3"}))
+    later = examine(after, left, Thresholds(), earlier=earlier).decision
+    assert later.named == named
+    assert twin is ("effect 4 or another one" in later.reason)
 
 
 def test_a_pair_of_two_that_look_alike_gains_as_one_of_them_whatever_their_units():
