@@ -75,13 +75,15 @@ SIGNATURE_ERROR = {
     "foot_contact": 0.35,
     "windage_loss": 0.25,
     "loss_split": 0.25,
+    "not_steady": 0.35,
     "run_out": 0.04,
     "cumulative_pitch": 0.04,
     "motor_ripple": 0.04,
     "coupling_order_2": 0.04,
 }
 """Kind of effect -> relative error of the model's answer to it: how far the traces of 22 effects of the heat, and of
-run-out, ripple and coupling torques, lie from those of the virtual rig with nominal constants."""
+run-out, ripple and coupling torques, lie from those of the virtual rig with nominal constants; of a rig not yet steady
+by how far its rate was off in the second score, as its parts warm at their own pace."""
 
 
 PLAIN = Thresholds(evidence=10.0, evidence_loop=100.0)

@@ -289,7 +289,10 @@ def _shuffle(file: Path, rng: np.random.Generator, settings: int) -> None:
 
 
 def _sizes(row: Row, result: Any) -> None:
-    """Whether the interval of a single effect that was named rightly holds its true size."""
+    """Whether the interval of a single effect that was named rightly holds its true size.
+
+    An interval that ends on a bound of the catalogue is told as open there: the size may be larger.
+    """
     found = result.diagnosis
     if found.fit is None or len(row["effects"]) != 1 or len(found.found) != 1:
         return
@@ -312,7 +315,18 @@ def _sizes(row: Row, result: Any) -> None:
         value, low, high = (3600.0 * one for one in (value, low, high))
     if hidden["effect"].startswith("seal_loss"):
         return
-    row["true_size"], row["size"], row["interval"] = true, value, [low, high]
+    if hidden["effect"].startswith("emissivity"):  # hidden as a share of what the case has
+        box = case_of(row["rig"]).gearboxes[hidden["effect"].partition(":")[2]]
+        true *= box.housing.boundary["housing_radiation"].emissivity
+    if effect is not None and len(effect.parameters) == 1:
+        ends = sizes[0].interval
+        low, high = (
+            other if end == bound != 0.0 else one
+            for one, end, bound, other in zip(
+                (low, high), ends, effect.parameters[0].bounds, (-np.inf, np.inf)
+            )
+        )
+    row["true_size"], row["size"], row["interval"] = true, value, [float(low), float(high)]
     row["covered"] = bool(low <= true <= high)
     row["size_error"] = abs(value - true) / max(abs(true), 1e-12)
 
