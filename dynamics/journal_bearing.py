@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
-from dynamics.journal_characteristic import HIGHEST_ECCENTRICITY, Characteristic, characteristic
+from dynamics.journal_characteristic import Characteristic, characteristic
+from dynamics.kernels.journal import HIGHEST_ECCENTRICITY
 
 TAYLOR_LIMIT = 41.3
 """Onset of vortices: Re = rho omega R c / eta above 41.3 sqrt(R / c) (G. I. Taylor 1923; ISO 7902-1)."""

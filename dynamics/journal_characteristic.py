@@ -15,25 +15,14 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from dynamics.journal_film import FilmSolution, solve_film
+from dynamics.kernels.journal import HIGHEST_ECCENTRICITY, load, load_excess, short_bearing_load
 
 Array = NDArray[np.float64]
 
-HIGHEST_ECCENTRICITY = 0.99
-"""Beyond it the film is thinner than any real roughness: the bearing runs in mixed friction."""
 NODES: Array = 0.001 - (math.log(1.0 - HIGHEST_ECCENTRICITY) + 0.001) * np.linspace(0.0, 1.0, 22) ** 1.5
 """Where the film is solved, as -ln(1 - eps), closer together near the concentric journal."""
 WIDTH_RATIO_STEP = 1e-3
 """B/D is rounded to this step, so that a growing journal does not cost a new table."""
-
-
-def short_bearing_load(eccentricity: float, width_ratio: float) -> float:
-    """Sommerfeld number of an infinitely short bearing (half film).
-
-    So = (B/D)^2 eps / (2 (1 - eps^2)^2) sqrt(pi^2 (1 - eps^2) + 16 eps^2)      Ocvirk, NACA TN 2808
-    """
-    rest = 1.0 - eccentricity**2
-    root = math.sqrt(math.pi**2 * rest + 16.0 * eccentricity**2)
-    return width_ratio**2 * eccentricity * root / (2.0 * rest**2)
 
 
 def short_bearing_attitude(eccentricity: float) -> float:
@@ -60,8 +49,7 @@ class Characteristic:
 
     def sommerfeld(self, eccentricity: float) -> float:
         """Sommerfeld number So = F psi^2 / (B D eta omega) at eps in [0, HIGHEST_ECCENTRICITY]."""
-        short = short_bearing_load(eccentricity, self.width_ratio)
-        return short * math.exp(float(self._load(self._node(eccentricity))))
+        return float(load(eccentricity, self.width_ratio, self._load.x, self._load.c))
 
     def attitude_angle(self, eccentricity: float) -> float:
         """Angle from the load to the line of centres [rad]."""
@@ -78,10 +66,8 @@ class Characteristic:
             return 0.0
         if sommerfeld >= self.sommerfeld(HIGHEST_ECCENTRICITY):
             return HIGHEST_ECCENTRICITY
-        target = math.log(sommerfeld)
-        root: float = brentq(
-            lambda eps: math.log(self.sommerfeld(eps)) - target, 1e-12, HIGHEST_ECCENTRICITY, xtol=1e-12
-        )
+        known = (math.log(sommerfeld), self.width_ratio, self._load.x, self._load.c)
+        root: float = brentq(load_excess, 1e-12, HIGHEST_ECCENTRICITY, args=known, xtol=1e-12)
         return root
 
 
@@ -105,9 +91,9 @@ def _solved(steps: int) -> Characteristic:
     films: list[FilmSolution] = []
     for node in NODES:
         films.append(solve_film(-math.expm1(-node), width_ratio, near=films[-1] if films else None))
-    load = [math.log(f.sommerfeld / short_bearing_load(f.eccentricity, width_ratio)) for f in films]
+    quotient = [math.log(f.sommerfeld / short_bearing_load(f.eccentricity, width_ratio)) for f in films]
     attitude = [f.attitude_angle - short_bearing_attitude(f.eccentricity) for f in films]
     flow = [f.side_flow / short_bearing_side_flow(f.eccentricity, width_ratio) for f in films]
     return Characteristic(
-        width_ratio, CubicSpline(NODES, load), CubicSpline(NODES, attitude), CubicSpline(NODES, flow)
+        width_ratio, CubicSpline(NODES, quotient), CubicSpline(NODES, attitude), CubicSpline(NODES, flow)
     )

@@ -70,26 +70,47 @@ def _involute_at(radius: Array | float, base: float) -> Array:
     return _involute_roll(np.sqrt(np.maximum(np.asarray(radius) ** 2 - base**2, 0.0)) / base)
 
 
+@dataclass(frozen=True, kw_only=True)
+class _End:
+    """One end of the path: where it is [m], the corner that could touch beyond it, and whether the wheel owns it."""
+
+    place: float
+    corner: CornerMesh
+    of_wheel: bool
+
+    def gap(self, path: Array) -> Array:
+        """Gap [m] beyond the end, shape of ``path``, which follows the rotation of the pinion."""
+        return self.corner.opening_seen_from_flank(-path) if self.of_wheel else self.corner.opening(path)
+
+    def open_by(self, path: Array, gap: float) -> NDArray[np.bool_]:
+        """Whether `gap` has grown to a gap [m]: the corner stays clear of the flank until it is closed by as much."""
+        at = gap - path if self.of_wheel else path
+        return np.asarray(self.corner.opening(at) >= gap)
+
+
+def _before(pair: GearPair) -> _End:
+    limits, pinion = pair.path, pair.gears[0]
+    if pinion.undercut and limits.start > limits.tip_start:
+        return _End(place=limits.start, corner=_corner(pair, 0, pinion.form_radius), of_wheel=False)
+    return _End(place=limits.tip_start, corner=_corner(pair, 1, pair.gears[1].tip_radius), of_wheel=True)
+
+
+def _after(pair: GearPair) -> _End:
+    limits, wheel = pair.path, pair.gears[1]
+    if wheel.undercut and limits.end < limits.tip_end:
+        return _End(place=limits.end, corner=_corner(pair, 1, wheel.form_radius), of_wheel=True)
+    return _End(place=limits.tip_end, corner=_corner(pair, 0, pair.gears[0].tip_radius), of_wheel=False)
+
+
 def tip_separation(pair: GearPair, path: Array) -> Array:
     """Gap [m], shape of ``path``, of an unmodified tooth pair: zero on its active path, growing outside.
 
     ``path`` [m] counts from the pitch point to the pinion tip and follows the rotation of the pinion.
     """
-    limits = pair.path
-    pinion, wheel = pair.gears
+    start, end = _before(pair), _after(pair)
     gap = np.zeros_like(path)
-    if wheel.undercut and limits.end < limits.tip_end:
-        after = path > limits.end
-        gap[after] = _corner(pair, 1, wheel.form_radius).opening_seen_from_flank(-path[after])
-    else:
-        after = path > limits.tip_end
-        gap[after] = _corner(pair, 0, pinion.tip_radius).opening(path[after])
-    if pinion.undercut and limits.start > limits.tip_start:
-        before = path < limits.start
-        gap[before] = _corner(pair, 0, pinion.form_radius).opening(path[before])
-    else:
-        before = path < limits.tip_start
-        gap[before] = _corner(pair, 1, wheel.tip_radius).opening_seen_from_flank(-path[before])
+    before, after = path < start.place, path > end.place
+    gap[before], gap[after] = start.gap(path[before]), end.gap(path[after])
     return gap
 
 
@@ -113,15 +134,15 @@ def path_reach(pair: GearPair, gap: float) -> tuple[float, float]:
         raise ValueError(f"gap = {gap} m must be positive; give the largest approach that the teeth may see")
     path, steps = pair.path, np.linspace(0.0, 2.0 * pair.base_pitch, 801)[1:]
     inner = path.tangent_1 * 0.999 - path.start
-    before = tip_separation(pair, path.start + np.maximum(-steps, inner))
+    before = _before(pair).open_by(path.start + np.maximum(-steps, inner), gap)
     outer = path.tangent_2 * 0.999 - path.end
-    after = tip_separation(pair, path.end + np.minimum(steps, outer))
+    after = _after(pair).open_by(path.end + np.minimum(steps, outer), gap)
     return (
-        max(path.start - _first(steps, before, gap), path.tangent_1 * 0.999),
-        min(path.end + _first(steps, after, gap), path.tangent_2 * 0.999),
+        max(path.start - _first(steps, before), path.tangent_1 * 0.999),
+        min(path.end + _first(steps, after), path.tangent_2 * 0.999),
     )
 
 
-def _first(steps: Array, gaps: Array, wanted: float) -> float:
-    enough = np.flatnonzero(gaps >= wanted)
-    return float(steps[enough[0]] if len(enough) else steps[-1])
+def _first(steps: Array, enough: NDArray[np.bool_]) -> float:
+    places = np.flatnonzero(enough)
+    return float(steps[places[0]] if len(places) else steps[-1])

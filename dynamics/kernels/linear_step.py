@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.book import OLD, SPEED, TAU, TURN
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined, sliding_direction
 
-# compiled from sources 91f568f6
+# compiled from sources 8e40dfde
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

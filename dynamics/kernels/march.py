@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_solve import (
     react,
 )
 
-# compiled from sources 91f568f6
+# compiled from sources 8e40dfde
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -60,7 +60,7 @@ from dynamics.kernels.contact import (
     press_flank,
 )
 
-# compiled from sources 91f568f6
+# compiled from sources 8e40dfde
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -34,7 +34,7 @@ from dynamics.kernels.contact import (
     sliding_direction,
 )
 
-# compiled from sources 91f568f6
+# compiled from sources 8e40dfde
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
