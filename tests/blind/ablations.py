@@ -2,8 +2,7 @@
 
     python -m tests.blind.score run dev plain --out WORK --ablation white
 
-Each takes one part away from the calibration that is frozen; ``twenty`` stands for a calibration file made from twenty
-healthy sets (``calibrate --sets 20``).
+Each takes one part away from the calibration that is frozen.
 """
 
 from collections.abc import Callable
