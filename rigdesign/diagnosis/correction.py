@@ -17,6 +17,10 @@ MISREAD_UNITS = {
     ("W", "kilowatt"): "kW",
     ("N m", "kilonewton metre"): "kN m",
     ("Nm", "kilonewton metre"): "kN m",
+    ("N m", "newton millimetre"): "N mm",
+    ("Nm", "newton millimetre"): "N mm",
+    ("rad", "degrees"): "deg",
+    ("rad", "milliradian"): "mrad",
 }
 """Unit as stated and what was found -> unit to state."""
 
@@ -41,7 +45,7 @@ def of_sensor(sized: Sized) -> Correction:
     channel = sized.name.partition(":")[2] or sized.name
     text = f"{sized.entry.title}: {told(value)}; "
     if sized.name == "angle_zero":
-        text += f"add {value.value:.4g} rad to the angle of the gear that counts (zero under data.tach of recordings)"
+        text += _turned(f"{value.value:.4g} rad")
         return Correction(name=sized.name, text=text, size=sized)
     if sized.entry.kind == "input":
         text += "the rig ran at another value than was read; correct the column of this setting"
@@ -69,6 +73,8 @@ def of_data(name: str, measurement: MeasurementSet) -> Correction:
             text=f"exchange the readings of operating points {first} and {second} in the table, settings kept, once "
             "the log of the test says so",
         )
+    if kind.startswith("angle_zero ("):
+        return Correction(name=name, text=_turned(kind.removeprefix("angle_zero (").removesuffix(")")))
     channel, _, found = rest.partition(" (")
     found = found.removesuffix(")")
     entry = measurement.channels.get(channel)
@@ -80,8 +86,13 @@ def of_data(name: str, measurement: MeasurementSet) -> Correction:
             operations=({"op": "replace", "path": f"/channels/{_token(channel)}/unit", "value": unit},),
         )
     return Correction(
-        name=name, text=f"the readings of {channel} look as if of wrong {found}; convert its column"
+        name=name,
+        text=f"the readings of {channel} look as if of another unit or sign ({found}); convert its column",
     )
+
+
+def _turned(angle: str) -> str:
+    return f"add {angle} to the angle of the gear that counts (zero under data.tach of recordings)"
 
 
 def _placed(channel: MeasuredChannel, other: MeasuredChannel) -> list[dict[str, Any]]:

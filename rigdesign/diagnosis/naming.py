@@ -271,6 +271,10 @@ def _without_entry(explanation: str) -> str:
         return f"channels {first} and {second} exchanged"
     if kind == "swapped_points":
         return f"operating points {first} and {second} exchanged"
+    if kind.startswith("angle_zero ("):
+        return (
+            f"the mark of the tach stands elsewhere by {kind.removeprefix('angle_zero (').removesuffix(')')}"
+        )
     if kind == "unit":
         channel, _, what = rest.partition(" (")
         return f"{channel} in another unit or sign: {what.removesuffix(')')}"

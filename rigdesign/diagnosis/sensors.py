@@ -110,6 +110,10 @@ ANGLE_ZERO = 2e-3
 """Healthy error of the angle at which the mark of the tach stands [rad], one sigma."""
 
 
+LARGEST_ANGLE_ERROR = 20.0 * ANGLE_ZERO
+"""Up to which orders answer to it by their slope [rad]; beyond it the mark stands elsewhere (`wrong_data`)."""
+
+
 def _angle_zero(library: Library, channels: Mapping[str, Channel]) -> list[SensorError]:
     """All orders turned by one angle of the gear that counts: X_k by i k X_k per radian."""
     place = {feature: row for row, feature in enumerate(library.features)}
@@ -131,7 +135,7 @@ def _angle_zero(library: Library, channels: Mapping[str, Channel]) -> list[Senso
             values=values,
             unit="rad",
             spread=ANGLE_ZERO,
-            times=20.0,
+            times=LARGEST_ANGLE_ERROR / ANGLE_ZERO,
         )
     ]
 

@@ -23,12 +23,13 @@ from rigdesign.diagnosis.evidence import Evidence, weigh
 from rigdesign.diagnosis.examine import Earlier, Examination, Explanations, examine
 from rigdesign.diagnosis.healthy import relative_speed
 from rigdesign.diagnosis.heldout import Gap, gap, held_out
-from rigdesign.diagnosis.hypotheses import physical, sensor, without_a_name, wrong_data
+from rigdesign.diagnosis.hypotheses import physical, sensor, without_a_name
 from rigdesign.diagnosis.intervals import JointFit, fit_together
 from rigdesign.diagnosis.outliers import reject
 from rigdesign.diagnosis.own_error import OwnError
 from rigdesign.diagnosis.signature import Contest, Signature
 from rigdesign.diagnosis.subject import Comparison, plain
+from rigdesign.diagnosis.wrong_data import wrong_data
 
 MOST_EFFECTS = 4
 """Effects that are looked for one after the other."""
@@ -109,7 +110,7 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
     explanations = _explanations(problem, seen, space)
     examinations, found = _search(problem, seen, space, explanations, calibration)
     refused = _refused(subject)
-    wrong = None if refused else _wrong_data(problem, subject, whole, calibration)
+    wrong = None if refused else _wrong_data(problem, everything, calibration)
     deciding = wrong or examinations[0]
     decision = refused or deciding.decision
     if decision.verdict != "named":
@@ -175,7 +176,14 @@ def _explanations(
         ),
         sensor=sensor(covariance, subject.errors),
         anonymous=without_a_name(covariance, anonymous(subject.library, subject.channels)) if rivals else [],
-        data=wrong_data(covariance, subject.features, subject.channels, subject.values, expected),
+        data=wrong_data(
+            covariance,
+            subject.features,
+            subject.channels,
+            subject.values,
+            expected,
+            met_before=problem.baseline is not None,
+        ),
     )
 
 
@@ -282,13 +290,13 @@ def _refused(subject: Comparison) -> Decision | None:
     )
 
 
-def _wrong_data(
-    problem: Problem, subject: Comparison, whole: Whitened, calibration: Calibration
-) -> Examination | None:
-    """A look at all data together, held-out points included, if they fit once something in them is undone.
+def _wrong_data(problem: Problem, whole: Whitened, calibration: Calibration) -> Examination | None:
+    """A look at all data together, if they fit once something in them is undone; no effect is looked for.
 
-    An exchange with a held-out point would not show in the others; no effect is looked for in this step.
+    Held-out points are included, as an exchange with one of them would not show in the others, and so is what stands
+    out: of exchanged readings that are the only ones of their channels nothing else is left.
     """
+    subject = problem.subject
     everything = _explanations(problem, subject, whole, rivals=False)
     singles = (*everything.physical, *everything.sensor, *everything.data)
     contest = Contest(whole, _signature(problem, subject, calibration))

@@ -148,6 +148,7 @@ def test_names_know_orders_from_teeth() -> None:
     assert known.entry("unknown: heat at gear oil ~n") is None
     assert known.entry("run_out:test.pinion/4") is None
     assert known.title("swapped_points:P01,P02") == "operating points P01 and P02 exchanged"
+    assert known.title("angle_zero (+0.2 rad)") == "the mark of the tach stands elsewhere by +0.2 rad"
     assert known.title("unit:P (kilowatt)") == "P in another unit or sign: kilowatt"
     with pytest.raises(ValueError, match="no size"):
         known.sized("swapped_points:P01,P02", (), ())
@@ -252,7 +253,12 @@ def test_a_misread_unit_is_stated_anew(name: str, path: str, value: str) -> None
 
 def test_what_no_key_says_is_a_correction_in_words() -> None:
     measurement = story("healthy").measurement
-    for name in ("unit:P (sign)", "unit:P (horsepower)", "swapped_points:P01,P02"):
+    for name in (
+        "unit:P (sign)",
+        "unit:P (horsepower)",
+        "unit:M (pound-force inch)",
+        "swapped_points:P01,P02",
+    ):
         found = of_data(name, measurement)
         assert found.operations == () and found.text
 

@@ -1,0 +1,97 @@
+"""Data that are wrong as they stand: exchanged channels and points, readings in another unit or with another sign."""
+
+import numpy as np
+import pytest
+
+from rigdesign.diagnosis.covariance import Covariance
+from rigdesign.diagnosis.wrong_data import wrong_data
+from rigdesign.prediction.model import Channel, Feature
+
+CHANNELS = {
+    "T_front": Channel(name="T_front", quantity="temperature", place="test.outer_cold_front"),
+    "T_rear": Channel(name="T_rear", quantity="temperature", place="test.outer_cold_rear"),
+    "M": Channel(name="M", quantity="torque", place="pinion_side", orders=(0.0, 1.0)),
+    "phi": Channel(name="phi", quantity="angle", place="pinion_side", orders=(0.0,)),
+    "P": Channel(name="P", quantity="motor_power", place="motor"),
+}
+FEATURES = tuple(
+    Feature(channel=name, setting=point, order=order)
+    for point in ("P01", "P02", "P03")
+    for name, channel in CHANNELS.items()
+    for order in channel.orders or (0.0,)
+)
+NOISE = {"T_front": 0.3, "T_rear": 0.3, "M": 0.2, "phi": 1e-6, "P": 5.0}
+LEVEL = {"T_front": 350.0, "T_rear": 335.0, "M": 200.0, "phi": 2e-3, "P": 900.0}
+
+
+def likeliest(change):
+    """Name of the explanation that leaves least of readings that were changed."""
+    rng = np.random.default_rng(3)
+    noise = np.array([NOISE[one.channel] for one in FEATURES])
+    expected = np.array([LEVEL[one.channel] for one in FEATURES]) * rng.uniform(0.9, 1.1, len(FEATURES))
+    values = change(expected + noise * rng.normal(size=len(FEATURES)))
+    covariance = Covariance.of_noise(noise, [], {})
+    found = wrong_data(covariance, FEATURES, CHANNELS, values, expected, met_before=True)
+    return min(found, key=lambda one: float(one.residual @ one.residual)).name
+
+
+def of(name):
+    return np.array([one.channel == name for one in FEATURES])
+
+
+@pytest.mark.parametrize(
+    ("channel", "unit", "factor", "shift"),
+    [
+        ("T_front", "fahrenheit", 1.8, 273.15 - 459.67),
+        ("M", "sign", -1.0, 0.0),
+        ("M", "kilonewton metre", 1e-3, 0.0),
+        ("M", "newton millimetre", 1e3, 0.0),
+        ("M", "kilopond metre", 0.1019716, 0.0),
+        ("M", "pound-force foot", 0.7375621, 0.0),
+        ("M", "pound-force inch", 8.850746, 0.0),
+        ("phi", "degrees", 57.29578, 0.0),
+        ("P", "horsepower", 1.341022e-3, 0.0),
+        ("P", "metric horsepower", 1.359622e-3, 0.0),
+    ],
+)
+def test_a_unit_is_recognised(channel, unit, factor, shift):
+    found = likeliest(lambda values: np.where(of(channel), factor * values + shift, values))
+    assert found == f"unit:{channel} ({unit})"
+
+
+@pytest.mark.parametrize("angle", [0.2, -1.3])
+def test_a_mark_elsewhere_is_found_with_its_angle(angle):
+    """Orders 1 and 28 of a torque, read with the mark so far on; tooth by tooth the angle is a pitch of 28 teeth."""
+    parts = [(order, part) for order in (1.0, 28.0) for part in ("real", "imaginary")]
+    features = tuple(Feature(channel="M", setting="P01", order=order, part=part) for order, part in parts)
+    true = np.array([3.0 - 1.0j, 9.0 + 5.0j])
+    noise, read = np.full(4, 0.05), true * np.exp(1j * np.array([1.0, 28.0]) * angle)
+    expected, values = (np.ravel([(one.real, one.imag) for one in many]) for many in (true, read))
+    covariance = Covariance.of_noise(noise, [], {})
+    found = {
+        known: wrong_data(covariance, features, CHANNELS, values, expected, met_before=known)
+        for known in (True, False)
+    }
+    [mark] = [one for one in found[True] if one.name.startswith("angle_zero")]
+    assert mark.name == f"angle_zero ({angle:+.4f} rad)"
+    assert np.abs(mark.residual).max() < 1e-2
+    assert not any(one.name.startswith("angle_zero") for one in found[False])
+
+
+def test_exchanged_channels_are_recognised():
+    def change(values):
+        changed = values.copy()
+        changed[of("T_front")], changed[of("T_rear")] = values[of("T_rear")], values[of("T_front")]
+        return changed
+
+    assert likeliest(change) == "swapped_channels:T_front,T_rear"
+
+
+def test_exchanged_points_are_recognised():
+    def change(values):
+        at = {name: np.array([one.setting == name for one in FEATURES]) for name in ("P01", "P03")}
+        changed = values.copy()
+        changed[at["P01"]], changed[at["P03"]] = values[at["P03"]], values[at["P01"]]
+        return changed
+
+    assert likeliest(change) == "swapped_points:P01,P03"
