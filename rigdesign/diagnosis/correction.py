@@ -19,8 +19,6 @@ MISREAD_UNITS = {
     ("Nm", "kilonewton metre"): "kN m",
     ("N m", "newton millimetre"): "N mm",
     ("Nm", "newton millimetre"): "N mm",
-    ("rad", "degrees"): "deg",
-    ("rad", "milliradian"): "mrad",
 }
 """Unit as stated and what was found -> unit to state."""
 

@@ -110,7 +110,8 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
     explanations = _explanations(problem, seen, space)
     examinations, found = _search(problem, seen, space, explanations, calibration)
     refused = _refused(subject)
-    wrong = None if refused else _wrong_data(problem, everything, calibration)
+    looked_at = (subject, whole) if problem.baseline is None else (problem.subject, everything)
+    wrong = None if refused else _wrong_data(problem, *looked_at, calibration)
     deciding = wrong or examinations[0]
     decision = refused or deciding.decision
     if decision.verdict != "named":
@@ -290,13 +291,15 @@ def _refused(subject: Comparison) -> Decision | None:
     )
 
 
-def _wrong_data(problem: Problem, whole: Whitened, calibration: Calibration) -> Examination | None:
+def _wrong_data(
+    problem: Problem, subject: Comparison, whole: Whitened, calibration: Calibration
+) -> Examination | None:
     """A look at all data together, if they fit once something in them is undone; no effect is looked for.
 
-    Held-out points are included, as an exchange with one of them would not show in the others, and so is what stands
-    out: of exchanged readings that are the only ones of their channels nothing else is left.
+    Held-out points are included, as an exchange with one of them would not show in the others. With a baseline so is
+    what stands out: of exchanged readings that are the only ones of their channels nothing else is left. Without one
+    it may be the model that is out.
     """
-    subject = problem.subject
     everything = _explanations(problem, subject, whole, rivals=False)
     singles = (*everything.physical, *everything.sensor, *everything.data)
     contest = Contest(whole, _signature(problem, subject, calibration))

@@ -104,7 +104,6 @@ _MISREAD: Mapping[str, tuple[_Misreading, ...]] = {
     ),
     "drive_torque": _TORQUE,
     "torque": _TORQUE,
-    "angle": (("sign", -1.0, 0.0), ("degrees", 180.0 / np.pi, 0.0), ("milliradian", 1e3, 0.0)),
     "natural_frequency": (("rpm", 60.0, 0.0), ("radians", 2.0 * np.pi, 0.0)),
 }
 """What a reader does wrong: name, factor and shift from the true value to the number that was read as the unit."""
@@ -113,8 +112,9 @@ _MISREAD: Mapping[str, tuple[_Misreading, ...]] = {
 def _units(
     features: Sequence[Feature], channels: Mapping[str, Channel], values: Array
 ) -> list[tuple[str, Array]]:
+    """Of channels whose mean is read: orders alone, foretold badly, would be taken for a unit that makes them small."""
     found = []
-    for name in dict.fromkeys(feature.channel for feature in features):
+    for name in dict.fromkeys(feature.channel for feature in features if feature.order == 0.0):
         rows = np.array([row for row, feature in enumerate(features) if feature.channel == name])
         for what, factor, shift in _MISREAD.get(channels[name].quantity, ()):
             changed = values.copy()

@@ -49,7 +49,6 @@ def of(name):
         ("M", "kilopond metre", 0.1019716, 0.0),
         ("M", "pound-force foot", 0.7375621, 0.0),
         ("M", "pound-force inch", 8.850746, 0.0),
-        ("phi", "degrees", 57.29578, 0.0),
         ("P", "horsepower", 1.341022e-3, 0.0),
         ("P", "metric horsepower", 1.359622e-3, 0.0),
     ],
@@ -76,6 +75,15 @@ def test_a_mark_elsewhere_is_found_with_its_angle(angle):
     assert mark.name == f"angle_zero ({angle:+.4f} rad)"
     assert np.abs(mark.residual).max() < 1e-2
     assert not any(one.name.startswith("angle_zero") for one in found[False])
+
+
+def test_orders_alone_tell_no_unit():
+    features = tuple(
+        Feature(channel="M", setting="P01", order=28.0, part=part) for part in ("real", "imaginary")
+    )
+    covariance = Covariance.of_noise(np.full(2, 0.05), [], {})
+    read, expected = np.array([-3.0, 8.0]), np.array([9.0, 1.0])
+    assert wrong_data(covariance, features, CHANNELS, read, expected, met_before=False) == []
 
 
 def test_exchanged_channels_are_recognised():
