@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rigdesign.diagnosis.naming import Sized, told
-from rigdesign.diagnosis.sensors import SensorError
+from rigdesign.diagnosis.sensors import SensorError, angle_of_mark
 from rigdesign.measurement import MeasuredChannel, MeasurementSet
 
 MISREAD_UNITS = {
@@ -71,8 +71,8 @@ def of_data(name: str, measurement: MeasurementSet) -> Correction:
             text=f"exchange the readings of operating points {first} and {second} in the table, settings kept, once "
             "the log of the test says so",
         )
-    if kind.startswith("angle_zero ("):
-        return Correction(name=name, text=_turned(kind.removeprefix("angle_zero (").removesuffix(")")))
+    if angle := angle_of_mark(name):
+        return Correction(name=name, text=_turned(angle))
     channel, _, found = rest.partition(" (")
     found = found.removesuffix(")")
     entry = measurement.channels.get(channel)

@@ -11,7 +11,7 @@ from math import atan2, exp, hypot, isfinite, pi
 from rigdesign.diagnosis.effects import Effect, Parameter
 from rigdesign.diagnosis.evidence import Evidence
 from rigdesign.diagnosis.intervals import NORMAL_95, Size
-from rigdesign.diagnosis.sensors import SensorError
+from rigdesign.diagnosis.sensors import SensorError, angle_of_mark
 
 DIGITS = 6
 """Significant digits of a fitted size."""
@@ -271,10 +271,8 @@ def _without_entry(explanation: str) -> str:
         return f"channels {first} and {second} exchanged"
     if kind == "swapped_points":
         return f"operating points {first} and {second} exchanged"
-    if kind.startswith("angle_zero ("):
-        return (
-            f"the mark of the tach stands elsewhere by {kind.removeprefix('angle_zero (').removesuffix(')')}"
-        )
+    if angle := angle_of_mark(explanation):
+        return f"the mark of the tach stands elsewhere by {angle}"
     if kind == "unit":
         channel, _, what = rest.partition(" (")
         return f"{channel} in another unit or sign: {what.removesuffix(')')}"

@@ -114,6 +114,17 @@ LARGEST_ANGLE_ERROR = 20.0 * ANGLE_ZERO
 """Up to which orders answer to it by their slope [rad]; beyond it the mark stands elsewhere (`wrong_data`)."""
 
 
+def mark_elsewhere(angle: float) -> str:
+    """Name of the explanation that the mark stands elsewhere by an angle [rad] beyond that."""
+    return f"angle_zero ({angle:+.4f} rad)"
+
+
+def angle_of_mark(explanation: str) -> str:
+    """The angle in such a name, as ``+0.2000 rad``; empty for other names."""
+    kind, _, angle = explanation.partition(" (")
+    return angle.removesuffix(")") if kind == "angle_zero" else ""
+
+
 def _angle_zero(library: Library, channels: Mapping[str, Channel]) -> list[SensorError]:
     """All orders turned by one angle of the gear that counts: X_k by i k X_k per radian."""
     place = {feature: row for row, feature in enumerate(library.features)}

@@ -4,6 +4,7 @@ Each explanation undoes one of these and leaves a residual; nothing is fitted bu
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -13,7 +14,7 @@ from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.covariance import Covariance
 from rigdesign.diagnosis.evidence import Hypothesis
 from rigdesign.diagnosis.hypotheses import whitened
-from rigdesign.diagnosis.sensors import LARGEST_ANGLE_ERROR
+from rigdesign.diagnosis.sensors import LARGEST_ANGLE_ERROR, mark_elsewhere
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature
 
 
@@ -145,12 +146,7 @@ def _turned_mark(
     for feature, row in place.items():
         if feature.part == "value" or channels[feature.channel].quantity not in ORDER_QUANTITIES:
             continue
-        twin = Feature(
-            channel=feature.channel,
-            setting=feature.setting,
-            order=feature.order,
-            part="imaginary" if feature.part == "real" else "real",
-        )
+        twin = replace(feature, part="imaginary" if feature.part == "real" else "real")
         if twin in place:
             across[row] = values[place[twin]] * (1.0 if feature.part == "real" else -1.0)
     turning = np.unique(orders[across != 0.0])
@@ -175,9 +171,5 @@ def _turned_mark(
     angles = np.concatenate([-angles[::-1], angles])
     best = float(angles[np.argmin([square(angle) for angle in angles])])
     best = float(minimize_scalar(square, bounds=(best - step, best + step), method="bounded").x)
-    name = f"{MARK} ({best:+.4f} rad)"
+    name = mark_elsewhere(best)
     return [Hypothesis(name=name, family="input", parts=(name,), residual=left(np.array([best]))[0])]
-
-
-MARK = "angle_zero"
-"""How the name of a mark that stands elsewhere begins; its angle follows in brackets."""
