@@ -15,7 +15,13 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from dynamics.journal_film import FilmSolution, solve_film
-from dynamics.kernels.journal import HIGHEST_ECCENTRICITY, load, load_excess, short_bearing_load
+from dynamics.kernels.journal import (
+    HIGHEST_ECCENTRICITY,
+    load,
+    load_excess,
+    node_of,
+    short_bearing_load,
+)
 
 Array = NDArray[np.float64]
 
@@ -44,21 +50,18 @@ class Characteristic:
     _attitude: CubicSpline
     _flow: CubicSpline
 
-    def _node(self, eccentricity: float) -> float:
-        return -math.log1p(-min(eccentricity, HIGHEST_ECCENTRICITY))
-
     def sommerfeld(self, eccentricity: float) -> float:
         """Sommerfeld number So = F psi^2 / (B D eta omega) at eps in [0, HIGHEST_ECCENTRICITY]."""
         return float(load(eccentricity, self.width_ratio, self._load.x, self._load.c))
 
     def attitude_angle(self, eccentricity: float) -> float:
         """Angle from the load to the line of centres [rad]."""
-        return short_bearing_attitude(eccentricity) + float(self._attitude(self._node(eccentricity)))
+        return short_bearing_attitude(eccentricity) + float(self._attitude(node_of(eccentricity)))
 
     def side_flow(self, eccentricity: float) -> float:
         """Oil leaving the ends by its own pressure, Q / (D^3 psi omega) [-]."""
         short = short_bearing_side_flow(eccentricity, self.width_ratio)
-        return short * float(self._flow(self._node(eccentricity)))
+        return short * float(self._flow(node_of(eccentricity)))
 
     def eccentricity(self, sommerfeld: float) -> float:
         """Relative eccentricity that carries a Sommerfeld number, at most HIGHEST_ECCENTRICITY."""

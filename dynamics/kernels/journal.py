@@ -24,13 +24,19 @@ def short_bearing_load(eccentricity: float, width_ratio: float) -> float:
 
 
 @njit(cache=True)
+def node_of(eccentricity: float) -> float:
+    """-ln(1 - eps), over which a characteristic is interpolated."""
+    return -log1p(-min(eccentricity, HIGHEST_ECCENTRICITY))
+
+
+@njit(cache=True)
 def load(eccentricity: float, width_ratio: float, nodes: Array, quotient: Array) -> float:
     """Sommerfeld number of a bearing.
 
-    nodes, quotient : (n,) -ln(1 - eps), and (4, n - 1) coefficients of the cubics between them of the logarithm of the
+    nodes, quotient : (n,) of `node_of`, and (4, n - 1) coefficients of the cubics between them of the logarithm of the
         load over that of a short bearing
     """
-    node = -log1p(-min(eccentricity, HIGHEST_ECCENTRICITY))
+    node = node_of(eccentricity)
     piece = min(max(int(np.searchsorted(nodes, node)) - 1, 0), len(nodes) - 2)
     x = node - nodes[piece]
     power = ((quotient[0, piece] * x + quotient[1, piece]) * x + quotient[2, piece]) * x + quotient[3, piece]

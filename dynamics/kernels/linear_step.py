@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.book import OLD, SPEED, TAU, TURN
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined, sliding_direction
 
-# compiled from sources 8e40dfde
+# compiled from sources 18f100a9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

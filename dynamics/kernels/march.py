@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_solve import (
     react,
 )
 
-# compiled from sources 8e40dfde
+# compiled from sources 18f100a9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -34,7 +34,7 @@ from dynamics.kernels.contact import (
     sliding_direction,
 )
 
-# compiled from sources 8e40dfde
+# compiled from sources 18f100a9
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

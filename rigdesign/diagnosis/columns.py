@@ -4,7 +4,7 @@ A column is a derivative (n_features,) with the spread its cause has in a health
 of a whole kind of columns; they are dimensionless, so that what one rig taught serves another.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,22 +38,28 @@ def stacked(columns: Sequence[Column], amplitudes: Mapping[str, float]) -> Array
     return np.stack(scaled, axis=1)
 
 
-def series_numbers(features: Sequence[Feature]) -> NDArray[np.intp]:
-    """(n,) number of the series of every feature, one channel and one order, from zero in the order they appear."""
-    names = [(one.channel, one.order, one.part) for one in features]
+def numbered(names: Sequence[Hashable]) -> NDArray[np.intp]:
+    """(n,) number of every name, the same for the same name, from zero in the order they appear."""
     numbers = {name: number for number, name in enumerate(dict.fromkeys(names))}
     return np.array([numbers[name] for name in names], dtype=np.intp)
+
+
+def series_numbers(features: Sequence[Feature]) -> NDArray[np.intp]:
+    """(n,) number of the series of every feature, one channel and one order, from zero in the order they appear."""
+    return numbered([(one.channel, one.order, one.part) for one in features])
 
 
 def order_numbers(features: Sequence[Feature]) -> NDArray[np.intp]:
     """(n,) number of the order that every feature is a part of, at its channel and point, in the order they appear."""
-    names = [(one.channel, one.setting, one.order) for one in features]
-    numbers = {name: number for number, name in enumerate(dict.fromkeys(names))}
-    return np.array([numbers[name] for name in names], dtype=np.intp)
+    return numbered([(one.channel, one.setting, one.order) for one in features])
 
 
 def amplitudes_of(features: Sequence[Feature], values: Array) -> Array:
     """(n,) amplitude of the order that a number is a part of; zero for means and all other numbers."""
-    orders = order_numbers(features)
-    squares = np.bincount(orders, weights=values**2)
-    return np.where([feature.order != 0.0 for feature in features], np.sqrt(squares[orders]), 0.0)
+    amplitudes = together(values, order_numbers(features))
+    return np.where([feature.order != 0.0 for feature in features], amplitudes, 0.0)
+
+
+def together(values: Array, groups: NDArray[np.intp]) -> Array:
+    """(n,) root of the sum of squares over the group of each number."""
+    return np.asarray(np.sqrt(np.bincount(groups, weights=values**2))[groups])

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.diagnosis.columns import Array, order_numbers
+from rigdesign.diagnosis.columns import Array, numbered, order_numbers, together
 from rigdesign.prediction.model import Feature
 
 
@@ -35,27 +35,20 @@ class OwnError:
         cls, features: Sequence[Feature], share: Array, mesh: NDArray[np.bool_], values: Array
     ) -> "OwnError":
         """Of the numbers of a comparison."""
-        names = [(one.channel, one.setting) for one in features]
-        places = {name: number for number, name in enumerate(dict.fromkeys(names))}
         return cls(
             share=share,
             mesh=mesh,
             values=np.where([one.order != 0.0 for one in features], values, 0.0),
             orders=order_numbers(features),
-            places=np.array([places[name] for name in names], dtype=np.intp),
+            places=numbered([(one.channel, one.setting) for one in features]),
         )
 
     def at(self, answer: Array, circuit: bool) -> Array:
         """(n,) standard deviations beside an answer (n,); ``circuit``: whether its cause changes the circuit."""
-        own = self.share * _together(answer, self.orders)
+        own = self.share * together(answer, self.orders)
         if not circuit:
             return np.asarray(own)
-        changed, before = (_together(self.mesh * one, self.places) for one in (answer, self.values))
+        changed, before = (together(self.mesh * one, self.places) for one in (answer, self.values))
         passed_on = np.minimum(changed / np.maximum(before, 1e-150), 1.0)
-        excited = np.where(self.mesh, 0.0, _together(self.values, self.orders))
+        excited = np.where(self.mesh, 0.0, together(self.values, self.orders))
         return np.asarray(np.hypot(own, passed_on * excited))
-
-
-def _together(values: Array, groups: NDArray[np.intp]) -> Array:
-    """(n,) root of the sum of squares over the group of each number."""
-    return np.asarray(np.sqrt(np.bincount(groups, weights=values**2))[groups])

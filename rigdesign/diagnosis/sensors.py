@@ -5,13 +5,14 @@ effect it may be many times that.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.levels import excess
 from rigdesign.diagnosis.library import Library, value_of
+from rigdesign.diagnosis.turning import Turning
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Setting
 
 TIMES = 12.0
@@ -103,12 +104,11 @@ def sensor_errors(
                     spread=one.scale,
                 )
             )
-    return (*found, *_angle_zero(library, channels))
+    return (*found, *_angle_zero(library))
 
 
 ANGLE_ZERO = 2e-3
 """Healthy error of the angle at which the mark of the tach stands [rad], one sigma."""
-
 
 LARGEST_ANGLE_ERROR = 20.0 * ANGLE_ZERO
 """Up to which orders answer to it by their slope [rad]; beyond it the mark stands elsewhere (`wrong_data`)."""
@@ -125,17 +125,10 @@ def angle_of_mark(explanation: str) -> str:
     return angle.removesuffix(")") if kind == "angle_zero" else ""
 
 
-def _angle_zero(library: Library, channels: Mapping[str, Channel]) -> list[SensorError]:
+def _angle_zero(library: Library) -> list[SensorError]:
     """All orders turned by one angle of the gear that counts: X_k by i k X_k per radian."""
-    place = {feature: row for row, feature in enumerate(library.features)}
-    values = np.zeros(len(library.features))
-    for feature, row in place.items():
-        if feature.part == "value" or channels[feature.channel].quantity not in ORDER_QUANTITIES:
-            continue
-        other = replace(feature, part="imaginary" if feature.part == "real" else "real")
-        sign = -1.0 if feature.part == "real" else 1.0
-        if other in place:
-            values[row] = sign * feature.order * library.base[place[other]]
+    turning = Turning.of(library.features)
+    values = turning.order_of(len(library.features)) * turning.ahead(library.base)
     if not values.any():
         return []
     return [

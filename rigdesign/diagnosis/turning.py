@@ -49,3 +49,15 @@ class Turning:
         found[:, self.real] = np.cos(angle) * real - np.sin(angle) * imaginary
         found[:, self.imaginary] = np.sin(angle) * real + np.cos(angle) * imaginary
         return np.asarray(found)
+
+    def ahead(self, values: Array) -> Array:
+        """(n,) every complex order of values (n,) turned by a right angle, times i; zero for what does not turn."""
+        found = np.zeros(len(values))
+        found[self.real], found[self.imaginary] = -values[self.imaginary], values[self.real]
+        return found
+
+    def order_of(self, count: int) -> Array:
+        """(count,) order of every number that turns, zero for the others."""
+        found = np.zeros(count)
+        found[self.real] = found[self.imaginary] = self.orders
+        return found

@@ -166,9 +166,10 @@ def _cut(
 
 
 def _explanations(
-    problem: Problem, subject: Comparison, space: Whitened, *, rivals: bool = True
+    problem: Problem, subject: Comparison, space: Whitened, *, rivals: bool = True, data: bool = True
 ) -> Explanations:
-    """All explanations; without the anonymous ``rivals`` where only data and catalogue are weighed."""
+    """All explanations; without the anonymous ``rivals`` where only data and catalogue are weighed, and without wrong
+    ``data`` where those were looked at before."""
     covariance = space.covariance
     expected = subject.values - space.raw
     return Explanations(
@@ -184,7 +185,9 @@ def _explanations(
             subject.values,
             expected,
             met_before=problem.baseline is not None,
-        ),
+        )
+        if data
+        else [],
     )
 
 
@@ -213,12 +216,12 @@ def _search(
         found += new
         after = _with_named(space, found, signature)
         claimed = {part for one in found for part in one.hypothesis.parts}
-        rest = _explanations(problem, subject, after)
+        rest = _explanations(problem, subject, after, data=False)
         left = Explanations(
             physical=[one for one in rest.physical if claimed.isdisjoint(one.parts)],
             sensor=[one for one in rest.sensor if claimed.isdisjoint(one.parts)],
             anonymous=rest.anonymous,
-            data=[],
+            data=rest.data,
         )
         earlier = Earlier(look=examinations[0], named=frozenset(claimed))
         examinations.append(look(after, left, explained=max(one.gain for one in found), earlier=earlier))

@@ -4,7 +4,6 @@ Each explanation undoes one of these and leaves a residual; nothing is fitted bu
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -15,7 +14,8 @@ from rigdesign.diagnosis.covariance import Covariance
 from rigdesign.diagnosis.evidence import Hypothesis
 from rigdesign.diagnosis.hypotheses import whitened
 from rigdesign.diagnosis.sensors import LARGEST_ANGLE_ERROR, mark_elsewhere
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature
+from rigdesign.diagnosis.turning import Turning
+from rigdesign.prediction.model import Channel, Feature
 
 
 def wrong_data(
@@ -42,7 +42,7 @@ def wrong_data(
         Hypothesis(name=name, family="input", parts=(name,), residual=residual[0])
         for (name, _), residual in zip(changes, residuals, strict=True)
     ]
-    return [*found, *(_turned_mark(covariance, features, channels, values, expected) if met_before else [])]
+    return [*found, *(_turned_mark(covariance, features, values, expected) if met_before else [])]
 
 
 def _swapped_channels(
@@ -129,47 +129,43 @@ STEP = 0.3
 
 
 def _turned_mark(
-    covariance: Covariance,
-    features: Sequence[Feature],
-    channels: Mapping[str, Channel],
-    values: Array,
-    expected: Array,
+    covariance: Covariance, features: Sequence[Feature], values: Array, expected: Array
 ) -> list[Hypothesis]:
     """The mark of the tach at another angle of the gear that counts: order k of every signal is turned by k times it.
 
     Beyond what an error of the mark may be that is admitted to an explanation by its slope (`sensors`). Once orders are
     taken apart, the residual is a sum of their cosine and sine parts at any angle.
     """
-    orders = np.array([one.order for one in features])
-    place = {feature: row for row, feature in enumerate(features)}
-    across = np.zeros(len(features))
-    for feature, row in place.items():
-        if feature.part == "value" or channels[feature.channel].quantity not in ORDER_QUANTITIES:
-            continue
-        twin = replace(feature, part="imaginary" if feature.part == "real" else "real")
-        if twin in place:
-            across[row] = values[place[twin]] * (1.0 if feature.part == "real" else -1.0)
-    turning = np.unique(orders[across != 0.0])
-    turning = turning[turning > 0.0]
-    if not len(turning):
+    turning = Turning.of(features)
+    orders = np.unique(turning.orders[turning.orders > 0.0])
+    if not len(orders):
         return []
-    own = (orders == turning[:, None]) & (across != 0.0)
-    parts = np.vstack([values * ~own.any(axis=0) - expected, values * own, across * own])
+    own = turning.order_of(len(features)) == orders[:, None]
+    parts = np.vstack([values * ~own.any(axis=0) - expected, values * own, -turning.ahead(values) * own])
     [white] = whitened(covariance, [parts])
+    products = white @ white.T
 
-    def left(angles: Array) -> Array:
-        """(m, n) whitened residual with the mark put back by angles (m,)."""
-        turned = np.multiply.outer(angles, turning)
-        return np.asarray(np.hstack([np.ones((len(angles), 1)), np.cos(turned), np.sin(turned)]) @ white)
+    def shares(angles: Array) -> Array:
+        """(m, k) share of every part with the mark put back by angles (m,)."""
+        turned = np.multiply.outer(angles, orders)
+        return np.hstack([np.ones((len(angles), 1)), np.cos(turned), np.sin(turned)])
 
-    def square(angle: float) -> float:
-        [residual] = left(np.array([angle]))
-        return float(residual @ residual)
+    def squares(angles: Array) -> Array:
+        """(m,) of the residual."""
+        own_shares = shares(angles)
+        return np.asarray(np.einsum("mk,mk->m", own_shares @ products, own_shares))
 
-    step = STEP / float(turning.max())
+    step = STEP / float(orders.max())
     angles = np.arange(LARGEST_ANGLE_ERROR, np.pi, step)
     angles = np.concatenate([-angles[::-1], angles])
-    best = float(angles[np.argmin([square(angle) for angle in angles])])
-    best = float(minimize_scalar(square, bounds=(best - step, best + step), method="bounded").x)
+    best = float(angles[np.argmin(squares(angles))])
+    best = float(
+        minimize_scalar(
+            lambda angle: float(squares(np.array([angle]))[0]),
+            bounds=(best - step, best + step),
+            method="bounded",
+        ).x
+    )
     name = mark_elsewhere(best)
-    return [Hypothesis(name=name, family="input", parts=(name,), residual=left(np.array([best]))[0])]
+    [residual] = shares(np.array([best])) @ white
+    return [Hypothesis(name=name, family="input", parts=(name,), residual=residual)]
