@@ -23,6 +23,9 @@ Array = NDArray[np.float64]
 DAMPING_RATIO_LIMIT = 0.3
 """Above this damping ratio a joint or mesh gets a warning: the resonance of its spring is gone [-]."""
 
+SEEN_GAIN = 1.0
+"""Mesh gain from which a mode above the sampled band is worth a warning: its mesh answers it like a static load [-]."""
+
 LEAST_DAMPING = 1e-9
 """Damping ratio taken for a mode that no damper reaches, so that its gain stays a number [-]."""
 
@@ -287,3 +290,16 @@ def sampling_audit(
             )
         )  # fmt: skip
     return tuple(found)
+
+
+def modes_above_samples(modes: Sequence[LoopMode], sample_rate: float) -> tuple[str, ...]:
+    """Warnings of modes that the meshes excite above half of a sample rate [Hz], with name, frequency and remedy."""
+    band = 0.5 * sample_rate
+    return tuple(
+        f"mode of {mode.frequency / 1e3:.2f} kHz ({mode.name}): above half the sample rate of "
+        f"{sample_rate / 1e3:g} kHz: sampled speeds and torques show it at "
+        f"{abs(mode.frequency - sample_rate * round(mode.frequency / sample_rate)) / 1e3:.2f} kHz; sample at "
+        f"{2.5 * mode.frequency / 1e3:.0f} kHz, or use means and envelopes, which come from the internal steps"
+        for mode in modes
+        if mode.frequency > band and float(mode.mesh_gain.max(initial=0.0)) >= SEEN_GAIN
+    )

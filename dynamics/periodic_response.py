@@ -21,7 +21,7 @@ from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
 from dynamics.propagator import DEFAULT_CUTOFF, ModalModel, modal_model
 from dynamics.shaft_torque import waves_within
-from dynamics.time_march import Block, DriveState, TimeMarch, slow_loads
+from dynamics.time_march import Block, DriveState, TimeMarch, drag_loads, slow_loads
 
 Array = NDArray[np.float64]
 Period = Literal["mesh", "revolution", "hunting_cycle"]
@@ -181,7 +181,9 @@ def periodic_by_time(
     # whole steps per mesh of the first pair: what lies above the step rate then folds back on mesh orders only
     meshes = round(turns * laws[0].teeth_1)
     steps = meshes * ceil(max(least_steps, length * internal_rate) / meshes - 1e-9)
-    model = model or modal_model(system, laws, slow_loads(system, tuple(drags)), cutoff=cutoff)
+    model = model or modal_model(
+        system, laws, slow_loads(system), drag_loads(system, tuple(drags)), cutoff=cutoff
+    )
     wound, drive, stiffness = wound_state(
         system, laws, speed=speed, torque=torque, twist=twist, drag_torques=drags
     )
@@ -215,7 +217,7 @@ def periodic_by_time(
     radius = np.array([law.base_radius_1 for law in laws])
     force = block.force[:, last]
     dynamic = radius[:, None] * force
-    power = (after.slow_work - before.slow_work) / span
+    bracing, braking = after.slow_work[1] - before.slow_work[1], after.drag - before.drag
     warnings: list[str] = []
     if not search.steady:
         warnings.append(
@@ -245,9 +247,9 @@ def periodic_by_time(
         friction_loss=(after.friction - before.friction) / span,
         mesh_damping_loss=(after.mesh_damping - before.mesh_damping) / span,
         joint_loss=(after.joint_damping - before.joint_damping) / span,
-        drag_loss={name: -float(power[2 + i]) for i, name in enumerate(drags)},
+        drag_loss=dict(zip(drags, (braking / span).tolist())),
         drive_power=search.balanced_drive * speed * float(ratios[system.drive_dof]),
-        bracing_power=float(power[1]),
+        bracing_power=float(bracing) / span,
         steady=search.steady,
         residual=search.residual,
         periods=done,

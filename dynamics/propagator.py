@@ -24,7 +24,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
-from dynamics.kernels import WIDTH, DiscreteModes
+from dynamics.kernels import FOUR, WIDTH, DiscreteModes, DragModes
 from dynamics.linear_system import LinearSystem
 from dynamics.mesh_law import MeshLaw
 from dynamics.modal_layout import Layout, branch_layout, port_blocks
@@ -42,7 +42,7 @@ class DefectiveModes(RuntimeError):  # noqa: N818
 
 @dataclass(frozen=True, kw_only=True)
 class ModalModel:
-    """Complex modes of the linear part with inputs (mesh torques, then slow loads) and velocity outputs.
+    """Complex modes of the linear part with inputs (mesh torques, slow loads, drag torques) and velocity outputs.
 
     eigenvalues : (n_modes,) kept, one of each conjugate pair [1/s]
     branches : (n_modes,) index of the branch (lines tied by damping) a mode belongs to, not decreasing
@@ -56,7 +56,8 @@ class ModalModel:
     scaled_through : (n_states, n_inputs) static part of the dropped modes
     shapes : (n, n) real modes, mass-normalised, rigid ones first
     frequencies : (n,) undamped circular frequencies of the lines [rad/s]
-    n_meshes, n_slow : numbers of meshes and of slow loads
+    n_meshes, n_slow, n_drags : numbers of meshes, of slow loads and of drag torques
+    drag_branches : (n_drags / 4,) branch of each four of drag torques
     dropped : number of eigenvalues left out
     """
 
@@ -77,6 +78,8 @@ class ModalModel:
     n_lines: int
     n_meshes: int
     n_slow: int
+    n_drags: int
+    drag_branches: NDArray[np.int64]
     dropped: int
 
 
@@ -95,7 +98,12 @@ class Propagator:
 
 
 def modal_model(
-    system: LinearSystem, laws: Sequence[MeshLaw], loads: Array, *, cutoff: float = DEFAULT_CUTOFF
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    loads: Array,
+    drags: Array | None = None,
+    *,
+    cutoff: float = DEFAULT_CUTOFF,
 ) -> ModalModel:
     """Solve the complex eigenproblem of the drivetrain without its meshes.
 
@@ -103,17 +111,21 @@ def modal_model(
     ----------
     laws : base radii of each mesh, in the order of ``system.mesh_ports``
     loads : (n, n_slow) torque on each freedom per unit of each slow input [-]
+    drags : (n, n_drags) the same of each drag torque, from ``drag_loads``; none when left out
     cutoff : modes above this frequency keep their static effect only [Hz]; ``inf`` keeps all
 
     Raises
     ------
     ValueError
-        If shapes disagree, the damping is not symmetric, or a line is not free to rotate.
+        If shapes disagree, the damping is not symmetric, a line is not free to rotate, or a drag torque acts on
+        lines that nothing but a mesh ties together.
     DefectiveModes
         If two complex modes coincide.
     """
     n = len(system.inertia)
-    _check(system, laws, loads)
+    drags = np.zeros((n, 0)) if drags is None else drags
+    slow_and_drags = np.column_stack((loads, drags))
+    _check(system, laws, slow_and_drags)
     shapes, frequencies, n_lines = _line_modes(system)
     damping = shapes.T @ system.damping @ shapes
     damping[np.abs(damping) < 1e-13 * max(np.abs(damping).max(), 1e-300)] = 0.0
@@ -131,10 +143,10 @@ def modal_model(
     branches = np.repeat(np.arange(len(solved)), [len(own) for own, _, _ in solved])
     weights = np.where(values.imag > 0.0, 2.0, 1.0)
 
-    forcing = np.zeros((n + m, 2 * len(laws) + loads.shape[1]))
-    forcing[:n] = shapes.T @ np.column_stack((_port_columns(system), loads))
+    forcing = np.zeros((n + m, 2 * len(laws) + slow_and_drags.shape[1]))
+    forcing[:n] = shapes.T @ np.column_stack((_port_columns(system), slow_and_drags))
     modal_forcing = inverse @ forcing
-    velocity = _velocity_rows(system, laws, loads) @ shapes
+    velocity = _velocity_rows(system, slow_and_drags) @ shapes
     seen = (velocity @ vectors[:n]) * weights
     keep = np.abs(values) <= 2.0 * np.pi * cutoff
     lost, lost_forcing = values[~keep], modal_forcing[~keep]
@@ -159,6 +171,8 @@ def modal_model(
         n_lines=n_lines,
         n_meshes=len(laws),
         n_slow=loads.shape[1],
+        n_drags=drags.shape[1],
+        drag_branches=_drag_branches(shapes, branch_of, drags),
         dropped=int(np.count_nonzero(~keep)),
     )
 
@@ -179,7 +193,8 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
 
     n_fast = 2 * model.n_meshes
     n_ports = 2 * n_fast
-    n_rows = model.outputs.shape[0] if with_losses else n_ports + model.n_slow
+    n_driven = n_fast + model.n_slow
+    n_rows = model.outputs.shape[0] if with_losses else n_ports + model.n_slow + model.n_drags
     seen = model.outputs[:n_rows]
     through, through_rate = model.through[:n_rows], model.through_rate[:n_rows] / step
     rows = seen.copy()
@@ -204,17 +219,37 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
         through_old[:n_ports, :n_fast],
         through_new[:n_ports, :n_fast],
     )
+    slow = slice(n_fast, n_driven)
     slow_outputs, slow_states = _slow_responses(
-        decay, driven[:, n_fast:], rows, n_ports, through_old[:, n_fast:], through_new[:, n_fast:], substeps
+        decay, driven[:, slow], rows, n_ports, through_old[:, slow], through_new[:, slow], substeps
     )
+    fast = np.r_[:n_fast, n_driven : n_driven + model.n_drags]
+    braked = slice(n_ports + model.n_slow, n_ports + model.n_slow + model.n_drags)
     discrete = DiscreteModes(
         **tables._asdict(),
         port_new=np.ascontiguousarray(through_new[:n_ports, :n_fast].T),
         rows=layout.lay(rows[n_ports:].conj()),
-        through_old=np.ascontiguousarray(through_old[n_ports:, :n_fast].T),
-        through_new=np.ascontiguousarray(through_new[n_ports:, :n_fast].T),
+        through_old=np.ascontiguousarray(through_old[n_ports:, fast].T),
+        through_new=np.ascontiguousarray(through_new[n_ports:, fast].T),
         slow_outputs=slow_outputs,
         slow_states=layout.lay(slow_states),
+        drags=DragModes(
+            branches=model.drag_branches,
+            push=layout.lay(driven[:, n_driven:].T),
+            rows=layout.lay(rows[braked].conj()),
+            inputs=np.ascontiguousarray(
+                np.hstack(
+                    (
+                        through_old[braked, :n_fast],
+                        through_new[braked, :n_fast],
+                        (through_old + through_new)[braked, n_driven:],
+                    )
+                ).T
+            ),
+            each_other=np.ascontiguousarray(through_new[braked, n_driven:].T),
+            ports_held=np.ascontiguousarray((through_old + through_new)[:n_ports, n_driven:].T),
+            ports_new=np.ascontiguousarray(through_new[:n_ports, n_driven:].T),
+        ),
     )
     return Propagator(step=step, modes=discrete, hold=hold, layout=layout)
 
@@ -246,7 +281,7 @@ def modal_state(
 ) -> Array:
     """Return the marched state ``w`` (n_states,) of a drivetrain at ``angles`` and ``speeds``, both (n,).
 
-    ``inputs`` (n_inputs,): mesh torques and slow inputs that act at this instant.
+    ``inputs`` (n_inputs,): mesh torques, slow inputs and drag torques that act at this instant.
     """
     moved = model.shapes.T @ (model.inertia * angles)
     scaled = np.concatenate(
@@ -358,8 +393,24 @@ def _port_columns(system: LinearSystem) -> Array:
     return columns
 
 
-def _velocity_rows(system: LinearSystem, laws: Sequence[MeshLaw], loads: Array) -> Array:
-    """Rows of velocity outputs: two per mesh port, one per slow load, then square roots of the joint loss."""
+def _drag_branches(shapes: Array, branch_of: NDArray[np.int64], drags: Array) -> NDArray[np.int64]:
+    """Return (n_drags / 4,) the branch of every four of drag torques."""
+    moved = np.abs(shapes.T @ drags)
+    branches = np.zeros(drags.shape[1] // FOUR, np.int64)
+    for four in range(len(branches)):
+        own = moved[:, FOUR * four : FOUR * (four + 1)].max(axis=1)
+        found = np.unique(branch_of[own > 1e-9 * own.max()])
+        if len(found) > 1:
+            raise ValueError(
+                f"drag torques {FOUR * four} to {FOUR * four + 3} act on {len(found)} shaft lines that only a mesh "
+                "ties together, limit 1: let each line begin a new four"
+            )
+        branches[four] = found[0]
+    return branches
+
+
+def _velocity_rows(system: LinearSystem, loads: Array) -> Array:
+    """Rows of velocity outputs: two per mesh port, one per load, then square roots of the joint loss."""
     ports = np.repeat(_port_columns(system).T, 2, axis=0)
     squares, vectors = scipy.linalg.eigh(system.damping)
     lossy = squares > 1e-13 * max(float(squares.max()), 1e-300)

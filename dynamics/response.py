@@ -20,7 +20,7 @@ from dynamics.mesh_law import MeshLaw
 from dynamics.periodic_response import PeriodicResponse, periodic_by_time
 from dynamics.propagator import DEFAULT_CUTOFF, modal_model
 from dynamics.slots import LiftOff, Slots, SlotStatistics
-from dynamics.time_march import DriveState, SpeedControl, TimeMarch, TorqueControl, slow_loads
+from dynamics.time_march import DriveState, SpeedControl, TimeMarch, TorqueControl, drag_loads, slow_loads
 
 __all__ = [
     "Command",
@@ -97,7 +97,7 @@ class TimeResponse:
 
     time : (n,) [s]; speed : (n,) of the drive freedom, as speed of the first pinion [rad/s]
     speed_command : (n,) [rad/s]; drive_torque : (n,) [N m]; twist : (n,) [rad]
-    drag_torque : name -> (n,) [N m]
+    angle : (n,) of the first pinion [rad]; drag_torque : name -> (n,) [N m]
     torque : (n_meshes, n) dynamic torque r_b1 (front - back force) after the low-pass [N m]; no columns if
         the channels were not kept
     slots : least, mean and greatest dynamic torque of each mesh and time without contact, per slot
@@ -113,6 +113,7 @@ class TimeResponse:
     speed_command: Array
     drive_torque: Array
     twist: Array
+    angle: Array
     drag_torque: dict[str, Array]
     torque: Array
     slots: Slots
@@ -123,6 +124,17 @@ class TimeResponse:
     end: DriveState
     unsettled_steps: int
     warnings: tuple[str, ...] = field(default=())
+
+    def mean_speed(self, end: float, window: float) -> float:
+        """Mean speed of the first pinion over the ``window`` [s] before ``end`` [s], by the angle it turned [rad/s].
+
+        Vibrations with a whole number of periods in the window leave nothing, whatever the sample rate. A window
+        beyond the run is cut.
+        """
+        last = float(np.clip(end, self.time[1], self.time[-1]))
+        first = max(last - window, float(self.time[0]))
+        turned = np.interp([first, last], self.time, self.angle)
+        return float(turned[1] - turned[0]) / (last - first)
 
 
 def default_speed_control(
@@ -205,7 +217,7 @@ def run_schedule(
     march = TimeMarch(
         system, laws, start or wound, step=1.0 / sample_rate / substeps, substeps=substeps, drags=names,
         drive_torque=drive, drag_torques=tuple(drag_now.values()), record_all=False, accounts=keep_accounts,
-        model=modal_model(system, laws, slow_loads(system, names), cutoff=cutoff),
+        model=modal_model(system, laws, slow_loads(system), drag_loads(system, names), cutoff=cutoff),
     )  # fmt: skip
     limits = np.broadcast_to(np.asarray(torque_limit, float), command.time.shape)
     control = speed_control or default_speed_control(system, laws, float(limits[0]))
@@ -223,7 +235,7 @@ def run_schedule(
     statistics = SlotStatistics(laws, per_slot * substeps, march.step, lift_off_share, pinions)
     low_pass = LowPass(len(laws), substeps)
     energy_before = march.energy()
-    columns: list[tuple[Array, Array, Array]] = []
+    columns: list[tuple[Array, ...]] = []
     torques: list[Array] = []
     radius = np.array([law.base_radius_1 for law in laws])[:, None]
     limit_at = np.empty(n_samples)
@@ -257,13 +269,14 @@ def run_schedule(
         statistics.add(dynamic, block.slow_speed[:, 0] / drive_ratio)
         if keep_channels:
             torques.append(low_pass.decimate(dynamic))
-        columns.append((block.slow, block.slow_speed, target[1:] / drive_ratio))
+        columns.append(
+            (block.slow[:, :2], block.slow_speed[:, 0], block.drags, block.turned, target[1:] / drive_ratio)
+        )
     if keep_channels:
         torques.append(low_pass.finish())
-    slow, slow_speed = (np.vstack([c[i] for c in columns]) for i in (0, 1))
-    command_speed = np.concatenate([c[2] for c in columns])
+    slow, drive_speed, braking, angle, command_speed = (np.concatenate(parts) for parts in zip(*columns))
     accounts = march.accounts()
-    speed = slow_speed[:, 0] / drive_ratio
+    speed = drive_speed / drive_ratio
     limited = np.abs(slow[:, 0]) >= limit_at * (1.0 - 1e-9)
     warnings = []
     if march.unsettled:
@@ -274,19 +287,20 @@ def run_schedule(
         speed_command=command_speed,
         drive_torque=slow[:, 0],
         twist=slow[:, 1],
-        drag_torque={name: slow[:, 2 + i] for i, name in enumerate(names)},
+        angle=angle,
+        drag_torque=dict(zip(names, braking.T)),
         torque=np.hstack(torques) if keep_channels else np.empty((len(laws), 0)),
         slots=statistics.slots(float(command.time[0])),
         lift_off=statistics.lift_off(float(command.time[0])),
         energy=None
         if not keep_accounts
         else EnergyBook(
-            input_work=float(accounts.slow_work[0] + accounts.slow_work[2 + len(names) :].sum()),
+            input_work=float(accounts.slow_work[0] + accounts.slow_work[2:].sum()),
             bracing_work=float(accounts.slow_work[1]),
             friction=accounts.friction,
             mesh_damping=accounts.mesh_damping,
             joint_damping=accounts.joint_damping,
-            drag={name: -float(accounts.slow_work[2 + i]) for i, name in enumerate(names)},
+            drag=dict(zip(names, accounts.drag.tolist())),
             change=march.energy() - energy_before,
         ),
         drive_limited_share=float(np.mean(limited)),

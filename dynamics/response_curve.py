@@ -21,7 +21,7 @@ from dynamics.mesh_law import MeshLaw
 from dynamics.periodic_response import Period, PeriodicResponse, periodic_by_time
 from dynamics.propagator import DEFAULT_CUTOFF, ModalModel, modal_model
 from dynamics.static_loop import NotConverged, PortModel, port_model
-from dynamics.time_march import slow_loads
+from dynamics.time_march import drag_loads, slow_loads
 from dynamics.waveform import Waveform, waveform
 
 Array = NDArray[np.float64]
@@ -164,7 +164,9 @@ def periodic_response(
             names = tuple(drags[i] or {})
             try:
                 if names not in models:
-                    models[names] = modal_model(system, laws, slow_loads(system, names), cutoff=cutoff)
+                    models[names] = modal_model(
+                        system, laws, slow_loads(system), drag_loads(system, names), cutoff=cutoff
+                    )
                 found[i] = _in_time(walk, system, given[i], drags[i], period, cutoff, models[names])
             except NotConverged as also:
                 reasons[i] = "; ".join(filter(None, (reason, str(also))))

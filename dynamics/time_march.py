@@ -26,6 +26,9 @@ from dynamics.propagator import (
 
 Array = NDArray[np.float64]
 
+CREEP_SHARE = 1e-3
+"""Share of the highest speed of a drag table below which its torque goes smoothly through zero [-]."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class DriveState:
@@ -82,9 +85,13 @@ class Block(NamedTuple):
     torque_1: Array
     """(n_meshes, n_steps) generalized torque on the pinion body, friction included [N m]."""
     slow: Array
-    """(n_samples, n_slow) motor torque [N m], twist [rad] and drags [N m] at the end of each sample."""
+    """(n_samples, n_slow) motor torque [N m], twist [rad] and swinging torques [N m] at the end of each sample."""
     slow_speed: Array
     """(n_samples, n_slow) speed that each slow input works on: its power is input times this."""
+    drags: Array
+    """(n_samples, n_drags) drag torques [N m] at the end of each sample."""
+    turned: Array
+    """(n_samples,) angle of the pinion of the first mesh at the end of each sample [rad]."""
 
 
 class Accounts(NamedTuple):
@@ -95,16 +102,18 @@ class Accounts(NamedTuple):
     mesh_damping: Array
     """(n_meshes,)"""
     slow_work: Array
-    """(n_slow,) work done on the drivetrain by motor, bracing, drags (negative) and swinging torques."""
+    """(n_slow,) work done on the drivetrain by motor, bracing and swinging torques."""
+    drag: Array
+    """(n_drags,)"""
     joint_damping: float
 
 
 class TimeMarch:
     """A drivetrain that is advanced in time; the only object of the dynamics that changes.
 
-    Slow inputs are the motor torque (on ``system.drive_dof``), the bracing twist (on ``system.twist_load``),
-    one torque for each name in ``drags``, acting through ``system.drag_loads``, and one for each entry of
-    ``system.shaft_torques``.
+    Slow inputs, linear over a sample, are the motor torque (on ``system.drive_dof``), the bracing twist (on
+    ``system.twist_load``) and a torque for each entry of ``system.shaft_torques``. For each name in ``drags`` a torque
+    brakes through ``system.drag_loads``: a function of the speed there at the end of every internal step.
     """
 
     def __init__(
@@ -133,18 +142,22 @@ class TimeMarch:
         self.step = step
         self.substeps = substeps
         self.drags = tuple(drags)
-        self.model = model or modal_model(system, laws, slow_loads(system, drags), cutoff=cutoff)
+        self.model = model or modal_model(
+            system, laws, slow_loads(system), drag_loads(system, drags), cutoff=cutoff
+        )
         self.propagator = discretise(self.model, step, substeps=substeps, with_losses=accounts)
         self.packed = pack_meshes(laws, derivative_torques=derivative_torques)
         self.unsettled = 0
         self._marched = 0
         self._names = system.dofs
         self._record_all = record_all
-        n_meshes, n_slow = len(self.laws), 2 + len(self.drags) + len(system.shaft_torques)
-        self._n_slow = n_slow
         self._laws_packed = [pack_meshes([law]) for law in self.laws]
-        loads = slow_loads(system, drags)
-        n_power = 2 * n_meshes + n_slow + 1 if accounts else 0
+        self._places = drag_places(system, drags)
+        braked = drag_loads(system, drags)
+        loads = np.column_stack((slow_loads(system), braked))
+        n_meshes, n_slow, n_drags = len(self.laws), 2 + len(system.shaft_torques), braked.shape[1]
+        self._n_slow = n_slow
+        n_power = 2 * n_meshes + n_slow + n_drags + 1 if accounts else 0
         ports = np.zeros((n_meshes, 6))
         damping = np.zeros((n_meshes, 2))
         powers = np.zeros(n_power)
@@ -161,15 +174,18 @@ class TimeMarch:
                 :n_power
             ]
         slow = np.zeros(n_slow)
-        slow[: 2 + len(drag_torques)] = drive_torque, start.twist, *drag_torques
+        slow[:2] = drive_torque, start.twist
+        braking = np.zeros(n_drags)
+        braking[self._places[: len(drag_torques)]] = drag_torques
         speeds = loads.T @ start.speeds
         if accounts:
-            powers[2 * n_meshes : -1] = slow * speeds
+            powers[2 * n_meshes : -1] = np.concatenate((slow, braking)) * speeds
             powers[-1] = start.speeds @ system.damping @ start.speeds
         self._carried = kernels.Carried(
             state=np.zeros(self.propagator.modes.rows.shape[1]),
             ports=ports,
             slow=slow,
+            drags=braking,
             offset=self.packed.offsets.copy(),
             memory=np.zeros(5),
             speeds=speeds,
@@ -219,21 +235,27 @@ class TimeMarch:
         if torque_control is not None:
             share = min(1.0, sample_time / torque_control.time_constant)
             control[4:] = 0.25 * share / torque_control.stiffness, share
-        tables = np.zeros((len(self.drags), 2)) if drag_tables is None else np.ascontiguousarray(drag_tables)
-        ends = np.ones(len(self.drags)) if drag_speeds is None else np.asarray(drag_speeds, float)
+        n_drags = len(self._carried.drags)
+        tables = np.zeros((n_drags, 2 if drag_tables is None else drag_tables.shape[1]))
+        ends = np.ones(n_drags)
+        if drag_tables is not None:
+            tables[self._places] = drag_tables
+        if drag_speeds is not None:
+            ends[self._places] = drag_speeds
         held = (
             np.tile(self._carried.offset, (n_samples, 1))
             if offsets is None
             else np.ascontiguousarray(offsets)
         )
         history = np.empty((n_meshes, 6 if self._record_all else 1, n_samples * self.substeps))
-        samples = np.empty((n_samples, 2 * n_slow))
+        samples = np.empty((n_samples, 2 * n_slow + n_drags + 1))
         orders = kernels.Orders(
             given=np.ascontiguousarray(given, float),
             offsets=held,
             control=control,
-            drags=tables,
-            per_drag_step=(tables.shape[1] - 1) / ends,
+            drags=kernels.DragLaws(
+                torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
+            ),
         )
         self.unsettled += kernels.march(
             self.packed,
@@ -246,13 +268,15 @@ class TimeMarch:
             samples,
         )
         if not np.all(np.isfinite(self._carried.ports)):
-            raise MarchDiverged(self._diverged(history[:, 0], samples))
+            raise MarchDiverged(self._diverged(history[:, 0], samples[:, : 2 * n_slow]))
         self._marched += n_samples
         none = np.empty((n_meshes, 0))
         force, approach, angle, rate, omega, torque = (
             (history[:, i] for i in range(6)) if self._record_all else (history[:, 0], *[none] * 5)
         )
-        return Block(force, approach, angle, rate, omega, torque, samples[:, :n_slow], samples[:, n_slow:])
+        slow, speed, drags, turned = np.split(samples, (n_slow, 2 * n_slow, 2 * n_slow + n_drags), axis=1)
+        drags = drags[:, self._places]
+        return Block(force, approach, angle, rate, omega, torque, slow, speed, drags, turned[:, 0])
 
     def _diverged(self, force: Array, samples: Array) -> str:
         """What is known of a march that left the finite numbers in its last block.
@@ -286,10 +310,15 @@ class TimeMarch:
         """Return work and losses since the start; zeros if the march keeps no accounts."""
         n = len(self.laws)
         if len(self._carried.work) == 0:
-            return Accounts(np.zeros(n), np.zeros(n), np.zeros(self._n_slow), 0.0)
+            return Accounts(np.zeros(n), np.zeros(n), np.zeros(self._n_slow), np.zeros(len(self.drags)), 0.0)
         work = self._carried.work
+        slow, drag = np.split(work[2 * n : -1], (self._n_slow,))
         return Accounts(
-            work[0 : 2 * n : 2].copy(), work[1 : 2 * n : 2].copy(), work[2 * n : -1].copy(), float(work[-1])
+            work[0 : 2 * n : 2].copy(),
+            work[1 : 2 * n : 2].copy(),
+            slow.copy(),
+            -drag[self._places],
+            float(work[-1]),
         )
 
     def energy(self) -> float:
@@ -348,22 +377,43 @@ class TimeMarch:
         )
 
     def _inputs(self) -> Array:
-        return np.concatenate((self._carried.ports[:, :2].ravel(), self._carried.slow))
+        carried = self._carried
+        return np.concatenate((carried.ports[:, :2].ravel(), carried.slow, carried.drags))
 
 
-def slow_loads(system: LinearSystem, drags: Sequence[str]) -> Array:
-    """Return the loads (n, 2 + n_drags + n_shaft_torques) of motor, twist, named drags and swinging torques.
+def slow_loads(system: LinearSystem) -> Array:
+    """Return the loads (n, 2 + n_shaft_torques) of motor, twist and swinging torques."""
+    drive = np.zeros(len(system.inertia))
+    drive[system.drive_dof] = 1.0
+    return np.column_stack((drive, system.twist_load, *(torques.load for torques in system.shaft_torques)))
+
+
+def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]:
+    """Return (n_drags,) the columns of named drags in ``drag_loads``: every line begins a new four of them.
 
     Raises ValueError for unknown names.
     """
-    drive = np.zeros(len(system.inertia))
-    drive[system.drive_dof] = 1.0
     unknown = [name for name in drags if name not in system.drag_loads]
     if unknown:
         raise ValueError(
             f"no drag load named {', '.join(unknown)}; known: {', '.join(system.drag_loads) or 'none'}"
         )
-    swinging = (torques.load for torques in system.shaft_torques)
-    return np.column_stack(
-        (drive, system.twist_load, *(system.drag_loads[name] for name in drags), *swinging)
+    lines = [system.lines[np.argmax(np.abs(system.drag_loads[name]))] for name in drags]
+    places = np.empty(len(drags), np.int64)
+    first = 0
+    for line in np.unique(lines):
+        own = np.flatnonzero(lines == line)
+        places[own] = first + np.arange(len(own))
+        first += -(-len(own) // kernels.FOUR) * kernels.FOUR
+    return places
+
+
+def drag_loads(system: LinearSystem, drags: Sequence[str]) -> Array:
+    """Return the loads (n, n) of named drag torques in fours, see ``drag_places``; zeros where no drag stands."""
+    places = drag_places(system, drags)
+    loads = np.zeros(
+        (len(system.inertia), -(-int(max(places, default=-1) + 1) // kernels.FOUR) * kernels.FOUR)
     )
+    for place, name in zip(places, drags):
+        loads[:, place] = system.drag_loads[name]
+    return loads

@@ -1,18 +1,21 @@
 """Compiled loops of the dynamics, the only numba in this package: plain numbers and arrays in and out.
 
 ``contact`` sums the tooth contacts of a flank, ``reactions`` evaluates meshes at given states, ``linear_step`` takes
-the modes over one step, ``mesh_solve`` the meshes, ``march`` joins them; ``book`` is what the last three share. The
+the modes over one step, ``mesh_solve`` the meshes, ``drag`` what brakes the shafts, ``march`` joins them; ``book`` is
+what the last four share. The
 disk cache of a compiled function is keyed by the content of its own file: a mark of all sources in each file that takes
 from another goes with it (``tests/unit/test_kernel_cache.py`` says what to write).
 """
 
 from dynamics.kernels.book import port_place
 from dynamics.kernels.contact import N_COUNTS, N_PHASE, N_VALUES, VECTOR, PackedMeshes
-from dynamics.kernels.linear_step import WIDTH, DiscreteModes
+from dynamics.kernels.drag import DragLaws
+from dynamics.kernels.linear_step import FOUR, WIDTH, DiscreteModes, DragModes
 from dynamics.kernels.march import Carried, Orders, march
 from dynamics.kernels.reactions import mesh_reactions, tooth_pair_forces
 
 __all__ = [
+    "FOUR",
     "N_COUNTS",
     "N_PHASE",
     "N_VALUES",
@@ -20,6 +23,8 @@ __all__ = [
     "WIDTH",
     "Carried",
     "DiscreteModes",
+    "DragLaws",
+    "DragModes",
     "Orders",
     "PackedMeshes",
     "march",

@@ -12,15 +12,17 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.book import OLD, SPEED, TAU, TURN
-from dynamics.kernels.contact import LOOSE, POSITIVE, inlined, sliding_direction
+from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
 
-# compiled from sources 18f100a9
+# compiled from sources 7994a7e8
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 WIDTH = 16
 """Modes beside each other in the tables: a fixed number, so that the compiler makes vector instructions of a loop
 over them."""
+FOUR = 4
+"""Drags beside each other, for the same reason."""
 N_BANK = 16
 """Rows of WIDTH in a group of the bank, real and imaginary by turns: state, decay, push of torque a, of torque b,
 speed of port a, turn of port a, speed and turn of port b."""
@@ -30,6 +32,29 @@ STATE_AT, BANK_AT, HOME_AT, GROUPS, PORT_A, PORT_B, THROUGH_AT = range(7)
 TO_A, TO_B, FROM_C, FROM_D, LINK_AT = range(5)
 # first entry of the outputs per torque at the start and at the end of the step, in a link of DiscreteModes.through
 AT_START, AT_END = 0, 8
+
+
+class DragModes(NamedTuple):
+    """How drag torques act on modes, ports and each other in one step, in the layout of ``DiscreteModes``.
+
+    Drags of one branch stand FOUR by FOUR, the last four of a branch filled up with drags that do nothing.
+    """
+
+    branches: Integers
+    """(n_drags / 4,) row of ``DiscreteModes.blocks`` with the modes of each four."""
+    push: Array
+    """(n_drags, n_states) state after the step per drag torque at its start."""
+    rows: Array
+    """(n_drags, n_states) speed of the load of each drag over the states at the end of the step."""
+    inputs: Array
+    """(2 n_ports + n_drags, n_drags) speed of the load of each drag (second) per mesh torque at the start of the step,
+    at its end, and per drag torque that stays over the step."""
+    each_other: Array
+    """(n_drags, n_drags) speed of the load of a drag (second) per drag torque (first) at the end of the step."""
+    ports_held: Array
+    """(n_drags, 2 n_ports) outputs of the ports per drag torque that stays over the step."""
+    ports_new: Array
+    """The same per drag torque at the end of the step."""
 
 
 class DiscreteModes(NamedTuple):
@@ -58,10 +83,10 @@ class DiscreteModes(NamedTuple):
     port_new: Array
     """(n_ports, n_outputs) outputs of the ports per mesh torque at the end of the step."""
     rows: Array
-    """(n_rows, n_states) speed of every slow input, then joint rates whose squares are losses, over the states
-    at the end of the step."""
+    """(n_rows, n_states) speed of every slow input and drag, then joint rates whose squares are losses, over the
+    states at the end of the step."""
     through_old: Array
-    """(n_ports, n_rows) these per mesh torque at the start of the step."""
+    """(n_ports + n_drags, n_rows) these per mesh and drag torque at the start of the step."""
     through_new: Array
     """The same at its end."""
     slow_outputs: Array
@@ -69,17 +94,17 @@ class DiscreteModes(NamedTuple):
     at its start, then per change in a step."""
     slow_states: Array
     """(2 n_slow, n_states) the same for the state at the end of the sample."""
+    drags: DragModes
 
 
 @njit(cache=True, fastmath=LOOSE)
 def slow_targets(
-    given: Array, control: Array, drags: Array, per_drag_step: Array, memory: Array, speeds: Array, torque: float,
-    target: Array,
-) -> None:  # fmt: skip
-    """Fill the slow inputs at the end of a sample: controlled motor torque and twist, drags at their speed."""
+    given: Array, control: Array, memory: Array, speed: float, torque: float, target: Array
+) -> None:
+    """Fill the slow inputs at the end of a sample: controlled motor torque and twist, then what is given."""
     target[0] = given[0]
     if control[2] > 0.0:
-        memory[3] += control[3] * (speeds[0] - memory[3])
+        memory[3] += control[3] * (speed - memory[3])
         error = given[2] - memory[3]
         wish = given[0] + control[0] * error + memory[0]
         target[0] = min(max(wish, -control[2]), control[2])
@@ -90,20 +115,8 @@ def slow_targets(
         memory[4] += control[5] * (given[3] - memory[4])
         memory[1] += control[4] * (memory[4] - memory[2])
     target[1] = given[1] + memory[1]
-    last = drags.shape[1] - 1
-    for i in range(drags.shape[0]):
-        speed = -speeds[2 + i]
-        place = min(abs(speed) * per_drag_step[i], last - 1e-9)
-        j = max(0, min(int(place), last - 1))
-        value = drags[i, j] + (place - j) * (drags[i, j + 1] - drags[i, j])
-        target[2 + i] = value * sliding_direction(speed)
-
-
-@njit(cache=True)
-def given_targets(given: Array, ahead: int, target: Array) -> None:
-    """Fill the slow inputs behind the first ``ahead`` ones with what is given for the end of a sample."""
-    for k in range(ahead, target.shape[0]):
-        target[k] = given[4 + k - ahead]
+    for k in range(2, target.shape[0]):
+        target[k] = given[2 + k]
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
@@ -250,7 +263,8 @@ def end_rows(
 ) -> None:
     """Fill the outputs that are no port's at the end of a step, ``state`` standing there.
 
-    ``torques`` (2, n_ports) at start and end of the step; ``slow`` holds from ``first`` on what the slow inputs give.
+    ``torques`` (2, n_ports + n_drags) at start and end of the step; ``slow`` holds from ``first`` on what the slow
+    inputs give.
     """
     for r in range(values.shape[0]):
         total = slow[first + r]

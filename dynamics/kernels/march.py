@@ -46,12 +46,12 @@ from dynamics.kernels.contact import (
     flank_powers,
     inlined,
 )
+from dynamics.kernels.drag import DragLaws, DragWork, brake, drags_on_ports, push_drags
 from dynamics.kernels.linear_step import (
     AT_END,
     DiscreteModes,
     add_torques,
     end_rows,
-    given_targets,
     hold_slow,
     put_state,
     slow_targets,
@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_solve import (
     react,
 )
 
-# compiled from sources 18f100a9
+# compiled from sources 7994a7e8
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -85,16 +85,14 @@ class Orders(NamedTuple):
     """What a march is told, values at the end of each sample."""
 
     given: Array
-    """(n_samples, 4 + n_given) motor torque, twist, speed of the drive, torque of the first mesh, then the slow inputs
-    behind the drags."""
+    """(n_samples, 4 + n_given) motor torque, twist, speed of the drive, torque of the first mesh, then the other slow
+    inputs."""
     offsets: Array
     """(n_samples, n_meshes) imposed approach."""
     control: Array
     """Proportional gain, integral gain per sample, torque limit (0: no control), share of the averaged speed;
     bracing gain per sample (0: no control), share of the averaged torque."""
-    drags: Array
-    """(n_drags, n_table) drag torque over speed."""
-    per_drag_step: Array
+    drags: DragLaws
 
 
 class Carried(NamedTuple):
@@ -105,15 +103,17 @@ class Carried(NamedTuple):
     ports: Array
     """(n_meshes, 6) tau_1, tau_2, both one step earlier, approach, pinion angle."""
     slow: Array
-    """(n_slow,) motor torque, twist, drags, torques that are given."""
+    """(n_slow,) motor torque, twist, torques that are given."""
+    drags: Array
+    """(n_drags,) drag torques."""
     offset: Array
     """(n_meshes,) imposed approach."""
     memory: Array
     """Integral of the speed controller, correction of the twist, then averages: torque, speed, asked torque."""
     speeds: Array
-    """(n_slow,) speed of every slow input."""
+    """(n_slow + n_drags,) speed of the load of every slow input and drag."""
     powers: Array
-    """Last powers: friction and damping of each mesh, every slow input, joints; empty without accounts."""
+    """Last powers: friction and damping of each mesh, every slow input, every drag, joints; empty without accounts."""
     work: Array
     """Their integrals."""
     damping: Array
@@ -133,9 +133,9 @@ class Workspace(NamedTuple):
     slow_outputs: Array
     """Flat (substeps, n_outputs + n_rows): what the slow inputs give in each step of the sample."""
     ends: Array
-    """(n_rows,) the outputs of no port."""
+    """(n_rows,) the outputs of no port; without accounts those of the slow inputs alone."""
     torques: Array
-    """(2, n_ports) torques of the ports at start and end of a step."""
+    """(2, n_ports + n_drags) torques of ports and drags at start and end of a step."""
     give: Array
     """Flat (n_meshes, n_meshes, 4): reach of another mesh per torque of both ports of one at the end of the step,
     then its rate."""
@@ -145,6 +145,7 @@ class Workspace(NamedTuple):
     """(n_slow,) slow inputs at the end of the sample."""
     fresh: Array
     """Powers at the end of the step."""
+    drags: DragWork
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
@@ -153,9 +154,10 @@ def _account(meshes: PackedMeshes, carried: Carried, work: Workspace, step: floa
 
     Powers are integrated by trapezoids. The march lets a mesh torque vary linearly over the step, so the
     work of the damping force is its trapezoid less ``step dF dv / 12`` (the mean of a straight line times a
-    smooth curve).
+    smooth curve), and so is that of a drag torque.
     """
     total, powers, damping, slow = carried.work, carried.powers, carried.damping, carried.slow
+    drags, speeds = carried.drags, carried.speeds
     counts, book, ends, fresh = meshes.counts, work.book, work.ends, work.fresh
     n_meshes, n_slow = damping.shape[0], slow.shape[0]
     for m in range(n_meshes):
@@ -184,10 +186,16 @@ def _account(meshes: PackedMeshes, carried: Carried, work: Workspace, step: floa
         damping[m, 1] = rate
     for k in range(n_slow):
         fresh[2 * n_meshes + k] = (slow[k] + share * (work.target[k] - slow[k])) * ends[k]
+    n_inputs = n_slow + drags.shape[0]
+    for d in range(drags.shape[0]):
+        k = n_slow + d
+        fresh[2 * n_meshes + k] = drags[d] * ends[k]
+        total[2 * n_meshes + k] -= step * work.drags.change[d] * (ends[k] - speeds[k]) / 12.0
+        speeds[k] = ends[k]
     joints = 0.0
-    for r in range(n_slow, ends.shape[0]):
+    for r in range(n_inputs, ends.shape[0]):
         joints += ends[r] * ends[r]
-    fresh[2 * n_meshes + n_slow] = joints
+    fresh[2 * n_meshes + n_inputs] = joints
     for k in range(fresh.shape[0]):
         total[k] += 0.5 * step * (powers[k] + fresh[k])
         powers[k] = fresh[k]
@@ -199,12 +207,12 @@ def march(
 ) -> int:  # fmt: skip
     """March over ``len(orders.given)`` samples of ``substeps`` steps; return the number of unsettled steps.
 
-    Each step: outputs and modal state for the old mesh torques; contacts chosen at the predicted angles;
-    Newton on the new torques with these contacts held; accounts. ``history`` (n_meshes, 1 or 6, steps):
-    front - back force [, approach, pinion angle, approach rate, pinion speed, tau_1]; ``samples``
-    (n_samples, 2 n_slow): slow inputs, then their speeds.
+    Each step: outputs and modal state for the old torques; contacts chosen at the predicted angles; Newton on
+    the new mesh torques with these contacts held; drag torques at the new speeds; accounts. ``history`` (n_meshes, 1
+    or 6, steps): front - back force [, approach, pinion angle, approach rate, pinion speed, tau_1]; ``samples``
+    (n_samples, 2 n_slow + n_drags + 1): slow inputs, their speeds, drag torques, angle of the first pinion.
     """
-    n_meshes, n_rows = len(meshes.values), len(modes.rows)
+    n_meshes, n_rows, n_drags = len(meshes.values), len(modes.rows), len(carried.drags)
     most = int(max(1, meshes.counts[:, MOST].max()))
     work = Workspace(
         contacts=np.zeros(2 * n_meshes * N_PHASE * most),
@@ -212,12 +220,13 @@ def march(
         no_pairs=np.empty((2, 0), np.int64),
         bank=modes.bank.copy(),
         slow_outputs=np.zeros(modes.slow_outputs.shape[1]),
-        ends=np.zeros(n_rows),
-        torques=np.zeros((2, 2 * n_meshes)),
+        ends=np.zeros(n_rows if len(carried.work) else len(carried.slow)),
+        torques=np.zeros((2, 2 * n_meshes + n_drags)),
         give=np.zeros(4 * n_meshes**2),
         book=np.pad(meshes.values, ((0, 1), (0, N_BOOK - meshes.values.shape[1]))).ravel(),
         target=np.zeros(len(carried.slow)),
         fresh=np.zeros(len(carried.work)),
+        drags=DragWork(np.zeros(n_drags), np.zeros(n_drags), np.zeros(n_drags), np.zeros(4 * n_meshes)),
     )
     return int(_march(meshes, modes, orders, carried, work, step, substeps, history, samples))
 
@@ -293,8 +302,9 @@ def _march(
     state, slow, contacts, found = carried.state, carried.slow, work.contacts, work.found
     bank, book, give, by_slow, torques = work.bank, work.book, work.give, work.slow_outputs, work.torques
     n_meshes, n_slow = counts.shape[0], slow.shape[0]
+    drags, n_drags = carried.drags, carried.drags.shape[0]
     keeps_accounts = carried.work.shape[0] > 0
-    n_outputs = 4 * n_meshes + work.ends.shape[0]
+    n_outputs = 4 * n_meshes + modes.rows.shape[0]
 
     _begin(book, carried.ports, modes.port_new, give)
     put_state(blocks, state, bank)
@@ -304,10 +314,8 @@ def _march(
     now = 0
     for sample in range(orders.given.shape[0]):
         slow_targets(
-            orders.given[sample], orders.control, orders.drags, orders.per_drag_step, carried.memory,
-            carried.speeds, mean_torque, work.target,
-        )  # fmt: skip
-        given_targets(orders.given[sample], 2 + orders.drags.shape[0], work.target)
+            orders.given[sample], orders.control, carried.memory, carried.speeds[0], mean_torque, work.target
+        )
         by_slow[:] = 0.0
         hold_slow(modes.slow_outputs, slow, work.target, substeps, by_slow)
         for m in range(n_meshes):
@@ -317,7 +325,9 @@ def _march(
         for sub in range(substeps):
             slow_at = sub * n_outputs
             _guess(book, n_meshes, by_slow, slow_at)
+            drags_on_ports(modes.drags, drags, work.drags.outputs, book)
             step_modes(blocks, further, links, bank, through, book)
+            push_drags(modes.drags, blocks, drags, bank)
             settled = False
             attempt = 0
             while attempt < MOST_ITERATIONS and not settled:
@@ -338,6 +348,12 @@ def _march(
                     book[at + PORT + MISSING] += book[at + PORT + TAU]
                 add_torques(links, 0, through, AT_END, book, MISSING)
                 attempt += 1
+            if n_drags:
+                braked = brake(
+                    orders.drags, modes.drags, blocks, bank, book, by_slow, slow_at + 4 * n_meshes + n_slow,
+                    drags, work.drags,
+                )  # fmt: skip
+                settled = settled and braked
             if not settled:
                 unsettled += 1
             for m in range(n_meshes):
@@ -358,6 +374,9 @@ def _march(
                 for port in range(2 * n_meshes):
                     at = port // 2 * N_BOOK + port % 2 * PORT
                     torques[0, port], torques[1, port] = book[at + OLD], book[at + TAU]
+                for d in range(n_drags):
+                    torques[0, 2 * n_meshes + d] = drags[d] - work.drags.change[d]
+                    torques[1, 2 * n_meshes + d] = drags[d]
                 take_state(blocks, bank, state)
                 end_rows(modes, state, torques, by_slow, slow_at + 4 * n_meshes, work.ends)
             if keeps_accounts:
@@ -373,6 +392,9 @@ def _march(
             carried.speeds[k] = work.ends[k]
             samples[sample, k] = work.target[k]
             samples[sample, n_slow + k] = work.ends[k]
+        for d in range(n_drags):
+            samples[sample, 2 * n_slow + d] = drags[d]
+        samples[sample, 2 * n_slow + n_drags] = book[ANGLE]
         for m in range(n_meshes):
             carried.offset[m] = orders.offsets[sample, m]
     _end(book, carried.ports)

@@ -34,7 +34,7 @@ from dynamics.kernels.contact import (
     sliding_direction,
 )
 
-# compiled from sources 18f100a9
+# compiled from sources 7994a7e8
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

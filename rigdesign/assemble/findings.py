@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from dynamics.flank import reach_beyond
-from dynamics.modes import sampling_audit
+from dynamics.modes import loop_modes, modes_above_samples, sampling_audit
+from dynamics.propagator import DEFAULT_CUTOFF
 from dynamics.response_curve import CurvePoint
 from rigdesign.assemble.curves import iso_factor, resolved
 from rigdesign.checks.subject import Subject
@@ -166,6 +167,8 @@ def _sampling(subject: Subject) -> Iterator[str]:
         speed = subject.rig.drive_speed(subject.test.point.speed)
         audits = sampling_audit(drivetrain, speed, subject.case.numerics.sample_rate)
         yield from (audit.warning for audit in audits if audit.warning)
+        modes = loop_modes(drivetrain, laws_of(subject.test.last.models), DEFAULT_CUTOFF)
+        yield from modes_above_samples(modes, subject.case.numerics.sample_rate)
 
 
 def _films(subject: Subject) -> Iterator[str]:

@@ -8,7 +8,7 @@ import scipy.linalg
 
 from dynamics.linear_system import LinearSystem
 from dynamics.propagator import discretise, modal_model
-from dynamics.time_march import DriveState, MarchDiverged, TimeMarch, slow_loads
+from dynamics.time_march import DriveState, MarchDiverged, TimeMarch, drag_loads, slow_loads
 from tests.mesh_example import chain, spur_law, two_bodies
 
 OPEN = spur_law(backlash=1.0, offset=-0.5)
@@ -157,7 +157,7 @@ def test_a_run_that_diverges_says_so() -> None:
 
 
 def test_refusals_name_the_fault() -> None:
-    system, loads = chain(), slow_loads(chain(), ())
+    system, loads = chain(), slow_loads(chain())
     skew = system.damping.copy()
     skew[0, 1] += 1.0
     with pytest.raises(ValueError, match="symmetric"):
@@ -179,7 +179,7 @@ def test_refusals_name_the_fault() -> None:
     with pytest.raises(ValueError, match="step"):
         discretise(modal_model(system, [OPEN], loads), 0.0)
     with pytest.raises(ValueError, match="no drag load named windage"):
-        slow_loads(system, ("windage",))
+        drag_loads(system, ("windage",))
 
 
 def test_critical_damping_is_still_accurate() -> None:

@@ -2,7 +2,7 @@
 
 from functools import cache
 from pathlib import Path
-from types import SimpleNamespace
+from types import MethodType, SimpleNamespace
 from typing import cast
 
 import numpy as np
@@ -28,15 +28,24 @@ def response(stage: str, excess_rpm: float, drive: float) -> TimeResponse:
     schedule = schedule_of(rig())
     names = [entry.name for entry in schedule.stages]
     command = schedule.command(1e-3)
-    speed = command.speed.copy()
-    speed[int(np.searchsorted(command.time, schedule.starts[names.index(stage) + 1]))] += excess_rpm * RPM
-    count = len(speed)
+    end = schedule.starts[names.index(stage) + 1]
+    late = (command.time > end - 0.05) & (command.time <= end)
+    return run_of(command.time, command.speed + np.where(late, excess_rpm * RPM, 0.0), drive)
+
+
+def run_of(
+    time: np.ndarray, speed: np.ndarray, drive: float, angle: np.ndarray | None = None
+) -> TimeResponse:
+    """A run with these samples of the speed; its angle is their integral if it is not given."""
+    turned = np.concatenate(([0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))))
     run = SimpleNamespace(
-        time=command.time,
+        time=time,
         speed=speed,
-        drive_torque=np.full(count, drive),
-        drag_torque={"test.pinion": np.full(count, 1.5), "test.wheel": np.full(count, 2.0)},
+        angle=turned if angle is None else angle,
+        drive_torque=np.full(len(speed), drive),
+        drag_torque={"test.pinion": np.full(len(speed), 1.5), "test.wheel": np.full(len(speed), 2.0)},
     )
+    run.mean_speed = MethodType(TimeResponse.mean_speed, run)
     return cast("TimeResponse", run)
 
 
@@ -83,3 +92,15 @@ def test_a_constant_drive_torque_limits_its_own_stage_only() -> None:
 @pytest.mark.parametrize("excess", [-100.0, 100.0])
 def test_within_the_tolerance(excess: float) -> None:
     require_speeds(rig(), schedule_of(rig()), response("run_up", excess, 20.0))
+
+
+def test_a_vibration_is_no_lack_of_speed() -> None:
+    """A mode of 20.68 kHz at 40 kHz looks like a slow swing of 700 rpm; the angle knows the mean."""
+    schedule = schedule_of(rig())
+    command = schedule.command(1.0 / 40e3)
+    omega, swing = 2.0 * np.pi * 20.68e3, 700.0 * RPM
+    speed = command.speed + swing * np.cos(omega * command.time)
+    angle = np.cumsum(command.speed) / 40e3 + swing / omega * np.sin(omega * command.time)
+    ends = np.searchsorted(command.time, schedule.starts[1:] - 1e-9)
+    assert np.abs(speed - command.speed)[ends].max() > 200.0 * RPM
+    require_speeds(rig(), schedule, run_of(command.time, speed, 20.0, angle))

@@ -1,0 +1,63 @@
+"""An FZG rig with lightly damped shaft modes at half its sample rate keeps its speed.
+
+Its shafts have modes at 10.3 kHz that nothing damps; at 20 kHz they once grew by drag torques that were held over a
+sample, until the stage was refused as "too slow" by tens of rpm.
+"""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dynamics.modes import loop_modes, modes_above_samples
+from dynamics.response import TimeResponse
+from rigdesign.case import load_case
+from rigdesign.coupling import PointResult, solve_point
+from rigdesign.loads import laws_of
+from rigdesign.ramp_run import held_points, run_ramp, schedule_of
+from rigdesign.rig.model import Rig, build_rig
+
+CASE = Path(__file__).parent / "fzg_20_kHz"
+RPM = np.pi / 30.0
+
+
+@cache
+def solved() -> tuple[Rig, PointResult]:
+    rig = build_rig(load_case(CASE), "quick")
+    return rig, solve_point(rig, held_points(rig)[0])
+
+
+@cache
+def run() -> TimeResponse:
+    rig, point = solved()
+    assert point.setting is not None
+    return run_ramp(rig, point.last, point.setting, point.last.feedback)
+
+
+def last(stage: str) -> np.ndarray:
+    """Speeds [rpm] in the last 0.3 s of a stage."""
+    rig, _ = solved()
+    schedule, response = schedule_of(rig), run()
+    end = schedule.starts[1 + [entry.name for entry in schedule.stages].index(stage)]
+    return np.asarray(response.speed[(response.time > end - 0.3) & (response.time <= end)] / RPM)
+
+
+def test_rig_stands_still_before_it_turns() -> None:
+    assert np.abs(last("bracing")).max() < 0.01
+
+
+def test_rig_keeps_its_test_speed() -> None:
+    """The mesh ripple of 600 Hz remains: 0.14 rpm."""
+    assert last("test").mean() == pytest.approx(2250.0, abs=0.01)
+    assert last("test").std() < 0.2
+    assert run().unsettled_steps == 0
+
+
+def test_modes_beyond_the_samples_are_named() -> None:
+    rig, point = solved()
+    assert rig.drivetrain is not None
+    texts = modes_above_samples(loop_modes(rig.drivetrain, laws_of(point.last.models), 50e3), 20e3)
+    named = next(text for text in texts if "10.34 kHz" in text)
+    assert "slave_wheel" in named
+    assert "show it at 9.66 kHz" in named
