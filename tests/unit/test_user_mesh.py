@@ -1,5 +1,6 @@
 """A user's mesh file: read as it was written, refused with names and places, solved like the parametric box."""
 
+import tracemalloc
 from dataclasses import replace
 from pathlib import Path
 
@@ -83,6 +84,18 @@ def test_millimetres_and_bodies_in_pieces_are_refused(tmp_path: Path) -> None:
         both.points, both.cells, {"housing": np.arange(len(both.cells), dtype=np.int32)}, both.surfaces
     )
     refused(write_msh(apart, tmp_path / "apart.msh"), "body 'housing' in 2 pieces of 48, 48 cells")
+
+
+def test_reading_takes_memory_for_the_mesh_not_for_pairs_of_cells(tmp_path: Path) -> None:
+    # a cell shares nodes with about 70 others; nodes, cells, sides of a cell take about 1.2 kB
+    mesh = box_mesh((0.4, 0.3, 0.2), (10, 10, 10), name="housing")
+    file = write_msh(mesh, tmp_path / "box.msh")
+    tracemalloc.start()
+    found = read_mesh(file)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert len(found.cells) == len(mesh.cells)
+    assert peak < 1500.0 * len(mesh.cells)
 
 
 def test_an_inverted_element_is_refused_by_the_name_of_its_body(tmp_path: Path) -> None:

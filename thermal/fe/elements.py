@@ -44,10 +44,11 @@ class FiniteElements:
         )
         check_volumes(mesh, np.minimum(self.fine.volumes.min(axis=1), self._load_volumes.min(axis=1)))
         corner_cells = mesh.cells[:, : self.shape.n_corners]
-        self.corners = np.unique(corner_cells)
+        is_corner = np.zeros(len(mesh.points), dtype=np.bool_)
+        is_corner[corner_cells] = True
+        self.corners = np.flatnonzero(is_corner).astype(np.int32)
         """(n_corners,) nodes of the linear space."""
-        number = np.full(len(mesh.points), -1, dtype=np.int32)
-        number[self.corners] = np.arange(len(self.corners), dtype=np.int32)
+        number = (np.cumsum(is_corner) - 1).astype(np.int32)
         self.coarse = linear_level(
             mesh.points[self.corners], np.ascontiguousarray(number[corner_cells]), self.shape, rules.linear
         )

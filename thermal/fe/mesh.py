@@ -106,6 +106,11 @@ class FacetTable:
         """(n, n_local) nodes of every row; see `nodes_at`."""
         return self.nodes_at(np.arange(len(self.keys)))
 
+    def find(self, keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """First row (k,) of each of ``keys`` (k,), and whether there is one; some row where there is none."""
+        rows = np.minimum(np.searchsorted(self.keys, keys), len(self.keys) - 1)
+        return rows, np.asarray(self.keys[rows] == keys)
+
     @property
     def on_boundary(self) -> NDArray[np.bool_]:
         """(n,) True where no second cell has the same facet."""
@@ -151,12 +156,10 @@ def named_mesh(
     n_corners = cell_shape(cells).side.n_corners
     surfaces = {}
     for name, corners in surface_corners.items():
-        keys = facet_keys(corners[:, :n_corners], len(points))
-        at = np.minimum(np.searchsorted(table.keys, keys), len(table.keys) - 1)
-        lost = int(np.count_nonzero(table.keys[at] != keys))
-        if lost:
+        at, found = table.find(facet_keys(corners[:, :n_corners], len(points)))
+        if lost := np.count_nonzero(~found):
             raise MeshError(
-                f"surface {name!r}: {lost} of {len(keys)} facets are no side of any cell; "
+                f"surface {name!r}: {lost} of {len(at)} facets are no side of any cell; "
                 "take surfaces and cells from the same mesh"
             )
         surfaces[name] = table.nodes_at(at).astype(np.int32)

@@ -80,8 +80,7 @@ def _check_surfaces(mesh: NamedMesh) -> frozenset[str]:
     covered = np.zeros(len(table.keys), dtype=np.int64)
     interfaces = set()
     for name, nodes in mesh.surfaces.items():
-        at = np.searchsorted(table.keys, facet_keys(nodes[:, :n_corners], len(mesh.points)))
-        at = np.minimum(at, len(table.keys) - 1)
+        at, _ = table.find(facet_keys(nodes[:, :n_corners], len(mesh.points)))
         outward = _same_side(nodes, table.nodes_at(at), n_corners)
         inner = ~on_boundary[at]
         second = np.minimum(at + 1, len(table.keys) - 1)
