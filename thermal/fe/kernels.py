@@ -250,3 +250,84 @@ def aggregates(indptr: Integers, indices: Integers, strong: NDArray[np.bool_]) -
                 group[row] = count
                 count += 1
     return group
+
+
+@njit(cache=True)
+def tied_pairs(
+    indptr: Integers, indices: Integers, data: Numbers, limit: float
+) -> tuple[Integers, Integers, Numbers]:
+    """First and second node (k,) of every entry larger than ``limit`` of the root of their diagonals' product.
+
+    data : (nnz, b, b) blocks of a symmetric matrix, sized by the root of their squares' sum; the third array
+    (k,) is the size relative to the root of the product
+    """
+    n, b = len(indptr) - 1, data.shape[1]
+    diagonal = np.zeros(n)
+    for row in range(n):
+        for at in range(indptr[row], indptr[row + 1]):
+            if indices[at] == row:
+                for i in range(b):
+                    for j in range(b):
+                        diagonal[row] += data[at, i, j] ** 2
+    first, second, strength = [], [], []
+    for row in range(n):
+        for at in range(indptr[row], indptr[row + 1]):
+            column = indices[at]
+            if column > row:
+                size = 0.0
+                for i in range(b):
+                    for j in range(b):
+                        size += data[at, i, j] ** 2
+                scale = np.sqrt(diagonal[row] * diagonal[column])
+                if size > limit * limit * scale:
+                    first.append(row)
+                    second.append(column)
+                    strength.append(np.sqrt(size / scale))
+    return np.array(first, dtype=np.int32), np.array(second, dtype=np.int32), np.array(strength)
+
+
+@njit(cache=True)
+def joined(n: int, first: Integers, second: Integers, most: int) -> Integers:
+    """(n,) number of the group of every node, -1 for a node alone: pairs joined in turn, up to ``most`` nodes."""
+    parent = np.arange(n, dtype=np.int32)
+    size = np.ones(n, dtype=np.int32)
+    for k in range(len(first)):
+        a, b = first[k], second[k]
+        while parent[a] != a:
+            parent[a] = parent[parent[a]]
+            a = parent[a]
+        while parent[b] != b:
+            parent[b] = parent[parent[b]]
+            b = parent[b]
+        if a != b and size[a] + size[b] <= most:
+            low, high = min(a, b), max(a, b)
+            parent[high] = low
+            size[low] += size[high]
+    label = np.full(n, -1, dtype=np.int32)
+    for node in range(n):
+        root = node
+        while parent[root] != root:
+            root = parent[root]
+        if size[root] > 1:
+            label[node] = root
+    return label
+
+
+@njit(cache=True)
+def group_blocks(
+    indptr: Integers, indices: Integers, data: NDArray[np.float64], members: Integers
+) -> NDArray[np.float64]:
+    """Dense blocks (k, s b, s b) of k groups of s nodes; data : (nnz, b, b), members : (k, s)."""
+    count, size = members.shape
+    b = data.shape[1]
+    blocks = np.zeros((count, size * b, size * b))
+    for group in range(count):
+        for mine in range(size):
+            row = members[group, mine]
+            for at in range(indptr[row], indptr[row + 1]):
+                for other in range(size):
+                    if members[group, other] == indices[at]:
+                        for i in range(b):
+                            for j in range(b):
+                                blocks[group, mine * b + i, other * b + j] = data[at, i, j]
+    return blocks

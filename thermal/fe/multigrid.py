@@ -7,26 +7,17 @@ Sources: Adams, Brezina, Hu, Tuminaro, J. Comput. Phys. 188 (2003) 593 for the s
 Methods for Sparse Linear Systems, 2nd ed., ch. 13 for cycles.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
-from scipy.sparse.linalg import norm
 
-from thermal.fe import kernels
 from thermal.fe.aggregation import as_blocks, coarsen, inverse_points
+from thermal.fe.products import BoolArray, LowRank, Matrix, Numbers, Product, WithLowRank
 from thermal.fe.shapes import FloatArray
-
-Matrix = sparse.csr_array | sparse.bsr_array
-BoolArray = NDArray[np.bool_]
-Numbers = NDArray[np.floating]
-
-SMOOTHED_RANGE = 10.0
-"""Largest eigenvalue over the smallest one that the smoother damps; iterations hardly depend on it."""
+from thermal.fe.smoothing import Smoother, chebyshev, largest_eigenvalue
 
 DENSE = 600
 """Unknowns that a dense factor takes."""
@@ -37,113 +28,8 @@ COARSE_CYCLES = 3
 CYCLE_RANGE = (0.2, 1.05)
 """Eigenvalues of the linear matrix times one cycle: a symmetric cycle has none above 1."""
 
-SAME = 0.05
-"""Relative change of a small-rank part up to which its inverse on the linear space is kept."""
-
 LOOSE = 1e-10
 """A mode of the last level costs no energy if its share of the largest diagonal entry is below this."""
-
-
-class Product:
-    """The product of a sparse matrix of scalars or 3x3 blocks with vectors, compiled.
-
-    kind : type of the numbers; single precision makes a copy
-    """
-
-    def __init__(self, matrix: Matrix, kind: type[np.floating] = np.float64) -> None:
-        self._matrix = matrix
-        self._blocks = isinstance(matrix, sparse.bsr_array) and matrix.blocksize == (3, 3)
-        if not self._blocks:
-            self._matrix = sparse.csr_array(matrix)
-        self._data = self._matrix.data.astype(kind, copy=False)
-        self._indptr = self._matrix.indptr.astype(np.uint32, copy=False)
-        self._indices = self._matrix.indices.astype(np.int32, copy=False).view(np.uint32)
-        self.kind = kind
-
-    def __matmul__(self, x: Numbers) -> Numbers:
-        if x.ndim == 2:
-            return np.stack([self @ np.ascontiguousarray(column) for column in x.T], axis=1)
-        y = np.empty(self._matrix.shape[0], dtype=self.kind)
-        indptr, indices = self._indptr, self._indices
-        if self._blocks:
-            kernels.block_product(indptr, indices, self._data, x.reshape(-1, 3), y.reshape(-1, 3))
-        else:
-            kernels.scalar_product(indptr, indices, self._data, x, y)
-        return y
-
-
-@dataclass(frozen=True)
-class LowRank:
-    """The sum of left_k right_k^T over k, as two (n, k) sparse matrices."""
-
-    left: sparse.csc_array
-    right: sparse.csc_array
-
-    def near(self, other: "LowRank") -> bool:
-        """Whether both factors differ from those of another by less than ``SAME`` of their size."""
-        pairs = ((self.left, other.left), (self.right, other.right))
-        return all(
-            mine.shape == theirs.shape and norm(mine - theirs) <= SAME * norm(theirs)
-            for mine, theirs in pairs
-        )
-
-    def __matmul__(self, x: Numbers) -> Numbers:
-        return np.asarray(self.left @ (self.right.T @ x))
-
-
-class _WithLowRank:
-    """The sum of a product and a small-rank part."""
-
-    def __init__(self, product: Product, low_rank: LowRank) -> None:
-        self._product, self._low_rank = product, low_rank
-
-    def __matmul__(self, x: Numbers) -> Numbers:
-        return np.asarray(self._product @ x + (self._low_rank @ x).astype(x.dtype))
-
-
-class Smoother:
-    """Chebyshev iteration on the upper part of the spectrum of the (block) Jacobi-scaled matrix.
-
-    product : of ``matrix`` in single precision; degree : of the polynomial
-    """
-
-    def __init__(self, matrix: Matrix, product: Product, degree: int) -> None:
-        self._single = _inverse_diagonal(matrix).astype(np.float32)
-        self._degree = degree
-        self.largest = 1.1 * _largest_eigenvalue(product, self._single)
-
-    def __call__(self, product: Product | _WithLowRank, x: Numbers | None, residual: Numbers) -> Numbers:
-        """Improve ``x`` (zero if None), to which ``residual`` belongs."""
-        bounds = (self.largest / SMOOTHED_RANGE, self.largest)
-        return _chebyshev(product, partial(scaled, self._single), bounds, self._degree, x, residual)
-
-
-def _chebyshev(
-    product: Product | _WithLowRank,
-    precondition: Callable[[Numbers], Numbers],
-    bounds: tuple[float, float],
-    degree: int,
-    x: Numbers | None,
-    residual: Numbers,
-) -> Numbers:
-    """Improve ``x`` by the polynomial that is smallest for eigenvalues of the preconditioned matrix in bounds.
-
-    Source: Saad, Iterative Methods for Sparse Linear Systems, 2nd ed., algorithm 12.1.
-    """
-    lower, upper = bounds
-    centre, half = 0.5 * (upper + lower), 0.5 * (upper - lower)
-    rho = half / centre
-    step = precondition(residual)
-    step *= np.float32(1.0 / centre)
-    x = step.copy() if x is None else x + step
-    for _ in range(degree - 1):
-        residual = residual - product @ step
-        following = 1.0 / (2.0 * centre / half - rho)
-        step *= np.float32(following * rho)
-        step += np.float32(2.0 * following / half) * precondition(residual)
-        rho = following
-        x += step
-    return x
 
 
 @dataclass(eq=False)
@@ -172,7 +58,12 @@ class AggregationHierarchy:
             product = Product(matrix, np.float32)
             smooth = Smoother(matrix, product, 2)
             by_point = inverse_points(matrix.diagonal()).astype(np.float32)
-            coarser = coarsen(blocks, modes, _largest_eigenvalue(product, by_point), len(self._stages))
+            coarser = coarsen(
+                blocks,
+                modes,
+                largest_eigenvalue(product, partial(np.multiply, by_point), matrix.shape[0]),
+                len(self._stages),
+            )
             if not 0 < coarser.matrix.shape[0] < 0.7 * matrix.shape[0]:
                 break
             up = sparse.csr_array(coarser.prolongation)
@@ -193,7 +84,7 @@ class AggregationHierarchy:
         cycle = partial(self._cycle, level=0)
         if not self._stages:
             return cycle(residual)
-        return _chebyshev(self._stages[0].product, cycle, CYCLE_RANGE, self._cycles, None, residual)
+        return chebyshev(self._stages[0].product, cycle, CYCLE_RANGE, self._cycles, None, residual)
 
     def _cycle(self, residual: Numbers, level: int) -> Numbers:
         if level == len(self._stages):
@@ -217,52 +108,6 @@ def _dense_factor(matrix: Matrix, modes: FloatArray) -> tuple[FloatArray, bool]:
         loose = (vectors @ turns)[:, energies < LOOSE * scale]
         dense[np.ix_(mine, mine)] += scale * loose @ loose.T
     return cho_factor(dense.astype(np.float64), lower=True)
-
-
-def scaled(inverse: Numbers, residual: Numbers) -> Numbers:
-    """Product with an inverse diagonal (n,) or inverse diagonal blocks (n, 3, 3)."""
-    if inverse.ndim == 1:
-        return inverse * residual
-    y = np.empty_like(residual)
-    kernels.diagonal_product(inverse, residual.reshape(-1, 3), y.reshape(-1, 3))
-    return y
-
-
-def _inverse_diagonal(matrix: Matrix) -> FloatArray:
-    """Inverse of the diagonal (n,), or of the 3x3 diagonal blocks (n, 3, 3)."""
-    if not (isinstance(matrix, sparse.bsr_array) and matrix.blocksize == (3, 3)):
-        return inverse_points(matrix.diagonal())
-    return np.asarray(np.linalg.inv(kernels.diagonal_blocks(matrix.indptr, matrix.indices, matrix.data)))
-
-
-def _largest_eigenvalue(matrix: Product, inverse: Numbers, steps: int = 12) -> float:
-    """Largest eigenvalue of inverse @ matrix, single precision, from a short Lanczos run with a fixed start."""
-    n = inverse.shape[0] * (1 if inverse.ndim == 1 else 3)
-    v: Numbers = np.cos(1.0 + np.arange(n) * 2.399963).astype(np.float32)
-    w = scaled(inverse, v)
-    beta = _root_of_dot(v, w)
-    v, w = v / beta, w / beta
-    last = np.zeros_like(v)
-    alphas: list[float] = []
-    betas: list[float] = []
-    for _ in range(min(steps, n)):
-        u = matrix @ w - (betas[-1] * last if betas else np.float32(0.0))
-        alpha = float(np.dot(u, w))
-        u -= np.float32(alpha) * v
-        z = scaled(inverse, u)
-        alphas.append(alpha)
-        beta = _root_of_dot(u, z)
-        if beta < 1e-5 * alpha:
-            break
-        betas.append(float(beta))
-        last, v, w = v, u / beta, z / beta
-    k = len(alphas)
-    small = np.diag(alphas) + np.diag(betas[: k - 1], 1) + np.diag(betas[: k - 1], -1)
-    return float(np.linalg.eigvalsh(small)[-1])
-
-
-def _root_of_dot(a: Numbers, b: Numbers) -> np.float32:
-    return np.float32(np.sqrt(max(float(np.dot(a, b)), 0.0)))
 
 
 class TwoLevelMultigrid:
@@ -334,8 +179,8 @@ class TwoLevelMultigrid:
         return np.asarray(size * x.astype(np.float64))
 
     @property
-    def _apply(self) -> Product | _WithLowRank:
-        return self._fine if self._low_rank is None else _WithLowRank(self._fine, self._low_rank)
+    def _apply(self) -> Product | WithLowRank:
+        return self._fine if self._low_rank is None else WithLowRank(self._fine, self._low_rank)
 
     def _coarse_correction(self, residual: Numbers) -> Numbers:
         shape = (-1, self._block)

@@ -11,7 +11,8 @@ import numpy as np
 from scipy import sparse
 
 from thermal.fe.direct import solve_direct
-from thermal.fe.multigrid import BoolArray, LowRank, Matrix, Product, TwoLevelMultigrid
+from thermal.fe.multigrid import TwoLevelMultigrid
+from thermal.fe.products import BoolArray, LowRank, Matrix, Product
 from thermal.fe.shapes import FloatArray
 
 __all__ = [
