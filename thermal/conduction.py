@@ -1,34 +1,23 @@
 """Steady heat conduction with everything a surface may do: full Newton, multigrid inside.
 
-`solve_steady` iterates on the residual and Jacobian of thermal.conduction_terms and hands back the field with
+`solve_steady` runs thermal.newton on the equations of thermal.conduction_terms and hands back the field with
 the heat balance of thermal.balance, which closes to 1e-8 of the heat turned over or is no solution.
-`newton` is the iteration itself, which `thermal.transient` runs for every stage of a time step.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from thermal.balance import HeatBalance, heat_balance
 from thermal.condition_checks import Condition, ConditionError, check_conditions
 from thermal.conduction_setup import ConductionSetup as ConductionSetup
-from thermal.conduction_terms import ConductionProblem, Linearisation, Preconditioner
+from thermal.conduction_terms import ConductionProblem, Preconditioner
 from thermal.conductivity import Conductivity
 from thermal.fe.mesh import FloatArray, NamedMesh
-from thermal.fe.solver import NotConverged, gmres
+from thermal.fe.solver import NotConverged
+from thermal.newton import linear_start, newton
 
 CLOSURE = 1e-8
 """Greatest allowed gap of the heat balance relative to the heat turned over."""
-
-CONTRACTION = 0.1
-"""Fall of the residual in a Newton step of a time step below which the Jacobian is made afresh."""
-
-WORN = 14
-"""Iterations of a linear solve of a steady problem after which the preconditioner is made afresh."""
-
-SMALLEST_STEP = 1e-2
-"""Share of a Newton step that is taken even if the residual rises."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,24 +30,13 @@ class TemperatureSolution:
     residuals: tuple[float, ...]
     """Sum of the nodal residuals' sizes relative to the heat turned over, after 0, 1, ... Newton steps."""
     linear_iterations: tuple[int, ...]
-    """GMRES iterations of each Newton step."""
+    """Iterations of the linear solve of each Newton step on the second-order space."""
     warnings: tuple[str, ...]
     """What is to be said of joints, and what the film laws said about their range; each sentence once."""
     volumes: dict[str, float]
     """Volume of a stream network -> temperature at which its fluid leaves [K]."""
     preconditioner: Preconditioner | None = field(repr=False, compare=False)
     """Of the last linear solve: good for the next problem nearby."""
-
-
-@dataclass(frozen=True)
-class NewtonResult:
-    """Unknowns (n_nodes + m,) with the history of the iteration and the preconditioner it ended with."""
-
-    field: FloatArray
-    residuals: tuple[float, ...]
-    linear_iterations: tuple[int, ...]
-    preconditioner: Preconditioner | None
-    linear: Linearisation | None
 
 
 def solve_steady(
@@ -77,7 +55,8 @@ def solve_steady(
     conductivity : body -> k [W/(m K)], a number or a law of the temperature
     conditions : at least one for every surface on the boundary, see thermal.boundary, contact, enclosure,
         streams
-    initial : (n_nodes,) field or one value [K] to start from; the mean of all given temperatures if None
+    initial : (n_nodes,) field or one value [K] to start from; the mean of all given temperatures if None. From
+        one value the problem is solved on the linear space first
     near : solution on this mesh under conditions not far off, to start from in field and preconditioner
     reuse : setup of the same mesh and conductivities; all but the boundary terms is then at hand
     tolerance : of the nodal residuals' sum relative to the heat turned over; the balance closes to ten times it
@@ -94,6 +73,8 @@ def solve_steady(
     problem = ConductionProblem(setup, conditions)
     start = problem.start(initial if near is None else near.temperature)
     problem.check_paths(start)
+    if near is None and (initial is None or isinstance(initial, float | int)):
+        start = linear_start(problem, start)
     result = newton(problem, start, tolerance, max_steps, None if near is None else near.preconditioner)
     n = problem.n_nodes
     temperature, volumes = result.field[:n], dict(zip(problem.volumes.index, result.field[n:].tolist()))
@@ -115,95 +96,3 @@ def solve_steady(
         volumes=volumes,
         preconditioner=result.preconditioner,
     )
-
-
-def newton(
-    problem: ConductionProblem,
-    field: FloatArray,
-    tolerance: float,
-    max_steps: int = 30,
-    preconditioner: Preconditioner | None = None,
-    linear: Linearisation | None = None,
-) -> NewtonResult:
-    """Iterate on nodes and volumes from ``field`` (n_nodes + m,) until the residual is within tolerance.
-
-    preconditioner : of a problem nearby, taken as it is; made from the first Jacobian if None
-    linear : Jacobian of a time step nearby; a time step keeps its Jacobian as long as the residual falls by
-        ``CONTRACTION`` from step to step
-
-    Raises NotConverged with its history and the hottest place.
-    """
-    out, turned = problem.heat_out(field)
-    residual = problem.residual(out)
-    history: list[float] = []
-    iterations: list[int] = []
-    while True:
-        size = float(np.abs(residual).sum())
-        limit = max(tolerance * turned, problem.roundoff(field))
-        history.append(size / turned if turned > 0.0 else 0.0)
-        if size <= limit:
-            return NewtonResult(field, tuple(history), tuple(iterations), preconditioner, linear)
-        if len(iterations) == max_steps:
-            raise NotConverged(
-                f"Newton: residual {history[-1]:.3g} of the heat after {max_steps} steps is above "
-                f"{tolerance:g}; {_hottest(problem, field)}; check the film laws for jumps or start from a "
-                "nearer field",
-                tuple(history),
-            )
-        slow = len(history) > 1 and history[-1] > CONTRACTION * history[-2]
-        if linear is None or problem.storage is None or slow:
-            linear = problem.linearise(field)
-        if preconditioner is None:
-            preconditioner = problem.preconditioner(linear, field)
-        elif problem.storage is None:
-            preconditioner.set_low_rank(linear.low_rank)
-        load = linear.load(residual)
-        step = gmres(linear, load, preconditioner, tolerance=_forcing(history, limit / size))
-        iterations.append(step.iterations)
-        if step.iterations > WORN and problem.storage is None:
-            preconditioner = None
-        whole = linear.whole(residual, step.values)
-        field, residual, turned = _line_search(problem, field, whole, residual)
-
-
-def _hottest(problem: ConductionProblem, field: FloatArray) -> str:
-    """Where the last field is hottest, in words."""
-    node = int(field[: problem.n_nodes].argmax())
-    mesh = problem.elements.mesh
-    body = next((name for name, cells in mesh.bodies.items() if (mesh.cells[cells] == node).any()), "?")
-    x, y, z = mesh.points[node]
-    return f"hottest in body {body} at x, y, z = {x:.4g}, {y:.4g}, {z:.4g} m with {field[node]:.5g} K"
-
-
-def _forcing(history: list[float], enough: float) -> float:
-    """Tolerance of the linear solve: small enough for quadratic convergence, never smaller than needed.
-
-    Source: Eisenstat, Walker, SIAM J. Sci. Comput. 17 (1996) 16, choice 2 with exponent 2.
-    """
-    fall = history[-1] / history[-2] if len(history) > 1 and history[-2] > 0.0 else 1.0
-    return max(min(1e-3, 0.5 * fall * fall), 0.1 * min(enough, 1.0), 1e-12)
-
-
-def _line_search(
-    problem: ConductionProblem, temperature: FloatArray, step: FloatArray, residual: FloatArray
-) -> tuple[FloatArray, FloatArray, float]:
-    """Halve the step until temperatures are positive, every film law can be evaluated and the residual falls.
-
-    Return field, residual and heat turned over. What a law raises is passed on if no part of the step helps.
-    """
-    before = float(np.linalg.norm(residual))
-    share = 1.0
-    while True:
-        trial = temperature + share * step
-        last = share < SMALLEST_STEP
-        if trial.min() > 0.0:
-            try:
-                out, turned = problem.heat_out(trial)
-            except ValueError:
-                if last:
-                    raise
-            else:
-                after = problem.residual(out)
-                if last or float(np.linalg.norm(after)) <= (1.0 - 1e-4 * share) * before:
-                    return trial, after, turned
-        share *= 0.5

@@ -16,6 +16,7 @@ import copy
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -30,7 +31,7 @@ from thermal.contact_terms import ContactTerms
 from thermal.direct_factor import MOST_NODES, DirectFactor
 from thermal.enclosure import Enclosure, EnclosureTerms
 from thermal.fe.mesh import FloatArray
-from thermal.fe.solver import BoolArray, LowRank, Operator, TwoLevelMultigrid, constrain
+from thermal.fe.solver import BoolArray, LowRank, Operator, Product, TwoLevelMultigrid, constrain
 from thermal.low_rank import Column, stack
 from thermal.stream_terms import Elimination, VolumeTerms, eliminate
 from thermal.streams import StreamNetwork, volume_links
@@ -44,24 +45,13 @@ OFF_REST = 1.0
 
 
 @dataclass(frozen=True)
-class Linearisation:
-    """The Jacobian around one field, volumes eliminated: what a Newton step solves with."""
+class SmallParts:
+    """What mean temperatures and volumes add to the Jacobian around one field, volumes eliminated."""
 
-    matrix: sparse.csr_array
     low_rank: LowRank | None
-    conductivity_slope: Operator | None
     elimination: Elimination | None
     fixed: BoolArray
     """(n_nodes,)"""
-
-    def __call__(self, x: FloatArray) -> FloatArray:
-        """Apply the reduced Jacobian to (n_nodes,)."""
-        y = self.matrix @ x
-        if self.low_rank is not None:
-            y = y + self.low_rank @ x
-        if self.conductivity_slope is not None:
-            y = y + np.where(self.fixed, 0.0, self.conductivity_slope(x))
-        return np.asarray(y)
 
     def load(self, residual: FloatArray) -> FloatArray:
         """(n_nodes,) right-hand side of a step from the whole residual."""
@@ -77,6 +67,32 @@ class Linearisation:
         if self.elimination is None:
             return step
         return np.append(step, self.elimination.volume_step(residual[len(step) :], step))
+
+
+@dataclass(frozen=True)
+class Linearisation(SmallParts):
+    """The Jacobian around one field: what a Newton step solves with."""
+
+    matrix: sparse.csr_array
+    conductivity_slope: Operator | None
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the matrix is all there is; it is positive definite."""
+        return self.low_rank is None and self.conductivity_slope is None
+
+    @cached_property
+    def _product(self) -> Product:
+        return Product(self.matrix)
+
+    def __call__(self, x: FloatArray) -> FloatArray:
+        """Apply the reduced Jacobian to (n_nodes,)."""
+        y = self._product @ x
+        if self.low_rank is not None:
+            y = y + self.low_rank @ x
+        if self.conductivity_slope is not None:
+            y = y + np.where(self.fixed, 0.0, self.conductivity_slope(x))
+        return np.asarray(y)
 
 
 class Preconditioner(Protocol):
@@ -99,7 +115,7 @@ class ConductionProblem:
         self.elements = elements = setup.elements
         self.surfaces = elements.surfaces
         self.conditions = tuple(conditions)
-        self.matrix = elements.fine.matrix(setup.fine)
+        self._conduction = Product(elements.fine.matrix(setup.fine))
         self.walls = SurfaceTerms(
             elements,
             [c for c in conditions if isinstance(c, Film)],
@@ -184,7 +200,7 @@ class ConductionProblem:
         """Heat (n_nodes + m,) that leaves every node and volume; heat turned over [W]."""
         n = self.n_nodes
         temperature, volumes = field[:n], field[n:]
-        nodes = self.matrix @ temperature - self.source
+        nodes = np.asarray(self._conduction @ temperature - self.source)
         turned = self.source_turnover
         if self.setup.variable is not None:
             nodes += self.setup.variable.heat_out(temperature)
@@ -239,8 +255,7 @@ class ConductionProblem:
 
     def linearise(self, field: FloatArray) -> Linearisation:
         """The Jacobian at a field, prescribed nodes taken out."""
-        n = self.n_nodes
-        temperature, volumes = field[:n], field[n:]
+        temperature = field[: self.n_nodes]
         values = self.setup.fine.copy()
         slope: Operator | None = None
         if self.setup.variable is not None:
@@ -254,6 +269,18 @@ class ConductionProblem:
         joints = self.contacts.matrix(temperature)
         if joints is not None:
             matrix = sparse.csr_array(matrix + joints)
+        parts = self.small_parts(field)
+        return Linearisation(
+            low_rank=parts.low_rank,
+            elimination=parts.elimination,
+            fixed=self.fixed,
+            matrix=constrain(matrix, self.fixed),
+            conductivity_slope=slope,
+        )
+
+    def small_parts(self, field: FloatArray) -> SmallParts:
+        """What mean temperatures and volumes add to the Jacobian at a field."""
+        temperature, volumes = field[: self.n_nodes], field[self.n_nodes :]
         columns = self.walls.columns(temperature) + self.contacts.columns(temperature)
         for terms in self.enclosures:
             columns += terms.columns(temperature)
@@ -264,9 +291,7 @@ class ConductionProblem:
             )
             elimination = eliminate(self.volumes, temperature, volumes, stored)
             columns += elimination.columns
-        return Linearisation(
-            constrain(matrix, self.fixed), self._low_rank(columns), slope, elimination, self.fixed
-        )
+        return SmallParts(self._low_rank(columns), elimination, self.fixed)
 
     def _low_rank(self, columns: list[tuple[Column, Column]]) -> LowRank | None:
         columns = [(left, right) for left, right in columns if len(left[0]) and len(right[0])]
@@ -324,6 +349,13 @@ class ConductionProblem:
 
     def multigrid(self, linear: Linearisation, field: FloatArray) -> TwoLevelMultigrid:
         """Preconditioner around one linearisation."""
+        fixed = self.fixed[self.elements.corners]
+        return TwoLevelMultigrid(
+            linear.matrix, self.linear_matrix(field), self.elements.prolongation, self.fixed, fixed
+        )
+
+    def linear_matrix(self, field: FloatArray) -> sparse.csr_array:
+        """Sparse part of the Jacobian on the linear space (n_corners, n_corners), prescribed corners taken out."""
         temperature = field[: self.n_nodes]
         values = self.setup.coarse.copy()
         if self.setup.variable is not None:
@@ -340,10 +372,7 @@ class ConductionProblem:
         if joints is not None:
             up = self.elements.prolongation
             coarse = sparse.csr_array(coarse + up.T @ joints @ up)
-        fixed = self.fixed[self.elements.corners]
-        return TwoLevelMultigrid(
-            linear.matrix, constrain(coarse, fixed), self.elements.prolongation, self.fixed, fixed
-        )
+        return constrain(coarse, self.fixed[self.elements.corners])
 
     def _shift_exchanges(
         self, values: FloatArray, slopes: Mapping[str, FloatArray], temperature: FloatArray

@@ -18,9 +18,9 @@ import numpy as np
 
 from thermal.balance import HeatBalance, heat_balance
 from thermal.capacity import HeatCapacity, Storage
-from thermal.conduction import newton
 from thermal.conduction_terms import ConductionProblem, Linearisation, Preconditioner
 from thermal.fe.mesh import FloatArray
+from thermal.newton import newton
 
 GAMMA = 1.0 - math.sqrt(0.5)
 

@@ -26,13 +26,13 @@ from thermal.boundary import (
     SurfaceSource,
 )
 from thermal.condition_checks import Condition
-from thermal.conduction import newton
 from thermal.conduction_setup import ConductionSetup
 from thermal.conduction_terms import ConductionProblem, Preconditioner
 from thermal.contact import Contact
 from thermal.direct_factor import MOST_NODES, DirectFactor
 from thermal.fe.mesh import FloatArray
 from thermal.fe.solver import LowRank
+from thermal.newton import newton
 from thermal.reduced import ReducedConduction, shapes_of
 
 WANTED = 0.08

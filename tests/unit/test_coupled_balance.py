@@ -12,13 +12,14 @@ from tests.two_blocks import law
 from thermal.balance import heat_balance
 from thermal.boundary import Adiabatic, Film, FilmLaw
 from thermal.condition_checks import Condition, ConditionError
-from thermal.conduction import CLOSURE, ConductionSetup, TemperatureSolution, newton, solve_steady
+from thermal.conduction import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
 from thermal.conduction_terms import ConductionProblem
 from thermal.conductivity import Conductivity
 from thermal.contact import Contact
 from thermal.contact_terms import ContactTerms
 from thermal.enclosure import Enclosure, EnclosureTerms
 from thermal.fe.solver import NotConverged
+from thermal.newton import newton
 from thermal.stream_terms import VolumeTerms
 from thermal.streams import StreamNetwork
 

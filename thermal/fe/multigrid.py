@@ -7,6 +7,7 @@ Sources: Adams, Brezina, Hu, Tuminaro, J. Comput. Phys. 188 (2003) 593 for the s
 Methods for Sparse Linear Systems, 2nd ed., ch. 13 for cycles.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -110,6 +111,51 @@ def _dense_factor(matrix: Matrix, modes: FloatArray) -> tuple[FloatArray, bool]:
     return cho_factor(dense.astype(np.float64), lower=True)
 
 
+class LinearSpace:
+    """Approximate inverse on the linear space: cycles of aggregation, a small-rank part inverted round them.
+
+    matrix : constrained, (n, n); fixed : (n,) unknowns held at zero
+    modes : (n, m) see AggregationHierarchy
+    """
+
+    def __init__(self, matrix: Matrix, fixed: BoolArray, modes: FloatArray) -> None:
+        self._free = (~fixed).astype(np.float32)
+        self._cycles = AggregationHierarchy(matrix, modes * ~fixed[:, None])
+        self._correction: tuple[FloatArray, FloatArray] | None = None
+
+    def set_low_rank(self, low_rank: LowRank | None) -> None:
+        """Replace the small-rank part, inverted by the Woodbury identity."""
+        self._correction = None
+        if low_rank is None:
+            return
+        left = low_rank.left.toarray() * self._free[:, None]
+        right = low_rank.right.toarray() * self._free[:, None]
+        columns = [self._cycles(column.astype(np.float32)) for column in left.T]
+        solved = np.stack(columns, axis=1).astype(np.float64)
+        inner = np.eye(left.shape[1]) + right.T @ solved
+        self._correction = (solved, np.asarray(np.linalg.solve(inner, right.T), dtype=np.float64))
+
+    def cycle(self, residual: Numbers) -> Numbers:
+        """Apply it to a residual (n,) in single precision, not far from 1 in size."""
+        y = self._cycles(residual * self._free)
+        if self._correction is not None:
+            solved, inner = self._correction
+            y = (y - solved @ (inner @ y)).astype(np.float32)
+        return y * self._free
+
+    def __call__(self, residual: FloatArray) -> FloatArray:
+        """Apply it to a residual (n,)."""
+        return _in_single(self.cycle, residual)
+
+
+def _in_single(cycle: Callable[[Numbers], Numbers], residual: FloatArray) -> FloatArray:
+    """Apply a cycle in single precision to a residual of any size."""
+    size = float(np.abs(residual).max(initial=0.0))
+    if size == 0.0:
+        return np.zeros_like(residual)
+    return np.asarray(size * cycle((residual / size).astype(np.float32)).astype(np.float64))
+
+
 class TwoLevelMultigrid:
     """One symmetric cycle between a second-order matrix and the matrix of its linear sub-space.
 
@@ -140,13 +186,11 @@ class TwoLevelMultigrid:
         self._up = prolongation.astype(np.float32)
         self._block = fine.shape[0] // prolongation.shape[0]
         self._free = (~fixed).astype(np.float32)
-        self._free_coarse = (~fixed_coarse).astype(np.float32)
         if modes is None:
             modes = np.tile(np.eye(self._block), (prolongation.shape[1], 1))
-        self._coarse = AggregationHierarchy(coarse, modes * ~fixed_coarse[:, None])
+        self._coarse = LinearSpace(coarse, fixed_coarse, modes)
         self._low_rank: LowRank | None = None
         self._inverted: LowRank | None = None
-        self._correction: tuple[FloatArray, FloatArray] | None = None
 
     def set_low_rank(self, low_rank: LowRank | None) -> None:
         """Replace the small-rank part; its coarse form is inverted by the Woodbury identity.
@@ -154,29 +198,19 @@ class TwoLevelMultigrid:
         The inverse of a part that differs by less than ``SAME`` serves again: it only guides the iteration.
         """
         self._low_rank = low_rank
-        if low_rank is None:
-            self._inverted = self._correction = None
-            return
-        if self._inverted is not None and low_rank.near(self._inverted):
+        if low_rank is not None and self._inverted is not None and low_rank.near(self._inverted):
             return
         self._inverted = low_rank
-        left = (self._down @ low_rank.left).toarray() * self._free_coarse[:, None]
-        right = (self._down @ low_rank.right).toarray() * self._free_coarse[:, None]
-        columns = [self._coarse(column.astype(np.float32)) for column in left.T]
-        solved = np.stack(columns, axis=1).astype(np.float64)
-        inner = np.eye(left.shape[1]) + right.T @ solved
-        self._correction = (solved, np.linalg.solve(inner, right.T))
+        self._coarse.set_low_rank(None if low_rank is None else low_rank.under(self._down))
 
     def __call__(self, residual: FloatArray) -> FloatArray:
         """Apply the cycle to a residual (n,)."""
-        size = float(np.abs(residual).max(initial=0.0))
-        if size == 0.0:
-            return np.zeros_like(residual)
-        single = (residual / size).astype(np.float32)
+        return _in_single(self._cycle, residual)
+
+    def _cycle(self, single: Numbers) -> Numbers:
         x = self._smooth(self._apply, None, single)
         x += self._coarse_correction(single - self._apply @ x)
-        x = self._smooth(self._apply, x, single - self._apply @ x)
-        return np.asarray(size * x.astype(np.float64))
+        return self._smooth(self._apply, x, single - self._apply @ x)
 
     @property
     def _apply(self) -> Product | WithLowRank:
@@ -184,9 +218,5 @@ class TwoLevelMultigrid:
 
     def _coarse_correction(self, residual: Numbers) -> Numbers:
         shape = (-1, self._block)
-        coarse = (self._down @ residual.reshape(shape)).ravel() * self._free_coarse
-        y = self._coarse(coarse)
-        if self._correction is not None:
-            solved, inner = self._correction
-            y = (y - solved @ (inner @ y)).astype(np.float32)
+        y = self._coarse.cycle((self._down @ residual.reshape(shape)).ravel())
         return (self._up @ y.reshape(shape)).ravel() * self._free

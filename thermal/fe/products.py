@@ -60,6 +60,11 @@ class LowRank:
             for mine, theirs in pairs
         )
 
+    def under(self, down: sparse.csr_array) -> "LowRank":
+        """The same part on a smaller space; down : (m, n) takes a residual there."""
+        left, right = (sparse.csc_array(down @ factor) for factor in (self.left, self.right))
+        return LowRank(left, right)
+
     def __matmul__(self, x: Numbers) -> Numbers:
         return np.asarray(self.left @ (self.right.T @ x))
 

@@ -11,17 +11,19 @@ import numpy as np
 from scipy import sparse
 
 from thermal.fe.direct import solve_direct
-from thermal.fe.multigrid import TwoLevelMultigrid
+from thermal.fe.multigrid import LinearSpace, TwoLevelMultigrid
 from thermal.fe.products import BoolArray, LowRank, Matrix, Product
 from thermal.fe.shapes import FloatArray
 
 __all__ = [
     "BoolArray",
     "LinearSolution",
+    "LinearSpace",
     "LowRank",
     "Matrix",
     "NotConverged",
     "Operator",
+    "Product",
     "TwoLevelMultigrid",
     "conjugate_gradient",
     "constrain",
