@@ -47,7 +47,7 @@ class ConductionSetup:
         if self.variable is not None:
             usual = np.full(len(mesh.points), USUAL)
             size = size + self.variable.fine_values(usual)
-        self.size = np.add.reduceat(np.abs(size), self.elements.fine.indptr[:-1])
+        self.size = self.elements.fine.row_sizes(size)
         """(n_nodes,) sum of the sizes of each row's entries [W/K], for the rounding error of the residual."""
         self._capacities: dict[tuple[tuple[str, float], ...], HeatCapacity] = {}
         self._joints: dict[tuple[str, str, float | None, float], Joint] = {}

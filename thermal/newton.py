@@ -83,7 +83,9 @@ def newton(
                 tuple(history),
             )
         slow = len(history) > 1 and history[-1] > CONTRACTION * history[-2]
-        if linear is None or problem.storage is None or slow:
+        if problem.storage is None or slow:
+            linear = None  # its memory serves the next one
+        if linear is None:
             linear = problem.linearise(field)
         made = preconditioner is None
         if preconditioner is None:

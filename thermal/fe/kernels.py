@@ -209,6 +209,16 @@ def diagonal_blocks(indptr: Integers, indices: Integers, data: Numbers) -> Numbe
 
 
 @njit(cache=True)
+def row_sizes(indptr: Integers, data: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n,) sum of the sizes of the entries of every row; data : (nnz,)."""
+    sizes = np.zeros(len(indptr) - 1)
+    for row in range(len(sizes)):
+        for at in range(indptr[row], indptr[row + 1]):
+            sizes[row] += abs(data[at])
+    return sizes
+
+
+@njit(cache=True)
 def aggregates(indptr: Integers, indices: Integers, strong: NDArray[np.bool_]) -> Integers:
     """(n,) number of the aggregate of every node, -1 for a node that nothing couples strongly.
 

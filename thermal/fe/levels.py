@@ -57,6 +57,10 @@ class Level:
         """Sparse matrix from its (nnz,) values."""
         return sparse.csr_array((values, self.indices, self.indptr), shape=(self.n_nodes, self.n_nodes))
 
+    def row_sizes(self, values: FloatArray) -> FloatArray:
+        """(n_nodes,) sum of the sizes of each row's entries, from matrix values (nnz,)."""
+        return kernels.row_sizes(self.indptr, values)
+
     def block_matrix(self, blocks: FloatArray) -> sparse.bsr_array:
         """Sparse matrix from its (nnz, 3, 3) blocks; degree of freedom = 3 node + direction."""
         size = 3 * self.n_nodes

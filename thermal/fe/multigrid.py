@@ -180,15 +180,15 @@ class TwoLevelMultigrid:
         modes: FloatArray | None = None,
         degree: int = 3,
     ) -> None:
+        self._block = fine.shape[0] // prolongation.shape[0]
+        if modes is None:
+            modes = np.tile(np.eye(self._block), (prolongation.shape[1], 1))
+        self._coarse = LinearSpace(coarse, fixed_coarse, modes)  # first: it needs most room while it is made
         self._fine = Product(fine, np.float32)
         self._smooth = Smoother(fine, self._fine, degree)
         self._down = sparse.csr_array(prolongation.T).astype(np.float32)
         self._up = prolongation.astype(np.float32)
-        self._block = fine.shape[0] // prolongation.shape[0]
         self._free = (~fixed).astype(np.float32)
-        if modes is None:
-            modes = np.tile(np.eye(self._block), (prolongation.shape[1], 1))
-        self._coarse = LinearSpace(coarse, fixed_coarse, modes)
         self._low_rank: LowRank | None = None
         self._inverted: LowRank | None = None
 

@@ -24,19 +24,18 @@ class Product:
     """
 
     def __init__(self, matrix: Matrix, kind: type[np.floating] = np.float64) -> None:
-        self._matrix = matrix
         self._blocks = isinstance(matrix, sparse.bsr_array) and matrix.blocksize == (3, 3)
-        if not self._blocks:
-            self._matrix = sparse.csr_array(matrix)
-        self._data = self._matrix.data.astype(kind, copy=False)
-        self._indptr = self._matrix.indptr.astype(np.uint32, copy=False)
-        self._indices = self._matrix.indices.astype(np.int32, copy=False).view(np.uint32)
+        stored = matrix if self._blocks else sparse.csr_array(matrix)
+        self._rows = stored.shape[0]
+        self._data = stored.data.astype(kind, copy=False)
+        self._indptr = stored.indptr.astype(np.uint32, copy=False)
+        self._indices = stored.indices.astype(np.int32, copy=False).view(np.uint32)
         self.kind = kind
 
     def __matmul__(self, x: Numbers) -> Numbers:
         if x.ndim == 2:
             return np.stack([self @ np.ascontiguousarray(column) for column in x.T], axis=1)
-        y = np.empty(self._matrix.shape[0], dtype=self.kind)
+        y = np.empty(self._rows, dtype=self.kind)
         indptr, indices = self._indptr, self._indices
         if self._blocks:
             kernels.block_product(indptr, indices, self._data, x.reshape(-1, 3), y.reshape(-1, 3))
