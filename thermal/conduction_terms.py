@@ -274,7 +274,7 @@ class ConductionProblem:
             low_rank=parts.low_rank,
             elimination=parts.elimination,
             fixed=self.fixed,
-            matrix=constrain(matrix, self.fixed),
+            matrix=constrain(matrix, self.fixed, overwrite=True),
             conductivity_slope=slope,
         )
 
@@ -372,7 +372,7 @@ class ConductionProblem:
         if joints is not None:
             up = self.elements.prolongation
             coarse = sparse.csr_array(coarse + up.T @ joints @ up)
-        return constrain(coarse, self.fixed[self.elements.corners])
+        return constrain(coarse, self.fixed[self.elements.corners], overwrite=True)
 
     def _shift_exchanges(
         self, values: FloatArray, slopes: Mapping[str, FloatArray], temperature: FloatArray

@@ -96,8 +96,8 @@ class ElasticSetup:
         self._held_rows = _rows_of(elements, fine, held)
         self._held = held.ravel()
         held_corners = held[elements.corners].ravel()
-        self.matrix = constrain(elements.fine.block_matrix(fine), self._held)
-        coarse_matrix = constrain(linear_stiffness(elements, young, poisson), held_corners)
+        self.matrix = constrain(elements.fine.block_matrix(fine), self._held, overwrite=True)
+        coarse_matrix = constrain(linear_stiffness(elements, young, poisson), held_corners, overwrite=True)
         modes = rigid_modes(elements.mesh.points[elements.corners])
         self.multigrid = TwoLevelMultigrid(
             self.matrix, coarse_matrix, elements.prolongation, self._held, held_corners, modes

@@ -209,6 +209,19 @@ def diagonal_blocks(indptr: Integers, indices: Integers, data: Numbers) -> Numbe
 
 
 @njit(cache=True)
+def hold(indptr: Integers, indices: Integers, data: Numbers, fixed: NDArray[np.bool_]) -> None:
+    """Set rows and columns of fixed unknowns to zero but for the diagonal; data : (nnz, b, b), fixed : (n, b)."""
+    b = fixed.shape[1]
+    for row in range(len(indptr) - 1):
+        for at in range(indptr[row], indptr[row + 1]):
+            column = indices[at]
+            for i in range(b):
+                for j in range(b):
+                    if (fixed[row, i] or fixed[column, j]) and not (row == column and i == j):
+                        data[at, i, j] = 0.0
+
+
+@njit(cache=True)
 def row_sizes(indptr: Integers, data: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n,) sum of the sizes of the entries of every row; data : (nnz,)."""
     sizes = np.zeros(len(indptr) - 1)

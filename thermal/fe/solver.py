@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 from scipy import sparse
 
+from thermal.fe import kernels
 from thermal.fe.direct import solve_direct
 from thermal.fe.multigrid import LinearSpace, TwoLevelMultigrid
 from thermal.fe.products import BoolArray, LowRank, Matrix, Product
@@ -56,31 +57,17 @@ class LinearSolution:
         return len(self.residuals) - 1
 
 
-def constrain(matrix: M, fixed: BoolArray) -> M:
-    """Replace rows and columns of ``fixed`` (n,) unknowns by their diagonal. The input is left as it is.
+def constrain(matrix: M, fixed: BoolArray, *, overwrite: bool = False) -> M:
+    """Replace rows and columns of ``fixed`` (n,) unknowns by their diagonal; in the input if ``overwrite``.
 
     A right-hand side that is zero there then gives a solution that is zero there.
     """
     if not fixed.any():
         return matrix
-    if isinstance(matrix, sparse.bsr_array):
-        return _constrain_blocks(matrix, fixed)
-    rows = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
-    drop = (fixed[rows] | fixed[matrix.indices]) & (rows != matrix.indices)
-    return sparse.csr_array((np.where(drop, 0.0, matrix.data), matrix.indices, matrix.indptr), matrix.shape)
-
-
-def _constrain_blocks(matrix: sparse.bsr_array, fixed: BoolArray) -> sparse.bsr_array:
-    of_node = fixed.reshape(-1, 3)
-    rows = np.repeat(np.arange(len(of_node)), np.diff(matrix.indptr))
-    some: BoolArray = np.asarray(of_node.any(axis=1))
-    touched = np.flatnonzero(some[rows] | some[matrix.indices])
-    data = matrix.data.copy()
-    row, column = rows[touched], matrix.indices[touched]
-    drop = of_node[row][:, :, None] | of_node[column][:, None, :]
-    diagonal = (row == column)[:, None, None] & np.eye(3, dtype=np.bool_)
-    data[touched] = np.where(drop & ~diagonal, 0.0, data[touched])
-    return sparse.bsr_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
+    data = matrix.data if overwrite else matrix.data.copy()
+    block = matrix.blocksize[0] if isinstance(matrix, sparse.bsr_array) else 1
+    kernels.hold(matrix.indptr, matrix.indices, data.reshape(-1, block, block), fixed.reshape(-1, block))
+    return type(matrix)((data, matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
 def conjugate_gradient(
