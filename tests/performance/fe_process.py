@@ -1,9 +1,10 @@
 """One heat or expansion problem as a process of its own: reads the mesh, solves, writes the nodal values.
 
-    python fe_process.py heat|expansion folder
+    python fe_process.py heat|expansion folder [again]
 
-folder/problem.npz holds the mesh, folder/given.json the conditions; folder/values.npy and folder/times.json
-are written. Compilation is taken from numba's cache.
+folder/mesh.msh holds the mesh, folder/given.json the conditions, folder/problem.npz supports and temperature of
+an expansion; folder/values.npy and folder/times.json are written. With ``again`` the problem is solved a second
+time with the oil 5 K warmer, from the first solution. Compilation is taken from numba's cache.
 """
 
 import json
@@ -18,24 +19,7 @@ from thermal.conduction import ConductionSetup, solve_steady
 from thermal.elastic import ElasticSetup
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh
-
-
-def load_mesh(folder: Path) -> tuple[NamedMesh, dict[str, np.ndarray]]:
-    with np.load(folder / "problem.npz") as stored:
-        arrays = dict(stored)
-    parts: dict[str, dict[str, np.ndarray]] = {"body": {}, "surface": {}}
-    for key in list(arrays):
-        kind, _, name = key.partition("/")
-        if kind in parts:
-            parts[kind][name] = arrays.pop(key)
-    mesh = NamedMesh(arrays.pop("points"), arrays.pop("cells"), parts["body"], parts["surface"])
-    return mesh, arrays
-
-
-def save_mesh(folder: Path, mesh: NamedMesh, **more: np.ndarray) -> None:
-    named = {f"body/{name}": cells for name, cells in mesh.bodies.items()}
-    named |= {f"surface/{name}": nodes for name, nodes in mesh.surfaces.items()}
-    np.savez(folder / "problem.npz", points=mesh.points, cells=mesh.cells, **named, **more)
+from thermal.housing_file import read_mesh
 
 
 def constant(value: float) -> FilmLaw:
@@ -60,12 +44,14 @@ def conditions(mesh: NamedMesh, films: dict[str, tuple[float, float]], radiating
     return found
 
 
-def main(what: str, folder: Path) -> None:
-    mesh, arrays = load_mesh(folder)
+def main(what: str, folder: Path, again: bool) -> None:
     given = json.loads((folder / "given.json").read_text())
     marks = [time.process_time()]
+    mesh = read_mesh(folder / "mesh.msh")
+    marks.append(time.process_time())
     elements = FiniteElements(mesh)
     marks.append(time.process_time())
+    iterations: list[tuple[int, ...]]
     if what == "heat":
         conductivity = dict.fromkeys(mesh.bodies, given["conductivity"])
         setup = ConductionSetup(mesh, conductivity, elements)
@@ -74,29 +60,28 @@ def main(what: str, folder: Path) -> None:
             mesh, conductivity, conditions(mesh, given["films"], given["radiating"]), reuse=setup
         )
         marks.append(time.process_time())
-        warmer = conditions(mesh, given["films"], given["radiating"], warmer=5.0)
-        again = solve_steady(mesh, conductivity, warmer, near=first, reuse=setup)
-        marks.append(time.process_time())
-        values, iterations = first.temperature, [first.linear_iterations, again.linear_iterations]
+        values, iterations = first.temperature, [first.linear_iterations]
+        if again:
+            warmer = conditions(mesh, given["films"], given["radiating"], warmer=5.0)
+            second = solve_steady(mesh, conductivity, warmer, near=first, reuse=setup)
+            iterations.append(second.linear_iterations)
     else:
-        elastic = ElasticSetup(elements, dict.fromkeys(mesh.bodies, given["elastic"]), arrays["held"])
+        with np.load(folder / "problem.npz") as stored:
+            held, temperature = stored["held"], stored["temperature"]
+        elastic = ElasticSetup(elements, dict.fromkeys(mesh.bodies, given["elastic"]), held)
         marks.append(time.process_time())
-        solution = elastic.solve(arrays["temperature"], given["cold"])
+        solution = elastic.solve(temperature, given["cold"])
         marks.append(time.process_time())
-        again_solution = elastic.solve(arrays["temperature"] + 5.0, given["cold"], start=solution.values)
-        marks.append(time.process_time())
-        values, iterations = solution.values, [(solution.iterations,), (again_solution.iterations,)]
+        values, iterations = solution.values, [(solution.iterations,)]
+        if again:
+            second_solution = elastic.solve(temperature + 5.0, given["cold"], start=solution.values)
+            iterations.append((second_solution.iterations,))
+    marks.append(time.process_time())
     np.save(folder / "values.npy", values)
-    spaces, setting, solving, repeating = np.diff(marks)
-    times = {
-        "spaces": spaces,
-        "setup": setting,
-        "solve": solving,
-        "again": repeating,
-        "iterations": iterations,
-    }
+    names = ("reading", "spaces", "setup", "solve", "again")
+    times = dict(zip(names, np.diff(marks).tolist(), strict=True)) | {"iterations": iterations}
     (folder / "times.json").write_text(json.dumps(times))
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], Path(sys.argv[2]))
+    main(sys.argv[1], Path(sys.argv[2]), "again" in sys.argv[3:])
