@@ -175,6 +175,9 @@ def test_constrained_matrix_keeps_the_rest_and_its_input() -> None:
     expected[fixed, fixed] = before[fixed, fixed]
     assert_array_equal(after, expected)
     assert_array_equal(matrix.toarray(), before)
+    in_place = constrain(matrix, fixed, overwrite=True)
+    assert_array_equal(in_place.toarray(), expected)
+    assert np.shares_memory(in_place.data, matrix.data)
 
 
 def test_gmres_with_small_rank_part_equals_direct() -> None:
