@@ -26,7 +26,7 @@ CONTRACTION = 0.1
 """Fall of the residual in a Newton step of a time step below which the Jacobian is made afresh."""
 
 WORN = 14
-"""Iterations of a linear solve of a steady problem after which the preconditioner is made afresh."""
+"""Iterations of a linear solve of a steady problem after which a preconditioner of an earlier field is replaced."""
 
 SMALLEST_STEP = 1e-2
 """Share of a Newton step that is taken even if the residual rises."""

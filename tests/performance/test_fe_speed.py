@@ -1,4 +1,4 @@
-"""Seconds and memory of heat and expansion beside CalculiX on one mesh; printed, never fails by time.
+"""Seconds and memory of heat and expansion against CalculiX on one mesh; printed, never fails by time.
 
 Processes against processes: each reads its mesh (.msh, .inp), solves and writes its nodal values. CalculiX runs
 with SOLVER=ITERATIVE CHOLESKY and with its default solver (SPOOLES). Both codes get the same number of threads;
@@ -150,13 +150,13 @@ def ours(what: str, folder: Path, *more: str) -> Ours:
     return Ours(np.load(folder / "values.npy"), wall, processor, peak, times)
 
 
-def shown(name: str, run: Ours | calculix.Run, beside: Ours | None = None) -> None:
+def shown(name: str, run: Ours | calculix.Run, reference: Ours | None = None) -> None:
     ratio = ""
-    if beside is not None:
-        difference = np.abs(run.values.reshape(beside.values.shape) - beside.values).max()
-        scale = np.ptp(beside.values) if beside.values.ndim == 1 else np.abs(beside.values).max()
+    if reference is not None:
+        difference = np.abs(run.values.reshape(reference.values.shape) - reference.values).max()
+        scale = np.ptp(reference.values) if reference.values.ndim == 1 else np.abs(reference.values).max()
         ratio = (
-            f"{run.wall / beside.wall:8.1f} x wall{run.processor / beside.processor:8.1f} x processor"
+            f"{run.wall / reference.wall:8.1f} x wall{run.processor / reference.processor:8.1f} x processor"
             f"   differs by {difference / scale:.1e}"
         )
     print(f"  {name:34s}{run.wall:9.1f} s{run.processor:9.1f} s{run.peak:7.2f} GB{ratio}", flush=True)
@@ -183,7 +183,7 @@ def compared(what: str, folder: Path, theirs: dict[str, Callable[[], calculix.Ru
 
 @pytest.mark.performance
 @pytest.mark.parametrize("name", MESHES)
-def test_heat_and_expansion_beside_calculix(name: str, tmp_path: Path) -> None:
+def test_heat_and_expansion_against_calculix(name: str, tmp_path: Path) -> None:
     MESHES[name](tmp_path / "mesh.msh")
     mesh = read_mesh(tmp_path / "mesh.msh")
     n = len(mesh.points)

@@ -1,8 +1,8 @@
 """Multigrid from the second-order space down to a handful of unknowns, as a preconditioner.
 
-The second-order space is smoothed by a Chebyshev polynomial in the (block) Jacobi-scaled matrix; below it
-stands the linear space on the same cells, below that smoothed aggregation down to a dense factor. Everything
-is kept and done in single precision: the iteration around it works in double precision and corrects it.
+The second-order space is smoothed as thermal.fe.smoothing has it; below it stands the linear space on the same
+cells, below that smoothed aggregation down to a dense factor. Everything is kept and done in single precision:
+the iteration around it works in double precision and corrects it.
 Sources: Adams, Brezina, Hu, Tuminaro, J. Comput. Phys. 188 (2003) 593 for the smoother; Saad, Iterative
 Methods for Sparse Linear Systems, 2nd ed., ch. 13 for cycles.
 """
