@@ -13,8 +13,8 @@ CASES = Path(__file__).parents[1] / "cases"
 FILES = tuple(sorted(path for path in CASES.glob("*/*.toml")))
 NASTY = (
     "nan", "inf", "-inf", "0", "-1", "1e300", "1e-300", "1e999", "-0.0", "true", '""', '" "', '"mm"', '"1"',
-    '"1 parsec"', '"nan mm"', '"1e400 mm"', '"-5 degC"', '"1 mm 2 mm"', '"١٢ mm"', '"1_0 mm"', '"0x10 mm"', "[]", "{}", "[[[[]]]]",
-    "{ value = 1 }", '"' + "x" * 5000 + '"', '"[bold]x[/bold]"', '"\\u0000"', "1979-05-27", '"../../etc/passwd"',
+    '"1 parsec"', '"nan mm"', '"1e400 mm"', '"-5 degC"', '"1 mm 2 mm"', '"١٢ mm"', '"1_0 mm"', '"0x10 mm"',
+    "[]", "{}", "[[[[]]]]", "{ value = 1 }", '"' + "x" * 5000 + '"', '"[bold]x[/bold]"', '"\\u0000"', "1979-05-27", '"../../etc/passwd"',
 )  # fmt: skip
 STRETCH = 0.1
 """Stages of the shortened cases last so much of their time, with a motor to match."""
