@@ -114,7 +114,7 @@ def _responses(
     predictor: Predictor, case: Case, effects: Sequence[Effect], parts: Parts, say: Progress
 ) -> dict[str, Response]:
     """Effect -> its runs, without those that the model refuses; finished ones are kept as ``parts``."""
-    found = parts.known()
+    found = parts.known(say)
     left = [effect for effect in effects if effect.name not in found]
     works = [_Runs(predictor, case, tuple(group)) for group in _together(left)]
     size = BATCH * cores()

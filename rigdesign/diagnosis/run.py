@@ -161,7 +161,7 @@ def read_subject(
     def build() -> Library:
         return build_library(case, (*data.settings, *extras), (*channels, *spare), effects, say)
 
-    library = library_of(case, data.settings, channels, effects, build)
+    library = library_of(case, data.settings, channels, effects, build, say)
     return data, compare(
         data, library, effects, stated_settings(measurement), mesh_orders(case), teeth_a_turn(case)
     )
