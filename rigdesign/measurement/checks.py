@@ -23,11 +23,10 @@ def _dead(measurement: MeasurementSet) -> Iterator[Finding]:
     for name, entry in measurement.channels.items():
         if entry.channel.quantity in STANDING_QUANTITIES:
             continue
-        rows = [values for feature, values in measurement.readings.items() if feature.channel == name]
-        levels = [values[np.isfinite(values)] for values in rows]
-        moving = any(level.size and np.ptp(np.concatenate(levels)) > 0.0 for level in levels)
-        points = {feature.setting for feature, values in measurement.readings.items()
-                  if feature.channel == name and np.isfinite(values).any()}  # fmt: skip
+        own = measurement.by_channel[name]
+        levels = np.concatenate([values[np.isfinite(values)] for values in own.values()] or [np.empty(0)])
+        moving = bool(levels.size and np.ptp(levels) > 0.0)
+        points = {feature.setting for feature, values in own.items() if np.isfinite(values).any()}
         if not points:
             yield Finding(
                 id="dead_channel", weight="dropped", channels=(name,),
@@ -48,7 +47,7 @@ def _without_uncertainty(measurement: MeasurementSet) -> Iterator[Finding]:
             continue
         scatter = any(
             np.count_nonzero(np.isfinite(values)) > 1 and np.nanstd(values) > 0.0
-            for feature, values in measurement.readings.items() if feature.channel == name
+            for values in measurement.by_channel[name].values()
         )  # fmt: skip
         if scatter:
             text = f"{name}: the declared uncertainty is zero; the scatter of its repeats is taken"

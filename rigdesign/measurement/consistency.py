@@ -61,10 +61,14 @@ def _temperatures(case: Case, data: "Data") -> Iterator[Finding]:
         + [box.oil.inlet_temperature for box in case.gearboxes.values()]
     )
     low, high = min(rooms) - COLDER, hottest + HOTTER
+    by_channel: dict[str, list[float]] = {}
+    for feature, value, usable in zip(data.features, data.values, data.usable):
+        if usable:
+            by_channel.setdefault(feature.channel, []).append(float(value))
     for name, entry in data.channels.items():
         if CHANNELS[entry.channel.quantity].kind != "temperature":
             continue
-        values = [v for f, v, ok in zip(data.features, data.values, data.usable) if f.channel == name and ok]
+        values = by_channel.get(name)
         if not values or low <= (middle := float(np.median(values))) <= high:
             continue
         shown = units.display(middle, "temperature", entry.unit)
@@ -172,18 +176,17 @@ def _alike(first: Setting, second: Setting, noise: Mapping[tuple[str, str], floa
 
 def _same_readings(measurement: MeasurementSet) -> Iterator[Finding]:
     """Two channels with the same numbers: one signal exported twice."""
-    rows: dict[str, list[float]] = {}
-    for feature, values in measurement.readings.items():
-        rows.setdefault(feature.channel, []).extend(values.tolist())
-    for first, second in combinations(rows, 2):
-        a, b = np.array(rows[first]), np.array(rows[second])
-        if len(a) != len(b) or len(a) < 3:
+    first_with: dict[bytes, str] = {}
+    for name, own in measurement.by_channel.items():
+        values = np.concatenate([*own.values(), np.empty(0)])
+        finite = values[np.isfinite(values)]
+        if finite.size < 3 or np.ptp(finite) == 0.0:
             continue
-        both = np.isfinite(a) & np.isfinite(b)
-        if both.sum() >= 3 and np.ptp(a[both]) > 0.0 and np.array_equal(a[both], b[both]):
+        first = first_with.setdefault(np.where(np.isfinite(values), values, np.nan).tobytes(), name)
+        if first != name:
             yield Finding(
-                id="same_readings", weight="suspect", channels=(first, second),
-                text=f"{first} and {second}: every reading is the same; one signal was exported twice",
+                id="same_readings", weight="suspect", channels=(first, name),
+                text=f"{first} and {name}: every reading is the same; one signal was exported twice",
             )  # fmt: skip
 
 
@@ -191,9 +194,9 @@ def _scatter(measurement: MeasurementSet) -> Iterator[Finding]:
     """Repeats that scatter far more than declared."""
     for name, entry in measurement.channels.items():
         squares = freedom = 0.0
-        for feature, values in measurement.readings.items():
+        for values in measurement.by_channel[name].values():
             finite = values[np.isfinite(values)]
-            if feature.channel == name and finite.size > 1:
+            if finite.size > 1:
                 squares += float(np.sum((finite - np.median(finite)) ** 2))
                 freedom += finite.size - 1
         if freedom >= 3 and entry.noise > 0.0 and math.sqrt(squares / freedom) > SCATTER * entry.noise:

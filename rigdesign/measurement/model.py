@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import date
+from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
@@ -111,6 +112,14 @@ class MeasurementSet:
     readings: Mapping[Feature, NDArray[np.float64]]
     findings: tuple[Finding, ...] = field(default=())
     hash: str = ""
+
+    @cached_property
+    def by_channel(self) -> Mapping[str, Mapping[Feature, NDArray[np.float64]]]:
+        """The readings of each channel; of one without any an empty mapping."""
+        found: dict[str, dict[Feature, NDArray[np.float64]]] = {name: {} for name in self.channels}
+        for feature, values in self.readings.items():
+            found.setdefault(feature.channel, {})[feature] = values
+        return found
 
     @property
     def settings(self) -> tuple[Setting, ...]:
