@@ -115,6 +115,7 @@ KINDS: Mapping[str, Kind] = _kinds(
     ),
     Kind("linear_stiffness", "N/m", {"N/m": "N/m", "N/um": "N/um", "kN/mm": "kN/mm"}, "1e8 N/m"),
     Kind("linear_damping", "N*s/m", {"N s/m": "N*s/m", "Ns/m": "N*s/m", "kN s/m": "kN*s/m"}, "1000 N s/m"),
+    Kind("data_size", "byte", {"MB": "megabyte", "GB": "gigabyte", "kB": "kilobyte"}, "500 MB"),
     Kind("expansion_coefficient", "1/K", {"1/K": "1/K", "um/(m K)": "um/(m*K)"}, "11.5e-6 1/K"),
 )
 """Every kind of quantity a case file knows, by name."""

@@ -1,5 +1,6 @@
 """What measurement.toml says of columns and points, held against the rig: places, units, uncertainties."""
 
+import re
 from collections.abc import Iterator, Mapping
 
 from rigdesign import units
@@ -9,7 +10,14 @@ from rigdesign.kinds import KINDS
 from rigdesign.measurement.document import ChannelTable, MeasurementFile, SettingColumn
 from rigdesign.measurement.model import MeasuredChannel, SettingSensor
 from rigdesign.measurement.places import MOTOR, Places
-from rigdesign.measurement.quantities import CHANNELS, SETTINGS, Measured, accepted_unit, unit_kind
+from rigdesign.measurement.quantities import (
+    CHANNELS,
+    LEAST_UNCERTAINTY,
+    SETTINGS,
+    Measured,
+    accepted_unit,
+    unit_kind,
+)
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 
 PLACED_SETTINGS = frozenset(("inlet_temperature", "flow"))
@@ -165,7 +173,7 @@ def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
         )  # fmt: skip
         return
     if entry.quantity == "natural_frequency" and known:
-        if not (entry.place.isdecimal() and int(entry.place) >= 1):
+        if not re.fullmatch(r"[1-9][0-9]{0,3}", entry.place):
             yield Fault(
                 at, written(entry.place), "not the number of a natural frequency", 'write "1", "2", …'
             )
@@ -195,5 +203,13 @@ def _unit_and_spread(at: str, unit: str, spreads: Mapping[str, str], measured: M
         except units.QuantityError as error:
             yield Fault(f"{at}.{key}", written(text), error.problem, error.remedy)
             continue
+        span = measured.limits[1] - measured.limits[0]
+        problem = ""
         if value < 0.0:
-            yield Fault(f"{at}.{key}", written(text), "is below zero", f'write e.g. "{measured.uncertainty}"')
+            problem = "is below zero"
+        elif value > span:
+            problem = f"is more than the quantity can be, {units.show(span, measured.spread, digits=3)}"
+        elif 0.0 < value < LEAST_UNCERTAINTY * span:
+            problem = "is smaller than that of any instrument"
+        if problem:
+            yield Fault(f"{at}.{key}", written(text), problem, f'write e.g. "{measured.uncertainty}"')

@@ -22,6 +22,7 @@ Label = Annotated[str, Field(pattern=r"^\S(.*\S)?$", max_length=80)]
 Spread = Annotated[Text, BeforeValidator(_with_unit)]
 """An uncertainty with its unit; which one depends on the quantity."""
 Delay = Annotated[float, Quantity("time", at_least="0 s", at_most="1 s")]
+SizeLimit = Annotated[float, Quantity("data_size", at_least="1 kB", at_most="1000 GB")]
 
 
 class Recording(Part):
@@ -30,7 +31,7 @@ class Recording(Part):
     point: Label
     repeat: Annotated[int, Field(ge=1)] = 1
     file: Text
-    """.tdms, .h5, .hdf5, .mf4 or .csv, beside measurement.toml."""
+    """.tdms, .h5, .hdf5, .mf4 or .csv, in the folder of measurement.toml or below it."""
     start_turn: Annotated[float, Field(ge=0.0)] | None = None
     """Turns of the gear that counts between the meeting of both teeth 0 and the angle zero of the recording:
     without it the phases of fractional orders are not known."""
@@ -61,6 +62,8 @@ class Data(Part):
     delimiter: Literal[",", ";", "\t"] = ","
     decimal: Literal[".", ","] = "."
     encoding: Literal["utf-8", "cp1252", "utf-16"] = "utf-8"
+    size_limit: SizeLimit = 200e6
+    """Most bytes of each file that is named here, and most samples read from it."""
     recordings: tuple[Recording, ...] = ()
     tach: Tach | None = None
     """Needed for recordings of torque or angle."""

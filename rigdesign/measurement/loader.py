@@ -1,6 +1,5 @@
 """Loads a measurement set: measurement.toml, its tables and recordings, held against the case."""
 
-import hashlib
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path
@@ -13,6 +12,7 @@ from rigdesign.case.faults import faults_of, unknown, written
 from rigdesign.errors import Fault, MeasurementError
 from rigdesign.measurement.columns import channels_of, column_faults, sensors_of
 from rigdesign.measurement.document import MeasurementFile
+from rigdesign.measurement.files import digest_of, document_text, set_file
 from rigdesign.measurement.model import Finding, MeasurementSet
 from rigdesign.measurement.order_table import read_orders
 from rigdesign.measurement.places import Places
@@ -82,6 +82,10 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     if not readings:
         reasons = "; ".join(finding.text for finding in findings if finding.weight == "dropped")
         raise MeasurementError(f"no channel has a reading: {reasons}", str(file))
+    try:
+        hashed = digest_of(file, _named_files(folder, document))
+    except MeasurementError as error:
+        raise MeasurementError(error.faults, str(file)) from None
     return MeasurementSet(
         title=document.title,
         folder=folder,
@@ -92,7 +96,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
         points=points,
         readings=readings,
         findings=tuple(findings),
-        hash=_hash(file, document),
+        hash=hashed,
     )
 
 
@@ -106,20 +110,15 @@ def measurement_file(path: Path) -> Path:
 
 
 def _read(file: Path) -> dict[str, Any]:
+    text = document_text(file)
     try:
-        return tomllib.loads(file.read_bytes().decode("utf-8-sig"))
-    except OSError as error:
-        raise MeasurementError(
-            f"cannot be read: {error.strerror}; check the path and its rights", str(file)
-        ) from None
-    except UnicodeDecodeError as error:
-        raise MeasurementError(
-            f"is not UTF-8 text (byte {error.start}); save it as UTF-8", str(file)
-        ) from None
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise MeasurementError(
             f"is not valid TOML or was cut off: {error}; correct it there", str(file)
         ) from None
+    except ValueError as error:
+        raise MeasurementError(f"holds a value that cannot be read: {error}; correct it", str(file)) from None
     except RecursionError:
         raise MeasurementError("is nested too deeply to be read; flatten its tables", str(file)) from None
 
@@ -142,10 +141,16 @@ def _tuples(node: Any) -> Any:
 def _head_faults(document: MeasurementFile, file: Path) -> Iterable[Fault]:
     if document.baseline is None:
         return
-    folder = (file.parent / document.baseline).resolve()
+    try:
+        folder = (file.parent / document.baseline).resolve()
+        found = (folder / FILE).is_file()
+    except (OSError, RuntimeError, ValueError) as error:
+        shown = written(repr(document.baseline))
+        yield Fault("baseline", shown, f"is no path: {error}", "write the path of the healthy set")
+        return
     if folder == file.parent.resolve():
         yield Fault("baseline", written(document.baseline), "is this set itself", "name the healthy set")
-    elif not (folder / FILE).is_file():
+    elif not found:
         yield Fault(
             "baseline", written(document.baseline), f"no {FILE} in {folder}",
             "write the path of the healthy set from this folder",
@@ -168,12 +173,8 @@ def _doubts(document: MeasurementFile) -> Iterable[Finding]:
         )  # fmt: skip
 
 
-def _hash(file: Path, document: MeasurementFile) -> str:
-    """SHA-256 over measurement.toml and the files it names."""
+def _named_files(folder: Path, document: MeasurementFile) -> list[Path]:
+    """Files that hold the readings."""
     data = document.data
     names = [data.table, *([data.orders] if data.orders else []), *(entry.file for entry in data.recordings)]
-    digest = hashlib.sha256(file.read_bytes())
-    for name in dict.fromkeys(names):
-        path = file.parent / name
-        digest.update(hashlib.sha256(path.read_bytes()).digest() if path.is_file() else b"")
-    return digest.hexdigest()
+    return [set_file(folder, name, data.size_limit) for name in names]

@@ -1,7 +1,7 @@
 """orders.csv: averaged complex orders, one row per point, repeat, channel and order."""
 
 import math
-from collections.abc import Mapping, MutableSequence
+from collections.abc import Iterator, Mapping, MutableSequence, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,7 @@ from rigdesign.case.faults import unknown, written
 from rigdesign.errors import Fault, MeasurementError
 from rigdesign.measurement.document import MeasurementFile
 from rigdesign.measurement.model import Finding, MeasuredChannel
-from rigdesign.measurement.quantities import CHANNELS, to_si
+from rigdesign.measurement.quantities import CHANNELS, impossible, impossible_text, to_si
 from rigdesign.measurement.rows import Rows
 from rigdesign.measurement.table import MOST_FAULTS, numbers, read_table
 from rigdesign.prediction.model import ORDER_QUANTITIES, Feature
@@ -63,14 +63,16 @@ def read_orders(
     unused: dict[str, set[float]] = {}
     orphans = 0
     order_channels = tuple(name for name, c in channels.items() if c.channel.quantity in ORDER_QUANTITIES)
+    points = frozenset(rows.names)
+    wrong_parts: dict[str, list[str]] = {}
     places = zip(table.lines, table.column("point"), table.column("channel"))
     for row, (line, point, name) in enumerate(places):
         point, name = point.strip(), name.strip()
         at = f"{table.file} line {line}"
-        if rows.table.cut is not None and not _has(rows, point, values["repeat"][row]):
+        if rows.table.cut and not _has(rows, point, values["repeat"][row]):
             orphans += 1
             continue
-        if point not in rows.names:
+        if point not in points:
             faults.append(unknown(f"{at}, point", point, rows.names, f"point in {rows.table.file}"))
             continue
         if name not in order_channels:
@@ -88,7 +90,8 @@ def read_orders(
         if asked is None:
             unused.setdefault(name, set()).add(order)
             continue
-        kind, unit = CHANNELS[channels[name].channel.quantity].kind, channels[name].unit
+        quantity, unit = channels[name].channel.quantity, channels[name].unit
+        kind = CHANNELS[quantity].kind
         parts = ("value",) if asked == 0.0 else ("real", "imaginary")
         for part, column in zip(parts, ("real", "imaginary")):
             feature = Feature(name, point, asked, part)  # type: ignore[arg-type]
@@ -106,7 +109,11 @@ def read_orders(
                 break
             written_at[feature, place] = line
             readings = found.setdefault(feature, np.full(len(rows.rows_of(point)), np.nan))
-            readings[place] = to_si(values[column][row], kind, unit)
+            reading = np.array(to_si(values[column][row], kind, unit))
+            if impossible(reading, CHANNELS[quantity]):
+                wrong_parts.setdefault(name, []).append(f"{at}, {column} = {values[column][row]:g}")
+            else:
+                readings[place] = reading
     if faults:
         raise MeasurementError(faults[:MOST_FAULTS])
     findings.extend(
@@ -115,23 +122,47 @@ def read_orders(
                 f"in channels.{name}.orders to use them")
         for name, orders in unused.items()
     )  # fmt: skip
+    findings.extend(
+        Finding(id="impossible_reading", weight="dropped", channels=(name,),
+                text=f"{parts[0]}: "
+                + impossible_text(CHANNELS[channels[name].channel.quantity], channels[name].unit, len(parts)))
+        for name, parts in wrong_parts.items()
+    )  # fmt: skip
+    findings.extend(_gaps(found, rows.names, table.file))
     if orphans:
         findings.append(
             Finding(id="cut_file", weight="dropped",
                     text=f"{table.file}: {orphans} rows belong to points or repeats that {rows.table.file}, which ends "
                     "early, does not have")
         )  # fmt: skip
-    if table.cut is not None:
-        findings.append(
-            Finding(id="cut_file", weight="dropped",
-                    text=f"{table.file} line {table.cut}: the file ends inside this row, which is left out; export "
-                    "it again")
-        )  # fmt: skip
+    if table.cut:
+        text = f"{table.file} {table.cut}; export it again"
+        findings.append(Finding(id="cut_file", weight="dropped", text=text))
     return found
 
 
 def _has(rows: Rows, point: str, repeat: float) -> bool:
-    return point in rows.names and math.isfinite(repeat) and rows.place(point, int(repeat)) is not None
+    return math.isfinite(repeat) and rows.place(point, int(repeat)) is not None
+
+
+def _gaps(
+    found: Mapping[Feature, NDArray[np.float64]], points: Sequence[str], file: str
+) -> Iterator[Finding]:
+    """Orders that stand in the table at some points and repeats, but not at all."""
+    lines = dict.fromkeys((one.channel, one.order, one.part) for one in found)
+    missing: dict[str, list[str]] = {}
+    for channel, order, part in lines:
+        for point in points:
+            readings = found.get(Feature(channel, point, order, part))
+            if readings is None or not np.isfinite(readings).all():
+                missing.setdefault(channel, []).append(point)
+    for channel, where in missing.items():
+        shown = tuple(dict.fromkeys(where))
+        yield Finding(
+            id="missing_order", weight="note", channels=(channel,), points=shown,
+            text=f"{channel}: {file} lacks {len(where)} numbers of repeats that were run, at {', '.join(shown[:5])}"
+            + (", …" if shown[5:] else ""),
+        )  # fmt: skip
 
 
 def _shown(orders: set[float]) -> str:

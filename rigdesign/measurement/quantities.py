@@ -1,12 +1,17 @@
 """What is measured on a rig: the unit each quantity may have, and how its uncertainty is written."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign import units
 from rigdesign.kinds import KINDS
 
+Reading = TypeVar("Reading", float, NDArray[np.float64])
 SettingQuantity = Literal["speed", "torque", "inlet_temperature", "flow", "ambient_temperature"]
 
 DIFFERENCES: Mapping[str, str] = {"temperature": "temperature_difference"}
@@ -19,11 +24,13 @@ class Measured:
 
     kind : name in ``rigdesign.kinds.KINDS`` of the reading
     uncertainty : an example of its uncertainty
+    limits : lowest and highest reading that the quantity can have on any rig [SI; K]
     offset, scale : systematic uncertainty of a usual instrument where a setting states none [SI; K], relative
     """
 
     kind: str
     uncertainty: str
+    limits: tuple[float, float]
     offset: float = 0.0
     scale: float = 0.0
 
@@ -38,27 +45,52 @@ class Measured:
         return KINDS[self.kind].display_unit
 
 
+LIQUID_OR_HOT = (173.15, 1273.15)
+"""Temperatures [K]: no oil flows below, no steel carries above."""
+TURNING = (0.0, 500_000.0 * math.pi / 30.0)
+"""Speeds [rad/s]: a gear of 40 mm has 1000 m/s at its tips there and bursts below."""
+TORQUES = (-1e8, 1e8)
+"""[N m]; the largest gearboxes that are tested carry 2e7."""
+POWERS = (-1e9, 1e9)
+CLEARANCES = (-1e-3, 1.0)
+"""[m]; a dial gauge may read a closed gap a little below zero."""
+LEAST_UNCERTAINTY = 1e-15
+"""Share of the span of a quantity below which an uncertainty is none that an instrument has."""
+
 SETTINGS: Mapping[str, Measured] = {
-    "speed": Measured("speed", "1 rpm"),
-    "torque": Measured("torque", "0.5 N m", scale=0.01),
-    "inlet_temperature": Measured("temperature", "0.3 K", offset=0.3),
-    "flow": Measured("flow", "0.05 l/min", scale=0.02),
-    "ambient_temperature": Measured("temperature", "0.5 K", offset=0.5),
+    "speed": Measured("speed", "1 rpm", TURNING),
+    "torque": Measured("torque", "0.5 N m", (0.0, TORQUES[1]), scale=0.01),
+    "inlet_temperature": Measured("temperature", "0.3 K", LIQUID_OR_HOT, offset=0.3),
+    "flow": Measured("flow", "0.05 l/min", (0.0, 10.0), scale=0.02),
+    "ambient_temperature": Measured("temperature", "0.5 K", LIQUID_OR_HOT, offset=0.5),
 }
 """Quantities that say how an operating point was run."""
 
 CHANNELS: Mapping[str, Measured] = {
-    "temperature": Measured("temperature", "0.1 K"),
-    "oil_outlet_temperature": Measured("temperature", "0.1 K"),
-    "motor_power": Measured("power", "10 W"),
-    "drive_torque": Measured("torque", "0.02 N m"),
-    "torque": Measured("torque", "0.05 N m"),
-    "angle": Measured("angle", "0.001 mrad"),
-    "natural_frequency": Measured("frequency", "0.5 Hz"),
-    "backlash": Measured("length", "2 um"),
-    "seal_gap": Measured("length", "5 um"),
+    "temperature": Measured("temperature", "0.1 K", LIQUID_OR_HOT),
+    "oil_outlet_temperature": Measured("temperature", "0.1 K", LIQUID_OR_HOT),
+    "motor_power": Measured("power", "10 W", POWERS),
+    "drive_torque": Measured("torque", "0.02 N m", TORQUES),
+    "torque": Measured("torque", "0.05 N m", TORQUES),
+    "angle": Measured("angle", "0.001 mrad", (-1e7, 1e7)),
+    "natural_frequency": Measured("frequency", "0.5 Hz", (1e-3, 1e7)),
+    "backlash": Measured("length", "2 um", CLEARANCES),
+    "seal_gap": Measured("length", "5 um", CLEARANCES),
 }
 """Quantities of ``rigdesign.prediction.model.Channel``."""
+
+
+def impossible(values: NDArray[np.float64], measured: Measured) -> NDArray[np.bool_]:
+    """(n,) whether readings (n,) [SI] lie outside the limits of their quantity; missing ones (NaN) do not."""
+    low, high = measured.limits
+    return np.asarray((values < low) | (values > high))
+
+
+def impossible_text(measured: Measured, unit: str, count: int) -> str:
+    """What is wrong with the first of ``count`` impossible readings, and what to do; ``unit`` of its kind."""
+    low, high = (units.display(limit, measured.kind, unit) for limit in measured.limits)
+    more = f", as are {count - 1} more" if count > 1 else ""
+    return f"outside {low:.6g} to {high:.6g} {unit}{more}; not used, look at sensor, cable and unit"
 
 
 def accepted_unit(text: str, kind: str) -> str | None:
@@ -77,7 +109,7 @@ def same_worth(first: str, second: str, kind: str) -> bool:
     return None not in spelled and len({units.worth(kind, unit) for unit in spelled if unit}) == 1
 
 
-def to_si(value: float, kind: str, unit: str) -> float:
-    """SI value of a number in ``unit``."""
+def to_si(value: Reading, kind: str, unit: str) -> Reading:
+    """SI value of a number or array of numbers in ``unit``."""
     factor, offset = units.worth(kind, unit)
     return value * factor + offset

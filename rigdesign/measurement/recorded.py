@@ -11,11 +11,16 @@ from rigdesign.case.faults import unknown, written
 from rigdesign.errors import Fault, MeasurementError
 from rigdesign.measurement.averaging import Orders, signal_orders
 from rigdesign.measurement.document import MeasurementFile, Recording
-from rigdesign.measurement.model import Finding, MeasuredChannel, MeasuredPoint
+from rigdesign.measurement.model import Finding, MeasuredChannel, MeasuredPoint, Weight
 from rigdesign.measurement.places import Places
 from rigdesign.measurement.quantities import CHANNELS, accepted_unit, same_worth, to_si
 from rigdesign.measurement.rows import Rows
-from rigdesign.measurement.signal_checks import lines_off_the_mesh, signal_findings, usable_signal
+from rigdesign.measurement.signal_checks import (
+    lines_off_the_mesh,
+    signal_findings,
+    usable_signal,
+    without_wrong_samples,
+)
 from rigdesign.measurement.signals import Signal, Signals, read_signals
 from rigdesign.measurement.tach import TachError, TurnAngle, turn_angle
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Feature
@@ -23,6 +28,9 @@ from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Fe
 Readings = dict[Feature, NDArray[np.float64]]
 SPEED_OFF = 0.02
 """Relative difference between the speed of the tach and that of the table from which one of them is wrong."""
+
+SHORTER = 0.1
+"""Part of its length that a recording may lack of the longest one of its point."""
 
 
 def read_recordings(
@@ -46,6 +54,7 @@ def read_recordings(
     if faults:
         raise MeasurementError(faults)
     found: Readings = {}
+    lasting: dict[str, dict[str, float]] = {}
     by_name = {point.name: point for point in points}
     for entry in document.data.recordings:
         if entry.point not in by_name:
@@ -55,6 +64,7 @@ def read_recordings(
         except MeasurementError as error:
             faults += error.faults
             continue
+        lasting.setdefault(entry.point, {})[entry.file] = max(float(np.ptp(s.time)) for s in signals.values())
         here = {name: channel for name, channel in channels.items()
                 if channel.signal in signals and channel.channel.quantity not in STANDING_QUANTITIES}  # fmt: skip
         faults += _unit_faults(entry, here, signals)
@@ -69,7 +79,21 @@ def read_recordings(
                 found.setdefault(feature, np.full(count, np.nan))[place] = value
     if faults:
         raise MeasurementError(faults)
+    findings.extend(_shorter(lasting))
     return found
+
+
+def _shorter(lasting: Mapping[str, Mapping[str, float]]) -> Iterator[Finding]:
+    """Recordings that last much less than another one of their point; ``lasting``: point -> file -> seconds."""
+    for point, files in lasting.items():
+        longest = max(files.values())
+        for file, length in files.items():
+            if length < (1.0 - SHORTER) * longest:
+                yield Finding(
+                    id="shorter_recording", weight="suspect", points=(point,),
+                    text=f"{file}: lasts {length:.4g} s, another recording of {point} {longest:.4g} s; look whether it "
+                    "was cut off",
+                )  # fmt: skip
 
 
 class _Recording:
@@ -96,15 +120,16 @@ class _Recording:
         by_orders = {name for name, c in channels.items() if c.channel.quantity in ORDER_QUANTITIES}
         turn = self._turn(signals) if by_orders else None
         for name, channel in channels.items():
-            signal = signals[channel.signal]
-            if not self._looks_right(name, signal):
+            measured = CHANNELS[channel.channel.quantity]
+            kind = measured.kind
+            unit = accepted_unit(signals[channel.signal].unit, kind) or channel.unit
+            signal, said = without_wrong_samples(signals[channel.signal], measured, unit)
+            if not self._looks_right(name, signal, said):
                 continue
-            kind = CHANNELS[channel.channel.quantity].kind
-            unit = accepted_unit(signal.unit, kind) or channel.unit
             if name in by_orders:
                 if turn is not None:
                     yield from self._orders(name, channel, signal, turn, to_si(1.0, kind, unit))
-            elif np.isfinite(signal.values).any():
+            else:
                 yield Feature(name, self._point.name), to_si(float(np.nanmean(signal.values)), kind, unit)
 
     def _turn(self, signals: Signals) -> TurnAngle | None:
@@ -129,8 +154,8 @@ class _Recording:
             )  # fmt: skip
         return turn
 
-    def _looks_right(self, name: str, signal: Signal) -> bool:
-        for identity, weight, text in signal_findings(signal):
+    def _looks_right(self, name: str, signal: Signal, said: Sequence[tuple[str, Weight, str]]) -> bool:
+        for identity, weight, text in (*said, *signal_findings(signal)):
             self._say(identity, weight, f"{name}: {text}", name)
         return usable_signal(signal)
 
@@ -179,10 +204,10 @@ class _Recording:
                 f"{float(self._places.mesh_orders[mesh]):g}; look at tooth numbers, pulses per turn and speed", name,
             )  # fmt: skip
 
-    def _say(self, identity: str, weight: str, text: str, *channels: str) -> None:
+    def _say(self, identity: str, weight: Weight, text: str, *channels: str) -> None:
         self._findings.append(
             Finding(
-                id=identity, weight=weight,  # type: ignore[arg-type]
+                id=identity, weight=weight,
                 text=f"{self._entry.file}: {text}", channels=channels, points=(self._point.name,),
             )
         )  # fmt: skip

@@ -1,6 +1,7 @@
 """Rows of data.csv: operating points, their repeats, settings and scalar channels."""
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -11,13 +12,26 @@ from rigdesign.errors import Fault
 from rigdesign.measurement.document import MeasurementFile
 from rigdesign.measurement.document import Point as PointTable
 from rigdesign.measurement.model import Finding, MeasuredChannel, MeasuredPoint, SettingSensor
-from rigdesign.measurement.quantities import CHANNELS, SETTINGS, accepted_unit, same_worth, to_si
+from rigdesign.measurement.quantities import (
+    CHANNELS,
+    SETTINGS,
+    Measured,
+    accepted_unit,
+    impossible,
+    impossible_text,
+    same_worth,
+    to_si,
+)
 from rigdesign.measurement.table import Table, numbers
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Feature, Setting
 
 STANDSTILL = "standstill"
 """Name of rows that hold numbers of the rig at rest and cold; they need no settings."""
 KEYS = ("point", "repeat")
+WHOLE = re.compile(r"[0-9]{1,9}")
+"""A repeat as the table may have it."""
+SHOWN = 5
+"""Columns that are named of those not described."""
 
 
 class Rows:
@@ -27,8 +41,16 @@ class Rows:
         self.table = table
         self._document = document
         self._columns: dict[str, NDArray[np.float64]] = {}
+        self._impossible: dict[str, list[int]] = {}
         self.points, self.repeats, self.faults = self._read_keys()
         """Of each row."""
+        self._by_point: dict[str, list[int]] = {}
+        for row in sorted(range(len(self.points)), key=self.repeats.__getitem__):
+            self._by_point.setdefault(self.points[row], []).append(row)
+        self._places = {
+            (point, self.repeats[row]): place
+            for point, chosen in self._by_point.items() for place, row in enumerate(chosen)
+        }  # fmt: skip
         self.faults += self._read_columns()
         self.names: tuple[str, ...] = tuple(
             dict.fromkeys(point for point in self.points if point != STANDSTILL)
@@ -47,14 +69,22 @@ class Rows:
 
     def rows_of(self, point: str) -> list[int]:
         """Rows of an operating point in the order of their repeats."""
-        return sorted(
-            (i for i, name in enumerate(self.points) if name == point), key=self.repeats.__getitem__
-        )
+        return self._by_point.get(point, [])
 
     def place(self, point: str, repeat: int) -> int | None:
         """Index of a repeat among those of its point; None when there is no such row."""
-        found = [self.repeats[row] for row in self.rows_of(point)]
-        return found.index(repeat) if repeat in found else None
+        return self._places.get((point, repeat))
+
+    def impossible(self, name: str, point: str) -> list[int]:
+        """Rows of a point with a reading in this column that its quantity cannot have."""
+        found = set(self._impossible.get(name, ()))
+        return [row for row in self.rows_of(point) if row in found] if found else []
+
+    def impossible_cells(self, name: str, rows: Sequence[int], measured: Measured, unit: str) -> str:
+        """Line, column and value of the first of such rows, and what is wrong with it."""
+        at = f"{self.table.file} line {self.table.lines[rows[0]]}, {name}"
+        cell = written(self.table.column(name)[rows[0]].strip())
+        return f"{at} = {cell}: {impossible_text(measured, unit, len(rows))}"
 
     def scalars(
         self, channels: Mapping[str, MeasuredChannel], points: Sequence[MeasuredPoint]
@@ -75,23 +105,24 @@ class Rows:
         return found
 
     def findings(self, channels: Mapping[str, MeasuredChannel]) -> list[Finding]:
-        """What the table holds that is not used, and a last row that was cut."""
+        """What the table holds that is not used, readings that cannot be, and a last row that was cut."""
         known = {*KEYS, *self._document.settings, *channels}
+        unused = [name for name in self.table.names if name not in known]
         found = [
             Finding(
-                id="unused_column", weight="note",
-                text=f"{self.table.file}: column {name} is not described; add [channels.{name}] to use it",
+                id="impossible_reading", weight="dropped", channels=(name,),
+                points=tuple(dict.fromkeys(self.points[row] for row in rows)),
+                text=self.impossible_cells(name, rows, CHANNELS[channels[name].channel.quantity], channels[name].unit),
             )
-            for name in self.table.names if name not in known
+            for name, rows in self._impossible.items() if name in channels
         ]  # fmt: skip
-        if self.table.cut is not None:
-            found.append(
-                Finding(
-                    id="cut_file", weight="dropped",
-                    text=f"{self.table.file} line {self.table.cut}: the file ends inside this row, which is left "
-                    "out; export it again",
-                )
-            )  # fmt: skip
+        if unused:
+            names = ", ".join(unused[:SHOWN]) + (f" and {len(unused) - SHOWN} more" if unused[SHOWN:] else "")
+            text = f"{self.table.file}: no channel is described of column {names}; add [channels.{unused[0]}] to use it"
+            found.append(Finding(id="unused_column", weight="note", text=text))
+        if self.table.cut:
+            text = f"{self.table.file} {self.table.cut}; export it again"
+            found.append(Finding(id="cut_file", weight="dropped", text=text))
         return found
 
     def _read_keys(self) -> tuple[tuple[str, ...], tuple[int, ...], list[Fault]]:
@@ -107,12 +138,12 @@ class Rows:
         if "repeat" in self.table.names:
             for row, cell in enumerate(self.table.column("repeat")):
                 text = cell.strip()
-                if not text.isdecimal() and (text or cells[row] != STANDSTILL):
+                if not WHOLE.fullmatch(text) and (text or cells[row] != STANDSTILL):
                     faults.append(
                         Fault(f"{file} line {self.table.lines[row]}, repeat", written(text), "not a whole number",
                               "count the repeats of each point from 1")
                     )  # fmt: skip
-                repeats[row] = int(text) if text.isdecimal() else 1
+                repeats[row] = int(text) if WHOLE.fullmatch(text) else 1
         seen: dict[tuple[str, int], int] = {}
         for row, key in enumerate(zip(cells, repeats)):
             if seen.setdefault(key, row) != row and key[0] != STANDSTILL:
@@ -124,32 +155,39 @@ class Rows:
 
     def _read_columns(self) -> list[Fault]:
         faults: list[Fault] = []
-        wanted = {name: (f"settings.{name}", SETTINGS[entry.quantity].kind, entry.unit)
+        wanted = {name: (f"settings.{name}", SETTINGS[entry.quantity], entry.unit)
                   for name, entry in self._document.settings.items()}  # fmt: skip
         faults += [
             unknown(f"settings.{name}", name, self.table.names, f"column in {self.table.file}")
             for name in wanted
-            if name not in self.table.names
+            if name not in self.table.places
         ]
         wanted |= {
-            name: (f"channels.{name}", CHANNELS[entry.quantity].kind, entry.unit)
+            name: (f"channels.{name}", CHANNELS[entry.quantity], entry.unit)
             for name, entry in self._document.channels.items()
         }
-        for name, (key, kind, unit) in wanted.items():
-            if name not in self.table.names:
+        for name, (key, measured, unit) in wanted.items():
+            if name not in self.table.places:
                 continue
-            spelled = accepted_unit(unit, kind)
+            spelled = accepted_unit(unit, measured.kind)
             if spelled is None:
                 continue
-            faults += self._unit_fault(name, key, kind, spelled)
+            faults += self._unit_fault(name, key, measured.kind, spelled)
             values, wrong = numbers(self.table, name, self._document.data.decimal)
             faults += wrong
-            self._columns[name] = np.array([to_si(value, kind, spelled) for value in values])
+            self._keep(name, to_si(np.array(values, dtype=float), measured.kind, spelled), measured)
         return faults
+
+    def _keep(self, name: str, values: NDArray[np.float64], measured: Measured) -> None:
+        """A column [SI] without the readings that its quantity cannot have."""
+        wrong = impossible(values, measured)
+        self._columns[name] = np.where(wrong, np.nan, values)
+        if wrong.any():
+            self._impossible[name] = np.flatnonzero(wrong).tolist()
 
     def _unit_fault(self, name: str, key: str, kind: str, spelled: str) -> list[Fault]:
         """The unit above a column must be the one measurement.toml states."""
-        said = self.table.units[self.table.names.index(name)].strip().strip("[]()")
+        said = self.table.unit(name).strip().strip("[]()")
         at = f"{self.table.file} line 2, {name}"
         if not said:
             return [Fault(at, "", "the column has no unit", f'write "{spelled}"')]
@@ -177,16 +215,15 @@ def points_of(
         means = {column: _mean(values) for column, values in readings.items()}
         lost = [column for column, sensor in sensors.items()
                 if math.isnan(means[column]) and sensor.quantity in ("speed", "torque")]  # fmt: skip
-        negative = [column for column, sensor in sensors.items() if _impossible(sensor, readings[column])]
-        if lost or negative:
-            why = (
-                f"no reading of {', '.join(lost)}"
-                if lost
-                else f"{', '.join(negative)} below zero, or a speed of zero"
-            )
+        wrong = [rows.impossible_cells(column, cells, SETTINGS[sensor.quantity], sensor.unit)
+                 for column, sensor in sensors.items() if (cells := rows.impossible(column, name))]  # fmt: skip
+        still = [f"{column} is zero" for column, sensor in sensors.items()
+                 if sensor.quantity == "speed" and means[column] == 0.0]  # fmt: skip
+        if lost or wrong or still:
+            why = [*wrong, *still] or [f"no reading of {', '.join(lost)}"]
             findings.append(
                 Finding(id="unknown_setting", weight="dropped", points=(name,),
-                        text=f"{name}: {why}; complete or correct its rows")
+                        text=f"{name} is left out: {'; '.join(why)}; complete or correct its rows")
             )  # fmt: skip
             continue
         entry = document.points.get(name, PointTable())
@@ -230,14 +267,6 @@ def _setting(
         ambient_temperature=single.get("ambient_temperature"),
         tooth_offset=dict(tooth_offset),
     )
-
-
-def _impossible(sensor: SettingSensor, values: NDArray[np.float64]) -> bool:
-    """A speed, torque or flow below zero, or a point that does not turn."""
-    finite = values[np.isfinite(values)]
-    if sensor.quantity not in ("speed", "torque", "flow") or not finite.size:
-        return False
-    return bool(finite.min() < 0.0 or (sensor.quantity == "speed" and finite.max() == 0.0))
 
 
 def _mean(values: NDArray[np.float64]) -> float:

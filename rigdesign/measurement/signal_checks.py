@@ -2,11 +2,14 @@
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from rigdesign.measurement.quantities import Measured, impossible, impossible_text, to_si
 from rigdesign.measurement.signals import Signal
 from rigdesign.measurement.tach import TurnAngle
 
@@ -16,11 +19,54 @@ CLIPPED_STEP = 6.0
 """How many times more samples stand there than one step of the converter below."""
 MOST_MISSING = 0.5
 """Share of missing samples from which a signal is not used."""
+SPIKE = 100.0
+"""Distance from the median of its signal, in standard deviations, that no torque or temperature has."""
+MOST_SPIKES = 1e-3
+"""Share of samples above which they belong to the signal."""
+QUARTILES = 1.349
+"""Distance of the quartiles of a normal distribution in its standard deviations."""
 SEARCH = np.linspace(-0.05, 0.05, 201)
 """Relative distance from the mesh order in which a line is looked for."""
 LINE_OFF = 0.004
 LINE_ABOVE = 5.0
 SEARCH_TURNS = 40
+
+
+def without_wrong_samples(
+    signal: Signal, measured: Measured, unit: str
+) -> tuple[Signal, list[tuple[str, Literal["note"], str]]]:
+    """The signal with samples missing that its quantity cannot have or that stand alone, and what is said of them.
+
+    unit : of the signal; finite samples that are few and farther than ``SPIKE`` from all others stand alone
+    """
+    values = signal.values
+    wrong = impossible(to_si(values, measured.kind, unit), measured)
+    said: list[tuple[str, Literal["note"], str]] = []
+    if wrong.any():
+        text = f"{_first(signal, wrong, unit)}: {impossible_text(measured, unit, int(wrong.sum()))}"
+        said.append(("impossible_reading", "note", text))
+    alone = _spikes(np.where(wrong, np.nan, values))
+    if alone.any():
+        more = f", as do {int(alone.sum()) - 1} more" if alone.sum() > 1 else ""
+        text = f"{_first(signal, alone, unit)}: lies more than {SPIKE:g} standard deviations off the others{more}"
+        said.append(("spike", "note", f"{text}; not used"))
+    return replace(signal, values=np.where(wrong | alone, np.nan, values)), said
+
+
+def _first(signal: Signal, wrong: NDArray[np.bool_], unit: str) -> str:
+    place = int(np.flatnonzero(wrong)[0])
+    return f"sample {place + 1} (at {signal.time[place]:.6g} s) = {signal.values[place]:g} {unit}"
+
+
+def _spikes(values: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(n,) samples far off all others by the middle half of them; none where they are more than a few."""
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return np.zeros(len(values), dtype=bool)
+    low, middle, high = np.quantile(finite, (0.25, 0.5, 0.75))
+    far = np.abs(values - middle) > SPIKE * (high - low) / QUARTILES
+    few = high > low and np.count_nonzero(far) <= MOST_SPIKES * finite.size
+    return np.asarray(far if few else np.zeros(len(values), dtype=bool))
 
 
 def usable_signal(signal: Signal) -> bool:

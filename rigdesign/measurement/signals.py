@@ -1,5 +1,6 @@
 """Raw time data on disk: TDMS, HDF5, MDF4 and CSV as signals over time, each with its unit."""
 
+import logging
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,11 +11,17 @@ from numpy.typing import NDArray
 
 from rigdesign.errors import Fault, MeasurementError
 from rigdesign.measurement.document import Data
-from rigdesign.measurement.table import number, read_table
+from rigdesign.measurement.files import set_file
+from rigdesign.measurement.table import MOST_FAULTS, numbers, read_table
 
 Array = NDArray[np.float64]
 TIME_NAMES = ("time", "Time", "t", "Zeit")
 """Signals that hold the time [s] of the others."""
+FASTEST, SLOWEST = 1e-9, 1e5
+"""Least and most time from sample to sample of a logger [s]."""
+LONGEST = 1e11
+"""Largest time of a sample [s]; seconds since 1904 are below."""
+AGAIN = "record or export it again"
 
 
 @dataclass(frozen=True)
@@ -38,23 +45,25 @@ def read_signals(folder: Path, name: str, data: Data) -> Signals:
     Raises
     ------
     MeasurementError
-        No such file, an unknown kind of file, content that cannot be read, no time.
+        No file of the set (`rigdesign.measurement.files.set_file`), an unknown kind of file, content that cannot be
+        read, fewer samples than its header states, more than ``data.size_limit``, no time.
     """
-    path = folder / name
-    readers: dict[str, Callable[[Path, Data], Signals]] = {
+    readers: dict[str, Callable[[Path, str, Data], Signals]] = {
         ".tdms": _tdms, ".h5": _hdf5, ".hdf5": _hdf5, ".mf4": _mdf, ".csv": _csv,
     }  # fmt: skip
-    reader = readers.get(path.suffix.lower())
+    kind = Path(name.replace("\0", "")).suffix.lower()
+    reader = readers.get(kind)
     if reader is None:
-        raise _fault(name, f"unknown kind of file {path.suffix!r}", f"write one of {', '.join(readers)}")
-    if not path.is_file():
-        raise _fault(name, "no such file", "correct data.recordings or add the file")
+        raise _fault(name, f"unknown kind of file {kind!r}", f"write one of {', '.join(readers)}")
+    path = set_file(folder, name, data.size_limit)
     try:
-        signals = reader(path, data)
+        with np.errstate(all="ignore"):
+            signals = reader(path, name, data)
     except MeasurementError:
         raise
-    except (OSError, ValueError, KeyError, IndexError, EOFError) as error:
-        raise _fault(name, f"cannot be read or was cut off ({error})", "record or export it again") from None
+    except Exception as error:  # readers of binary files raise whatever a damaged byte leads them to
+        said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        raise _fault(name, f"cannot be read or was cut off ({said})", "record or export it again") from None
     if not signals:
         raise _fault(name, "holds no signal", "export it again with its channels")
     for key, signal in signals.items():
@@ -62,6 +71,8 @@ def read_signals(folder: Path, name: str, data: Data) -> Signals:
             raise _fault(
                 f"{name}, {key}", "its time does not increase", "export it with a sampling rate or time"
             )
+        if not np.abs(signal.time[[0, -1]]).max() <= LONGEST:
+            raise _fault(f"{name}, {key}", f"its time reaches {signal.time[-1]:.3g} s", "correct its time")
     return signals
 
 
@@ -69,11 +80,26 @@ def _fault(path: str, problem: str, remedy: str) -> MeasurementError:
     return MeasurementError([Fault(path, "", problem, remedy)])
 
 
-def _tdms(path: Path, data: Data) -> Signals:
+def _tdms(path: Path, name: str, data: Data) -> Signals:
     from nptdms import TdmsFile
+    from nptdms.log import log_manager
 
+    log_manager.set_level(logging.ERROR)
     found: dict[str, Signal] = {}
-    with TdmsFile.open(path) as file:
+    with path.open("rb") as stream, TdmsFile.open(stream) as file:
+        channels = [channel for group in file.groups() for channel in group.channels()]
+        stated = sum(len(channel) for channel in channels)
+        size = path.stat().st_size
+        if stated > size:
+            raise _fault(name, f"its header states {stated} samples, the file has {size} bytes", AGAIN)
+        if file.file_status.incomplete_final_segment:
+            lengths = (file.file_status.channel_statuses or {}).items()
+            short = [f"{path} {one.read_length} of {one.expected_length}" for path, one in lengths]
+            raise _fault(
+                name,
+                f"is shorter than its header states, samples of the last segment: {', '.join(short)}",
+                AGAIN,
+            )
         for group in file.groups():
             times = {c.name: np.asarray(c[:], dtype=float) for c in group.channels() if c.name in TIME_NAMES}
             time = next(iter(times.values()), None)
@@ -83,43 +109,76 @@ def _tdms(path: Path, data: Data) -> Signals:
                 values = np.asarray(channel[:], dtype=float)
                 step = channel.properties.get("wf_increment")
                 start = float(channel.properties.get("wf_start_offset", 0.0))
-                own = _time(path.name, channel.name, len(values), step, start, time)
+                own = _time(f"{name}, {channel.name}", len(values), step, start, time)
                 signal = Signal(own, values, str(channel.properties.get("unit_string", "")))
                 found[f"{group.name}/{channel.name}"] = signal
                 found.setdefault(channel.name, signal)
     return found
 
 
-def _hdf5(path: Path, data: Data) -> Signals:
+def _hdf5(path: Path, name: str, data: Data) -> Signals:
     import h5py
 
     found: dict[str, Signal] = {}
     with h5py.File(path, "r") as file:
         names: list[str] = []
-        file.visit(lambda name: names.append(name) if isinstance(file[name], h5py.Dataset) else None)
-        for name in names:
-            dataset, short = file[name], name.rpartition("/")[2]
-            if dataset.ndim != 1 or dataset.dtype.kind not in "fiu" or short in TIME_NAMES:
+        file.visit(lambda key: names.append(key) if isinstance(file[key], h5py.Dataset) else None)
+        chosen = [key for key in names if file[key].ndim == 1 and file[key].dtype.kind in "fiu"]
+        stated = sum(file[key].size for key in chosen)
+        if stated > data.size_limit:
+            raise _fault(
+                name, f"holds {stated} samples, data.size_limit is {data.size_limit:.0f}",
+                "raise data.size_limit if that is meant",
+            )  # fmt: skip
+        for key in chosen:
+            dataset, short = file[key], key.rpartition("/")[2]
+            _check_stored(f"{name}, {key}", dataset)
+            if short in TIME_NAMES:
                 continue
             group = dataset.parent
             time = next((np.asarray(group[t], dtype=float) for t in TIME_NAMES if t in group), None)
             rate = dataset.attrs.get("sample_rate", file.attrs.get("sample_rate"))
-            step = dataset.attrs.get("dt", None if rate is None else 1.0 / float(rate))
+            step = dataset.attrs.get("dt")
+            if step is None and rate is not None:
+                step = _step(f"{name}, {key}", rate)
             values = np.asarray(dataset, dtype=float)
-            own = _time(path.name, name, len(values), step, 0.0, time)
+            own = _time(f"{name}, {key}", len(values), step, 0.0, time)
             unit = dataset.attrs.get("units", dataset.attrs.get("unit", ""))
             signal = Signal(own, values, unit.decode() if isinstance(unit, bytes) else str(unit))
-            found[name] = signal
+            found[key] = signal
             found.setdefault(short, signal)
     return found
 
 
-def _mdf(path: Path, data: Data) -> Signals:
+def _check_stored(at: str, dataset: Any) -> None:
+    """All samples that the shape of a dataset states are in this file."""
+    if dataset.is_virtual or dataset.external:
+        raise _fault(at, "its samples lie in another file", "export it into one file")
+    if dataset.chunks is None:
+        stored = dataset.id.get_storage_size() // dataset.dtype.itemsize
+    else:
+        stored = min(dataset.id.get_num_chunks() * dataset.chunks[0], dataset.size)
+    if stored < dataset.size:
+        raise _fault(at, f"holds {stored} samples, its shape states {dataset.size}", AGAIN)
+
+
+def _step(at: str, rate: Any) -> float:
+    """Time from sample to sample [s] of a sampling rate [Hz]."""
+    if not 1.0 / SLOWEST <= float(rate) <= 1.0 / FASTEST:
+        raise _fault(
+            at,
+            f"sample_rate = {rate}, outside {1.0 / SLOWEST:g} to {1.0 / FASTEST:g} Hz",
+            "correct the attribute",
+        )
+    return 1.0 / float(rate)
+
+
+def _mdf(path: Path, name: str, data: Data) -> Signals:
     try:
         from asammdf import MDF
     except ImportError:
         raise _fault(
-            path.name, "MDF4 needs asammdf, which is not installed", "pip install rigdesign[mdf]"
+            name, "MDF4 needs asammdf, which is not installed", "pip install rigdesign[mdf]"
         ) from None
 
     found: dict[str, Signal] = {}
@@ -133,30 +192,38 @@ def _mdf(path: Path, data: Data) -> Signals:
     return found
 
 
-def _csv(path: Path, data: Data) -> Signals:
+def _csv(path: Path, name: str, data: Data) -> Signals:
     table = read_table(path.parent, path.name, data, with_units=True)
-    key = next((name for name in TIME_NAMES if name in table.names), None)
+    if table.cut:
+        raise _fault(f"{name} {table.cut}", "the recording was cut off", AGAIN)
+    key = next((time for time in TIME_NAMES if time in table.places), None)
     if key is None:
-        raise _fault(path.name, "no column 'time'", "add the time of each row in seconds")
+        raise _fault(name, "no column 'time'", "add the time of each row in seconds")
     columns: dict[str, Array] = {}
-    for name in table.names:
-        try:
-            columns[name] = np.array([number(cell, data.decimal) for cell in table.column(name)])
-        except ValueError as error:
-            raise _fault(f"{path.name}, {name}", str(error), "write numbers or leave cells empty") from None
+    faults: list[Fault] = []
+    for column in table.names:
+        values, wrong = numbers(table, column, data.decimal)
+        columns[column] = np.array(values)
+        faults += wrong
+    if faults:
+        raise MeasurementError(faults[:MOST_FAULTS])
     return {
-        name: Signal(columns[key], values, unit.strip("[]()"))
-        for (name, values), unit in zip(columns.items(), table.units)
-        if name != key
+        column: Signal(columns[key], values, table.unit(column).strip("[]()"))
+        for column, values in columns.items()
+        if column != key
     }
 
 
-def _time(file: str, name: str, count: int, step: Any, start: float, time: Array | None) -> Array:
+def _time(at: str, count: int, step: Any, start: float, time: Array | None) -> Array:
     if step is not None and float(step) > 0.0:
+        if not FASTEST <= float(step) <= SLOWEST:
+            raise _fault(
+                at, f"{float(step):g} s from sample to sample", f"write {FASTEST:g} to {SLOWEST:g} s"
+            )
         return np.asarray(start + float(step) * np.arange(count), dtype=float)
     if time is not None and len(time) == count:
         return np.asarray(time, dtype=float)
     raise _fault(
-        f"{file}, {name}", "neither a sampling rate nor a signal 'time' of the same length",
+        at, "neither a sampling rate nor a signal 'time' of the same length",
         "export it with wf_increment (TDMS), the attribute sample_rate (HDF5) or a signal 'time'",
     )  # fmt: skip

@@ -1,17 +1,24 @@
 """Tables on disk: names in the first row, units in the second, numbers below; decimal points or commas."""
 
 import csv
+import io
 import math
-from collections.abc import Sequence
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from rigdesign.case.faults import written
 from rigdesign.errors import Fault, MeasurementError
 from rigdesign.measurement.document import Data
+from rigdesign.measurement.files import set_file
 
 MISSING = frozenset(("", "nan", "n/a", "na", "-", "--", "#n/a"))
 """Cells that say that there is no reading."""
+NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+"""What a cell with a number looks like: no other digits, no grouping, no infinity."""
 MOST_FAULTS = 20
 """Cells of one table that are complained of one by one."""
 
@@ -23,7 +30,7 @@ class Table:
     names, units : one per column; units are empty texts where the file has none
     rows : cells, each row as long as ``names``
     lines : line of the file of each row, from 1
-    cut : line of a last row that ends early and was left out; None for a whole file
+    cut : how the file ends within its last row, and what of it was left out; empty for a whole file
     """
 
     file: str
@@ -31,14 +38,21 @@ class Table:
     units: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     lines: tuple[int, ...]
-    cut: int | None = None
+    cut: str = ""
+
+    @cached_property
+    def places(self) -> Mapping[str, int]:
+        """Column of each name, from 0."""
+        return {name: place for place, name in enumerate(self.names)}
 
     def column(self, name: str) -> tuple[str, ...]:
         """Cells of a column; KeyError when there is none."""
-        if name not in self.names:
-            raise KeyError(name)
-        place = self.names.index(name)
+        place = self.places[name]
         return tuple(row[place] for row in self.rows)
+
+    def unit(self, name: str) -> str:
+        """Unit above a column; KeyError when there is none."""
+        return self.units[self.places[name]]
 
 
 def read_table(folder: Path, name: str, data: Data, *, with_units: bool) -> Table:
@@ -51,13 +65,13 @@ def read_table(folder: Path, name: str, data: Data, *, with_units: bool) -> Tabl
     Raises
     ------
     MeasurementError
-        The file is missing, empty, not text, has columns without or of the same name, or rows of other length.
+        The file is missing, empty, not text, no file of the set (`rigdesign.measurement.files.set_file`), has columns
+        without or of the same name, or rows of other length.
     """
-    rows = _cells(folder / name, name, data)
+    text = _text(set_file(folder, name, data.size_limit), name, data)
+    rows = _cells(text, name, data)
     if len(rows) < 2:
-        raise MeasurementError(
-            [Fault(name, "", "holds no readings", "write names, units and at least one row")]
-        )
+        raise _refused(name, "holds no readings", "write names, units and at least one row")
     names = tuple(cell.strip() for cell in rows[0][1])
     faults = _names(name, names, data)
     units, body = ("",) * len(names), rows[1:]
@@ -70,9 +84,15 @@ def read_table(folder: Path, name: str, data: Data, *, with_units: bool) -> Tabl
             Fault(f"{name} line 2", written(", ".join(body[0][1])), "a row of units is missing below the names",
                   "write the unit of every column there, nothing below point and repeat")
         )  # fmt: skip
-    cut = None
+    cut = ""
     if body and len(body[-1][1]) < len(names):
-        cut, body = body[-1][0], body[:-1]
+        (line, cells), body = body[-1], body[:-1]
+        cut = f"line {line}: the file ends after {len(cells)} of {len(names)} cells of this row, which is left out"
+    elif body and not text.endswith(("\n", "\r")) and len(body[-1][1]) == len(names):
+        line, cells = body[-1]
+        cut = f"line {line}, {names[-1]} = {written(cells[-1])}: the file ends without a line end; the cell may be cut "
+        cut += "and is left out"
+        cells[-1] = ""
     for line, cells in body:
         if len(cells) != len(names):
             faults.append(
@@ -97,7 +117,10 @@ def number(cell: str, decimal: str) -> float:
         raise ValueError("a point in a file with decimal commas")
     if decimal == "." and "," in text:
         raise ValueError("a comma in a file with decimal points")
-    value = float(text.replace(",", ".").replace("\u2212", "-"))
+    plain = text.replace(",", ".").replace("\u2212", "-")
+    if not NUMBER.fullmatch(plain):
+        raise ValueError("not a number")
+    value = float(plain)
     if not math.isfinite(value):
         raise ValueError("not finite")
     return value
@@ -112,8 +135,7 @@ def numbers(table: Table, name: str, decimal: str) -> tuple[list[float], list[Fa
             values.append(number(cell, decimal))
         except ValueError as error:
             values.append(math.nan)
-            reason = str(error) if "could not convert" not in str(error) else "not a number"
-            wrong.append((line, cell, reason))
+            wrong.append((line, cell, str(error)))
     if not wrong:
         return values, []
     line, cell, reason = wrong[0]
@@ -122,36 +144,38 @@ def numbers(table: Table, name: str, decimal: str) -> tuple[list[float], list[Fa
     return values, [Fault(f"{table.file} line {line}, {name}", written(cell), reason + more, remedy)]
 
 
-def _cells(path: Path, name: str, data: Data) -> list[tuple[int, list[str]]]:
+def _text(path: Path, name: str, data: Data) -> str:
     encoding = "utf-8-sig" if data.encoding == "utf-8" else data.encoding
     try:
         text = path.read_bytes().decode(encoding)
     except OSError as error:
-        raise MeasurementError(
-            [
-                Fault(
-                    name,
-                    "",
-                    f"cannot be read: {error.strerror}",
-                    "correct the name in [data] or add the file",
-                )
-            ]
-        ) from None
+        raise _refused(name, f"cannot be read: {error.strerror}", "check its rights") from None
     except UnicodeError:
-        raise MeasurementError(
-            [Fault(name, "", f"is not {data.encoding} text", 'save it so, or write data.encoding = "cp1252"')]
+        raise _refused(
+            name, f"is not {data.encoding} text", 'save it so, or write data.encoding = "cp1252"'
         ) from None
     if "\0" in text:
-        raise MeasurementError([Fault(name, "", "holds bytes that are no text", "save it as CSV text")])
-    rows = csv.reader(text.splitlines(), delimiter=data.delimiter, strict=False)
+        raise _refused(name, "holds bytes that are no text", "save it as CSV text")
+    return text
+
+
+def _cells(text: str, name: str, data: Data) -> list[tuple[int, list[str]]]:
+    """Rows that hold something, each with the line it begins in."""
+    rows = csv.reader(io.StringIO(text, newline=""), delimiter=data.delimiter, strict=True)
     found: list[tuple[int, list[str]]] = []
+    line = 1
     try:
-        found.extend((rows.line_num, cells) for cells in rows if any(cell.strip() for cell in cells))
+        for cells in rows:
+            if any(cell.strip() for cell in cells):
+                found.append((line, cells))
+            line = rows.line_num + 1
     except csv.Error as error:
-        raise MeasurementError(
-            [Fault(f"{name} line {rows.line_num}", "", f"cannot be read: {error}", "correct it")]
-        ) from None
+        raise _refused(f"{name} line {line}", f"cannot be read: {error}", "correct it") from None
     return found
+
+
+def _refused(path: str, problem: str, remedy: str) -> MeasurementError:
+    return MeasurementError([Fault(path, "", problem, remedy)])
 
 
 def _names(file: str, names: Sequence[str], data: Data) -> list[Fault]:
@@ -162,8 +186,8 @@ def _names(file: str, names: Sequence[str], data: Data) -> list[Fault]:
     ]
     faults += [
         Fault(f"{file} line 1", written(name), "two columns have this name", "give each its own name")
-        for name in dict.fromkeys(names)
-        if name and names.count(name) > 1
+        for name, count in Counter(names).items()
+        if name and count > 1
     ]
     if len(names) == 1:
         other = ";" if data.delimiter == "," else ","
