@@ -87,8 +87,8 @@ def without_outliers(
         else:
             findings.append(
                 Finding(id="repeats_apart", weight="suspect", channels=(feature.channel,), points=points,
-                        text=f"{where}: repeats {numbers} lie more than {OUTLIER:g} declared standard deviations apart; "
-                        "measure a third time")
+                        text=f"{where}: repeats {numbers} lie more than {OUTLIER:g} declared standard deviations "
+                        "apart; measure a third time")
             )  # fmt: skip
     return clean, findings
 

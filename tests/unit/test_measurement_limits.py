@@ -15,7 +15,7 @@ from rigdesign.errors import MeasurementError
 from rigdesign.measurement import Data, Finding, features, load_measurement
 from rigdesign.prediction import Feature
 from tests.measurement_example import changed_column, replaced, truth, write_set
-from tests.recording_example import RATE, signals, write_recorded_set, write_recording
+from tests.recording_example import signals, write_recorded_set, write_recording
 
 CASES = Path(__file__).parents[2] / "cases"
 ZERO = 273.15
@@ -339,7 +339,8 @@ def test_files_outside_the_folder_and_devices_are_refused(folder: Path, case, ke
     (folder / "sub").mkdir()
     os.mkfifo(folder / "pipe.csv")
     if key == "recording":
-        new = f'[data]\ntach = {{ kind = "pulses", signal = "T" }}\nrecordings = [{{ point = "P01", file = "{name}" }}]\n'
+        new = '[data]\ntach = { kind = "pulses", signal = "T" }\n'
+        new += f'recordings = [{{ point = "P01", file = "{name}" }}]\n'
         replaced(folder, "measurement.toml", "[data]", new)
     elif key == "table":
         replaced(folder, "measurement.toml", "[data]", f'[data]\ntable = "{name}"')
