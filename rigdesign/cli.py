@@ -135,6 +135,8 @@ def compare(
 ) -> int:
     """Hold a measurement set against the simulation and say where they disagree; changes no model.
 
+    Where the set names a healthy one as its baseline, what simulation and healthy set say together is held against it.
+
     Parameters
     ----------
     case
@@ -151,24 +153,17 @@ def compare(
         Print compare.json on stdout; everything else goes to stderr.
     """
     from rigdesign.case import load_case
-    from rigdesign.measurement import features, load_measurement
-    from rigdesign.measurement.compare import compare as hold_against
     from rigdesign.measurement.compare import comparison_document
-    from rigdesign.prediction import predict
+    from rigdesign.measurement.comparing import compare_measurement
     from rigdesign.report import prepare_output
     from rigdesign.report.measurement_page import write_comparison
     from rigdesign.terminal import Progress, print_comparison
 
     loaded = load_case(case)
-    measured = load_measurement(measurement, loaded)
-    data = features(measured)
     if out is not None:
         prepare_output(out)
     with Progress() as progress:
-        progress(f"predicting {len(data.settings)} operating points")
-        channels = [entry.channel for entry in data.channels.values()]
-        prediction = predict(loaded, data.settings, channels, model=model, fidelity=fidelity)
-        comparison = hold_against(measured, data, prediction)
+        comparison = compare_measurement(loaded, measurement, model=model, fidelity=fidelity, say=progress)
         if out is not None:
             progress("writing report")
             write_comparison(comparison, out, model=model, fidelity=fidelity)

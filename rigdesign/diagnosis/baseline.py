@@ -13,8 +13,8 @@ from scipy.linalg import cho_factor, cho_solve
 from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.columns import Array, amplitudes_of
 from rigdesign.diagnosis.covariance import Covariance, Whitened
-from rigdesign.diagnosis.library import apart, nearest_of
 from rigdesign.diagnosis.subject import Comparison
+from rigdesign.prediction.met_again import met_again
 
 TWINS = 10.0
 """How much more two readings of one number may share than each is off by itself: what the model has wrong there in a
@@ -70,7 +70,7 @@ class Change:
         here, there = subject.covariance(amplitudes), baseline.covariance(amplitudes)
         after, before = here.deviations, _matched(there, here)
         own, other = subject.own_spread(amplitudes), baseline.own_spread(amplitudes)
-        again = _met_again(subject, baseline)
+        again = met_again(subject.library.settings, baseline.library.settings)
         twins, step = _same_numbers(subject, baseline, again), _speed_steps(subject, baseline, again)
         amplitude = twins @ amplitudes_of(baseline.features, baseline.values)
         cross = after @ before.T + TWINS**2 * own[:, None] * twins * other[None, :]
@@ -124,17 +124,6 @@ def _matched(there: Covariance, here: Covariance) -> Array:
         for column in here.columns
     ]
     return np.stack(rows, axis=1)
-
-
-AGAIN = 2.0
-"""How far a point may lie from one of the baseline to be the same, met again (`rigdesign.diagnosis.library.apart`)."""
-
-
-def _met_again(subject: Comparison, baseline: Comparison) -> dict[str, str]:
-    """Operating point -> that of the baseline it is; the rig at rest is one of them."""
-    now, before = subject.library.settings, baseline.library.settings
-    pairs = nearest_of(now, before, apart, AGAIN)
-    return {"": ""} | {now[here].name: before[there].name for here, there in pairs.items()}
 
 
 def _same_numbers(subject: Comparison, baseline: Comparison, again: Mapping[str, str]) -> Array:

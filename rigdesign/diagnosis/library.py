@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.diagnosis.columns import Array
+from rigdesign.prediction.met_again import apart, nearest_of
 from rigdesign.prediction.model import Channel, Feature, Setting, features_of
 
 
@@ -212,44 +213,7 @@ def _matches(
     return list(found.values()) if len(found) == len(wanted) else None
 
 
-def nearest_of(
-    wanted: Sequence[T], offered: Sequence[T], distance: Callable[[T, T], float], most: float
-) -> dict[int, int]:
-    """Place of a wanted one -> that of the nearest offered one, none used twice; without those that are farther off."""
-    found: dict[int, int] = {}
-    for number, one in enumerate(wanted):
-        free = [place for place in range(len(offered)) if place not in found.values()]
-        nearest = min(free, key=lambda place: distance(offered[place], one), default=None)
-        if nearest is not None and distance(offered[nearest], one) <= most:
-            found[number] = nearest
-    return found
-
-
 def _reads_as(kept: Channel, wanted: Channel) -> float:
     """Zero where a channel of the library reads what is wanted."""
     same = (kept.quantity, kept.place, kept.at) == (wanted.quantity, wanted.place, wanted.at)
     return 0.0 if same and set(wanted.orders) <= set(kept.orders) else 2.0
-
-
-NEAR = {"speed": 0.05, "torque": 0.05, "flow": 0.15, "temperature": 8.0}
-"""How far a point may lie from the plan for derivatives to carry it over: relative, temperatures in kelvin."""
-
-
-def apart(planned: Setting, run: Setting) -> float:
-    """Distance of a point from one of a plan, at most one where derivatives serve; infinite where they state
-    different things."""
-    if dict(planned.tooth_offset) != dict(run.tooth_offset):
-        return float("inf")
-    if set(planned.inlet_temperature) != set(run.inlet_temperature) or set(planned.flow) != set(run.flow):
-        return float("inf")
-    if (planned.ambient_temperature is None) != (run.ambient_temperature is None):
-        return float("inf")
-    shares = [
-        abs(run.speed / planned.speed - 1.0) / NEAR["speed"],
-        abs(run.torque - planned.torque) / max(abs(planned.torque), 1e-9) / NEAR["torque"],
-    ]
-    shares += [abs(run.flow[place] / value - 1.0) / NEAR["flow"] for place, value in planned.flow.items()]
-    warmer = [run.inlet_temperature[place] - value for place, value in planned.inlet_temperature.items()]
-    if planned.ambient_temperature is not None and run.ambient_temperature is not None:
-        warmer.append(run.ambient_temperature - planned.ambient_temperature)
-    return max(*shares, *(abs(step) / NEAR["temperature"] for step in warmer))

@@ -1,8 +1,10 @@
 """Pictures of a comparison: measured against simulated, the map of residuals, residuals over their variable."""
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rigdesign import units
 from rigdesign.measurement.compare import Comparison, display_residual, series_of
@@ -13,6 +15,7 @@ from rigdesign.report.drawing import GRID, INK, MUTED, SERIES, finish, legend_ri
 from rigdesign.report.numbers import unit_text
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 MOST_ROWS = 60
@@ -21,6 +24,10 @@ COLOUR_END = 10.0
 """Whitened residual at which the colours of the map end."""
 PANELS = 3
 """Plots beside each other."""
+MOST_PANELS = 12
+"""Channels and orders whose readings are drawn over the operating points."""
+MOST_NAMES = 24
+"""Operating points that are named along an axis; of more the number in the table is given."""
 
 AXES = {
     "constant": ("speed", "speed [rpm]"),
@@ -32,6 +39,86 @@ AXES = {
     "": ("speed", "speed [rpm]"),
 }
 """Leading variable -> what is drawn along the axis."""
+
+
+def readings_figure(comparison: Comparison) -> "Figure":
+    """Measured and simulated numbers over the operating points in one plot per channel; of an order its size.
+
+    Where a healthy set is known, what simulation and healthy set say together is a third curve.
+    """
+    chosen = _panels(comparison)
+    rows = max(-(-len(chosen) // PANELS), 1)
+    figure = new_figure(2.3 * rows + 0.45)
+    grid = figure.subplots(rows, PANELS, squeeze=False).ravel()
+    points = [setting.name for setting in comparison.data.settings]
+    for axes, (label, features) in zip(grid, chosen):
+        _readings(axes, comparison, label, features)
+        names = [plain(name) for name in points] if len(points) <= MOST_NAMES else []
+        places = range(len(points)) if names else axes.get_xticks()
+        axes.set_xticks(list(places), names or None, rotation=90 if sum(map(len, names)) > 24 else 0)
+        axes.set_xlim(-0.5, len(points) - 0.5)
+    for axes in grid[len(chosen) :]:
+        axes.set_visible(False)
+    if chosen:
+        handles, labels = grid[0].get_legend_handles_labels()
+        figure.legend(
+            handles, labels, loc="upper left", ncols=3, bbox_to_anchor=(0.07, 1.0), borderaxespad=0.1
+        )
+    height = 2.3 * rows + 0.45
+    figure.subplots_adjust(
+        left=0.08, right=0.99, top=1.0 - 0.5 / height, bottom=0.4 / height, wspace=0.36, hspace=0.55
+    )
+    return figure
+
+
+def _panels(comparison: Comparison) -> list[tuple[str, list[int]]]:
+    """Channels and orders to draw: of every quantity the one farthest off, then the farthest off of all."""
+    data, whitened = comparison.data, np.abs(comparison.whitened)
+    series = {
+        label: rows
+        for label, rows in series_of(data.features).items()
+        if data.features[rows[0]].setting and data.usable[rows].any()
+    }
+    far = sorted(series, key=lambda label: -float(np.nanmax(whitened[series[label]])))
+    first = {
+        data.channels[data.features[series[label][0]].channel].channel.quantity: label
+        for label in reversed(far)
+    }
+    kept = set([*first.values(), *(label for label in far if label not in first.values())][:MOST_PANELS])
+    return [(label, rows) for label, rows in series.items() if label in kept]
+
+
+def _readings(axes: "Axes", comparison: Comparison, label: str, rows: list[int]) -> None:
+    """One channel or order: readings with their bars, the simulation as a curve."""
+    data = comparison.data
+    entry = data.channels[data.features[rows[0]].channel]
+    quantity, unit = entry.channel.quantity, entry.unit
+    kind = CHANNELS[quantity].kind
+    place = {setting.name: i for i, setting in enumerate(data.settings)}
+    x = sorted({place[data.features[i].setting] for i in rows})
+
+    def sizes(values: NDArray[np.float64]) -> list[float]:
+        parts: list[list[float]] = [[] for _ in x]
+        for i in rows:
+            value = values[i] if data.usable[i] else np.nan
+            parts[x.index(place[data.features[i].setting])].append(float(value))
+        found = (part[0] if len(part) == 1 else math.hypot(*part) for part in parts)
+        return [units.display(value, kind, unit) for value in found]
+
+    bars = np.zeros(len(x))
+    for i in rows:
+        if data.usable[i]:
+            size = 2.0 * display_residual(float(comparison.spread[i]), quantity, unit)[0]
+            at = x.index(place[data.features[i].setting])
+            bars[at] = max(bars[at], size)
+    axes.plot(x, sizes(comparison.simulated), "-s", color=SERIES[0], markersize=3.4, markerfacecolor="white",
+              linewidth=1.0, label="simulated", zorder=2)  # fmt: skip
+    if comparison.healthy is not None:
+        axes.plot(x, sizes(comparison.expected), "--", color=SERIES[2], linewidth=1.0,
+                  label="simulated, with what the healthy set leaves", zorder=3)  # fmt: skip
+    axes.errorbar(x, sizes(data.values), yerr=bars, fmt="o", color=SERIES[1], markersize=3.2, linewidth=0.9,
+                  label="measured", zorder=4)  # fmt: skip
+    finish(axes, "", f"{quantity.replace('_', ' ')} [{unit_text(unit)}]", plain(label))
 
 
 def agreement_figure(comparison: Comparison) -> "Figure":
@@ -46,7 +133,7 @@ def agreement_figure(comparison: Comparison) -> "Figure":
         kind, unit = CHANNELS[quantity].kind, data.channels[names[0]].unit
         for number, name in enumerate(names):
             chosen = [i for i, f in enumerate(data.features) if f.channel == name and data.usable[i]]
-            x = [units.display(float(comparison.simulated[i]), kind, unit) for i in chosen]
+            x = [units.display(float(comparison.expected[i]), kind, unit) for i in chosen]
             y = [units.display(float(data.values[i]), kind, unit) for i in chosen]
             axes.plot(x, y, "o", markersize=3.2, color=SERIES[number % len(SERIES)], label=plain(name))
         ends = (*axes.get_xlim(), *axes.get_ylim())
@@ -55,7 +142,8 @@ def agreement_figure(comparison: Comparison) -> "Figure":
         axes.set_xlim(low, high)
         axes.set_ylim(low, high)
         shown = unit_text(unit)
-        finish(axes, f"simulated [{shown}]", f"measured [{shown}]", quantity.replace("_", " "))
+        said = "simulated" if comparison.healthy is None else "simulated, with the healthy set"
+        finish(axes, f"{said} [{shown}]", f"measured [{shown}]", quantity.replace("_", " "))
         if 1 < len(names) <= 8:
             axes.legend(loc="upper left", fontsize=6.5, handletextpad=0.2, borderaxespad=0.2)
     for axes in grid[len(quantities) :]:

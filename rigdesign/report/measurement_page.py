@@ -58,6 +58,10 @@ def comparison_page(comparison: Comparison, document: dict[str, Any]) -> str:
             "document": document,
             "headline": headline(comparison),
             "agrees": not comparison.sentences,
+            "healthy": comparison.healthy,
+            "readings": draw(
+                figures.readings_figure(comparison), "Measured and simulated over the operating points"
+            ),
             "agreement": draw(figures.agreement_figure(comparison), "Measured over simulated numbers"),
             "map": draw(figures.residual_map(comparison), "Residuals by channel and operating point"),
             "leading": leading,

@@ -129,7 +129,7 @@ def test_the_page_stands_alone_and_the_document_is_whole(folder: Path, tmp_path:
     write_comparison(comparison, tmp_path / "out", model="full", fidelity="quick")
     page = (tmp_path / "out" / "compare.html").read_text(encoding="utf-8")
     assert not re.search(r'(?:src|href)="(?!#)', page.replace("xlink:href", "xlink"))
-    assert headline(comparison) in page and page.count("<svg") == 3
+    assert headline(comparison) in page and page.count("<svg") == 4
     document = json.loads((tmp_path / "out" / "compare.json").read_text(encoding="utf-8"))
     assert document["measurement"]["hash"] == comparison.measurement.hash
     assert len(document["residuals"]) == document["numbers"] == int(comparison.data.usable.sum())
