@@ -19,12 +19,15 @@ class Damage:
         return self.what.startswith("cut")
 
 
-def damages(content: bytes, count: int, seed: int) -> Iterator[Damage]:
-    """``count`` different damages of a content, in turn a flipped bit, a replaced byte, a cut end."""
+def damages(content: bytes, count: int, seed: int, head: int | None = None) -> Iterator[Damage]:
+    """``count`` different damages of a content, in turn a flipped bit, a replaced byte, a cut end.
+
+    head : only of so many bytes at the beginning
+    """
     rng = np.random.default_rng(seed)
     seen = {content}
     while len(seen) <= count:
-        place = int(rng.integers(len(content)))
+        place = int(rng.integers(len(content[:head])))
         kind = (len(seen) - 1) % 3
         changed = bytearray(content)
         if kind == 0:

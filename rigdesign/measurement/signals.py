@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rigdesign.errors import Fault, MeasurementError
 from rigdesign.measurement.document import Data
 from rigdesign.measurement.files import set_file
+from rigdesign.measurement.hdf5_samples import AGAIN, RefusedError, read_datasets
 from rigdesign.measurement.table import MOST_FAULTS, numbers, read_table
 
 Array = NDArray[np.float64]
@@ -21,7 +22,6 @@ FASTEST, SLOWEST = 1e-9, 1e5
 """Least and most time from sample to sample of a logger [s]."""
 LONGEST = 1e11
 """Largest time of a sample [s]; seconds since 1904 are below."""
-AGAIN = "record or export it again"
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def read_signals(folder: Path, name: str, data: Data) -> Signals:
         raise
     except Exception as error:  # readers of binary files raise whatever a damaged byte leads them to
         said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        raise _fault(name, f"cannot be read or was cut off ({said})", "record or export it again") from None
+        raise _fault(name, f"cannot be read or was cut off ({said})", AGAIN) from None
     if not signals:
         raise _fault(name, "holds no signal", "export it again with its channels")
     for key, signal in signals.items():
@@ -117,60 +117,36 @@ def _tdms(path: Path, name: str, data: Data) -> Signals:
 
 
 def _hdf5(path: Path, name: str, data: Data) -> Signals:
-    import h5py
-
+    try:
+        datasets = read_datasets(path, data.size_limit)
+    except RefusedError as error:
+        raise _fault(f"{name}, {error.place}" if error.place else name, error.problem, error.remedy) from None
+    arrays = {one.name: np.frombuffer(one.samples, dtype=float) for one in datasets}
     found: dict[str, Signal] = {}
-    with h5py.File(path, "r") as file:
-        names: list[str] = []
-        file.visit(lambda key: names.append(key) if isinstance(file[key], h5py.Dataset) else None)
-        chosen = [key for key in names if file[key].ndim == 1 and file[key].dtype.kind in "fiu"]
-        stated = sum(file[key].size for key in chosen)
-        if stated > data.size_limit:
-            raise _fault(
-                name, f"holds {stated} samples, data.size_limit is {data.size_limit:.0f}",
-                "raise data.size_limit if that is meant",
-            )  # fmt: skip
-        for key in chosen:
-            dataset, short = file[key], key.rpartition("/")[2]
-            _check_stored(f"{name}, {key}", dataset)
-            if short in TIME_NAMES:
-                continue
-            group = dataset.parent
-            time = next((np.asarray(group[t], dtype=float) for t in TIME_NAMES if t in group), None)
-            rate = dataset.attrs.get("sample_rate", file.attrs.get("sample_rate"))
-            step = dataset.attrs.get("dt")
-            if step is None and rate is not None:
-                step = _step(f"{name}, {key}", rate)
-            values = np.asarray(dataset, dtype=float)
-            own = _time(f"{name}, {key}", len(values), step, 0.0, time)
-            unit = dataset.attrs.get("units", dataset.attrs.get("unit", ""))
-            signal = Signal(own, values, unit.decode() if isinstance(unit, bytes) else str(unit))
-            found[key] = signal
-            found.setdefault(short, signal)
+    for one in datasets:
+        group, _, short = one.name.rpartition("/")
+        if short in TIME_NAMES:
+            continue
+        times = (arrays.get(f"{group}/{time}" if group else time) for time in TIME_NAMES)
+        time = next((values for values in times if values is not None), None)
+        step = one.step
+        if step is None and one.rate is not None:
+            step = _step(f"{name}, {one.name}", one.rate)
+        own = _time(f"{name}, {one.name}", len(arrays[one.name]), step, 0.0, time)
+        found[one.name] = Signal(own, arrays[one.name], one.unit)
+        found.setdefault(short, found[one.name])
     return found
 
 
-def _check_stored(at: str, dataset: Any) -> None:
-    """All samples that the shape of a dataset states are in this file."""
-    if dataset.is_virtual or dataset.external:
-        raise _fault(at, "its samples lie in another file", "export it into one file")
-    if dataset.chunks is None:
-        stored = dataset.id.get_storage_size() // dataset.dtype.itemsize
-    else:
-        stored = min(dataset.id.get_num_chunks() * dataset.chunks[0], dataset.size)
-    if stored < dataset.size:
-        raise _fault(at, f"holds {stored} samples, its shape states {dataset.size}", AGAIN)
-
-
-def _step(at: str, rate: Any) -> float:
+def _step(at: str, rate: float) -> float:
     """Time from sample to sample [s] of a sampling rate [Hz]."""
-    if not 1.0 / SLOWEST <= float(rate) <= 1.0 / FASTEST:
+    if not 1.0 / SLOWEST <= rate <= 1.0 / FASTEST:
         raise _fault(
             at,
-            f"sample_rate = {rate}, outside {1.0 / SLOWEST:g} to {1.0 / FASTEST:g} Hz",
+            f"sample_rate = {rate:g}, outside {1.0 / SLOWEST:g} to {1.0 / FASTEST:g} Hz",
             "correct the attribute",
         )
-    return 1.0 / float(rate)
+    return 1.0 / rate
 
 
 def _mdf(path: Path, name: str, data: Data) -> Signals:

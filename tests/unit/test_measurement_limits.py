@@ -12,7 +12,7 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.cli import _exit_status
 from rigdesign.errors import MeasurementError
-from rigdesign.measurement import Data, Finding, features, load_measurement
+from rigdesign.measurement import Data, Finding, features, hdf5_samples, load_measurement
 from rigdesign.prediction import Feature
 from tests.measurement_example import changed_column, replaced, truth, write_set
 from tests.recording_example import signals, write_recorded_set, write_recording
@@ -290,6 +290,29 @@ def test_a_header_that_cannot_be_is_refused_with_file_and_place(
     tmp_path: Path, loop, change, words: str
 ) -> None:
     text = refused(h5_set(tmp_path / "set", change), loop)
+    assert "P01_1.h5" in text and words in text
+
+
+@pytest.mark.parametrize(
+    ("script", "words"),
+    [
+        (
+            "import os, signal; os.kill(os.getpid(), signal.SIGSEGV)",
+            "the HDF5 library crashed on it, signal 11",
+        ),
+        ("import time; time.sleep(60)", "cannot be read within 2 s"),
+        ("import sys; sys.exit('wrong chunk')", "wrong chunk"),
+    ],
+)
+def test_a_file_that_crashes_the_hdf5_library_is_refused(
+    tmp_path: Path, loop, monkeypatch, script, words
+) -> None:
+    """A flipped bit of an attribute's header does: the library reads in a process of its own."""
+    folder = write_recorded_set(tmp_path / "set", "h5")
+    (tmp_path / "script.py").write_text(script, encoding="utf-8")
+    monkeypatch.setattr(hdf5_samples, "__file__", str(tmp_path / "script.py"))
+    monkeypatch.setattr(hdf5_samples, "PATIENCE", 2.0)
+    text = refused(folder, loop)
     assert "P01_1.h5" in text and words in text
 
 
