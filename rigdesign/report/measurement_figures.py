@@ -191,7 +191,7 @@ def residual_map(comparison: Comparison) -> "Figure":
     axes.invert_yaxis()
     axes.grid(visible=False)
     bar = figure.colorbar(picture, ax=axes, fraction=0.025, pad=0.015)
-    bar.set_label("residual over its standard deviation")
+    bar.set_label("residual / σ")
     finish(axes, "operating point")
     figure.subplots_adjust(left=0.2, right=0.93, top=1 - 0.12 / height, bottom=0.6 / height)
     return figure

@@ -17,8 +17,9 @@ from tests.measurement_example import write_set
 from tests.recording_example import write_recorded_set
 
 CASES = Path(__file__).parents[2] / "cases"
-SOME = 24
-MANY = 400
+SOME, MANY = 24, 400
+SOME_HDF5, MANY_HDF5 = 6, 150
+"""Of HDF5 files, each of which is read in a process of its own."""
 MOST_UNSEEN = 12.0
 """By how many standard deviations of a mean one of two repeats may move it before it is told: 8 of its distance from
 their median are 8 of the mean, where the scatter is as declared; where it is less, more."""
@@ -103,6 +104,16 @@ def counts(folder: Path, name: str, count: int, head: int | None = None) -> tupl
     return flipped, cut
 
 
+def some(name: str) -> int:
+    """Damages that a unit test tries."""
+    return SOME_HDF5 if name.endswith(".h5") else SOME
+
+
+def many(name: str) -> int:
+    """Damages that a slow test tries."""
+    return MANY_HDF5 if name.endswith(".h5") else MANY
+
+
 def assert_safe(flipped: Counter[str], cut: Counter[str]) -> None:
     """A changed digit may pass as another reading; nothing else may, and a cut never."""
     assert set(flipped) <= {"refused", "reported", "unharmed", "another reading"}
@@ -111,21 +122,21 @@ def assert_safe(flipped: Counter[str], cut: Counter[str]) -> None:
 
 @pytest.mark.parametrize("name", SETS)
 def test_a_damaged_file_is_refused_or_reported(tmp_path: Path, name: str) -> None:
-    assert_safe(*counts(tmp_path, name, SOME))
+    assert_safe(*counts(tmp_path, name, some(name)))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SETS)
 def test_many_damaged_files_are_refused_or_reported(tmp_path: Path, name: str) -> None:
     with bounded_memory():
-        flipped, cut = counts(tmp_path, name, MANY)
+        flipped, cut = counts(tmp_path, name, many(name))
     print(f"\n{name}: flipped {dict(flipped)}, cut {dict(cut)}")
     assert_safe(flipped, cut)
 
 
 @pytest.mark.parametrize("name", BINARY)
 def test_a_damaged_header_is_refused_or_reported(tmp_path: Path, name: str) -> None:
-    flipped, cut = counts(tmp_path, name, SOME, HEAD)
+    flipped, cut = counts(tmp_path, name, some(name), HEAD)
     assert_safe(flipped, cut)
     assert set(cut) == {"refused"}
 
@@ -134,7 +145,7 @@ def test_a_damaged_header_is_refused_or_reported(tmp_path: Path, name: str) -> N
 @pytest.mark.parametrize("name", BINARY)
 def test_many_damaged_headers_are_refused_or_reported(tmp_path: Path, name: str) -> None:
     with bounded_memory():
-        flipped, cut = counts(tmp_path, name, MANY, HEAD)
+        flipped, cut = counts(tmp_path, name, many(name), HEAD)
     print(f"\n{name}, first {HEAD} bytes: flipped {dict(flipped)}, cut {dict(cut)}")
     assert_safe(flipped, cut)
 
