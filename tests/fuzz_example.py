@@ -12,9 +12,10 @@ from tests.mutant_example import QUANTITY, leaves
 CASES = Path(__file__).parents[1] / "cases"
 FILES = tuple(sorted(path for path in CASES.glob("*/*.toml")))
 NASTY = (
-    "nan", "inf", "-inf", "0", "-1", "1e300", "1e-300", "1e999", "-0.0", "true", '""', '" "', '"mm"', '"1"',
-    '"1 parsec"', '"nan mm"', '"1e400 mm"', '"-5 degC"', '"1 mm 2 mm"', '"١٢ mm"', '"1_0 mm"', '"0x10 mm"',
-    "[]", "{}", "[[[[]]]]", "{ value = 1 }", '"' + "x" * 5000 + '"', '"[bold]x[/bold]"', '"\\u0000"', "1979-05-27", '"../../etc/passwd"',
+    "nan", "inf", "-inf", "0", "-1", "1e300", "1e-300", "1e999", "-0.0", "true", "1979-05-27",
+    '""', '" "', '"mm"', '"1"', '"1 parsec"', '"nan mm"', '"1e400 mm"', '"-5 degC"', '"1 mm 2 mm"',
+    '"\u0661\u0662 mm"', '"1_0 mm"', '"0x10 mm"', '"\\u0000"', '"[bold]x[/bold]"', '"../../etc/passwd"',
+    "[]", "{}", "[[[[]]]]", "{ value = 1 }", '"' + "x" * 5000 + '"',
 )  # fmt: skip
 STRETCH = 0.1
 """Stages of the shortened cases last so much of their time, with a motor to match."""
