@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from rigdesign.cold import cold_feedback
 from rigdesign.errors import NotConvergedError
+from rigdesign.finite import require_finite
 from rigdesign.loads import Setting, brace_cold
 from rigdesign.passes import PassResult, feedback_of, heat_residual, one_pass
 from rigdesign.rig.model import Rig
@@ -61,6 +62,8 @@ def solve_point(
     ------
     NotConvergedError
         The passes of the case are used up; the message shows the residuals of the last ones.
+    NonFiniteResultError
+        A loss, temperature, length or torque of a pass is NaN or infinite.
     """
     numerics = rig.case.numerics
     cold = cold_feedback(rig, point)
@@ -72,6 +75,7 @@ def solve_point(
         fine = not residuals or residuals[-1].temperature < GROWTH_FROM
         done = one_pass(rig, point, feedback, setting, done, fine=fine)
         after = feedback_of(rig, done).hold(hold, cold)
+        require_finite(after, f"stage {point.stage}")
         heat = 0.0 if {"bearing_heat", "wall_heat"} & hold else heat_residual(rig, done)
         residuals.append(
             Residual(

@@ -93,7 +93,7 @@ class NotConvergedError(RigdesignError):
 
 
 class NonFiniteResultError(NotConvergedError):
-    """A result that is NaN or infinite: JSON cannot carry it and no check may rest on it."""
+    """A result that is NaN or infinite: no number was reached, so that no check may depend on it."""
 
 
 class MissingLibraryError(RigdesignError):

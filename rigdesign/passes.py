@@ -7,6 +7,7 @@ from dynamics.journal_bearing import BearingState
 from dynamics.response_curve import CurvePoint
 from rigdesign.bearing_films import solve_bearings
 from rigdesign.drags import drag_torques
+from rigdesign.finite import finite
 from rigdesign.growth import HousingGrowth, expand_housing, hot_clearances, uniform_growth
 from rigdesign.loads import MeshModel, Setting, mesh_models, respond
 from rigdesign.losses import PlacedLoss, mesh_losses, rotating_losses
@@ -84,6 +85,11 @@ def one_pass(
     fine : expand the housings and solve the fields to the last digit; else the growth of ``before`` is carried on
         and the heat of the fields closes to 1e-4, which saves time while the temperatures still move a lot. A pass
         that ends the loop must be fine.
+
+    Raises
+    ------
+    NonFiniteResultError
+        A loss that is NaN or infinite.
     """
     models = parts.models(rig, point, feedback)
     bearings = parts.bearings(rig, point, feedback)
@@ -91,6 +97,8 @@ def one_pass(
     drags = drag_torques(turning, rig, point.speed)
     response = None if setting is None else parts.response(rig, point, models, drags, setting)
     losses = (*turning, *mesh_losses(rig, point, models, response, feedback))
+    for placed in losses:
+        finite(f"stage {point.stage}: {placed.loss.kind} loss of {placed.name}", placed.loss.power)
     starts: Mapping[str, HousingField] = {} if before is None else before.fields
     tolerance = TOLERANCE if fine else ROUGH
     fields = {

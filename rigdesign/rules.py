@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from rigdesign.finite import finite
 from rigdesign.results import Check, Role, Verdict
 
 WARN_UTILISATION = 0.95
@@ -39,9 +40,17 @@ def hold(rule: Rule, value: float, reason: str = "", *, doubt: str = "") -> Chec
     """Hold ``value`` against ``rule``.
 
     ``doubt`` names why a held rule is still only a warning (a formula outside its range, say).
+
+    Raises
+    ------
+    NonFiniteResultError
+        Value or limit is NaN or infinite.
     """
     if rule.limit is None:
         raise ValueError(f"rule {rule.id} has no limit; give one or use not_applicable")
+    finite(f"value of check {rule.id}", value)
+    finite(f"limit of check {rule.id}", rule.limit)
+    finite(f"upper limit of check {rule.id}", rule.limit if rule.upper_limit is None else rule.upper_limit)
     margin = _margin(rule, value)
     utilisation = _utilisation(rule, value)
     return Check(
@@ -144,6 +153,7 @@ def with_error(check: Check, error: float | None) -> Check:
     """
     if error is None or check.margin is None:
         return check
+    finite(f"discretisation error of check {check.id}", error)
     known = replace(check, discretisation_error=error)
     if abs(check.margin) >= error:
         return known

@@ -23,6 +23,7 @@ from rigdesign.coupling import PointResult, governing_point, solve_point
 from rigdesign.discretisation import discretisation
 from rigdesign.dynamic_work import DynamicWork
 from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError, UsageError
+from rigdesign.finite import require_finite
 from rigdesign.prediction.model import Channel, Prediction, Setting
 from rigdesign.ramp_run import held_points, schedule_of
 from rigdesign.remesh import MeshesBeside, looping_rig, on_mesh
@@ -58,7 +59,7 @@ def run_case(
     CaseError
         A case that cannot be computed: gears that do not mesh, a loop or housing that does not close.
     NotConvergedError
-        An iteration that does not settle, a speed the motor does not reach.
+        An iteration that does not settle, a speed the motor does not reach, a result that is NaN or infinite.
     MissingLibraryError
         A system library that gmsh needs.
     """
@@ -67,12 +68,12 @@ def run_case(
     with solver_errors(case), threadpool_limits(limits=1):
         subject = solve_case(case, fidelity, say, clock.lap)
         result = _assemble(subject, clock)
-        if not transient:
-            return result
-        from rigdesign.assemble.transient import with_transient
+        if transient:
+            from rigdesign.assemble.transient import with_transient
 
-        result = with_transient(subject, result, say)
-        clock.lap("transient")
+            result = with_transient(subject, result, say)
+            clock.lap("transient")
+        require_finite(result)
         return result
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from rigdesign.assemble.dynamics import DynamicRun
 from rigdesign.case.model import Case
 from rigdesign.coupling import PointResult, governing_point
+from rigdesign.finite import finite
 from rigdesign.results import (
     DiscretisationRow,
     DynamicsResult,
@@ -73,6 +74,9 @@ NO_HOUSING = "no gearbox has a housing: there are no temperatures and clearances
 
 
 def worst(items: Iterable[tuple[float, str]], *, smallest: bool = False) -> tuple[float, str]:
-    """The governing value and where it occurs; the first of equals."""
-    ordered = sorted(items, key=lambda item: item[0], reverse=not smallest)
+    """The governing value and where it occurs; the first of equals.
+
+    Raises NonFiniteResultError for a value that is NaN or infinite: it has no place in an order.
+    """
+    ordered = sorted(items, key=lambda item: finite(item[1], item[0]), reverse=not smallest)
     return ordered[0]

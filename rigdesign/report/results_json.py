@@ -3,13 +3,12 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
-from math import isfinite
 from typing import Any
 
 import numpy as np
 
 from rigdesign import __version__
-from rigdesign.errors import NonFiniteResultError
+from rigdesign.finite import finite
 from rigdesign.results import CouplingHistory, RunResult
 
 SCHEMA_VERSION = "1"
@@ -95,12 +94,7 @@ def to_plain(value: Any, path: str = "") -> Any:
 
 
 def _rounded(value: float, path: str) -> float:
-    if not isfinite(value):
-        raise NonFiniteResultError(
-            f"{path} = {value}: results hold finite numbers only; "
-            "a quantity that does not exist is None, report this case as a defect"
-        )
-    return float(f"{value:.{SIGNIFICANT_DIGITS}g}") + 0.0
+    return float(f"{finite(path, value):.{SIGNIFICANT_DIGITS}g}") + 0.0
 
 
 def _join(path: str, key: str) -> str:

@@ -1,8 +1,12 @@
 """Margin, utilisation and verdict of every kind of rule."""
 
+from typing import Literal
+
 import pytest
 
-from rigdesign.rules import Rule, hold, not_applicable, overall
+from rigdesign.checks.subject import worst
+from rigdesign.errors import NonFiniteResultError
+from rigdesign.rules import Rule, hold, not_applicable, overall, with_error
 
 
 def rule(**changes: object) -> Rule:
@@ -65,3 +69,34 @@ def test_overall_is_the_worst_applicable_verdict() -> None:
 def test_a_rule_without_limit_is_refused() -> None:
     with pytest.raises(ValueError, match="has no limit"):
         hold(rule(limit=None), 1.0)
+
+
+NOT_FINITE = [float("nan"), float("inf"), float("-inf")]
+
+
+@pytest.mark.parametrize("value", NOT_FINITE)
+@pytest.mark.parametrize("comparison", ["<=", ">=", "within"])
+def test_a_value_that_is_no_number_is_no_verdict(
+    comparison: Literal["<=", ">=", "within"], value: float
+) -> None:
+    with pytest.raises(NonFiniteResultError, match="value of check x = "):
+        hold(rule(comparison=comparison, upper_limit=5.0), value)
+
+
+@pytest.mark.parametrize("bad", NOT_FINITE)
+def test_a_limit_or_an_error_that_is_no_number_is_no_verdict(bad: float) -> None:
+    with pytest.raises(NonFiniteResultError, match="limit of check x = "):
+        hold(rule(limit=bad), 1.0)
+    with pytest.raises(NonFiniteResultError, match="upper limit of check x = "):
+        hold(rule(comparison="within", upper_limit=bad), 3.0)
+    with pytest.raises(NonFiniteResultError, match="discretisation error of check x"):
+        with_error(hold(rule(), 1.0), bad)
+
+
+@pytest.mark.parametrize("items", [[(1.0, "a"), (float("nan"), "b")], [(float("nan"), "b"), (1.0, "a")]])
+@pytest.mark.parametrize("smallest", [True, False])
+def test_the_worst_of_values_of_which_one_is_no_number_is_none(
+    items: list[tuple[float, str]], smallest: bool
+) -> None:
+    with pytest.raises(NonFiniteResultError, match="b = nan"):
+        worst(items, smallest=smallest)
