@@ -43,6 +43,8 @@ class Check:
     """Second limit of a window (comparison ``within``)."""
     assumptions: tuple[str, ...] = ()
     """Case paths of the assumptions the value rests on."""
+    left_out: tuple[str, ...] = ()
+    """Known contributors that the value does not count: the check is at best a warning, unless they are small."""
     discretisation_error: float | None = None
     """How far the value may be from that of an infinitely fine housing mesh, in its unit; None where no housing
     mesh enters, or where there is no coarser one to tell."""

@@ -146,6 +146,35 @@ def exact(check: Check) -> Check:
     return check
 
 
+@dataclass(frozen=True)
+class Omission:
+    """A known contributor that the value of a check leaves out."""
+
+    text: str
+    size: float | None = None
+    """The most by which it would use up the margin, in the unit of the value; None where nothing tells."""
+
+
+def with_omissions(check: Check, omissions: Sequence[Omission]) -> Check:
+    """A check that knows what its value leaves out.
+
+    A held rule is then at best a warning, unless the omissions of known size together are less than the margin and
+    there are no others; a broken one stays as it is.
+    """
+    if check.margin is None or not omissions:
+        return check
+    sizes = [omission.size for omission in omissions]
+    known = [size for size in sizes if size is not None]
+    open_ = len(known) < len(sizes) or sum(known) >= check.margin
+    told = "leaves out " + "; leaves out ".join(omission.text for omission in omissions)
+    return replace(
+        check,
+        left_out=tuple(omission.text for omission in omissions),
+        verdict="warn" if open_ and check.verdict == "pass" else check.verdict,
+        reason="; ".join(part for part in (check.reason, told) if part),
+    )
+
+
 def with_error(check: Check, error: float | None) -> Check:
     """A check with the discretisation error of its value: a verdict that hangs on the mesh says so.
 

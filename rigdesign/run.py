@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from rigdesign.assemble import heat
 from rigdesign.assemble.dynamics import dynamics_result
-from rigdesign.assemble.findings import not_modelled, warnings_of
+from rigdesign.assemble.findings import not_modelled, unanswered, warnings_of
 from rigdesign.assemble.hand import hand_checks
 from rigdesign.case.model import Case
 from rigdesign.checks import Subject, all_checks
@@ -174,7 +174,7 @@ def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),
         not_modelled=not_modelled(subject),
-        warnings=[*_doubts(case), *warnings_of(subject)],
+        warnings=[*_doubts(case), *warnings_of(subject), *unanswered(checks)],
         timings_s=clock.laps,
         fields=[field for p in points for field in heat.fields_of(rig, p)],
     )

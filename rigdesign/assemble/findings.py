@@ -12,7 +12,7 @@ from dynamics.response_curve import CurvePoint
 from rigdesign.assemble.curves import iso_factor, resolved
 from rigdesign.checks.subject import Subject
 from rigdesign.loads import laws_of
-from rigdesign.results import Finding
+from rigdesign.results import Check, Finding
 from rigdesign.rig.boundary import printed_films
 from rigdesign.rig.films import printed_law
 from rigdesign.shaft_torques import torques_left_out
@@ -45,6 +45,19 @@ def warnings_of(subject: Subject) -> list[Finding]:
         *(Finding(id="heat_audit", text=text) for text in _audits(subject)),
     ]
     return list(dict.fromkeys(found))
+
+
+def unanswered(checks: Iterable[Check]) -> list[Finding]:
+    """Limits that the case states and no verdict answers: the model lacks what they are about."""
+    return [
+        Finding(
+            id="limit_not_answered",
+            text=f"{check.id}: the case states a limit of {check.limit:.4g} {check.unit}, and no verdict answers it: "
+            f"{check.reason}",
+        )
+        for check in checks
+        if check.verdict == "not applicable" and check.limit is not None
+    ]
 
 
 def _gears(subject: Subject) -> Iterator[str]:

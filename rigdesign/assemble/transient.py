@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 
 from rigdesign.assemble.transient_alignment import UNITS, misalignments, worst_misalignments
 from rigdesign.checks.assumptions import with_assumptions
+from rigdesign.checks.omissions import omissions
 from rigdesign.checks.subject import Subject
 from rigdesign.checks.transient import transient_checks
 from rigdesign.results import Check, Finding, RunResult
 from rigdesign.results_transient import Settling, TransientCurve, TransientResult, WorstMoment
 from rigdesign.rig.model import Rig
-from rigdesign.rules import overall
+from rigdesign.rules import overall, with_omissions
 from rigdesign.transient import Branch, TransientRun, run_transient
 from rigdesign.transient.clearances import QUANTITIES, Quantity, smallest
 from rigdesign.transient.limits import clearance_limits
@@ -47,7 +48,10 @@ def with_transient(
         return replace(result, warnings=[*result.warnings, Finding(id="transient", text=text)])
     run = run_transient(subject.rig, subject.points, say)
     record = transient_result(subject, run)
-    added = [with_assumptions(subject.case, check) for check in transient_checks(subject.case, record)]
+    added = [
+        with_assumptions(subject.case, with_omissions(check, omissions(subject, check)))
+        for check in transient_checks(subject.case, record)
+    ]
     checks: list[Check] = [*result.checks, *added]
     return replace(
         result,

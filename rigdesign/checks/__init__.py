@@ -2,9 +2,10 @@
 
 from rigdesign.checks import alignment, dynamics, ramp, strength, thermal
 from rigdesign.checks.assumptions import with_assumptions
+from rigdesign.checks.omissions import omissions
 from rigdesign.checks.subject import Subject
 from rigdesign.results import Check
-from rigdesign.rules import with_error
+from rigdesign.rules import with_error, with_omissions
 
 __all__ = ["Subject", "all_checks", "held_checks"]
 
@@ -18,11 +19,12 @@ def all_checks(subject: Subject) -> list[Check]:
 
 
 def held_checks(subject: Subject) -> list[Check]:
-    """Every check in the order of the report, its assumed inputs left out."""
-    return [
+    """Every check in the order of the report with what its value leaves out, without its assumed inputs."""
+    held = (
         *dynamics.checks(subject),
         *strength.checks(subject),
         *thermal.checks(subject),
         *alignment.checks(subject),
         *ramp.checks(subject),
-    ]
+    )
+    return [with_omissions(check, omissions(subject, check)) for check in held]

@@ -2,13 +2,10 @@
 
 from collections.abc import Callable, Iterator
 
-import numpy as np
-
 from rigdesign.case.bought_parts import shafts_of
 from rigdesign.case.limits import BoughtPart, ResultQuantity
 from rigdesign.checks.subject import NO_HOUSING, NO_LOADS, Subject, worst
 from rigdesign.kinds import KINDS
-from rigdesign.ramp_run import schedule_of
 from rigdesign.results import Check
 from rigdesign.rules import Rule, exact, hold, not_applicable
 from rigdesign.units import display
@@ -36,8 +33,7 @@ def _check(subject: Subject, name: str, part: BoughtPart) -> Check:
         value, reason = RESULTS[part.quantity](subject, part.part)
     if value is None:
         return not_applicable(rule, reason)
-    doubt = _saturated(subject) if part.quantity == "drive_torque" else ""
-    check = hold(rule, display(value, part.kind), reason, doubt=doubt)
+    check = hold(rule, display(value, part.kind), reason)
     return exact(check) if part.quantity in EXACT else check
 
 
@@ -116,23 +112,6 @@ def _drive_power(subject: Subject, part: str) -> Found:
     ramp, rig = subject.run.ramp, subject.rig
     ratio = rig.drive_speed(1.0) / rig.pinion_speed(1.0)
     return float(abs(ramp.drive_torque * ramp.speed * ratio).max()), "time run over the schedule"
-
-
-def _saturated(subject: Subject) -> str:
-    """Why the torque found may be less than what was asked: the run stood at the limit of the motor."""
-    run, power = subject.run, subject.case.drivetrain
-    if run is None or power is None:
-        return ""
-    controlled = np.array([stage.drive_torque is None for stage in subject.case.schedule.resolved()])
-    stage = schedule_of(subject.rig).at(run.ramp.time).stage
-    full = np.abs(run.ramp.drive_torque) >= (1.0 - 1e-9) * power.motor.torque_limit
-    share = float(np.mean(full & controlled[stage]))
-    if not share:
-        return ""
-    return (
-        f"the motor stands at drivetrain.motor.torque_limit for {100.0 * share:.1f} % of the run: the speed control "
-        "asked for more; raise the limit to see how much"
-    )
 
 
 def _actuator_force(subject: Subject, part: str) -> Found:

@@ -13,6 +13,7 @@ from rigdesign.rules import Rule, hold, not_applicable
 RPM = 30.0 / math.pi
 Found = tuple[float, str]
 """Value and how it came about."""
+NOT_LOADED = "no stage turns under more than the start torque"
 
 
 def checks(subject: Subject) -> list[Check]:
@@ -54,8 +55,10 @@ def _of_mesh(subject: Subject, mesh: int) -> Iterator[Check]:
         )  # fmt: skip
         if subject.run is None or limit is None:
             yield not_applicable(rule, NO_LOADS if subject.run is None else NO_LIMIT)
+        elif (found := value(subject, mesh)) is None:
+            yield not_applicable(rule, NOT_LOADED)
         else:
-            yield hold(rule, *value(subject, mesh))
+            yield hold(rule, *found)
 
 
 def _result(subject: Subject, mesh: int) -> GearboxDynamics:
@@ -71,13 +74,13 @@ def _dynamic_factor(subject: Subject, mesh: int) -> Found:
     )
 
 
-def _ramp_peak(subject: Subject, mesh: int) -> Found:
+def _ramp_peak(subject: Subject, mesh: int) -> Found | None:
     """Peak of the time run over the mean torque of the governing held stage."""
     response = subject.test.last.response
     assert response is not None
     row = max(_loaded(subject, mesh), key=lambda row: float(row["peak_Nm"]), default=None)
     if row is None:
-        return 0.0, "no stage turns under load"
+        return None
     return (
         row["peak_Nm"] / float(response.mean[mesh]),
         f"{row['peak_Nm']:.1f} N m in stage {row['stage']}; highest K_V there "
@@ -110,32 +113,28 @@ def _resonance(subject: Subject, mesh: int) -> Found:
             for row in rows
             if row["dangerous"] and row["torque"] == named[torque]
         ]
-    value, reason = worst(found, smallest=True)
-    holes = len(_result(subject, mesh).unsolved)
-    return value, f"{reason}; {holes} speeds without solution" if holes else reason
+    return worst(found, smallest=True)
 
 
-def _lift_off(subject: Subject, mesh: int) -> Found:
+def _lift_off(subject: Subject, mesh: int) -> Found | None:
     loaded = {row["stage"] for row in _loaded(subject, mesh)}
+    if not loaded:
+        return None
     rows = [row for row in _result(subject, mesh).lift_off if row["stage"] in loaded]
     if not rows:
         return 0.0, "no gap longer than 5 % of a mesh period in a loaded stage"
     return worst((float(row["share"]), f"stage {row['stage']}, {row['start_s']:.2f} s") for row in rows)
 
 
-def _contact_margin(subject: Subject, mesh: int) -> Found:
-    rows = _loaded(subject, mesh)
-    return worst(
-        [
-            (
-                float(row["least_share"]),
-                f"{row['least_Nm']:.1f} N m at least in stage {row['stage']}, near {row['least_share_at_rpm']:.0f} rpm",
-            )
-            for row in rows
-        ]
-        or [(1.0, "no stage turns under load")],
-        smallest=True,
-    )
+def _contact_margin(subject: Subject, mesh: int) -> Found | None:
+    found = [
+        (
+            float(row["least_share"]),
+            f"{row['least_Nm']:.1f} N m at least in stage {row['stage']}, near {row['least_share_at_rpm']:.0f} rpm",
+        )
+        for row in _loaded(subject, mesh)
+    ]
+    return worst(found, smallest=True) if found else None
 
 
 def _loaded(subject: Subject, mesh: int) -> list[dict[str, Any]]:

@@ -50,6 +50,12 @@ class Subject:
         return governing_point(self.points)
 
     @property
+    def unexpanded(self) -> tuple[str, ...]:
+        """Gearboxes whose housing is not expanded: they have none, or no clearances can be read from its mesh."""
+        models = self.rig.models
+        return tuple(name for name in self.case.gearboxes if name not in models or models[name].no_expansion)
+
+    @property
     def no_clearances(self) -> str:
         """Why there are no hot clearances, where there are none."""
         reasons = {

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator
 
 from dynamics.journal_bearing import BearingState
 from rigdesign.checks.subject import NO_HOUSING, NO_LIMIT, Subject, worst
+from rigdesign.loads import MeshModel
 from rigdesign.results import Check
 from rigdesign.rules import Rule, hold, not_applicable
 
@@ -28,6 +29,7 @@ def checks(subject: Subject) -> list[Check]:
 
 
 NO_PLAY = "no shaft states an axial play between stops at both of its bearings"
+NO_SEAL = "no shaft has a seal without contact"
 
 
 def _held(
@@ -134,44 +136,75 @@ def _films(subject: Subject) -> list[tuple[str, BearingState]]:
 
 
 def _clearances(subject: Subject) -> Iterator[Check]:
+    """Hot clearances; of a gearbox whose housing is not expanded those of its drawing.
+
+    Its gears and axes have the temperatures of its oil, so that backlash and tip clearance are those of the meshes
+    that carry the load. What expansion would do to the rest is left out, and `omissions` says so.
+    """
     limits = subject.case.limits.clearances
-    gears = [gear for row in subject.growth for gear in row.gears]
-    seals = [seal for row in subject.growth for seal in row.seal_gaps]
-    shafts = [shaft for row in subject.growth for shaft in row.shafts]
-    bearings = [
-        (UM * clearance, f"{name}, stage {point.point.stage}")
-        for point in subject.points
-        for name, clearance in point.last.feedback.bearing_clearance.items()
-    ]
     rows: tuple[tuple[str, str, float | None, float, str, Values], ...] = (
         (
-            "seal_gap", "smallest hot radial gap of a seal", limits.seal_gap_minimum, MM, "mm",
-            ((s["hot_min_mm"], f"{s['seal']} at {s['angle_of_min_deg']:.0f} deg") for s in seals),
+            "seal_gap", "smallest hot radial gap of a seal", limits.seal_gap_minimum, MM, "mm", _seal_gaps(subject),
         ),
         (
-            "axial_play", "smallest hot axial play of a shaft", limits.axial_play_minimum, MM, "mm",
-            ((s["axial_play_hot_mm"], s["shaft"]) for s in shafts if s["axial_play_cold_mm"] > 0.0),
+            "axial_play", "smallest hot axial play of a shaft", limits.axial_play_minimum, MM, "mm", _plays(subject),
         ),
         (
             "backlash", "smallest hot backlash", limits.backlash_minimum, MM, "mm",
-            ((gear["backlash_hot_mm"], gear["gear_pair"]) for gear in gears),
+            ((MM * model.pair.transverse_backlash, where) for where, model in _pairs(subject)),
         ),
         (
             "tip_clearance", "smallest hot tip clearance", limits.tip_clearance_minimum, MM, "mm",
-            ((gear["tip_clearance_hot_mm"], gear["gear_pair"]) for gear in gears),
+            ((MM * min(model.pair.tip_clearances), where) for where, model in _pairs(subject)),
         ),
         (
             "bearing_clearance", "smallest hot diametral bearing clearance", limits.bearing_clearance_minimum,
-            UM, "um", bearings,
+            UM, "um", (
+                (UM * clearance, f"{name}, stage {point.point.stage}")
+                for point in subject.points
+                for name, clearance in point.last.feedback.bearing_clearance.items()
+            ),
         ),
     )  # fmt: skip
+    absent = {"axial_play": NO_PLAY, "seal_gap": NO_SEAL}
     for key, title, limit, scale, unit, values in rows:
         yield _held(
             f"clearance.{key}", title, unit, _scaled(limit, scale), values,
-            source=f"limits.clearances.{key}_minimum", at_least=True,
-            absent=NO_PLAY if key == "axial_play" and shafts else subject.no_clearances,
+            source=f"limits.clearances.{key}_minimum", at_least=True, absent=absent.get(key, NO_HOUSING),
         )  # fmt: skip
     yield from _seal_travel(subject)
+
+
+def _pairs(subject: Subject) -> Iterator[tuple[str, MeshModel]]:
+    """Every mesh at every held stage."""
+    for point in subject.points:
+        for model in point.last.models:
+            bare = model.name.split(".")[0] in subject.unexpanded
+            basis = ", gears and axes at the temperature of their oil" if bare else ""
+            yield f"{model.name}{basis}, stage {point.point.stage}", model
+
+
+def _seal_gaps(subject: Subject) -> Iterator[tuple[float, str]]:
+    """Hot gap of every seal [mm]; cold where the housing is not expanded."""
+    for row in subject.growth:
+        for seal in row.seal_gaps:
+            yield seal["hot_min_mm"], f"{seal['seal']} at {seal['angle_of_min_deg']:.0f} deg"
+    for name in subject.unexpanded:
+        for part, seals in subject.case.gearboxes[name].seals.items():
+            if seals.kind == "contactless":
+                yield MM * seals.radial_gap, f"{name}.{part}, cold"
+
+
+def _plays(subject: Subject) -> Iterator[tuple[float, str]]:
+    """Hot axial play of every shaft between stops [mm]; cold where the housing is not expanded."""
+    for row in subject.growth:
+        for shaft in row.shafts:
+            if shaft["axial_play_cold_mm"] > 0.0:
+                yield shaft["axial_play_hot_mm"], shaft["shaft"]
+    for name in subject.unexpanded:
+        for bearing in subject.case.gearboxes[name].bearings.values():
+            if bearing.axial_play > 0.0:
+                yield MM * bearing.axial_play, f"{bearing.shaft}, {name}, cold"
 
 
 def _seal_travel(subject: Subject) -> Iterator[Check]:

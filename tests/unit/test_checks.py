@@ -11,9 +11,11 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.checks import dynamics, ramp, strength, thermal
+from rigdesign.checks.omissions import omissions
 from rigdesign.checks.subject import Subject
 from rigdesign.results import Check, GearboxDynamics
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rules import with_omissions
 from tests.report_example import gearbox
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -98,11 +100,13 @@ def test_a_resonance_above_the_held_speed_counts_as_one_below(rpm: float, verdic
 def test_resonances_at_another_torque_do_not_count_and_holes_are_said() -> None:
     hole = {"curve": "180 Nm", "speed_rpm": 12100.0, "reason": "not settled"}
     rows = [resonance(12100.0, torque="90 Nm")]
-    check = named(
-        dynamics.checks(subject(resonances=rows, unsolved=[hole])), "dynamics.resonance_distance.test"
-    )
-    assert check.value == pytest.approx(0.125)
-    assert check.reason.endswith("1 speeds without solution")
+    with_hole = subject([held("test", (1.1, 1.2), models=())], resonances=rows, unsolved=[hole])
+    with_hole = replace(with_hole, rig=replace(rig(), fidelity="standard"))
+    check = named(dynamics.checks(with_hole), "dynamics.resonance_distance.test")
+    assert (check.value, check.verdict) == (pytest.approx(0.125), "pass")
+    told = with_omissions(check, omissions(with_hole, check))
+    assert (told.value, told.verdict) == (check.value, "warn")
+    assert told.left_out == ("resonances at speeds without solution (1)",)
 
 
 def test_contact_and_peak_of_the_loaded_ramp() -> None:

@@ -8,7 +8,6 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.assemble.findings import not_modelled
-from rigdesign.checks.subject import NO_HOUSING
 from rigdesign.checks.thermal import NO_PLAY, _clearances
 from rigdesign.results import Check
 from rigdesign.rig.model import build_rig
@@ -23,9 +22,7 @@ def axial_play(*plays: tuple[float, float]) -> Check:
         for i, (cold, hot) in enumerate(plays)
     ]
     growth = [SimpleNamespace(gearbox="test", stage="test", gears=[], seal_gaps=[], shafts=shafts)]
-    subject: Any = SimpleNamespace(
-        case=load_case(PROTOTYPE), growth=growth, points=(), no_clearances=NO_HOUSING
-    )
+    subject: Any = SimpleNamespace(case=load_case(PROTOTYPE), growth=growth, points=(), unexpanded=())
     return next(check for check in _clearances(subject) if check.id == "clearance.axial_play")
 
 
