@@ -53,6 +53,7 @@ class LoopMode:
     energy : part -> share of strain energy [-], shafts, splines, couplings and meshes
     mesh_gain : (n_meshes,) peak of mean mesh stiffness times approach per mesh force of this mode alone [-];
         far below 1 the mesh hardly excites it
+    largest : freedom that swings most, ``shaft/station``
     """
 
     frequency: float
@@ -60,6 +61,7 @@ class LoopMode:
     name: str
     energy: dict[str, float]
     mesh_gain: Array
+    largest: str = ""
 
 
 def loop_modes(
@@ -101,6 +103,7 @@ def loop_modes(
                 name=_shape_name(energy),
                 energy=energy,
                 mesh_gain=gain,
+                largest=system.dofs[int(np.argmax(np.abs(shape)))],
             )
         )
     return tuple(found)

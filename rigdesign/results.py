@@ -126,11 +126,13 @@ class DynamicsResult:
     gearboxes: dict[str, GearboxDynamics]
     """By gearbox; by ``gearbox.mesh`` where a gearbox has several meshes."""
     natural_frequencies: list[dict[str, Any]]
-    """{frequency_Hz, damping_ratio, shape}: named mode shapes of the assembled loop."""
+    """{mode, frequency_Hz, damping_ratio, shape, largest_at}: modes of the closed loop, meshes at their mean
+    stiffness; shape: parts that hold the strain energy; largest_at: shaft and place that swing most; mode 0 turns
+    without swinging."""
     shaft_frequencies: dict[str, list[float]]
     """Free-free torsional frequencies [Hz] of each isolated shaft."""
     crossings: list[dict[str, Any]]
-    """{gearbox, shaft, frequency_Hz, harmonic, speed_rpm}."""
+    """{gearbox, shaft, frequency_Hz, harmonic, speed_rpm}: of the isolated shafts."""
     damping_audit: list[dict[str, Any]]
     """{joint, damping_ratio, corner_frequency_Hz, warning}."""
     sampling: dict[str, float]
@@ -139,6 +141,10 @@ class DynamicsResult:
     actuator_force_N, torque_cold_Nm, torque_hot_Nm}."""
     ramp: RampHistory | None
     torque_balance: list[dict[str, Any]]
+    loop_crossings: list[dict[str, Any]] = field(default_factory=list)
+    """{kind, order_of, mode, shape, frequency_Hz, damping_ratio, harmonic, speed_rpm, gain, excited}: mesh and shaft
+    orders that meet a mode of the closed loop; order_of: gearbox or shaft, speed_rpm that of its pinion or its own;
+    excited: the mesh reaches the mode."""
 
 
 @dataclass(frozen=True, kw_only=True)

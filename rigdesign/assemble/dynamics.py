@@ -1,11 +1,12 @@
 """The dynamic section of the result: loads, K_V(n), root stress, modes, resonances, bracing, ramp."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 from dynamics.bracing import BracingDrift, drift
+from dynamics.loop_crossings import loop_crossings
 from dynamics.modes import (
     LoopMode,
     damping_audit,
@@ -19,7 +20,7 @@ from dynamics.response import TimeResponse
 from dynamics.static_loop import port_model, solve_static
 from rigdesign.assemble import root
 from rigdesign.assemble.curves import Curves, factor_points, iso_factor, own_ratio
-from rigdesign.assemble.resonances import HARMONICS, resonance_rows
+from rigdesign.assemble.resonances import HARMONICS, LEAST_GAIN, resonance_rows
 from rigdesign.assemble.time_run import lift_off, ramp_history, stage_loads, torque_peak
 from rigdesign.cold import cold_feedback
 from rigdesign.coupling import PointResult, governing_point
@@ -68,9 +69,14 @@ def dynamics_result(rig: Rig, run: DynamicRun) -> DynamicsResult:
             for mesh, name in enumerate(rig.mesh_names)
         },
         natural_frequencies=[
-            {"frequency_Hz": mode.frequency, "damping_ratio": mode.damping_ratio, "shape": mode.name}
-            for mode in modes
-            if mode.frequency <= HIGHEST_MODE
+            {
+                "mode": number,
+                "frequency_Hz": mode.frequency,
+                "damping_ratio": mode.damping_ratio,
+                "shape": mode.name,
+                "largest_at": mode.largest,
+            }
+            for number, mode in _numbered(modes)
         ],
         shaft_frequencies={name: [float(f) for f in values] for name, values in frequencies.items()},
         crossings=[
@@ -106,7 +112,35 @@ def dynamics_result(rig: Rig, run: DynamicRun) -> DynamicsResult:
         bracing=[bracing_record(rig, point) for point in run.points],
         ramp=ramp_history(rig, run.ramp),
         torque_balance=[torque_balance(rig, point) for point in run.points],
+        loop_crossings=list(loop_crossing_rows(rig, modes, max(run.curves.response.speeds))),
     )
+
+
+def _numbered(modes: Sequence[LoopMode]) -> list[tuple[int, LoopMode]]:
+    """The listed modes with their numbers: 1 for the lowest that swings, 0 for what turns without swinging."""
+    rigid = sum(mode.frequency == 0.0 for mode in modes)
+    listed = [mode for mode in modes if mode.frequency <= HIGHEST_MODE]
+    return [(max(0, number), mode) for number, mode in enumerate(listed, start=1 - rigid)]
+
+
+def loop_crossing_rows(rig: Rig, modes: Sequence[LoopMode], top: float) -> Iterator[dict[str, Any]]:
+    """Crossings of the closed loop's modes with mesh and shaft orders, up to a speed of the first pinion [rad/s]."""
+    assert rig.drivetrain is not None
+    numbered = dict(_numbered(modes))
+    highest = rig.drive_speed(1.0) / rig.pinion_speed(1.0) * top
+    for crossing in loop_crossings(rig.drivetrain, list(numbered.values()), highest, HARMONICS):
+        yield {
+            "kind": crossing.kind,
+            "order_of": rig.mesh_labels[crossing.source] if crossing.kind == "mesh" else crossing.source,
+            "mode": crossing.mode,
+            "shape": numbered[crossing.mode].name,
+            "frequency_Hz": crossing.frequency,
+            "damping_ratio": crossing.damping_ratio,
+            "harmonic": crossing.harmonic,
+            "speed_rpm": crossing.own_speed * RPM,
+            "gain": crossing.gain,
+            "excited": crossing.gain >= LEAST_GAIN,
+        }
 
 
 def gearbox_dynamics(rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopMode]) -> GearboxDynamics:

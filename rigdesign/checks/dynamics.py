@@ -113,7 +113,33 @@ def _resonance(subject: Subject, mesh: int) -> Found:
             for row in rows
             if row["dangerous"] and row["torque"] == named[torque]
         ]
-    return worst(found, smallest=True)
+    value, reason = worst(found, smallest=True)
+    near = near_crossings(subject, mesh, math.inf)
+    if not near:
+        return value, reason
+    share, row = near[0]
+    mode = (
+        f"mode {row['mode']} ({row['shape']}), {row['frequency_Hz']:.0f} Hz, order {row['harmonic']} at "
+        f"{row['speed_rpm']:.0f} rpm, {100.0 * share:.1f} % away"
+    )
+    return value, f"{reason}; nearest mode of the closed loop that the mesh excites: {mode}"
+
+
+def near_crossings(subject: Subject, mesh: int, within: float) -> list[tuple[float, dict[str, Any]]]:
+    """Crossings of a mesh with modes of the closed loop that it excites, nearest first: share of a held speed, row.
+
+    within : largest distance as a share of the held speed
+    """
+    assert subject.dynamics is not None
+    rig, label = subject.rig, subject.label(mesh)
+    shaft = rig.mesh_gear(mesh, 0).shaft
+    speeds = [rig.shaft_speed(shaft, point.point.speed) * RPM for point in subject.points]
+    found = [
+        (min(abs(row["speed_rpm"] - own) / own for own in speeds), row)
+        for row in subject.dynamics.loop_crossings
+        if row["kind"] == "mesh" and row["order_of"] == label and row["excited"]
+    ]
+    return sorted((item for item in found if item[0] <= within), key=lambda item: item[0])
 
 
 def _lift_off(subject: Subject, mesh: int) -> Found | None:

@@ -14,7 +14,9 @@ from fnmatch import fnmatchcase
 import numpy as np
 
 from rigdesign.assemble.curves import resolved
+from rigdesign.assemble.resonances import NEAR
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.checks.dynamics import near_crossings
 from rigdesign.checks.subject import Subject
 from rigdesign.loads import laws_of
 from rigdesign.ramp_run import schedule_of
@@ -176,13 +178,24 @@ def _long_periods(subject: Subject, check: Check) -> Found:
 
 
 def _gaps(subject: Subject, check: Check) -> Found:
-    """Resonances between the speeds of a coarse curve, or at speeds without a solution."""
+    """Resonances at speeds without a solution, and modes of the closed loop between the speeds of a coarse curve.
+
+    A mode counts if the mesh excites it and an order meets it nearer to a held speed than the limit and what loaded
+    teeth may shift it.
+    """
     if subject.run is None or subject.dynamics is None:
         return
+    label = check.id.split(".", 2)[2]
     if not resolved(subject.rig):
-        speeds = subject.run.curves.response.speeds
-        yield Omission(f"narrow resonances between speeds {np.diff(speeds).max() * RPM:.0f} rpm apart")
-    holes = len(subject.dynamics.gearboxes[check.id.split(".", 2)[2]].unsolved)
+        step = np.diff(subject.run.curves.response.speeds).max() * RPM
+        mesh = next(i for i in range(len(subject.rig.mesh_names)) if subject.label(i) == label)
+        near = near_crossings(subject, mesh, (check.limit or 0.0) + NEAR)
+        modes = ", ".join(dict.fromkeys(str(row["mode"]) for _, row in near))
+        if near:
+            yield Omission(
+                f"narrow resonances of the loop's modes {modes} between speeds {step:.0f} rpm apart"
+            )
+    holes = len(subject.dynamics.gearboxes[label].unsolved)
     if holes:
         yield Omission(f"resonances at speeds without solution ({holes})")
 

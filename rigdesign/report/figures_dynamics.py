@@ -121,7 +121,7 @@ def _with_gaps(
 
 
 def campbell_figure(dynamics: DynamicsResult) -> "Figure":
-    """Tooth-mesh orders of every gearbox over speed against the natural frequencies of its shafts."""
+    """Tooth-mesh orders of every gearbox over speed against the modes of the closed loop and of its shafts alone."""
     names = list(dynamics.gearboxes)
     figure = new_figure(3.5)
     axes_list = figure.subplots(1, max(1, len(names)), squeeze=False)[0]
@@ -130,6 +130,7 @@ def campbell_figure(dynamics: DynamicsResult) -> "Figure":
         crossings = [item for item in dynamics.crossings if item.get("gearbox") == name]
         _orders(axes, crossings, top_speed)
         _natural_frequencies(axes, crossings, top_speed)
+        _loop_modes(axes, [item for item in dynamics.loop_crossings if item["order_of"] == name], top_speed)
         _crossing_marks(axes, crossings, dynamics.gearboxes[name], top_speed)
         axes.set_xlim(0, top_speed)
         axes.set_ylim(bottom=0)
@@ -174,6 +175,17 @@ def _natural_frequencies(axes: "Axes", crossings: list[dict[str, Any]], top_spee
             axes.plot([0, top_speed], [frequency, frequency], color=colour, linewidth=0.8, label=label)
 
 
+def _loop_modes(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> None:
+    """Modes of the closed loop that the mesh excites, and where its orders meet them."""
+    excited = [item for item in crossings if item["kind"] == "mesh" and item["excited"]]
+    for number, frequency in enumerate(sorted({item["frequency_Hz"] for item in excited})):
+        label = "mode of the closed loop" if number == 0 else None
+        axes.plot([0, top_speed], [frequency, frequency], "--", color=INK, linewidth=0.8, label=label)
+    if excited:
+        speeds, frequencies = ([item[key] for item in excited] for key in ("speed_rpm", "frequency_Hz"))
+        axes.plot(speeds, frequencies, "s", color=INK, markersize=3.5, label="crossing, closed loop")
+
+
 def _crossing_marks(
     axes: "Axes", crossings: list[dict[str, Any]], gearbox: GearboxDynamics, top_speed: float
 ) -> None:
@@ -184,7 +196,7 @@ def _crossing_marks(
         markerfacecolor="white",
         markeredgecolor=MUTED,
         markersize=4,
-        label="crossing",
+        label="crossing, isolated shaft",
     )
     dangerous = [
         item

@@ -89,15 +89,14 @@ def loss_table(losses: Sequence[LossRow]) -> tuple[list[str], list[tuple[str, li
 
 
 def crossing_table(
-    crossings: list[dict[str, Any]],
-) -> tuple[list[Any], list[tuple[str, str, float, list[Any]]]]:
-    """Harmonics, and (gearbox, shaft, frequency, speed by harmonic) of every natural frequency."""
+    crossings: list[dict[str, Any]], keys: Sequence[str] = ("gearbox", "shaft", "frequency_Hz")
+) -> tuple[list[Any], list[tuple[list[Any], list[Any]]]]:
+    """Harmonics, and (values of ``keys``, speed by harmonic) of every natural frequency."""
     harmonics = sorted({item["harmonic"] for item in crossings})
-    speeds: dict[tuple[str, str, float], dict[Any, float]] = {}
+    speeds: dict[tuple[Any, ...], dict[Any, float]] = {}
     for item in crossings:
-        key = (item["gearbox"], item["shaft"], item["frequency_Hz"])
-        speeds.setdefault(key, {})[item["harmonic"]] = item["speed_rpm"]
-    return harmonics, [(*key, [found.get(k) for k in harmonics]) for key, found in speeds.items()]
+        speeds.setdefault(tuple(item[key] for key in keys), {})[item["harmonic"]] = item["speed_rpm"]
+    return harmonics, [(list(key), [found.get(k) for k in harmonics]) for key, found in speeds.items()]
 
 
 def is_number(value: Any) -> bool:

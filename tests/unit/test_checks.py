@@ -49,12 +49,12 @@ def load(stage: str, least: float, peak: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def subject(points: Any = None, **changes: Any) -> Subject:
+def subject(points: Any = None, crossings: Any = (), **changes: Any) -> Subject:
     """Both gearboxes with the same made-up loads; ``changes`` of the records of one mesh."""
     empty: dict[str, Any] = {"resonances": [], "unsolved": [], "lift_off": [], "stage_loads": []}
     box: GearboxDynamics = replace(gearbox("rig", 0.1, []), **(empty | changes))
     run: Any = SimpleNamespace(curves=SimpleNamespace(named={"180 Nm": (180.0, None), "90 Nm": (90.0, None)}))
-    results: Any = SimpleNamespace(gearboxes={"test": box, "reference": box})
+    results: Any = SimpleNamespace(gearboxes={"test": box, "reference": box}, loop_crossings=crossings)
     held_points = points or [held("test", (1.1, 1.2))]
     return Subject(rig=rig(), points=held_points, run=run, dynamics=results, thermal=[], growth=[], cooler=[])
 

@@ -1,0 +1,58 @@
+"""Crossings of the closed loop in results, report and the check of the resonance distance."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from rigdesign import load_case, run_case
+from rigdesign.report.html import report_html
+from rigdesign.results import RunResult
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+@cache
+def hunting() -> RunResult:
+    return run_case(load_case(CASES / "loop_hunting"), fidelity="quick")
+
+
+def test_modes_say_where_they_are_largest() -> None:
+    dynamics = hunting().dynamics
+    assert dynamics is not None
+    first, *swinging = dynamics.natural_frequencies
+    assert (first["mode"], first["frequency_Hz"]) == (0, 0.0)
+    assert [row["mode"] for row in swinging] == list(range(1, len(swinging) + 1))
+    assert all(row["largest_at"] and 0.0 < row["damping_ratio"] < 1.0 for row in swinging)
+
+
+def test_mesh_and_shaft_orders_meet_the_modes_of_the_loop() -> None:
+    dynamics = hunting().dynamics
+    assert dynamics is not None
+    assert {row["order_of"] for row in dynamics.loop_crossings} == {"test", "reference"}
+    modes = {row["mode"]: row for row in dynamics.natural_frequencies}
+    case = load_case(CASES / "loop_hunting")
+    teeth = {name: box.gears["pinion"].teeth for name, box in case.gearboxes.items()}
+    for row in dynamics.loop_crossings:
+        cycles = teeth[row["order_of"]] if row["kind"] == "mesh" else 1
+        met = row["speed_rpm"] / 60.0 * cycles * row["harmonic"]
+        assert met == pytest.approx(modes[row["mode"]]["frequency_Hz"], rel=1e-9)
+
+
+def test_the_distance_names_the_mode_of_the_loop_nearest_to_the_held_speed() -> None:
+    """Mode 2 meets the mesh at 2420 rpm, 3 % below the held speed: no isolated shaft has its frequency, and the coarse
+    curve of a quick run says nothing of it."""
+    result = hunting()
+    assert result.dynamics is not None
+    check = next(check for check in result.checks if check.id == "dynamics.resonance_distance.test")
+    assert "closed loop that the mesh excites: mode 2 (" in check.reason and "3.2 % away" in check.reason
+    second = result.dynamics.natural_frequencies[2]["frequency_Hz"]
+    assert all(abs(f / second - 1.0) > 0.1 for own in result.dynamics.shaft_frequencies.values() for f in own)
+    assert check.verdict == "warn" and "loop's modes 2" in check.left_out[0]
+
+
+def test_the_report_shows_the_loop_beside_the_shafts() -> None:
+    page = report_html(hunting())
+    assert "Mesh orders that meet a mode of the closed loop" in page
+    assert "Up to the highest speed of the curves no shaft order meets a mode of the closed loop." in page
+    assert "Order crossings of the isolated shafts" in page
