@@ -36,7 +36,7 @@ def with_ranges(
     """The result of a run with its verdicts over the ranges of the assumed inputs.
 
     A check passes only if it holds at both ends of every range, else it warns and says which assumption decides
-    it. An end without a result (an invalid case, an iteration that does not settle) makes the checks that rest on
+    it. An end without a result (an invalid case, an iteration that does not settle) makes the checks that depend on
     its input warn.
 
     Parameters

@@ -1,7 +1,7 @@
 """Which assumed inputs are moved to the ends of their ranges, and what has to be solved again for each.
 
-The tables name what is known to touch only a part of the model. An input that stands in none of them is solved
-again in full: a missing entry costs time, not truth. They follow what `checks.assumptions` says the checks rest on.
+The table names what is known to touch only a part of the model. An input that stands in none of them is solved
+again in full and influences every check (`checks.assumptions`): a missing entry costs time, not truth.
 """
 
 from collections.abc import Iterator, Sequence
@@ -53,9 +53,9 @@ SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
 }
 """Inputs -> parts of the model they touch; the first entry that holds a path counts.
 
-Heat and oil move the response over speed and the time run only through drags and the temperature of the gears: four
-times the windage moves the checks on loads of the prototype by at most 1.3 % of their limits, and none of them names
-these inputs among what it rests on. The torque of the motor follows its losses (`ranges_drive`).
+Heat and oil move the response over speed and the time run through drags and the temperature of the gears. Where they
+move the gears more than `ranges_point.LOADS_MOVE` the loads are solved again as well; the torque of the motor follows
+its losses (`ranges_drive`).
 """
 
 
@@ -99,7 +99,7 @@ def plan(case: Case, checks: Sequence[Check]) -> tuple[list[RangeEnd], list[Left
         if record.range is None or record.path in moved:
             continue
         if record.path not in decisive:
-            left.append(LeftOut(path=record.path, reason="no check that applies rests on it"))
+            left.append(LeftOut(path=record.path, reason="no check that applies depends on it"))
             continue
         ends += _ends(case, record, _tied(case, record))
         moved |= {end_path for end in ends[-2:] for end_path in (end.path, *end.together_with)}

@@ -16,7 +16,7 @@ from rigdesign.errors import RigdesignError
 from rigdesign.loads import Setting
 from rigdesign.ramp_run import held_points, run_ramp
 from rigdesign.ranges_drive import Array, losses_on_motor, peaks_only, shifted_drive
-from rigdesign.ranges_plan import Part, RangeEnd
+from rigdesign.ranges_plan import PARTS, Part, RangeEnd
 from rigdesign.results import Check, DynamicsResult, Fidelity, Verdict
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run import solve_case, solver_errors
@@ -28,6 +28,9 @@ DRIVE = ("drive_torque", "drive_power")
 """Quantities of bought parts that follow the losses of the whole run."""
 ACTUATOR = ("actuator_force",)
 """Quantities of bought parts that follow the setting of the bracing, hot."""
+LOADS_MOVE = 0.5
+"""Change of a gear's temperature [K] beyond which the loads are solved again: on the prototype one kelvin moves a check
+on loads by up to 0.0013 of its limit, `ranges_verdicts.LEAST_MOVE` is 0.001."""
 GEOMETRY = ("models", "conduction", "expansion")
 """Cached parts of a rig that hang on geometry and materials of its housings alone."""
 
@@ -139,6 +142,7 @@ def _moved(
     points = list(stated.points)
     if "coupling" in parts:
         points = list(_coupled(rig, stated))
+        parts = PARTS if stated.run is not None and _gears_moved(points, stated.points) else parts
     run, dynamics = stated.run, stated.dynamics
     if run is None:
         return _subject(rig, points, None, None), parts
@@ -159,6 +163,15 @@ def _moved(
     elif dynamics is not None and "coupling" in parts and _asks_for(case, ACTUATOR):
         dynamics = replace(dynamics, bracing=[bracing_record(rig, point) for point in points])
     return _subject(rig, points, run, dynamics), tuple(solved)
+
+
+def _gears_moved(points: Sequence[PointResult], stated: Sequence[PointResult]) -> bool:
+    """Whether the gears are so much warmer or colder that their loads change."""
+    return any(
+        abs(temperature - before.last.feedback.gear_temperature[gear]) > LOADS_MOVE
+        for point, before in zip(points, stated, strict=True)
+        for gear, temperature in point.last.feedback.gear_temperature.items()
+    )
 
 
 def _rig_like(stated: Rig, case: Case, parts: tuple[Part, ...]) -> Rig:

@@ -30,7 +30,7 @@ class Shifted:
 
 @dataclass(frozen=True, kw_only=True)
 class Ranged:
-    """One check of the run with every end that was solved, and the ends it rests on that were not."""
+    """One check of the run with every end that was solved, and the ends it depends on that were not."""
 
     check: Check
     ends: tuple[Shifted, ...]

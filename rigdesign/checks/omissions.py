@@ -16,6 +16,7 @@ import numpy as np
 from rigdesign.assemble.curves import resolved
 from rigdesign.assemble.resonances import NEAR
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.checks.assumptions import key_of
 from rigdesign.checks.dynamics import near_crossings
 from rigdesign.checks.subject import Subject
 from rigdesign.loads import laws_of
@@ -35,7 +36,7 @@ def omissions(subject: Subject, check: Check) -> tuple[Omission, ...]:
     """What the value of a check leaves out, in the order of the table."""
     if check.margin is None:
         return ()
-    key = _key(subject, check)
+    key = key_of(subject.case, check)
     found = (
         omission
         for patterns, finder in OMISSIONS
@@ -43,15 +44,6 @@ def omissions(subject: Subject, check: Check) -> tuple[Omission, ...]:
         for omission in finder(subject, check)
     )
     return tuple(dict.fromkeys(found))
-
-
-def _key(subject: Subject, check: Check) -> str:
-    """Id of the check; of a bought part its quantity instead of its name, ``given`` where the case gives the value."""
-    group, _, name = check.id.partition(".")
-    if group != "bought_part":
-        return check.id
-    part = subject.case.limits.bought_parts[name]
-    return f"{group}.{part.quantity if part.given is None else 'given'}"
 
 
 def _of_boxes(text: str, applies: Callable[[Subject, str, Gearbox], bool]) -> Finder:

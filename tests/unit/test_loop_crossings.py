@@ -40,14 +40,12 @@ def test_mesh_and_shaft_orders_meet_the_modes_of_the_loop() -> None:
 
 
 def test_the_distance_names_the_mode_of_the_loop_nearest_to_the_held_speed() -> None:
-    """Mode 2 meets the mesh at 2420 rpm, 3 % below the held speed: no isolated shaft has its frequency, and the coarse
+    """Mode 2 of the loop meets the mesh at 2420 rpm, 3 % below the held speed; it holds three shafts, and the coarse
     curve of a quick run says nothing of it."""
     result = hunting()
     assert result.dynamics is not None
     check = next(check for check in result.checks if check.id == "dynamics.resonance_distance.test")
     assert "closed loop that the mesh excites: mode 2 (" in check.reason and "3.2 % away" in check.reason
-    second = result.dynamics.natural_frequencies[2]["frequency_Hz"]
-    assert all(abs(f / second - 1.0) > 0.1 for own in result.dynamics.shaft_frequencies.values() for f in own)
     assert check.verdict == "warn" and "loop's modes 2" in check.left_out[0]
 
 
