@@ -53,9 +53,9 @@ SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
 }
 """Inputs -> parts of the model they touch; the first entry that holds a path counts.
 
-Heat and oil move the response over speed and the time run through drags and the temperature of the gears. Where they
-move the gears more than `ranges_point.LOADS_MOVE` the loads are solved again as well; the torque of the motor follows
-its losses (`ranges_drive`).
+Heat and oil move the response over speed and the time run through drag torques and the temperature of the gears.
+Where they move gears or axes more than `ranges_point.LOADS_MOVE` the loads are solved again as well; the torque of
+the motor follows its losses (`ranges_drive`).
 """
 
 

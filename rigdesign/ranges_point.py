@@ -28,9 +28,9 @@ DRIVE = ("drive_torque", "drive_power")
 """Quantities of bought parts that follow the losses of the whole run."""
 ACTUATOR = ("actuator_force",)
 """Quantities of bought parts that follow the setting of the bracing, hot."""
-LOADS_MOVE = 0.5
-"""Change of a gear's temperature [K] beyond which the loads are solved again: on the prototype one kelvin moves a check
-on loads by up to 0.0013 of its limit, `ranges_verdicts.LEAST_MOVE` is 0.001."""
+LOADS_MOVE = {"gear_temperature": 0.5, "centre_distance": 2e-6, "tooth_growth": 2e-6}
+"""Change of a field of `Feedback` [K, m] beyond which the loads are solved again: on the prototype a kelvin moves a
+check on loads by up to 0.0013 of its limit, a micrometre by 0.0002; `ranges_verdicts.LEAST_MOVE` is 0.001."""
 GEOMETRY = ("models", "conduction", "expansion")
 """Cached parts of a rig that hang on geometry and materials of its housings alone."""
 
@@ -142,7 +142,7 @@ def _moved(
     points = list(stated.points)
     if "coupling" in parts:
         points = list(_coupled(rig, stated))
-        parts = PARTS if stated.run is not None and _gears_moved(points, stated.points) else parts
+        parts = PARTS if stated.run is not None and _loads_move(points, stated.points) else parts
     run, dynamics = stated.run, stated.dynamics
     if run is None:
         return _subject(rig, points, None, None), parts
@@ -165,12 +165,13 @@ def _moved(
     return _subject(rig, points, run, dynamics), tuple(solved)
 
 
-def _gears_moved(points: Sequence[PointResult], stated: Sequence[PointResult]) -> bool:
-    """Whether the gears are so much warmer or colder that their loads change."""
+def _loads_move(points: Sequence[PointResult], stated: Sequence[PointResult]) -> bool:
+    """Whether gears or axes are so much warmer or colder that the loads change."""
     return any(
-        abs(temperature - before.last.feedback.gear_temperature[gear]) > LOADS_MOVE
+        abs(value - getattr(before.last.feedback, name)[part]) > most
         for point, before in zip(points, stated, strict=True)
-        for gear, temperature in point.last.feedback.gear_temperature.items()
+        for name, most in LOADS_MOVE.items()
+        for part, value in getattr(point.last.feedback, name).items()
     )
 
 

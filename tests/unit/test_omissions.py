@@ -5,8 +5,10 @@ from dataclasses import replace
 from fnmatch import fnmatchcase
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from rigdesign import load_case, run_case
@@ -216,3 +218,21 @@ def test_limits_without_a_housing_fail_where_they_must(tmp_path: Path) -> None:
     assert any(
         text.startswith("temperature.housing: the case states a limit of 180 degC") for text in unanswered
     )
+
+
+def test_a_motor_at_its_limit_says_so_of_torque_and_power() -> None:
+    """Half of a run at 20 N m, the limit of the prototype: the power is as little known as the torque."""
+    rig, point = base()
+    time = np.linspace(2.0, 8.0, 101)
+    torque = np.where(np.arange(101) < 50, 20.0, 10.0)
+    run: Any = SimpleNamespace(ramp=SimpleNamespace(time=time, drive_torque=torque))
+    subject = replace(as_subject(rig, point), run=run)
+    motor = rig.case.limits.bought_parts["motor"]
+    for quantity in ("drive_torque", "drive_power"):
+        parts = {"motor": motor.model_copy(update={"quantity": quantity})}
+        limits = rig.case.limits.model_copy(update={"bought_parts": parts})
+        here = replace(subject, rig=replace(rig, case=rig.case.model_copy(update={"limits": limits})))
+        check = replace(held(1.0), id="bought_part.motor")
+        (omission,) = omissions(here, check)
+        assert "49.5 % of the run" in omission.text
+        assert with_omissions(check, [omission]).verdict == "warn"

@@ -1,6 +1,5 @@
 """Ends of ranges solved on a small rig without housing: what is reused is what a full solution gives."""
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -87,7 +86,7 @@ def test_losses_need_no_march_for_the_torque_of_the_motor(
     """
     reference, stated = loop
     assert solve_end(end(reference.case, path, value), reference=reference).parts == PARTS
-    monkeypatch.setattr(ranges_point, "LOADS_MOVE", math.inf)
+    monkeypatch.setattr(ranges_point, "LOADS_MOVE", {})
     quick = solve_end(end(reference.case, path, value), reference=reference)
     full = solve_end(end(reference.case, path, value, "time run"), reference=reference)
     assert (quick.parts, full.parts) == (("coupling",), ("coupling", "time run"))
@@ -134,7 +133,7 @@ def test_an_end_that_does_not_settle_says_so(loop: tuple[Reference, Outcome]) ->
 def test_the_torque_of_a_motor_at_its_limit_is_marched(
     loop: tuple[Reference, Outcome], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ranges_point, "LOADS_MOVE", math.inf)
+    monkeypatch.setattr(ranges_point, "LOADS_MOVE", {})
     reference, _ = loop
     assert reference.ramp is not None
     most = 1.0001 * float(np.abs(reference.ramp.drive_torque).max())
