@@ -28,9 +28,9 @@ DRIVE = ("drive_torque", "drive_power")
 """Quantities of bought parts that follow the losses of the whole run."""
 ACTUATOR = ("actuator_force",)
 """Quantities of bought parts that follow the setting of the bracing, hot."""
-LOADS_MOVE = {"gear_temperature": 0.5, "centre_distance": 2e-6, "tooth_growth": 2e-6}
-"""Change of a field of `Feedback` [K, m] beyond which the loads are solved again: on the prototype a kelvin moves a
-check on loads by up to 0.0013 of its limit, a micrometre by 0.0002; `ranges_verdicts.LEAST_MOVE` is 0.001."""
+LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "tooth_growth": 2e-6}
+"""Change of a field of `Feedback` [K, m] beyond which the loads are solved again: on the prototype half a
+kelvin moves a check on loads by up to 0.001 of its limit, `ranges_verdicts.LEAST_MOVE`, and 5 um do."""
 GEOMETRY = ("models", "conduction", "expansion")
 """Cached parts of a rig that hang on geometry and materials of its housings alone."""
 
