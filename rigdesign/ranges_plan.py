@@ -37,9 +37,6 @@ SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
     ("schedule.stages.*.duration", "drivetrain.motor.torque_limit"): ("time run",),
     (
         "gearboxes.*.housing",
-        "gearboxes.*.heat_split",
-        "gearboxes.*.oil",
-        "gearboxes.*.bearing_oil",
         "gearboxes.*.seals",
         "gearboxes.*.gears.*.flank_roughness",
         *(

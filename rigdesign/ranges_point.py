@@ -145,7 +145,7 @@ def _moved(
         parts = PARTS if stated.run is not None and _loads_move(points, stated.points) else parts
     run, dynamics = stated.run, stated.dynamics
     if run is None:
-        return _subject(rig, points, None, None), parts
+        return _subject(rig, points, None, None), tuple(part for part in parts if part == "coupling")
     test = governing_point(points)
     ramp, solved = run.ramp, list(parts)
     if "time run" not in parts and "coupling" in parts and _asks_for(case, DRIVE):
