@@ -233,9 +233,7 @@ def print_findings(findings: Sequence["Finding"]) -> None:
 
 
 def print_validation(rows: Sequence["ValidationRow"]) -> None:
-    """Published numbers beside ours; the headline counts predicted rows only."""
-    from rigdesign.validation import headline
-
+    """Table of published and computed numbers, their assumptions and the headline."""
     console = Console(highlight=False)
     if not console.is_terminal:
         console = Console(highlight=False, width=FILE_WIDTH)
@@ -253,15 +251,43 @@ def print_validation(rows: Sequence["ValidationRow"]) -> None:
     console.print(table)
     for assumptions, names in _by_assumptions(rows).items():
         console.print(Text(f"{', '.join(names)}: ", "bold") + Text(assumptions))
+    _print_headline(console, rows)
+
+
+def _print_headline(console: Console, rows: Sequence["ValidationRow"]) -> None:
+    """Predicted rows first, gates and goals by basis apart from them, then every row that misses its limit."""
+    from rigdesign.validation import headline
+
     count = headline(rows)
-    console.print(f"gates: {count['gates_held']} held, {count['gates_missed']} missed")
-    for row in rows:
-        if row.verdict == "gate missed":
-            console.print(Text(f"gate missed: {row.id}, {row.quantity}", "bold red"))
     console.print(
-        f"predicted rows within their goal: {count['predicted_met']} of {count['predicted_with_goal']}; "
-        f"not modelled: {count['not_modelled']} of {count['rows']} rows"
+        Text(
+            f"predicted rows within their goal: {count['predicted_met']} of {count['predicted_with_goal']}",
+            "bold",
+        )
     )
+    for kind, good in (("gates", "held"), ("goals", "met")):
+        by_basis = "; ".join(
+            f"{basis} {found[good]} {good}, {found['missed']} missed" for basis, found in count[kind].items()
+        )
+        console.print(
+            f"{kind}: {count[f'{kind}_{good}']} {good}, {count[f'{kind}_missed']} missed"
+            + (f" ({by_basis})" if by_basis else "")
+        )
+    console.print(f"not modelled: {count['not_modelled']} of {count['rows']} rows")
+    for row in rows:
+        if row.verdict in ("gate missed", "goal missed"):
+            console.print(Text(_missed(row), VALIDATION_STYLES[row.verdict]))
+
+
+def _missed(row: "ValidationRow") -> str:
+    limit = ""
+    if row.tolerance is not None and row.deviation is not None:
+        limit = f": {100.0 * row.deviation:+.2f} %, allowed {100.0 * row.tolerance:.3g} %"
+    elif row.window is not None:
+        limit = f", allowed {row.window[0]:.6g} to {row.window[1]:.6g}"
+    unit = "" if row.unit == "1" else f" {row.unit}"
+    numbers = f"{row.computed_text}{unit} against {row.published_text}"
+    return f"{row.verdict}: {row.id}, {row.quantity}, {numbers}{limit}"
 
 
 def _by_assumptions(rows: Sequence["ValidationRow"]) -> dict[str, list[str]]:

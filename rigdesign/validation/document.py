@@ -7,29 +7,54 @@ import math
 from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from rigdesign import __version__
 from rigdesign.report.output import staged
-from rigdesign.validation.rows import ValidationRow
+from rigdesign.validation.rows import Basis, ValidationRow
 
 SCHEMA_VERSION = 1
 
 
-def headline(rows: Sequence[ValidationRow]) -> dict[str, int]:
-    """Counts: predicted rows that have a goal or gate and those that meet it, gates, rows without a model."""
-    judged = [
-        row for row in rows if row.basis == "predicted" and row.verdict not in ("shown", "not modelled")
-    ]
-    verdicts = [row.verdict for row in rows]
+def headline(rows: Sequence[ValidationRow]) -> dict[str, Any]:
+    """Counts of the rows: what is predicted, then gates and goals by basis, then what has no model.
+
+    ``predicted_with_goal`` and ``predicted_met`` count the predicted rows that have a goal or gate and those that
+    meet it: they alone say what the model is worth. ``gates`` {basis: {held, missed}} and ``goals`` {basis: {met,
+    missed}} name the bases that occur; ``gates_missed`` decides the exit status, ``goals_missed`` does not.
+    """
+    gates, goals = _by_basis(rows, "gate", ("held", "missed")), _by_basis(rows, "goal", ("met", "missed"))
+    predicted = [counts.get("predicted", {}) for counts in (gates, goals)]
     return {
         "rows": len(rows),
-        "predicted_with_goal": len(judged),
-        "predicted_met": sum(row.verdict in ("gate held", "goal met") for row in judged),
-        "gates_held": verdicts.count("gate held"),
-        "gates_missed": verdicts.count("gate missed"),
-        "not_modelled": verdicts.count("not modelled"),
+        "predicted_with_goal": sum(sum(counts.values()) for counts in predicted),
+        "predicted_met": sum(counts.get("held", 0) + counts.get("met", 0) for counts in predicted),
+        "gates": gates,
+        "goals": goals,
+        "gates_held": _total(gates, "held"),
+        "gates_missed": _total(gates, "missed"),
+        "goals_met": _total(goals, "met"),
+        "goals_missed": _total(goals, "missed"),
+        "not_modelled": sum(row.verdict == "not modelled" for row in rows),
     }
+
+
+def _by_basis(
+    rows: Sequence[ValidationRow], kind: str, outcomes: tuple[str, str]
+) -> dict[str, dict[str, int]]:
+    """{basis: {outcome: number of rows}} of the gates or goals, in the order of ``Basis``."""
+    counts = {
+        basis: {
+            outcome: sum(row.basis == basis and row.verdict == f"{kind} {outcome}" for row in rows)
+            for outcome in outcomes
+        }
+        for basis in get_args(Basis)
+    }
+    return {basis: found for basis, found in counts.items() if any(found.values())}
+
+
+def _total(counts: dict[str, dict[str, int]], outcome: str) -> int:
+    return sum(found[outcome] for found in counts.values())
 
 
 def validation_document(rows: Sequence[ValidationRow]) -> dict[str, Any]:

@@ -8,7 +8,10 @@ Found by these rows:
  - The field's radiation of 706 W is impossible beside 1179 W of convection at 6.3 W/m2K with eps 0.94, one
    surface and one ambient: any temperature field radiates at least 1005 W (about 1.5 times as much
    convecting as radiating surface would explain it).
- - The listed flows add up to 4264 W, printed as 4.2 kW; 733 l/min stand beside "more than 750 l/min".
+ - The listed flows add up to 4264 W, printed as 4.2 kW; 733 l/min are printed as well as "more than 750
+   l/min".
+ - 390 kW in 733 l/min warm the three oils by 17 to 19 K: P2's 20 K are those of its warm gear oil, not of the
+   sum of all circuits.
 """
 
 from collections.abc import Iterator
@@ -99,10 +102,12 @@ def _oil() -> Iterator[ValidationRow]:
         rise = OIL_POWER / (oil.density(mean) * oil.heat_capacity(mean) * OIL_FLOW)
         yield compare(
             id=f"P2-oil-{name}", quantity=f"oil temperature rise at 390 kW and 733 l/min, {name}",
-            source="P2, lubrication and cooling", published=20.0, computed=rise, unit="K", basis="arithmetic",
-            window=(15.5, 19.0), free_parameters=1,
-            assumptions=f"density and heat capacity of {name} at 90 degC, between the circuits of 40 and 140 "
-            "degC; P2 does not name the oil",
+            source="P2, lubrication and cooling", published=20.0,
+            published_text="20, of the warm gear oil", computed=rise, unit="K", basis="arithmetic",
+            free_parameters=1,
+            assumptions=f"depends on density and heat capacity of {name}, here at 90 degC between the circuits "
+            "of 40 and 140 degC; P2 does not name the oil. Its 20 K (140 to 160 degC) belong to the warm gear "
+            "oil, whose power and flow are not printed, not to this sum of all circuits",
         )  # fmt: skip
     yield compare(
         id="P2-oil-flow", quantity="total oil flow, sum of the circuits against the rig data",

@@ -28,8 +28,9 @@ HEAT: tuple[tuple[str, str, float, str, tuple[str, ...]], ...] = (
     ("heat-housing-radiation-model", "radiation of the housing", 617.0, RADIATION, ("outer_",)),
     ("heat-bearings", "heat into the oil of the bearings", 345.23, BEARING_OIL, ("bearing_bore_", "shaft_")),
 )
-GROWTH = (("pinion", "test_pinion", 0.53, 0.1), ("wheel", "test_wheel_a", 0.43, 0.2))
-HEAT_GOAL = 0.15
+GROWTH = (("pinion", "test_pinion", 0.53), ("wheel", "test_wheel_a", 0.43))
+HEAT_GOAL, GROWTH_GOAL, GAP_GOAL = 0.15, 0.1, 0.1
+"""Largest relative deviations of the heat flows, of the expansion of both shafts, of the seal gap."""
 HIGHEST, GAP = 178.59, 0.6
 
 
@@ -50,7 +51,7 @@ def rows_without_run() -> Iterator[ValidationRow]:
     numbers = [(name, text, published, "W") for name, text, published, _, _ in HEAT]
     numbers.append(("Tmax", "highest temperature", HIGHEST, "degC"))
     numbers += [
-        (f"growth-{name}", f"growth of the {name} shaft", published, "mm") for name, _, published, _ in GROWTH
+        (f"growth-{name}", f"growth of the {name} shaft", published, "mm") for name, _, published in GROWTH
     ]
     numbers.append(("growth-seal-gap", "smallest hot seal gap", GAP, "mm"))
     for name, text, published, unit in numbers:
@@ -72,16 +73,17 @@ def _heat(reading: str, thermal: ThermalResult) -> Iterator[ValidationRow]:
 
 def _growth(reading: str, result: RunResult) -> Iterator[ValidationRow]:
     growth = result.growth[0]
-    for name, shaft, published, goal in GROWTH:
+    for name, shaft, published in GROWTH:
         row = next(row for row in growth.shafts if row["shaft"] == shaft)
         yield _row(
             reading, f"growth-{name}", f"growth of the {name} shaft", "text", published, row["growth_mm"], "mm",
-            "equal boxes give pinion and wheel nearly equal growth; P2's ratio of 1.23 asks for other lengths", goal,
+            "equal boxes give pinion and wheel nearly equal growth; P2's ratio of 1.23 asks for other lengths",
+            GROWTH_GOAL,
         )  # fmt: skip
     gap = min(row["hot_min_mm"] for row in growth.seal_gaps)
     yield _row(
         reading, "growth-seal-gap", "smallest hot seal gap", "text: still 0.6 mm", GAP, gap, "mm",
-        "the warm partitions lift their bores against the shafts, which the cold end walls carry", None,
+        "the warm partitions lift their bores against the shafts, which the cold end walls carry", GAP_GOAL,
     )  # fmt: skip
 
 
@@ -94,7 +96,7 @@ def _row(
     computed: float,
     unit: str,
     remark: str,
-    goal: float | None,
+    goal: float,
 ) -> ValidationRow:
     mark, words = (
         ("", "fitted coefficients") if reading == "fitted" else ("-as-published", "printed coefficients")

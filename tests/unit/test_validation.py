@@ -134,6 +134,44 @@ def test_what_the_case_states_is_no_gate(rows):
     assert not set(gates) & {"P2-eps-TG", "P2-alpha-bearing", "P2-ramp-rules"}
 
 
+@pytest.mark.parametrize(
+    ("gap", "wheel", "verdicts"), [(0.55, 0.39, "goal met"), (0.44, 0.38, "goal missed")]
+)
+def test_expansion_of_the_main_rig_is_held_to_one_goal(gap, wheel, verdicts):
+    """0.44 mm for the printed 0.6 is 27 % off, 0.38 mm for 0.43 12 %: both miss; 0.55 and 0.39 do not."""
+    growth = SimpleNamespace(
+        shafts=[{"shaft": "test_pinion", "growth_mm": 0.53}, {"shaft": "test_wheel_a", "growth_mm": wheel}],
+        seal_gaps=[{"hot_min_mm": gap}],
+    )
+    thermal = SimpleNamespace(heat=[], max_temperature_degC=178.0, max_temperature_body="gear")
+    result = cast(RunResult, SimpleNamespace(thermal=[thermal], growth=[growth]))
+    found = {row.id: row.verdict for row in main_rig.main_rig_rows(lambda _: result)}
+    assert found["P2-growth-pinion"] == "goal met"
+    assert found["P2-growth-wheel"] == found["P2-growth-seal-gap"] == verdicts
+
+
+def test_a_number_that_nobody_printed_is_no_gate(rows):
+    """P2's 20 K are those of the warm gear oil; for K_V of the reference gear's main resonance it prints none."""
+    by_id = {r.id: r for r in rows}
+    rises = [r for r in rows if r.id.startswith("P2-oil-") and r.unit == "K"]
+    assert len(rises) == 3
+    for r in rises:
+        assert (r.verdict, r.window, r.tolerance) == ("shown", None, None)
+        assert r.deviation == pytest.approx(r.computed / 20.0 - 1.0) and r.deviation < 0.0
+        assert "density and heat capacity" in r.assumptions and "warm gear oil" in r.assumptions
+    main = by_id["P2-KVsim-RG-main"]
+    assert (main.published, main.deviation, main.verdict) == (None, None, "shown")
+    assert "no number" in main.published_text
+    assert by_id["P2-KV-RG-super"].published == 1.32
+
+
+def test_what_follows_from_table_2_is_fitted(rows):
+    """The shafts are fitted to Table 2: their crossings, and the peaks of a loop made of them, predict nothing."""
+    follows = [r for r in rows if r.id.startswith(("P2-T2-", "P2-cross-", "P2-peak-"))]
+    assert len(follows) == 12 + 10 + 7
+    assert all(r.basis == "fitted" and r.free_parameters >= 10 for r in follows)
+
+
 def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
     """One row per printed number and reading, from the results of runs made up here."""
     heat = [
@@ -143,7 +181,7 @@ def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
     ]
     thermal = SimpleNamespace(heat=heat, max_temperature_degC=178.59, max_temperature_body="gear")
     growth = SimpleNamespace(
-        shafts=[{"shaft": shaft, "growth_mm": value} for _, shaft, value, _ in main_rig.GROWTH],
+        shafts=[{"shaft": shaft, "growth_mm": value} for _, shaft, value in main_rig.GROWTH],
         seal_gaps=[{"hot_min_mm": 0.7}, {"hot_min_mm": 0.6}],
     )
     asked = []
@@ -155,6 +193,8 @@ def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
     found = list(main_rig.main_rig_rows(run))
     assert asked == ["as_published", "fitted"]
     assert len(found) == 2 * len(list(main_rig.rows_without_run()))
+    goals = {row.id: row.tolerance for row in found}
+    assert goals["P2-growth-pinion"] == goals["P2-growth-wheel"] == goals["P2-growth-seal-gap"] == 0.1
     assert all(row.deviation == pytest.approx(0.0, abs=1e-12) and row.basis == "fitted" for row in found)
 
 
@@ -217,18 +257,23 @@ def test_full_addendum_and_low_load_readings_as_calculated_in_the_sheet(rows):
     assert by_id["P2-nE-RG-x1-0"] == pytest.approx(3075.6, abs=0.5)
 
 
-def test_headline_counts_predicted_rows_only(rows):
-    fitted = row(basis="fitted", gate=0.1)
+def test_headline_counts_predicted_rows_and_shows_the_others_by_basis():
     met, missed, plain = row(goal=0.1), row(goal=0.01), row()
-    waiting = next(p1.p1_rows())
-    assert headline([fitted, met, missed, plain, waiting]) == {
-        "rows": 5,
+    held, broken = row(basis="fitted", gate=0.1), row(basis="verification", window=(3.0, 4.0))
+    flattering, waiting = row(basis="fitted", goal=0.1), next(p1.p1_rows())
+    assert headline([met, missed, plain, held, broken, flattering, waiting]) == {
+        "rows": 7,
         "predicted_with_goal": 2,
         "predicted_met": 1,
+        "gates": {"fitted": {"held": 1, "missed": 0}, "verification": {"held": 0, "missed": 1}},
+        "goals": {"predicted": {"met": 1, "missed": 1}, "fitted": {"met": 1, "missed": 0}},
         "gates_held": 1,
-        "gates_missed": 0,
+        "gates_missed": 1,
+        "goals_met": 2,
+        "goals_missed": 1,
         "not_modelled": 1,
     }
+    assert headline([row(gate=0.1)])["predicted_met"] == 1
 
 
 def test_document_keeps_the_contract_and_is_strict_json(rows):
@@ -253,20 +298,36 @@ def test_files_are_written_whole(rows, tmp_path):
 
 
 def test_table_and_headline_in_the_terminal(rows, capsys):
-    missed = row(id="broken", gate=0.01)
-    print_validation([*rows, missed])
-    printed = capsys.readouterr().out
+    missed = [
+        row(id="broken", gate=0.01),
+        row(id="far", goal=0.02, unit="mm"),
+        row(id="outside", window=(3.0, 4.0)),
+    ]
+    print_validation([*rows, *missed])
+    printed = " ".join(capsys.readouterr().out.split())
     assert "P2-nE-TG" in printed
-    assert "gate missed: broken" in printed
+    assert "gate missed: broken, q, 2.1 against 2: +5.00 %, allowed 1 %" in printed
+    assert "goal missed: far, q, 2.1 mm against 2: +5.00 %, allowed 2 %" in printed
+    assert "gate missed: outside, q, 2.1 against 2, allowed 3 to 4" in printed
     assert "P1-eps-free, P1-eps-loaded" in printed
-    assert "predicted rows within their goal:" in printed
+    count = headline([*rows, *missed])
+    assert (
+        f"predicted rows within their goal: {count['predicted_met']} of {count['predicted_with_goal']}"
+        in printed
+    )
+    for kind, good in (("gates", "held"), ("goals", "met")):
+        for basis, found in count[kind].items():
+            assert f"{basis} {found[good]} {good}, {found['missed']} missed" in printed
+        assert f"{kind}: {count[f'{kind}_{good}']} {good}, {count[f'{kind}_missed']} missed (" in printed
 
 
 @pytest.mark.parametrize(("limit", "status"), [(0.1, 0), (0.01, 1)])
-def test_command_fails_when_a_gate_is_missed(limit, status, monkeypatch, capsys):
-    monkeypatch.setattr(validation, "validation_rows", lambda **_: (row(gate=limit),))
+def test_command_fails_when_a_gate_is_missed_and_counts_a_missed_goal(limit, status, monkeypatch, capsys):
+    monkeypatch.setattr(validation, "validation_rows", lambda **_: (row(gate=limit), row(goal=0.01)))
     assert cli.validate(json=True) == status
-    assert json.loads(capsys.readouterr().out)["rows"][0]["id"] == "x"
+    document = json.loads(capsys.readouterr().out)
+    assert document["rows"][0]["id"] == "x"
+    assert document["headline"]["goals"] == {"predicted": {"met": 0, "missed": 1}}
 
 
 # ---- parts
