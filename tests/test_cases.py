@@ -1,34 +1,32 @@
 """The shipped cases give what they are expected to give.
 
-``cases/<name>/expected.json`` lists the verdict of every check, its utilisation within 3 % and one line of
-engineering reason. After a change that moves them for a good reason, run
+``cases/<name>/expected.json`` lists the verdict of every check, its utilisation within 0.5 % (0.0005 near zero) and
+one line of engineering reason. After a change that moves them for a good reason, run
 
-    rigdesign check cases/uhcf_prototype --json
+    python -m tests.regression.expected
 
-and carry verdicts and utilisations over; the reasons stay, or are thought over again. The prototype is held at
-standard fidelity, the others at quick.
+which carries verdicts and utilisations over, and read the diff: its commit says why they moved; the reasons stay, or
+are thought over again. The prototype is held at standard fidelity, the others at quick.
 """
 
 import json
 from functools import cache
-from pathlib import Path
 
 import pytest
 
 from rigdesign import load_case, run_case
 from rigdesign.report import results_document
-from rigdesign.results import RunResult
+from rigdesign.results import Check, RunResult
+from tests.regression import expected
+from tests.regression.expected import CASES, NAMES
 
-CASES = Path(__file__).parents[1] / "cases"
 PROTOTYPE = CASES / "uhcf_prototype"
-NAMES = ("uhcf_prototype", "uhcf_main", "loop_1to1", "loop_hunting")
-EXPECTED = {name: json.loads((CASES / name / "expected.json").read_text(encoding="utf-8")) for name in NAMES}
-UTILISATION_TOLERANCE = 0.03
+EXPECTED = {name: expected.read(name) for name in NAMES}
 
 
 @cache
 def shipped(name: str) -> RunResult:
-    return run_case(load_case(CASES / name), fidelity=EXPECTED[name]["fidelity"])
+    return expected.run(name)
 
 
 def prototype() -> RunResult:
@@ -47,14 +45,62 @@ def test_every_check_of_a_shipped_case_is_expected(name: str) -> None:
 )
 def test_check_of_a_shipped_case(name: str, check_id: str) -> None:
     check = next(check for check in shipped(name).checks if check.id == check_id)
-    expected = EXPECTED[name]["checks"][check_id]
-    assert check.verdict == expected["verdict"]
-    if expected["utilisation"] is None:
-        assert check.utilisation is None
-    else:
-        assert check.utilisation == pytest.approx(
-            expected["utilisation"], rel=UTILISATION_TOLERANCE, abs=1e-3
-        )
+    entry = EXPECTED[name]["checks"][check_id]
+    assert check.verdict == entry["verdict"]
+    assert expected.agrees(entry["utilisation"], check.utilisation), (check.utilisation, entry["utilisation"])
+
+
+@pytest.mark.parametrize(
+    ("stored", "found", "same"),
+    [
+        (0.8, 0.8039, True),
+        (0.8, 0.8041, False),
+        (0.8, 0.7959, False),
+        (0.02, 0.0204, True),
+        (0.02, 0.0206, False),
+        (0.0, 0.0, True),
+        (None, None, True),
+        (None, 0.0, False),
+        (0.0, None, False),
+        (0.8, float("nan"), False),
+    ],
+)
+def test_utilisations_agree_within_half_a_per_cent(
+    stored: float | None, found: float | None, same: bool
+) -> None:
+    assert expected.agrees(stored, found) is same
+
+
+def test_expected_results_are_carried_over_with_their_reasons() -> None:
+    def check(name: str, utilisation: float | None) -> Check:
+        return Check(
+            id=name, title="", value=utilisation, limit=1.0, unit="-", comparison="<=", margin=None,
+            utilisation=utilisation, verdict="not applicable" if utilisation is None else "warn", source="",
+            role="rig",
+        )  # fmt: skip
+
+    entry = {"verdict": "pass", "utilisation": 0.5, "reason": "as built"}
+    old = {
+        "fidelity": "quick",
+        "verdict": "pass",
+        "checks": dict.fromkeys(("kept", "moved", "gone"), entry),
+    }
+    checks = [check("moved", 0.61234567), check("kept", 0.502), check("new", None)]
+    new = expected.renewed(old, "warn", checks)
+    assert (new["fidelity"], new["verdict"]) == ("quick", "warn")
+    assert list(new["checks"].items()) == [
+        ("moved", {"verdict": "warn", "utilisation": 0.6123, "reason": "as built"}),
+        ("kept", {"verdict": "warn", "utilisation": 0.5, "reason": "as built"}),
+        ("new", {"verdict": "not applicable", "utilisation": None, "reason": ""}),
+    ]
+    assert expected.renewed(old, "warn", checks, every=True)["checks"]["kept"]["utilisation"] == 0.502
+    assert list(expected.changes(old, new)) == [
+        "verdict pass -> warn",
+        "kept: pass 0.5 -> warn 0.5",
+        "moved: pass 0.5 -> warn 0.6123 (+22.46 %)",
+        "gone: gone",
+        "new: new, reason to be written",
+    ]
 
 
 def test_heat_of_the_rig_closes() -> None:
