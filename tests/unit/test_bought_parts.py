@@ -95,6 +95,14 @@ def test_idler_loop(tmp_path: Path) -> None:
     assert held("gearboxes.test.meshes.right", "torque_peak", case).value == pytest.approx(212.0)
 
 
+def test_every_mesh_and_every_bearing_takes_its_flow(tmp_path: Path) -> None:
+    """Two meshes with 5 l/min each and six bearings with 2 l/min: as many oil lines as P2's rig would have."""
+    case = load_case(idler_case(tmp_path, housing=False))
+    assert held("gearboxes.test.oil", "oil_flow", case).value == pytest.approx(10.0)
+    assert held("gearboxes.test.bearing_oil", "oil_flow", case).value == pytest.approx(12.0)
+    assert held("gearboxes.test", "oil_flow", case).value == pytest.approx(22.0)
+
+
 @pytest.mark.parametrize(
     ("part", "quantity"),
     [
