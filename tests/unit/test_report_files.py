@@ -226,6 +226,17 @@ def test_a_folder_that_refuses_files_is_refused(tmp_path, monkeypatch):
         prepare_output(tmp_path)
 
 
+def test_results_json_appears_after_everything_else(tmp_path):
+    """A file that cannot take its place keeps results.json away: who finds it finds the rest."""
+    for name in ("a", "zz"):
+        out = tmp_path / name
+        (out / f"{name}.csv").mkdir(parents=True)
+        with pytest.raises(OutputError), staged(out) as scratch:
+            for written in (f"{name}.csv", "results.json"):
+                (scratch / written).write_text("{}")
+        assert not (out / "results.json").exists()
+
+
 def test_staging_reports_a_disk_that_fills_up(tmp_path):
     with pytest.raises(OutputError, match="No space left"), staged(tmp_path / "out") as scratch:
         (scratch / "half").write_text("written")

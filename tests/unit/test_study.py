@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign import study_ledger
 from rigdesign.errors import CaseError, OutputError, UsageError
 from rigdesign.study import parse_variation, run_study
 from rigdesign.study_grid import Variation, grid
@@ -87,6 +88,28 @@ def test_numbers_of_a_variation_share_one_unit():
 
 def test_key_separates_case_and_fidelity():
     assert len({point_key("a", "quick"), point_key("a", "standard"), point_key("b", "quick")}) == 3
+
+
+def test_another_version_of_the_tool_computes_a_point_again(monkeypatch):
+    before = point_key("a", "quick")
+    monkeypatch.setattr(study_ledger, "__version__", "0.0.0.other")
+    assert point_key("a", "quick") != before
+
+
+def test_a_stored_point_is_on_the_disk_and_not_with_the_operating_system(tmp_path, monkeypatch):
+    """Power that fails just after a point: with less than FULL (2) SQLite leaves the write-ahead log unsynchronised."""
+    opened = []
+
+    def connect(*arguments, **options):
+        opened.append(plain(*arguments, **options))
+        return opened[-1]
+
+    plain = sqlite3.connect
+    monkeypatch.setattr(study_ledger.sqlite3, "connect", connect)
+    with Ledger(tmp_path / "l.sqlite") as ledger:
+        ledger.store("k", fidelity="quick", case_hash="h", inputs={}, failed=False, record={})
+        (level,) = opened[-1].execute("PRAGMA synchronous").fetchone()
+        assert level >= 2
 
 
 def test_ledger_keeps_points_and_replaces_a_retried_one(tmp_path):
