@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dynamics.journal_bearing import JournalBearing, transition_speed
 from rigdesign.case import load_case
 from rigdesign.checks import dynamics, ramp, strength, thermal
 from rigdesign.checks.omissions import omissions
@@ -125,6 +126,17 @@ def test_contact_and_peak_of_the_loaded_ramp() -> None:
     assert (off.value, off.verdict) == (0.02, "fail")
 
 
+@pytest.mark.parametrize("stage", ["half_torque", "to_start_torque"])
+def test_a_stage_that_comes_from_the_start_torque_is_not_loaded_yet(stage: str) -> None:
+    """From 10 to 90 N m or back at 750 rpm: at its light end the teeth may part."""
+    loads = [load(stage, 0.0, 400.0), load("full_torque", 60.0, 200.0)]
+    lost = [{"stage": stage, "start_s": 1.1, "share": 0.4}]
+    checks = dynamics.checks(subject(stage_loads=loads, lift_off=lost))
+    assert named(checks, "dynamics.contact_margin.test").value == pytest.approx(60.0 / 90.0)
+    assert named(checks, "dynamics.ramp_peak.test").value == pytest.approx(200.0 / 180.0)
+    assert named(checks, "dynamics.lift_off.test").value == 0.0
+
+
 def without(path: tuple[str, str]) -> Subject:
     """The shipped case with one limit left out."""
     case = rig().case
@@ -209,3 +221,40 @@ def test_teeth_hotter_than_their_gear_govern_the_tempering_distance() -> None:
         (120.0, "reference.pinion at 60.0 degC, its oil outlet, stage test"),
         (120.0, "reference.wheel at 60.0 degC, its oil outlet, stage test"),
     ]
+
+
+def films(*states: tuple[float, float, float]) -> Subject:
+    """Bearings with (film [um], specific load [MPa], transition speed [rpm]) at 180 N m."""
+    bearings = {
+        f"test.b{index}": SimpleNamespace(
+            minimum_film=1e-6 * film, specific_load=1e6 * pressure, transition_speed=speed * RPM
+        )
+        for index, (film, pressure, speed) in enumerate(states)
+    }
+    return subject([held("test", (1.1, 1.2), bearings=bearings)])
+
+
+@pytest.mark.parametrize(("film", "verdict"), [(6.0, "fail"), (8.0, "pass"), (60.0, "pass")])
+def test_the_thinnest_film_is_held_from_below(film: float, verdict: str) -> None:
+    """At least 7 um: a film of 60 um is no fault, and a thick one does not hide a thin one."""
+    check = named(thermal._bearings(films((film, 1.0, 0.0), (80.0, 1.0, 0.0))), "bearing.minimum_film")
+    assert check.value == pytest.approx(film)
+    assert (check.verdict, check.comparison) == (verdict, ">=")
+    assert check.reason == "test.b0, stage test"
+
+
+@pytest.mark.parametrize(("pressure", "verdict"), [(6.0, "fail"), (2.0, "pass")])
+def test_the_largest_specific_load_is_held_from_above(pressure: float, verdict: str) -> None:
+    check = named(thermal._bearings(films((20.0, pressure, 0.0), (20.0, 0.5, 0.0))), "bearing.specific_load")
+    assert (check.value, check.verdict) == (pytest.approx(pressure), verdict)
+
+
+def test_transition_speed_is_vogelpohls_under_the_load_of_the_start_torque() -> None:
+    """9 kN at 180 N m are 500 N at 10 N m: n = 1e-7 F / (C eta V) with 40 x 30 mm and 20 mPa s is 66.3 rpm then."""
+    bearing = JournalBearing(diameter=0.04, width=0.03, diametral_clearance=60e-6)
+    at_test = transition_speed(bearing, 9000.0, 0.02) / RPM
+    value, where = thermal.transition_speed_rpm(films((20.0, 1.0, 0.5 * at_test), (20.0, 1.0, at_test)), 10.0)
+    by_hand = 1e-7 * 500.0 / (0.02 * 0.25 * np.pi * 0.04**2 * 0.03)
+    assert by_hand == pytest.approx(66.3, abs=0.05)
+    assert value == pytest.approx(by_hand)
+    assert where == "test.b1 at the viscosity of stage test"
