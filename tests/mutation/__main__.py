@@ -39,17 +39,18 @@ def results(out: Path) -> list[dict[str, Any]]:
 def report(out: Path) -> None:
     """Counts by package, then every mutant that lived."""
     rows = results(out)
-    print("package      mutants  killed  endless  survived  not reached  killed %")
+    print("package      mutants  killed  endless  survived  not reached  undecided  killed %")
     for package in (*PACKAGES, ""):
         counts = Counter(row["outcome"] for row in rows if row["module"].startswith(package))
         if whole := counts.total():
             gone = counts["killed"] + counts["endless"]
             print(
                 f"{package or 'all':12s} {whole:7d} {counts['killed']:7d} {counts['endless']:8d} "
-                f"{counts['survived']:9d} {counts['not reached']:12d} {100.0 * gone / whole:9.1f}"
+                f"{counts['survived']:9d} {counts['not reached']:12d} {counts['undecided']:10d} "
+                f"{100.0 * gone / whole:9.1f}"
             )
     for row in rows:
-        if row["outcome"] in ("survived", "not reached"):
+        if row["outcome"] not in ("killed", "endless"):
             print(f"\n{row['mutant']} ({row['outcome']}, {row['files']} test files)\n    {row['change']}")
 
 

@@ -135,11 +135,12 @@ def test_files() -> tuple[str, ...]:
 
 @cache
 def nearest(module: str) -> tuple[str, ...]:
-    """Test files by how many imports lie between them and a module; those without a way to it are left out."""
-    steps = {file: _steps(file).get(module) for file in test_files()}
-    return tuple(
-        sorted((file for file, n in steps.items() if n is not None), key=lambda file: (steps[file], file))
-    )
+    """Test files by how many imports lie between them and a module, of equals those that import less of the project.
+
+    Those without a way to it are left out.
+    """
+    found = [(steps[module], len(steps), file) for file in test_files() if module in (steps := _steps(file))]
+    return tuple(file for _, _, file in sorted(found))
 
 
 @cache

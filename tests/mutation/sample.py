@@ -4,6 +4,7 @@ A module is drawn by its length, a place in it evenly, then one of the operators
 cannot answer for are left out: annotations, decorators, texts.
 """
 
+import ast
 import random
 import re
 from collections import defaultdict
@@ -30,6 +31,8 @@ OPERATORS = re.compile(
 """What an engineer could have written by mistake; not what Python refuses at once, as shifts of floats."""
 BINARY_PARENTS = ("arith_expr", "term", "power")
 """Elsewhere ``*`` and ``**`` unpack."""
+LARGEST = 1e3
+"""Of a constant that is moved by one: more of it would not be seen in any result."""
 DRAWING = re.compile(r"rigdesign/report/(drawing|sankey|mesh_views|views|figures_\w+|\w+_figures)\.py")
 """Line widths and places on paper: looked at, not computed with."""
 
@@ -100,7 +103,9 @@ def mutants_of(module: str) -> dict[tuple[int, int], list[Mutant]]:
         places = ((node, start) for node in nodes for start, _ in operator.mutation_positions(node))
         for occurrence, (node, start) in enumerate(places):
             binary = "BinaryOperator" in name
-            if not _is_left_out(node) and (not binary or node.parent.type in BINARY_PARENTS):
+            if binary and node.parent.type not in BINARY_PARENTS:
+                continue
+            if not _is_left_out(node):
                 lines = _statement(node)
                 mutant = Mutant(module=module, operator=name, occurrence=occurrence, lines=lines)
                 found[start].append(mutant)
@@ -115,6 +120,8 @@ def _above(node: NodeOrLeaf) -> Iterator[tuple[NodeOrLeaf, NodeOrLeaf]]:
 
 
 def _is_left_out(node: NodeOrLeaf) -> bool:
+    if node.type == "number" and abs(ast.literal_eval(node.value)) > LARGEST:
+        return True
     for child, parent in _above(node):
         if parent.type in ("decorator", "fstring_format_spec"):
             return True

@@ -20,7 +20,8 @@ COPIED = ("rigdesign", "thermal", "dynamics", "tests", "cases", "pyproject.toml"
 COMPILATION, PATIENCE = 120.0, 4.0
 """A test file may take so many seconds to compile, and so many times its own, before it counts as endless."""
 
-Outcome = Literal["killed", "endless", "survived", "not reached"]
+Outcome = Literal["killed", "endless", "survived", "not reached", "undecided"]
+"""``undecided``: alive when the limits of the search were met."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,29 +67,23 @@ def tried(mutant: Mutant, project: Path, work: Path, limits: Limits) -> Trial:
     """
     started = time.perf_counter()
     outcome: Outcome = "not reached"
-    by, files = "", 0
+    by, run, spent = "", 0, 0.0
+    near = nearest(mutant.module)
     with _changed(mutant, project) as cache:
-        for file, seconds in _reaching(mutant, work, limits):
-            files += 1
-            outcome, by = _test(project, cache, file, seconds)
-            if outcome != "survived":
+        for file in near[: limits.files or None]:
+            reach = measured(file, work)
+            if not reach.passed or not runs(reach, mutant.module, mutant.lines):
+                continue
+            run, spent = run + 1, spent + reach.seconds
+            outcome, by = _test(project, cache, file, reach.seconds)
+            if outcome != "survived" or spent > limits.seconds:
                 break
+    if outcome in ("survived", "not reached") and (spent > limits.seconds or 0 < limits.files < len(near)):
+        outcome = "undecided"
     return Trial(
-        mutant=mutant.name, module=mutant.module, change=mutant.change(), outcome=outcome, by=by, files=files,
+        mutant=mutant.name, module=mutant.module, change=mutant.change(), outcome=outcome, by=by, files=run,
         seconds=round(time.perf_counter() - started, 1),
     )  # fmt: skip
-
-
-def _reaching(mutant: Mutant, work: Path, limits: Limits) -> Iterator[tuple[str, float]]:
-    """(test file, seconds) of those that run a line of the mutant and pass without it."""
-    left = limits.seconds
-    for file in nearest(mutant.module)[: limits.files or None]:
-        if left <= 0.0:
-            return
-        reach = measured(file, work)
-        if reach.passed and runs(reach, mutant.module, mutant.lines):
-            left -= reach.seconds
-            yield file, reach.seconds
 
 
 @contextmanager
