@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from decimal import Decimal, localcontext
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from thermal.condition_checks import Condition, ConditionError
 from thermal.conduction import TemperatureSolution, solve_steady
 from thermal.fe.mesh import NamedMesh, box_mesh
 from thermal.streams import (
+    SMALL,
     Stream,
     StreamNetwork,
     Supply,
@@ -243,3 +245,20 @@ def test_a_film_may_feel_its_supply_in_part() -> None:
         check_networks([replace(network, films=(replace(network.films[0], supply=None),))])
     with pytest.raises(ConditionError, match="unknown place 'oil'"):
         check_networks([replace(network, films=(replace(network.films[0], supply="oil"),))])
+
+
+@pytest.mark.parametrize("units", [1e-6, 0.999 * SMALL, 1.001 * SMALL, 0.3, 5.0])
+def test_mean_of_a_plug_flow_weighs_its_inlet_exactly(units: float) -> None:
+    """The temperature falls as exp(-N x): mean (1 - e) / N, outlet e = exp(-N); in fifty digits."""
+    with localcontext() as digits:
+        digits.prec = 50
+        n = Decimal(units)
+
+        def weight(n: Decimal) -> Decimal:
+            outlet = (-n).exp()
+            return ((1 - outlet) / n - outlet) / (1 - outlet)
+
+        step = n * Decimal("1e-12")
+        exact, slope = weight(n), (weight(n + step) - weight(n - step)) / (2 * step)
+    assert inlet_share(units) == pytest.approx(float(exact), rel=1e-12)
+    assert inlet_share_slope(units) == pytest.approx(float(slope), rel=1e-8)
