@@ -3,7 +3,7 @@
     python -m tests.mutation run --out FOLDER [--count 180] [--seed 15] [--only PATH ...] [--files 0] [--seconds 300]
     python -m tests.mutation report --out FOLDER
 
-``run`` goes on where it stopped. See README.md beside this file.
+``run`` goes on where it stopped. README.md says what it does.
 """
 
 import argparse

@@ -101,6 +101,8 @@ def test_a_warm_plate_facing_down_and_a_cold_one_facing_up_are_calm() -> None:
         (films.horizontal_plate_mcadams(1e-3), ("Rayleigh number", "10000 to 1e+11")),
         (films.oil_wetted(3e5), ("oil film = 3e+05", "check the unit")),
         (films.bearing_film(0.14, 30.0), ("film thickness = 30 m", "check the unit")),
+        (films.bearing_film(0.14, 30e-6, 0.9), ("Nusselt number of the film = 0.9", "1 to 6")),
+        (films.bearing_film(0.14, 30e-6, 6.1), ("Nusselt number of the film = 6.1", "1 to 6")),
         (films.formula_4(300.0, 4.0, 1.0), ("1200 W/(m2 K)", "use bearing_film")),
         (films.recknagel_plate("turbulent", length=0.01), ("Rayleigh number", "horizontal_plate_mcadams")),
     ],
