@@ -2,12 +2,14 @@
 
 import traceback
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from rigdesign.errors import CaseError, RigdesignError
+from rigdesign.errors import CaseError, OutputError, RigdesignError
+from rigdesign.report.file_lock import FileLock, HeldError
 from rigdesign.report.output import prepare_output
 from rigdesign.report.results_json import to_plain
 from rigdesign.report.study_page import write_study
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["StudyOutcome", "StudyPoint", "Variation", "parse_variation", "run_study"]
 
 LEDGER_NAME = "ledger.sqlite"
+LOCK_NAME = ".rigdesign-study.lock"
 CHECK_KEYS = ("id", "title", "value", "limit", "upper_limit", "unit", "margin", "utilisation", "verdict")
 
 
@@ -80,6 +83,7 @@ def run_study(
     workers: int | None = None,
     retry: bool = False,
     progress: Callable[[str], None] | None = None,
+    note: Callable[[str], None] | None = None,
     run: Run | None = None,
 ) -> StudyOutcome:
     """Run a case over the grid of ``variations`` and write results.csv, study.svg and study.html to ``out``.
@@ -94,6 +98,7 @@ def run_study(
     workers : processes, one thread each; None for one per core
     retry : compute points again that failed before
     progress : called with one line per finished point
+    note : called with what the user has to know of, such as a damaged ledger; ``progress`` if left out
     run : picklable stand-in for `rigdesign.run_case`
 
     Raises
@@ -101,9 +106,12 @@ def run_study(
     UsageError
         If nothing is varied, a path stands twice, the grid is too large, or ``workers`` is below 1.
     CaseError
-        If no point of the grid is a valid case (a path that does not exist, say); nothing is written then.
+        If no point of the grid is a valid case (a path that does not exist, say), or a value is none its place
+        can hold whatever else the case says (a choice or an oil that does not exist); nothing is written then.
     OutputError
-        If ``out`` cannot be written.
+        If ``out`` cannot be written or another study runs in it.
+    KeyboardInterrupt
+        With a note that says what is stored and how to go on.
     """
     combinations = grid(variations)
     count = worker_count(workers)
@@ -112,38 +120,66 @@ def run_study(
     prepare_output(out)
     out.mkdir(parents=True, exist_ok=True)
     say = progress or (lambda message: None)
-    with Ledger(out / LEDGER_NAME) as ledger:
+    with _alone_in(out), Ledger(out / LEDGER_NAME) as ledger:
+        if ledger.repaired:
+            (note or say)(ledger.repaired)
         stored = {key: entry for key, entry in ledger.stored().items() if not (retry and entry[0])}
         missing = list(
             {task.key: task for task in tasks if task is not None and task.key not in stored}.values()
         )
         say(f"{len(points)} points, {len(points) - len(missing)} of them settled, {count} workers")
-        for task, failed, record in _compute(missing, fidelity, count, run):
-            ledger.store(
-                task.key,
-                fidelity=fidelity,
-                case_hash=task.case.hash,
-                inputs=task.values,
-                failed=failed,
-                record=record,
+        try:
+            for task, failed, record in _compute(missing, fidelity, count, run):
+                ledger.store(
+                    task.key,
+                    fidelity=fidelity,
+                    case_hash=task.case.hash,
+                    inputs=task.values,
+                    failed=failed,
+                    record=record,
+                )
+                stored[task.key] = (failed, record)
+                say(_progress_line(task, failed, record))
+        except KeyboardInterrupt as stop:
+            left = sum(task.key not in stored for task in missing)
+            stop.add_note(
+                f"{len(points) - left} of {len(points)} points are settled ({out / LEDGER_NAME}); the same command "
+                f"computes the other {left}"
             )
-            stored[task.key] = (failed, record)
-            say(_progress_line(task, failed, record))
-    settled = [
-        StudyPoint(values=values, failed=True, record={"error": error})
-        if task is None
-        else StudyPoint(values=values, failed=stored[task.key][0], record=stored[task.key][1])
-        for values, task, error in zip(points, tasks, invalid, strict=True)
-    ]
-    write_study(case, variations, settled, fidelity, out)
+            raise
+        settled = [
+            StudyPoint(values=values, failed=True, record={"error": error})
+            if task is None
+            else StudyPoint(values=values, failed=stored[task.key][0], record=stored[task.key][1])
+            for values, task, error in zip(points, tasks, invalid, strict=True)
+        ]
+        write_study(case, variations, settled, fidelity, out)
     reused = sum(task is not None for task in tasks) - len(missing)
     return StudyOutcome(points=settled, completed=len(missing), reused=reused)
+
+
+@contextmanager
+def _alone_in(out: Path) -> Iterator[None]:
+    """Hold the lock of the folder: a second study in it would compute every point twice."""
+    try:
+        lock = FileLock(out / LOCK_NAME)
+    except HeldError as error:
+        raise OutputError(
+            f"output folder {out}: a study of {error.owner or 'another process'} runs in it; wait for its end, or "
+            "give another folder with --out"
+        ) from None
+    except OSError as error:
+        raise OutputError(
+            f"output folder {out}: {error.strerror} for {LOCK_NAME}; give another folder with --out"
+        ) from error
+    with lock:
+        yield
 
 
 def _tasks(
     case: "Case", points: Sequence[dict[str, str]], fidelity: Fidelity
 ) -> tuple[list[_Task | None], list[str]]:
-    """The points that are valid cases, None and a message for the others; raises if none is valid."""
+    """The points that are valid cases, None and a message for the others; raises if none is or ever could be."""
     tasks: list[_Task | None] = []
     errors: list[str] = []
     first: CaseError | None = None
@@ -153,6 +189,8 @@ def _tasks(
             for path, value in values.items():
                 varied = varied.with_value(path, value)
         except CaseError as error:
+            if any(fault.impossible for fault in error.faults):
+                raise
             first = first or error
             tasks.append(None)
             errors.append(str(error))

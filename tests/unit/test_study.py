@@ -122,9 +122,9 @@ def test_ledger_keeps_points_and_replaces_a_retried_one(tmp_path):
         assert ledger.stored() == {"k": (False, {"verdict": "pass"})}
 
 
-def test_broken_ledger_is_refused_with_a_remedy(tmp_path):
-    (tmp_path / "l.sqlite").write_text("not a database " * 50)
-    with pytest.raises(OutputError, match="remove the file"):
+def test_ledger_that_cannot_be_opened_is_refused_with_a_remedy(tmp_path):
+    (tmp_path / "l.sqlite").mkdir()
+    with pytest.raises(OutputError, match="see that the folder can be written"):
         Ledger(tmp_path / "l.sqlite")
 
 
