@@ -2,13 +2,14 @@
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; validate: no gate missed), 1 a
 check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is missing, 5 measured
-data cannot be used. Heavy imports happen inside the commands, so that `--help` answers at once.
+data cannot be used, 130 stopped by Ctrl-C. Heavy imports happen inside the commands, so that `--help` answers at once.
 """
 
 import json
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -24,6 +25,7 @@ app = App(
     version=__version__,
     exit_on_error=False,
     print_error=False,
+    suppress_keyboard_interrupt=False,
 )
 
 
@@ -65,7 +67,7 @@ def check(
     loaded = load_case(case)
     if out is not None:
         prepare_output(out)
-    with Progress() as progress:
+    with Progress() as progress, _interrupted(NOTHING_KEPT):
         result = run_case(loaded, fidelity=fidelity, progress=progress, transient=transient)
         if ranges:
             from rigdesign.ranges import with_ranges
@@ -117,8 +119,9 @@ def study(
     variations = [parse_variation(text) for text in vary]
     with Progress() as progress:
         outcome = run_study(
-            loaded, variations, out, fidelity=fidelity, workers=workers, retry=retry, progress=progress
-        )
+            loaded, variations, out, fidelity=fidelity, workers=workers, retry=retry, progress=progress,
+            note=progress.note,
+        )  # fmt: skip
     print_study(outcome, out)
     return 0
 
@@ -162,7 +165,7 @@ def compare(
     loaded = load_case(case)
     if out is not None:
         prepare_output(out)
-    with Progress() as progress:
+    with Progress() as progress, _interrupted(NOTHING_KEPT):
         comparison = compare_measurement(loaded, measurement, model=model, fidelity=fidelity, say=progress)
         if out is not None:
             progress("writing report")
@@ -217,7 +220,7 @@ def diagnose(
     if name is not None:
         check_pick(effects_of(loaded), name)
     prepare_output(out)
-    with Progress() as progress:
+    with Progress() as progress, _interrupted(SIMULATIONS_KEPT):
         found = diagnose_measurement(loaded, measurement, say=progress)
         told = outcome(found, pick=name, proposals=found.proposals)
         progress("writing report")
@@ -238,7 +241,7 @@ def _calibrate(case: Path, measurement: Path, out: Path) -> int:
 
     loaded = load_case(case)
     prepare_output(out)
-    with Progress() as progress:
+    with Progress() as progress, _interrupted(SIMULATIONS_KEPT):
         found = calibrate_case(loaded, measurement, say=progress)
         write_calibrated(found, out)
     print_constants(found, out)
@@ -287,7 +290,7 @@ def validate(*, out: Path | None = None, json: bool = False, quick: bool = False
 
     if out is not None:
         prepare_output(out)
-    with Progress() as progress:
+    with Progress() as progress, _interrupted(NOTHING_KEPT):
         rows = validation_rows(with_run=not quick, progress=progress)
     if out is not None:
         write_validation(rows, out)
@@ -318,6 +321,22 @@ def doctor() -> int:
     return 0 if all(finding.ok for finding in findings) else 4
 
 
+NOTHING_KEPT = "nothing was written; the same command starts again from the beginning"
+SIMULATIONS_KEPT = (
+    "no report was written; finished simulations are stored, the same command goes on from there"
+)
+
+
+@contextmanager
+def _interrupted(remains: str) -> Iterator[None]:
+    """Say what an interrupt leaves and how to go on."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        stop.add_note(remains)
+        raise
+
+
 def main() -> None:
     """Entry point of the `rigdesign` command."""
     sys.exit(_exit_status(lambda: app(result_action="return_value")))
@@ -325,13 +344,13 @@ def main() -> None:
 
 def _exit_status(command: Callable[[], object]) -> int:
     """Run a command and turn the tool's errors into messages and exit status."""
-    from rigdesign.errors import RigdesignError
+    from rigdesign.errors import WIDEST_PLACE, RigdesignError, shortened
 
     try:
         status = command()
         sys.stdout.flush()
     except CycloptsError as error:
-        print(f"rigdesign: {error}", file=sys.stderr)
+        print(f"rigdesign: {shortened(str(error), WIDEST_PLACE)}", file=sys.stderr)
         return 2
     except RigdesignError as error:
         print(f"rigdesign: {error}", file=sys.stderr)
@@ -339,8 +358,8 @@ def _exit_status(command: Callable[[], object]) -> int:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
-    except KeyboardInterrupt:
-        print("rigdesign: interrupted", file=sys.stderr)
+    except KeyboardInterrupt as stop:
+        print("; ".join(["rigdesign: interrupted", *getattr(stop, "__notes__", [])]), file=sys.stderr)
         return 130
     return status if isinstance(status, int) else 0
 

@@ -14,9 +14,27 @@ A message states name, value, limit and remedy. The solvers raise ValueError and
 ``rigdesign.run`` turns them into this tree.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+
+WIDEST = 120
+"""Characters of a text of the user that a message repeats."""
+WIDEST_SENTENCE = 2000
+"""Characters of a problem or remedy, which may list the names that are known."""
+
+
+WIDEST_PLACE = 400
+"""Characters of the path of a file."""
+CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff]")
+"""What a terminal obeys and XML cannot hold; tabs and new lines are text."""
+
+
+def shortened(text: str, width: int = WIDEST) -> str:
+    """``text`` cut to ``width`` characters, with its length where it is longer; control characters are spelled out."""
+    cut = CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", text[:width])
+    return cut if len(text) <= width else f"{cut}… ({len(text)} characters)"
 
 
 class RigdesignError(Exception):
@@ -33,17 +51,20 @@ class Fault:
     given : the value as written, empty where a key is missing
     problem : what is wrong, with the limit
     remedy : what to write instead
+    impossible : the place can never hold such a value, whatever else the case says: a choice that does not exist
     """
 
     path: str
     given: str
     problem: str
     remedy: str
+    impossible: bool = False
 
     def __str__(self) -> str:
-        place = self.path or "case"
-        given = f" = {self.given}" if self.given else ""
-        return f"{place}{given}: {self.problem}; {self.remedy}"
+        place = shortened(self.path or "case")
+        given = f" = {shortened(self.given)}" if self.given else ""
+        problem, remedy = (shortened(text, WIDEST_SENTENCE) for text in (self.problem, self.remedy))
+        return f"{place}{given}: {problem}; {remedy}"
 
 
 class FaultyInputError(RigdesignError):
@@ -62,9 +83,9 @@ class FaultyInputError(RigdesignError):
         self._sentence = faults if isinstance(faults, str) else ""
 
     def __str__(self) -> str:
-        head = f"{self.source}: " if self.source else ""
+        head = f"{shortened(self.source, WIDEST_PLACE)}: " if self.source else ""
         if self._sentence:
-            return head + self._sentence
+            return head + shortened(self._sentence, WIDEST_SENTENCE)
         if len(self.faults) == 1:
             return head + str(self.faults[0])
         return "\n".join([f"{head}{len(self.faults)} faults", *(f"  {fault}" for fault in self.faults)])

@@ -1,7 +1,7 @@
 """Kinds of quantity a case file knows: the unit inside, the units accepted, the unit shown."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,11 @@ class Kind:
     def remedy(self) -> str:
         """What to write: the accepted units and an example."""
         return f'write a {self.label} such as "{self.example}" (units: {", ".join(self.units)})'
+
+    def like(self, example: str) -> "Kind":
+        """The kind with another example, whose unit then comes first: hints for the size of what is meant."""
+        unit = example.partition(" ")[2]
+        return replace(self, example=example, units={unit: self.units[unit], **self.units})
 
     @property
     def label(self) -> str:

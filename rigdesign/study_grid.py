@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from decimal import Decimal
 from itertools import product
 
-from rigdesign.errors import UsageError
+from rigdesign.errors import UsageError, shortened
 
 MAX_POINTS = 100_000
+LONGEST = 100
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)?\s*")
 KELVIN_STEPS = {"degC", "°C", "celsius", "degree_Celsius"}
 """Temperatures in these units may be stepped in kelvin."""
@@ -30,7 +31,7 @@ class Variation:
 
     def numbers(self) -> tuple[list[float], str] | None:
         """Values as numbers with their common unit, or None for values that are not."""
-        parts = [NUMBER.fullmatch(value) for value in self.values]
+        parts = [_number(value) for value in self.values]
         units = {part[2] or "" for part in parts if part}
         if not all(parts) or len(units) != 1:
             return None
@@ -52,19 +53,30 @@ def parse_variation(text: str) -> Variation:
     """
     path, equals, right = text.partition("=")
     path, right = path.strip(), right.strip()
+    text = shortened(text)
     if not equals or not path or not right:
         raise UsageError(f"--vary '{text}': {'a value' if path else 'a path'} is missing; {EXAMPLE}")
-    bounds = [NUMBER.fullmatch(part) for part in right.split(":")]
+    bounds = [_number(part) for part in right.split(":")]
     if len(bounds) > 1 and all(bounds):
         values = _range(text, [(Decimal(part[1]), part[2] or "") for part in bounds if part])
     else:
-        values = [value.strip() for value in next(csv.reader([right], skipinitialspace=True))]
+        try:
+            values = [value.strip() for value in next(csv.reader([right], skipinitialspace=True))]
+        except csv.Error as error:
+            raise UsageError(f"--vary '{text}': {error}; {EXAMPLE}") from None
     if not all(values):
         raise UsageError(f"--vary '{text}': a value is empty; {EXAMPLE}")
     twice = [value for number, value in enumerate(values) if value in values[:number]]
     if twice:
-        raise UsageError(f"--vary '{text}': the value {twice[0]} stands twice; give each value once")
+        raise UsageError(
+            f"--vary '{text}': the value {shortened(twice[0])} stands twice; give each value once"
+        )
     return Variation(path, tuple(values))
+
+
+def _number(text: str) -> re.Match[str] | None:
+    """Number and unit of a text, None for any other; no number is longer than LONGEST characters."""
+    return NUMBER.fullmatch(text) if len(text) <= LONGEST else None
 
 
 def _range(text: str, bounds: list[tuple[Decimal, str]]) -> list[str]:
@@ -118,7 +130,7 @@ def grid(variations: Sequence[Variation]) -> list[tuple[str, ...]]:
     paths = [variation.path for variation in variations]
     twice = [path for number, path in enumerate(paths) if path in paths[:number]]
     if twice:
-        raise UsageError(f"--vary {twice[0]} stands twice; give all its values in one --vary")
+        raise UsageError(f"--vary {shortened(twice[0])} stands twice; give all its values in one --vary")
     size = 1
     for variation in variations:
         size *= len(variation.values)

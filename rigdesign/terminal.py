@@ -32,11 +32,16 @@ FILE_WIDTH = 200
 """Columns of the validation table where the output is no terminal."""
 
 
+def _console(*, stderr: bool = False, wrap: bool = False, width: int | None = None) -> Console:
+    """A console that prints every text as it is: brackets and colons of a title are no markup."""
+    return Console(stderr=stderr, markup=False, emoji=False, highlight=False, soft_wrap=not wrap, width=width)
+
+
 class Progress:
     """Says what is being computed: a spinner in a terminal, plain lines elsewhere."""
 
     def __init__(self) -> None:
-        self._console = Console(stderr=True, highlight=False)
+        self._console = _console(stderr=True)
         self._status = self._console.status("starting") if self._console.is_terminal else None
         self._started = time.perf_counter()
 
@@ -66,18 +71,22 @@ class Progress:
     def _elapsed(self) -> str:
         return f"{time.perf_counter() - self._started:6.1f} s"
 
+    def note(self, message: str) -> None:
+        """Show ``message`` so that it stays."""
+        self._console.print(Text("note: ", "yellow") + Text(message), soft_wrap=True)
+
     def __call__(self, message: str) -> None:
         """Show ``message`` with the seconds since the start."""
         text = f"{self._elapsed()}  {message}"
         if self._status is not None:
-            self._status.update(text)
+            self._status.update(Text(text))
         else:
             print(text, file=sys.stderr, flush=True)
 
 
 def print_checks(result: RunResult, out: Path | None) -> None:
     """Checks grouped as in the report, failing ones explained, then the verdict."""
-    console = Console(highlight=False)
+    console = _console(wrap=True)
     table = Table(title=f"{result.case['title']}  ({result.fidelity})", title_justify="left", pad_edge=False)
     for heading, justify in (
         ("check", "left"), ("value", "right"), ("limit", "right"), ("margin", "right"), ("used", "right"),
@@ -137,7 +146,7 @@ def _number(value: float | None) -> str:
 
 def print_study(outcome: Any, out: Path) -> None:
     """One line per point that failed, then where the table is."""
-    console = Console(highlight=False)
+    console = _console(wrap=True)
     for point in outcome.failed:
         console.print(Text("failed: ", "bold red") + Text(point))
     console.print(f"{outcome.completed} points computed, {outcome.reused} found done: {out / 'results.csv'}")
@@ -147,7 +156,7 @@ def print_comparison(comparison: "Comparison", out: Path | None) -> None:
     """The verdict, what the data checks say, and where the pages are."""
     from rigdesign.measurement.compare import headline
 
-    console = Console(highlight=False, soft_wrap=True)
+    console = _console()
     console.print(Text(headline(comparison), "bold"))
     for finding in comparison.findings:
         style = {"dropped": "red", "suspect": "yellow"}.get(finding.weight, "dim")
@@ -161,7 +170,7 @@ DIAGNOSIS_STYLES = {"named": "bold green", "within_noise": "green", "input_error
 
 def print_constants(found: "Calibrated", out: Path) -> None:
     """Every constant that a healthy set narrows: its value, its interval, and what it was known to before."""
-    console = Console(highlight=False, soft_wrap=True)
+    console = _console()
     entries = found.constants.entries
     if not entries:
         console.print("no constant of the case is known better from this set than before")
@@ -186,7 +195,7 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     from rigdesign.diagnosis.document import sentences
     from rigdesign.diagnosis.naming import told
 
-    console = Console(highlight=False, soft_wrap=True)
+    console = _console()
     found, measurement = outcome.result.diagnosis, outcome.result.measurement
     style = DIAGNOSIS_STYLES.get(outcome.verdict, "bold yellow")
     console.print(Text(VERDICTS[outcome.verdict], style) + Text(f" ({found.strength})", "dim"))
@@ -226,7 +235,7 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
 
 def print_findings(findings: Sequence["Finding"]) -> None:
     """The lines of `rigdesign doctor`."""
-    console = Console(highlight=False, soft_wrap=True)
+    console = _console()
     for finding in findings:
         mark = Text("ok      ", "green") if finding.ok else Text("missing ", "bold red")
         console.print(mark + Text(f"{finding.subject:12s} {finding.text}"))
@@ -234,9 +243,9 @@ def print_findings(findings: Sequence["Finding"]) -> None:
 
 def print_validation(rows: Sequence["ValidationRow"]) -> None:
     """Table of published and computed numbers, their assumptions and the headline."""
-    console = Console(highlight=False)
+    console = _console(wrap=True)
     if not console.is_terminal:
-        console = Console(highlight=False, width=FILE_WIDTH)
+        console = _console(wrap=True, width=FILE_WIDTH)
     table = Table(title="published numbers beside ours", title_justify="left", pad_edge=False)
     for heading, justify in (
         ("id", "left"), ("quantity", "left"), ("published", "right"), ("computed", "right"), ("unit", "left"),

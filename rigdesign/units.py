@@ -34,26 +34,29 @@ class QuantityError(ValueError):
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(.*?)\s*\Z")
+_LONGEST = 100
+"""Characters of a number with its unit."""
 _SPELLINGS = (
     ("°", "deg"), ("µ", "u"), ("μ", "u"), ("²", "2"), ("³", "3"), ("**", ""), ("^", ""),
     ("·", " "), ("*", " "),
 )  # fmt: skip
 
 
-def parse(text: object, kind: str) -> float:
+def parse(text: object, kind: str, example: str | None = None) -> float:
     """Value in SI units of a quantity written as number and unit.
 
     Parameters
     ----------
     text : e.g. ``"140 degC"``; anything but a string with a unit of this kind is refused
     kind : name in ``KINDS``
+    example : what a message shows; that of the kind when left out
 
     Raises
     ------
     QuantityError
         A bare number, a wrong dimension, an unknown unit, a number that cannot be read.
     """
-    table = KINDS[kind]
+    table = _table(kind, example)
     if not isinstance(text, str):
         if isinstance(text, int | float) and not isinstance(text, bool):
             raise QuantityError(
@@ -61,12 +64,19 @@ def parse(text: object, kind: str) -> float:
                 f'give it a unit, e.g. "{text} {table.display_unit}" (units: {", ".join(table.units)})',
             )
         raise QuantityError(f"{describe(text)} where a {table.label} belongs", table.remedy)
-    return _parse(text, kind)
+    return _parse(text, kind, example)
+
+
+@cache
+def _table(kind: str, example: str | None) -> Kind:
+    return KINDS[kind] if example is None else KINDS[kind].like(example)
 
 
 @lru_cache(maxsize=4096)
-def _parse(text: str, kind: str) -> float:
-    table = KINDS[kind]
+def _parse(text: str, kind: str, example: str | None) -> float:
+    table = _table(kind, example)
+    if len(text) > _LONGEST:
+        raise QuantityError(f"{len(text)} characters, too long for a number with a unit", table.remedy)
     match = _QUANTITY.match(text)
     if re.match(r"\s*[+-]?\d+,\d", text):
         raise QuantityError("a decimal comma", "use a decimal point; " + table.remedy)

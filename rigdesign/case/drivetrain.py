@@ -7,12 +7,13 @@ from pydantic import Field
 
 from rigdesign.case.fields import (
     Angle,
+    Deviation,
     Gap,
     Inertia,
     Length,
     Name,
-    Offset,
     Part,
+    Size,
     Text,
     Tilt,
     Torque,
@@ -26,7 +27,7 @@ End = Literal["start", "end"]
 class Section(Part):
     """Cylinder of a stepped shaft."""
 
-    length: Length
+    length: Size
     outer_diameter: Length
     inner_diameter: Gap = 0.0
 
@@ -71,9 +72,9 @@ class Coupling(Part):
     """What its maker allows between the axes, cold and hot."""
     angle_maximum: Tilt | None = None
     """What its maker allows between the axes, cold and hot."""
-    cold_offset_lateral: Offset = 0.0
+    cold_offset_lateral: Deviation = 0.0
     """Axis of the first shaft against that of the second when set up cold, across (y)."""
-    cold_offset_vertical: Offset = 0.0
+    cold_offset_vertical: Deviation = 0.0
     """The same upwards (z)."""
 
 

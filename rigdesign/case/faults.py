@@ -8,8 +8,11 @@ from pydantic import BaseModel, ValidationError
 from rigdesign.case.fields import FAULT
 from rigdesign.case.marks import KEYS, MARKS, item_name
 from rigdesign.case.paths import Slot, nearest, slot_at
-from rigdesign.errors import Fault
+from rigdesign.errors import WIDEST, Fault
 from rigdesign.units import describe
+
+IMPOSSIBLE = frozenset(("literal_error", "bool_type", "int_type", "int_from_float", "float_type"))
+"""Kinds of error of a value that its place holds in no case."""
 
 
 def faults_of(error: ValidationError, model: type[BaseModel], tree: Mapping[str, Any]) -> list[Fault]:
@@ -31,7 +34,8 @@ def unknown(path: str, name: str, known: Collection[str], what: str) -> Fault:
     """A reference to a part that is not there."""
     meant = nearest(name, known, 1)
     hint = f'did you mean "{meant[0]}"? ' if meant else ""
-    return Fault(path, written(name), f"no such {what}", f"{hint}known: {', '.join(known) or 'none'}")
+    remedy = f"{hint}known: {', '.join(known) or 'none'}"
+    return Fault(path, written(name), f"no such {what}", remedy, impossible=True)
 
 
 def _fault(entry: Any, model: type[BaseModel], tree: Mapping[str, Any]) -> Fault:
@@ -40,7 +44,7 @@ def _fault(entry: Any, model: type[BaseModel], tree: Mapping[str, Any]) -> Fault
     kind, given, context = entry["type"], entry["input"], entry.get("ctx", {})
     if kind == "missing":
         slot = slot_at(model, tree, keys)
-        return Fault(path, "", "a required key is missing", f"add it: {slot.example if slot else 'a value'}")
+        return Fault(path, "", "a required key is missing", _addition(path, slot))
     if kind == "extra_forbidden":
         return Fault(path, written(given), "unknown key", _known_here(keys, model, tree))
     if kind == FAULT:
@@ -53,9 +57,18 @@ def _fault(entry: Any, model: type[BaseModel], tree: Mapping[str, Any]) -> Fault
     if isinstance(given, dict) and "value" in given and set(given) - KEYS:
         return _misspelt_mark(path, given)
     slot = slot_at(model, tree, keys)
-    return Fault(
-        path, written(given), _in_words(kind, given, entry["msg"]), _accepted(kind, given, context, slot)
-    )
+    words, accepted = _in_words(kind, given, entry["msg"]), _accepted(kind, given, context, slot)
+    return Fault(path, written(given), words, accepted, impossible=kind in IMPOSSIBLE)
+
+
+def _addition(path: str, slot: Slot | None) -> str:
+    """How a missing key is written: a value, or the head of a table with the keys it needs."""
+    if slot is None or (table := slot.table) is None:
+        return f"add it: {slot.example if slot else 'a value'}"
+    model, several, named = table
+    head = f"[[{path}]]" if several else f"[{path}.NAME]" if named else f"[{path}]"
+    needed = [name for name, field in model.model_fields.items() if field.is_required()]
+    return f"add it: {head} with {', '.join(needed) or 'its keys'}"
 
 
 def _in_words(kind: str, given: object, message: str) -> str:
@@ -77,6 +90,7 @@ def _accepted(kind: str, given: object, context: Mapping[str, Any], slot: Slot |
         "lt": "below",
         "le": "at most",
         "min_length": "length at least",
+        "max_length": "length at most",
     }
     bounds = " and ".join(f"{words} {context[key]}" for key, words in limits.items() if key in context)
     example = slot.example if slot is not None else "a value"
@@ -108,7 +122,7 @@ def _misspelt_mark(path: str, given: Mapping[str, Any]) -> Fault:
 
 def _unknown_law(path: str, given: object, context: Mapping[str, Any]) -> Fault:
     choices = str(context.get("expected_tags", "")).replace("'", '"')
-    tag = str(context.get("tag", ""))
+    tag = str(context.get("tag", ""))[:WIDEST]
     if not isinstance(given, dict):
         return Fault(
             path, written(given), f"{describe(given)} is not accepted here", 'write a table with law = "…"'
@@ -119,7 +133,9 @@ def _unknown_law(path: str, given: object, context: Mapping[str, Any]) -> Fault:
         )
     meant = nearest(tag, choices.replace('"', "").split(", "), 1)
     hint = f'did you mean "{meant[0]}"? ' if meant else ""
-    return Fault(f"{path}.law", f'"{tag}"', "not one of the choices", f"{hint}write {choices}")
+    return Fault(
+        f"{path}.law", f'"{tag}"', "not one of the choices", f"{hint}write {choices}", impossible=True
+    )
 
 
 def _keys(location: Sequence[str | int], tree: Mapping[str, Any]) -> list[str]:

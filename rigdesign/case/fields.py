@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from rigdesign import units
+from rigdesign.errors import CONTROL
 from rigdesign.kinds import KINDS
 
 FAULT = "rigdesign"
@@ -33,6 +34,7 @@ class Quantity:
 
     kind : name in ``rigdesign.KINDS``
     above, at_least, at_most, below : limits, written as a user would
+    example : one of the usual size, for messages; that of the kind when left out
     """
 
     kind: str
@@ -40,11 +42,17 @@ class Quantity:
     at_least: str | None = None
     at_most: str | None = None
     below: str | None = None
+    example: str | None = None
+
+    @property
+    def shown_example(self) -> str:
+        """What a user may write."""
+        return self.example or KINDS[self.kind].example
 
     def parse(self, text: object) -> float:
         """SI value of ``text`` within the limits; raises a pydantic error otherwise."""
         try:
-            value = units.parse(text, self.kind)
+            value = units.parse(text, self.kind, self.example)
         except units.QuantityError as error:
             raise fault(error.problem, error.remedy) from None
         for limit, words, holds in (
@@ -56,7 +64,7 @@ class Quantity:
             if limit is not None and not holds(value, units.parse(limit, self.kind)):
                 raise fault(
                     f"{words} {limit}",
-                    f'write a value {self.bounds}, e.g. "{KINDS[self.kind].example}"',
+                    f'write a value {self.bounds}, e.g. "{self.shown_example}"',
                 )
         return value
 
@@ -75,32 +83,46 @@ class Quantity:
         kind = KINDS[self.kind]
         text = f"{kind.label}, {self.bounds}" if self.bounds else kind.label
         return {
-            "type": "string", "pattern": units.pattern(self.kind), "examples": [kind.example],
+            "type": "string", "pattern": units.pattern(self.kind), "examples": [self.shown_example],
             "description": text,
         }  # fmt: skip
 
 
 Length = Annotated[float, Quantity("length", above="0 mm", at_most="20 m")]
+Size = Annotated[float, Quantity("length", above="0 mm", at_most="20 m", example="300 mm")]
+"""A measure of a housing, a plate, a shaft."""
+Clearance = Annotated[float, Quantity("length", above="0 mm", at_most="20 m", example="80 um")]
+"""A gap between two parts that move."""
 Gap = Annotated[float, Quantity("length", at_least="0 mm", at_most="1 m")]
 """A length that may be zero."""
+Play = Annotated[float, Quantity("length", at_least="0 mm", at_most="1 m", example="80 um")]
+"""A clearance that may be zero."""
 Offset = Annotated[float, Quantity("length", at_least="-20 m", at_most="20 m")]
 """A length with a sign."""
-Small = Annotated[float, Quantity("length", at_least="0 um", at_most="1 mm")]
+Deviation = Annotated[float, Quantity("length", at_least="-20 m", at_most="20 m", example="5 um")]
+"""A deviation of a flank or an axis, with its sign."""
+Small = Annotated[float, Quantity("length", at_least="0 um", at_most="1 mm", example="10 um")]
 """A flank modification, a roughness."""
 Angle = Annotated[float, Quantity("angle", at_least="-360 deg", at_most="360 deg")]
-Tilt = Annotated[float, Quantity("angle", above="0 mrad", at_most="100 mrad")]
+Tilt = Annotated[float, Quantity("angle", above="0 mrad", at_most="100 mrad", example="1 mrad")]
 """A small angle between axes."""
 PressureAngle = Annotated[float, Quantity("angle", at_least="10 deg", at_most="35 deg")]
-HelixAngle = Annotated[float, Quantity("angle", at_least="0 deg", at_most="45 deg")]
+HelixAngle = Annotated[float, Quantity("angle", at_least="0 deg", at_most="45 deg", example="15 deg")]
 Temperature = Annotated[float, Quantity("temperature", at_least="-60 degC", at_most="600 degC")]
+RoomTemperature = Annotated[
+    float, Quantity("temperature", at_least="-60 degC", at_most="600 degC", example="20 degC")
+]
 TemperatureDifference = Annotated[float, Quantity("temperature_difference", above="0 K", at_most="500 K")]
 Torque = Annotated[float, Quantity("torque", at_least="0 N m", at_most="1000 kN m")]
 Speed = Annotated[float, Quantity("speed", at_least="0 rpm", at_most="200000 rpm")]
 Velocity = Annotated[float, Quantity("velocity", at_least="0 m/s", at_most="500 m/s")]
 Force = Annotated[float, Quantity("force", at_least="0 N")]
 Power = Annotated[float, Quantity("power", at_least="0 W")]
-Stress = Annotated[float, Quantity("pressure", above="0 MPa")]
+Stress = Annotated[float, Quantity("pressure", above="0 MPa", example="500 MPa")]
+Modulus = Annotated[float, Quantity("pressure", above="0 MPa")]
 Time = Annotated[float, Quantity("time", above="0 s")]
+Hours = Annotated[float, Quantity("time", above="0 s", example="2 h")]
+"""A time in which temperatures settle, or a test is run."""
 Frequency = Annotated[float, Quantity("frequency", above="0 Hz", at_most="10000 kHz")]
 Flow = Annotated[float, Quantity("flow", above="0 l/min", at_most="100000 l/min")]
 Density = Annotated[float, Quantity("density", above="0 kg/m3", at_most="25000 kg/m3")]
@@ -125,4 +147,23 @@ Positive = Annotated[float, Field(gt=0.0)]
 Count = Annotated[int, Field(gt=0)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=60)]
 """Name of a part: lower-case letters, digits and underscores."""
-Text = Annotated[str, Field(min_length=1)]
+LONGEST_TEXT = 2000
+"""Characters of a title, a reason or a source."""
+
+
+def text_fault(text: str) -> tuple[str, str] | None:
+    """Problem and remedy of a text that no report can show; None for any other."""
+    if len(text) > LONGEST_TEXT:
+        return f"{len(text)} characters, above the limit of {LONGEST_TEXT}", "write a shorter text"
+    if (found := CONTROL.search(text)) is not None:
+        return f"holds the control character {found[0]!r}", "write letters, digits and signs"
+    return None
+
+
+def _shown(text: str) -> str:
+    if (wrong := text_fault(text)) is not None:
+        raise fault(*wrong)
+    return text
+
+
+Text = Annotated[str, Field(min_length=1), AfterValidator(_shown)]

@@ -13,6 +13,10 @@ if TYPE_CHECKING:
     from rigdesign.case.gears import Gear, GearMesh
     from rigdesign.case.model import Case
 
+SHIFT_TOLERANCE = 0.002
+"""Most difference between the sum of two stated profile shifts and that of the centre distance: both are printed with
+three or four digits. The pinion keeps its own, the wheel takes the rest."""
+
 
 def gearbox_faults(case: "Case") -> Iterator[Fault]:
     """References, tooth numbers, profile shifts, tips, bearings of every gearbox."""
@@ -89,12 +93,7 @@ def _mesh(at: str, mesh: "GearMesh", box: "Gearbox") -> Iterator[Fault]:
             f"has {pinion.teeth} teeth, more than the wheel's {wheel.teeth}",
             "call the gear with fewer teeth the pinion",
         )  # fmt: skip
-    given = [gear.profile_shift is not None for gear in (pinion, wheel)]
-    if sum(given) + (mesh.profile_shift_split is not None) != 1:
-        yield Fault(
-            at, "", "the centre distance fixes the sum of the profile shifts, one more statement their split",
-            'write profile_shift for one of the two gears, or profile_shift_split = "equal"',
-        )  # fmt: skip
+    yield from _profile_shifts(at, mesh, pinion, wheel)
     if mesh.contact_ratio is not None and (pinion.tip_shortening or wheel.tip_shortening):
         yield Fault(
             f"{at}.contact_ratio", str(mesh.contact_ratio),
@@ -102,6 +101,33 @@ def _mesh(at: str, mesh: "GearMesh", box: "Gearbox") -> Iterator[Fault]:
             "keep contact_ratio or tip_shortening",
         )  # fmt: skip
     yield from _too_close(at, mesh, pinion.teeth + wheel.teeth)
+
+
+def _profile_shifts(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") -> Iterator[Fault]:
+    """The centre distance fixes the sum; one shift or a split divides it, two shifts have to agree with it."""
+    given = [gear.profile_shift for gear in (pinion, wheel) if gear.profile_shift is not None]
+    if (mesh.profile_shift_split is not None) == bool(given):
+        yield Fault(
+            at, "", "the centre distance fixes the sum of the profile shifts, one more statement their split",
+            'write profile_shift for one of the two gears or for both, or profile_shift_split = "equal"',
+        )  # fmt: skip
+    if len(given) < 2 or mesh.profile_shift_split is not None:
+        return
+    from dynamics.line_of_action import shift_sum
+
+    try:
+        total = shift_sum(
+            mesh.normal_module, mesh.pressure_angle, mesh.helix_angle, (pinion.teeth, wheel.teeth), mesh.centre_distance
+        )  # fmt: skip
+    except ValueError:
+        return  # gears that cannot mesh are another fault
+    if abs(sum(given) - total) > SHIFT_TOLERANCE:
+        yield Fault(
+            f"{at}.centre_distance", show(mesh.centre_distance, "length"),
+            f"fixes the sum of the profile shifts at {total:.4f}, the gears state {given[0]:g} + {given[1]:g} = "
+            f"{sum(given):.4f}, limit of the difference {SHIFT_TOLERANCE:g}",
+            f"correct the centre distance or a profile shift, or leave {mesh.wheel}.profile_shift out",
+        )  # fmt: skip
 
 
 def _too_close(at: str, mesh: "GearMesh", teeth: int) -> Iterator[Fault]:

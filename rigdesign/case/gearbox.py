@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from rigdesign.case.fields import (
+    Clearance,
     Flow,
     Force,
     Gap,
@@ -15,6 +16,7 @@ from rigdesign.case.fields import (
     LinearStiffness,
     Name,
     Part,
+    Play,
     Share,
     Temperature,
     Text,
@@ -99,11 +101,11 @@ class JournalBearing(Part):
     """End of the housing it sits in; the front is where x starts."""
     diameter: Length
     width: Length
-    diametral_clearance: Length
+    diametral_clearance: Clearance
     """Bore minus journal, cold."""
     locating: bool = False
     """Fixes its shaft axially; one per shaft."""
-    axial_play: Gap = 0.0
+    axial_play: Play = 0.0
     """Free axial travel of the shaft between a stop at this bearing and one at the other, cold: the growth of the
     shaft against the housing between them uses it up. Left out for a shaft with stops at one end only."""
     position: Gap | None = None
@@ -127,8 +129,8 @@ class Seals(Part):
 
     shaft: Name
     kind: Literal["contactless", "radial_lip"] = "contactless"
-    radial_gap: Length
-    axial_travel: Length
+    radial_gap: Clearance
+    axial_travel: Clearance
     """Axial movement of the shaft the seals take without touching."""
     rubbing_torque: Torque = 0.0
     """Friction torque of seals that touch, of all seals of the shaft together, beside what ``kind`` loses."""

@@ -7,17 +7,19 @@ from pydantic import Field, model_validator
 from rigdesign.case.fields import (
     Angle,
     Count,
+    Deviation,
     Gap,
     HelixAngle,
     Inertia,
     Length,
     LinearDamping,
     Name,
-    Offset,
     Part,
+    Play,
     Positive,
     PressureAngle,
     Share,
+    Size,
     Small,
     TorsionalDamping,
     TorsionalStiffness,
@@ -81,19 +83,19 @@ class FlankModification(Part):
     """C_a: relief at the tip edge."""
     tip_relief_length: Gap = 0.0
     """Radial height over which the tip relief grows."""
-    profile_slope: Offset = 0.0
+    profile_slope: Deviation = 0.0
     """f_Halpha over the active profile, positive where the tip stands out of the flank."""
-    profile_slope_scatter: tuple[Offset, ...] = ()
+    profile_slope_scatter: tuple[Deviation, ...] = ()
     """What the profile slope of each tooth has beyond ``profile_slope``, one entry per tooth; empty for equal teeth."""
-    helix_slope: Offset = 0.0
+    helix_slope: Deviation = 0.0
     """f_Hbeta over the face width, positive where the rear end is relieved."""
-    twist: Offset = 0.0
+    twist: Deviation = 0.0
     """Relief difference between the two diagonals of the flank."""
     run_out: Small = 0.0
     """F_r: total run-out; the eccentricity is half of it."""
     run_out_phase: Angle = 0.0
     """Angle of the tooth with the largest run-out."""
-    single_pitch: tuple[Offset, ...] = ()
+    single_pitch: tuple[Deviation, ...] = ()
     """Pitch deviation of each tooth, one entry per tooth; empty for an ideal pitch."""
     pitch_waves: tuple[PitchWave, ...] = ()
     """Waves of the cumulative pitch, on top of ``single_pitch``."""
@@ -114,8 +116,9 @@ class Gear(Part):
     position: Gap | None = None
     """Distance of the middle of the face from the start of its shaft in the drivetrain."""
     profile_shift: float | None = Field(default=None, ge=-2.0, le=2.0)
-    """x, in modules; give it for one gear of the pair, or ``profile_shift_split`` of the mesh."""
-    tip_shortening: Gap = 0.0
+    """x, in modules; give it for one gear of the pair, or ``profile_shift_split`` of the mesh. For both gears they
+    have to agree with the centre distance."""
+    tip_shortening: Play = 0.0
     """Radial cut of the tip cylinder; or ``contact_ratio`` of the mesh."""
     tooth_thinning: Small = 0.0
     """Allowance of the normal tooth thickness that makes the backlash."""
@@ -141,7 +144,7 @@ class GearMesh(Part):
     normal_module: Length
     pressure_angle: PressureAngle
     helix_angle: HelixAngle = 0.0
-    centre_distance: Length
+    centre_distance: Size
     rack: Rack = Rack()
     profile_shift_split: Literal["equal"] | None = None
     """How the sum of the profile shifts is shared when no gear states its own."""

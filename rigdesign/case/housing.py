@@ -6,12 +6,14 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from rigdesign.case.fields import (
+    Clearance,
     Gap,
     HeatTransferCoefficient,
     Length,
     Name,
     Offset,
     Part,
+    Size,
     Temperature,
     TemperatureDifference,
     Text,
@@ -55,9 +57,9 @@ class HousingShaft(Part):
 class ClampingField(Part):
     """Plate the gearbox stands on."""
 
-    length: Length
+    length: Size
     """Along the shafts."""
-    width: Length
+    width: Size
     thickness: Length
     material: Name
 
@@ -82,7 +84,7 @@ class NiemannWinter(_Correlation):
     law: Literal["niemann_winter"]
     draught_factor: float = Field(default=1.0, gt=0.0, le=5.0)
     """f_k: 1 in still room air."""
-    height: Length | None = None
+    height: Size | None = None
     """h; the height of the housing when left out."""
 
 
@@ -98,7 +100,7 @@ class IsoTr14179(_Correlation):
     """Housing to room air by ISO/TR 14179-2, free convection."""
 
     law: Literal["iso_tr_14179_2"]
-    height: Length | None = None
+    height: Size | None = None
     """The height of the housing when left out."""
 
 
@@ -106,7 +108,7 @@ class VerticalPlate(_Correlation):
     """Vertical wall to still room air (Churchill and Chu, as the VDI Heat Atlas has it); no radiation in it."""
 
     law: Literal["vertical_plate"]
-    height: Length | None = None
+    height: Size | None = None
     """The height of the housing when left out."""
 
 
@@ -115,7 +117,7 @@ class HorizontalPlate(_Correlation):
 
     law: Literal["horizontal_plate"]
     correlation: Literal["mcadams", "vdi", "rohsenow"] = "mcadams"
-    length: Length
+    length: Size
     """Characteristic length: area over perimeter."""
     facing: Literal["up", "down"] = "up"
     """Side of the plate the air is on."""
@@ -128,7 +130,7 @@ class TakenFrom(Part):
     """Wall above air that was assumed; the run warns when it comes out otherwise."""
     law: Literal["niemann_winter", "recknagel_plate", "iso_tr_14179_2"] | None = None
     """Film law it was read from: tells what the coefficient would have been, and whether it holds radiation."""
-    height: Length | None = None
+    height: Size | None = None
     """h: height of the housing, for niemann_winter and iso_tr_14179_2."""
 
 
@@ -226,7 +228,7 @@ class GapExchange(_Correlation):
     temperature."""
     partner: Text
     """Surface on the other side; ``*`` is filled with what it stood for in ``surfaces``."""
-    gap: Length | None = None
+    gap: Clearance | None = None
     """The radial gap of the seals of the shaft when left out."""
 
 
@@ -294,12 +296,12 @@ class Housing(Part):
     x runs along the shafts from front to rear, y from pinion to wheel, z up.
     """
 
-    warm_length: Length
+    warm_length: Size
     """Clear length of the warm chamber, between the partitions."""
-    cold_length_front: Length
-    cold_length_rear: Length
-    width: Length
-    height: Length
+    cold_length_front: Size
+    cold_length_rear: Size
+    width: Size
+    height: Size
     wall_thickness: Length
     floor_thickness: Length
     top_thickness: Length
@@ -308,7 +310,7 @@ class Housing(Part):
     """Walls that carry the bearings."""
     end_seal_width: Length
     """Length of the end seal outside of each bearing."""
-    shaft_height: Length
+    shaft_height: Size
     """Height of the shaft axes above the clamping field."""
     material: Name
     field: ClampingField

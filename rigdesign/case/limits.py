@@ -7,11 +7,11 @@ from pydantic import Field, model_validator
 
 from rigdesign import units
 from rigdesign.case.fields import (
+    Deviation,
     Flow,
-    Gap,
     Name,
-    Offset,
     Part,
+    Play,
     Positive,
     Power,
     Share,
@@ -30,12 +30,12 @@ from rigdesign.case.fields import (
 class ClearanceLimits(Part):
     """Play that must be left hot."""
 
-    seal_gap_minimum: Gap | None = None
-    axial_play_minimum: Offset | None = None
-    backlash_minimum: Gap | None = None
+    seal_gap_minimum: Play | None = None
+    axial_play_minimum: Deviation | None = None
+    backlash_minimum: Play | None = None
     """Transverse, at the working pitch circle."""
-    tip_clearance_minimum: Gap | None = None
-    bearing_clearance_minimum: Gap | None = None
+    tip_clearance_minimum: Play | None = None
+    bearing_clearance_minimum: Play | None = None
     """Diametral."""
 
 
@@ -77,7 +77,7 @@ class BearingLimits(Part):
 
     start_torque_limit: Torque | None = None
     """Most torque below the transition speed."""
-    film_thickness_minimum: Gap | None = None
+    film_thickness_minimum: Play | None = None
     specific_load_maximum: Stress | None = None
 
 

@@ -12,6 +12,8 @@ The loader takes the marks off before the values are validated and keeps them by
 from dataclasses import dataclass
 from typing import Any
 
+from rigdesign.case.fields import text_fault
+
 MARKS = ("assumed", "range", "source", "measured")
 KEYS = frozenset(("value", *MARKS))
 
@@ -102,13 +104,14 @@ def item_name(item: object, index: int) -> str:
 
 
 def _read(node: dict[str, Any], path: str) -> tuple[Mark | None, list[MarkFault]]:
-    faults = [
-        MarkFault(
-            path, repr(node[key]), f"mark '{key}' is not a text", f'write {key} = "…", a reason or source'
-        )
-        for key in ("assumed", "source", "measured")
-        if key in node and not (isinstance(node[key], str) and node[key].strip())
-    ]
+    faults = []
+    for key in ("assumed", "source", "measured"):
+        text = node.get(key, key)
+        if not (isinstance(text, str) and text.strip()):
+            remedy = f'write {key} = "…", a reason or source'
+            faults.append(MarkFault(path, repr(text), f"mark '{key}' is not a text", remedy))
+        elif (wrong := text_fault(text)) is not None:
+            faults.append(MarkFault(path, repr(text), f"mark '{key}': {wrong[0]}", wrong[1]))
     limits = node.get("range")
     if limits is not None and not (isinstance(limits, list | tuple) and len(limits) == 2):
         faults.append(

@@ -15,7 +15,6 @@ from pydantic import BaseModel
 
 from rigdesign.case.fields import Quantity
 from rigdesign.case.marks import item_name
-from rigdesign.kinds import KINDS
 
 
 @dataclass(frozen=True)
@@ -39,12 +38,23 @@ class Slot:
     def example(self) -> str:
         """What a user may write here."""
         if self.quantity is not None:
-            return f'"{KINDS[self.quantity.kind].example}"'
+            return f'"{self.quantity.shown_example}"'
         for kind, _ in self.choices:
             if typing.get_origin(kind) is typing.Literal:
                 return " or ".join(f'"{value}"' for value in typing.get_args(kind))
         words = {float: "a number", int: "a whole number", str: "a text", bool: "true or false"}
         return next((words[kind] for kind in self.plain_types), "a table")
+
+    @property
+    def table(self) -> tuple[type[BaseModel], bool, bool] | None:
+        """Table of the place, whether it is one of a list, and whether it goes by a name; None for a value."""
+        for kind, _ in self.choices:
+            origin, arguments = typing.get_origin(kind), typing.get_args(kind)
+            several, named = origin is tuple, origin is Mapping
+            inner = slot_of(arguments[1 if named else 0]) if several or named else self
+            for model in inner.models():
+                return model, several, named
+        return None
 
     def models(self) -> Iterator[type[BaseModel]]:
         """Tables the place may hold."""

@@ -5,7 +5,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
-from rigdesign.case.fields import Count, Name, Part, Share, Speed, Time, Torque, fault
+from rigdesign.case.fields import Count, Hours, Name, Part, Share, Speed, Text, Time, Torque, fault
 
 StageKind = Literal["load", "unload", "run_up", "run_down", "dwell"]
 
@@ -60,7 +60,7 @@ class Schedule(Part):
     """Speed of the test, counted at ``drivetrain.torque_at``."""
     test_torque: Torque
     stages: tuple[Stage, ...] = Field(min_length=1)
-    simulation_only: str | None = None
+    simulation_only: Text | None = None
     """Why the schedule cannot be run on the rig; left out for one that can."""
 
     def resolved(self) -> tuple[StageValues, ...]:
@@ -92,7 +92,7 @@ class Schedule(Part):
 class TestPlan(Part):
     """What the test is to reach."""
 
-    time: Time
+    time: Hours
     """Time planned at test speed and torque; the cycles wanted are ``limits.specimen.load_cycles_minimum``."""
     specimens: Count = 1
     """How many test gears one gear of the rig has to outlive."""

@@ -5,20 +5,30 @@ from pathlib import Path
 from typing import Any
 
 from rigdesign.case.marks import is_marked
-from rigdesign.errors import CaseError
+from rigdesign.errors import CaseError, shortened
+from rigdesign.files import RefusedFileError, check_regular, foreign, read_regular
 
 CASE_FILE = "case.toml"
+LARGEST_CASE = 5_000_000
+"""Bytes of a case file; one with a row of numbers for each of 2000 teeth has a tenth."""
 
 
 def case_file(path: Path) -> Path:
     """The case file of a folder, or the file itself.
 
-    Raises CaseError when there is none.
+    Raises CaseError when there is none, and for a device, a pipe or a file of more than LARGEST_CASE bytes.
     """
-    file = path / CASE_FILE if path.is_dir() else path
-    if not file.is_file():
-        what = f"no {CASE_FILE} in this folder" if path.is_dir() else "no such file or folder"
-        raise CaseError(f"{what}; give a case folder or its {CASE_FILE}", str(path))
+    remedy = f"give a case folder or its {CASE_FILE}"
+    try:
+        file = path / CASE_FILE if path.is_dir() else path
+        check_regular(file, LARGEST_CASE)
+    except RefusedFileError as error:
+        raise CaseError(f"is {error.strerror}; {remedy}", str(file)) from None
+    except (OSError, ValueError) as error:
+        if isinstance(error, FileNotFoundError) and path.is_dir():
+            raise CaseError(f"no {CASE_FILE} in this folder; {remedy}", str(path)) from None
+        reason = getattr(error, "strerror", None) or str(error)
+        raise CaseError(f"no such file or folder ({reason}); {remedy}", str(path)) from None
     return file
 
 
@@ -32,7 +42,7 @@ def read_tree(file: Path) -> dict[str, Any]:
     current: Path | None = file.resolve()
     while current is not None:
         if current in seen:
-            trail = " -> ".join(str(link) for link in [*seen, current])
+            trail = " -> ".join(link.name for link in [*seen, current])
             raise CaseError(f"extends itself: {trail}; remove one 'extends'", str(file))
         seen.append(current)
         content = _read(current)
@@ -56,7 +66,7 @@ def merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     dropped = over.get("remove", [])
     if not isinstance(dropped, list) or not all(key in base for key in dropped):
         raise CaseError(
-            f"remove = {dropped!r}: not a list of inherited keys; inherited here: {', '.join(base)}"
+            f"remove = {shortened(repr(dropped))}: not a list of inherited keys; inherited here: {', '.join(base)}"
         )
     merged = {key: value for key, value in base.items() if key not in dropped}
     for key, value in over.items():
@@ -84,20 +94,27 @@ def _base(extends: object, file: Path) -> Path | None:
     if extends is None:
         return None
     if not isinstance(extends, str):
-        raise CaseError(f"extends = {extends!r}: not a text; write the path of a case file", str(file))
-    base = (file.parent / extends).resolve()
-    if not base.exists():
-        raise CaseError(f"extends = {extends!r}: no such file {base}; correct the path", str(file))
-    return case_file(base)
+        given = shortened(repr(extends))
+        raise CaseError(f"extends = {given}: not a text; write the path of a case file", str(file))
+    try:
+        return case_file((file.parent / extends).resolve())
+    except (CaseError, OSError, ValueError, RuntimeError) as error:
+        raise CaseError(
+            f"extends = {shortened(repr(extends))}: {error}; correct the path", str(file)
+        ) from None
 
 
 def _read(file: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(file.read_bytes().decode("utf-8"))
+        content = read_regular(file, LARGEST_CASE)
     except OSError as error:
         raise CaseError(
             f"cannot be read: {error.strerror}; check the path and its rights", str(file)
         ) from None
+    if (what := foreign(content)) is not None:
+        raise CaseError(f"is {what}; a case is a TOML text, write it as one", str(file))
+    try:
+        return tomllib.loads(content.decode("utf-8"))
     except UnicodeDecodeError as error:
         raise CaseError(f"is not UTF-8 text (byte {error.start}); save it as UTF-8", str(file)) from None
     except tomllib.TOMLDecodeError as error:

@@ -10,7 +10,9 @@ from rigdesign.case.fields import (
     ExpansionCoefficient,
     HeatCapacity,
     KinematicViscosity,
+    Modulus,
     Part,
+    RoomTemperature,
     Stress,
     Temperature,
     Text,
@@ -22,10 +24,10 @@ from rigdesign.case.fields import (
 class Ambient(Part):
     """The room."""
 
-    temperature: Temperature
-    surroundings_temperature: Temperature | None = None
+    temperature: RoomTemperature
+    surroundings_temperature: RoomTemperature | None = None
     """Walls that the rig radiates to; the air temperature when left out."""
-    reference_temperature: Temperature = 293.15
+    reference_temperature: RoomTemperature = 293.15
     """At which drawings and measures of the case hold; 20 degC by ISO 1."""
     warming_time: Time | None = None
     """How long an operating point had run from a rig as cold as the room; steady when left out. The housings then
@@ -60,7 +62,7 @@ class CustomMaterial(Part):
     title: Text
     conductivity: Conductivity
     expansion_coefficient: ExpansionCoefficient
-    elastic_modulus: Stress
+    elastic_modulus: Modulus
     poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)]
     density: Density
     root_strength: Stress | None = None

@@ -5,7 +5,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from rigdesign.case.fields import HeatTransferCoefficient, Name, Part, TemperatureDifference, Text, Time
+from rigdesign.case.fields import (
+    HeatTransferCoefficient,
+    Hours,
+    Name,
+    Part,
+    TemperatureDifference,
+    Text,
+    Time,
+)
 
 Event = Literal["cold_start", "emergency_stop", "oil_loss"]
 HOUR = 3600.0
@@ -23,13 +31,13 @@ class TransientProbe(Part):
 class Transient(Part):
     """Thermal course of the schedule; every key has a default."""
 
-    warm_up: Time = 4.0 * HOUR
+    warm_up: Hours = 4.0 * HOUR
     """Oil on at standstill before the first stage."""
-    dwell: Time | None = None
+    dwell: Hours | None = None
     """Length of every held stage; the planned time of the test when left out."""
     oil_run_on: Time = 0.5 * HOUR
     """Oil after the stop."""
-    soak_back: Time = 8.0 * HOUR
+    soak_back: Hours = 8.0 * HOUR
     """Standstill without oil after that."""
     stop_time: Time = 10.0
     """From full speed to standstill in an emergency."""

@@ -6,12 +6,16 @@ from pathlib import Path
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.surfaces import boundary_faults
 from rigdesign.errors import CaseError, Fault
+from rigdesign.files import RefusedFileError, check_regular
 from thermal.fe.mesh import MeshError
 from thermal.housing_file import read_mesh
 from thermal.housing_fitted import fitted_model
 from thermal.housing_geometry import HousingGeometry
 from thermal.housing_surfaces import body_names
 from thermal.stations import GearboxModel
+
+LARGEST_MESH = 2_000_000_000
+"""Bytes of a mesh file; a gearbox of a million nodes has a tenth."""
 
 
 def user_model(name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Path) -> GearboxModel:
@@ -28,7 +32,12 @@ def user_model(name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Pat
     at, given = f"gearboxes.{name}.housing.mesh_file", f'"{housing.mesh_file}"'
     file = case.parent / housing.mesh_file
     try:
-        model = _read(file, file.stat().st_mtime_ns if file.exists() else 0, geometry)
+        check_regular(file, LARGEST_MESH)
+        model = _read(file, file.stat().st_mtime_ns, geometry)
+    except (RefusedFileError, FileNotFoundError, PermissionError) as error:
+        raise CaseError(
+            [Fault(at, given, str(error.strerror), "correct the path of the mesh")], str(case)
+        ) from error
     except MeshError as error:
         text, _, remedy = str(error).rpartition("; ")
         raise CaseError([Fault(at, given, text, remedy)], str(case)) from error

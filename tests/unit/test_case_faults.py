@@ -80,7 +80,37 @@ BAD = [
     ),
     # structure
     ('gearboxes.test.oil = "warm"', "gearboxes.test.oil", "a text", "a table"),
-    ("remove = ['ambient']", "ambient", "required key is missing", "a table"),
+    ("remove = ['ambient']", "ambient", "required key is missing", "add it: [ambient] with temperature"),
+    (
+        "schedule.remove = ['stages']",
+        "schedule.stages",
+        "required key is missing",
+        "add it: [[schedule.stages]] with name, kind, duration",
+    ),
+    (
+        "gearboxes.test.remove = ['meshes']",
+        "gearboxes.test.meshes",
+        "required key is missing",
+        "add it: [gearboxes.test.meshes.NAME] with pinion, wheel",
+    ),
+    (
+        "gearboxes.test.bearings.pinion_front.diametral_clearance = 80",
+        "gearboxes.test.bearings.pinion_front.diametral_clearance",
+        "a bare number",
+        'e.g. "80 um" (units: um, mm',
+    ),
+    (
+        'gearboxes.test.bearings.pinion_front.diametral_clearance = "0 mm"',
+        "gearboxes.test.bearings.pinion_front.diametral_clearance",
+        "is not above 0 mm",
+        'e.g. "80 um"',
+    ),
+    (
+        'gearboxes.test.gears.pinion.flank.tip_relief = "8 N"',
+        "gearboxes.test.gears.pinion.flank.tip_relief",
+        "one of force, not of length",
+        'such as "10 um" (units: um, mm',
+    ),
     (
         "gearboxes.test.oil.remove = ['flow']",
         "gearboxes.test.oil.flow",
@@ -174,9 +204,15 @@ BAD = [
     ),
     (
         "gearboxes.test.gears.wheel.profile_shift = 0.1",
+        "gearboxes.test.meshes.main.centre_distance",
+        "fixes the sum of the profile shifts at -",
+        "leave wheel.profile_shift out",
+    ),
+    (
+        'gearboxes.test.meshes.main.profile_shift_split = "equal"',
         "gearboxes.test.meshes.main",
         "fixes the sum of the profile shifts",
-        "profile_shift_split",
+        "for one of the two gears or for both",
     ),
     (
         'gearboxes.test.gears.wheel.tip_shortening = "0.1 mm"',
