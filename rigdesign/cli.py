@@ -1,4 +1,4 @@
-"""The command line: `rigdesign check | study | compare | diagnose | validate | new | schema | doctor`.
+"""The command line: `rigdesign check | study | compare | diagnose | validate | new | mesh | schema | doctor`.
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; validate: no gate missed), 1 a
 check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is missing, 5 measured
@@ -245,6 +245,33 @@ def _calibrate(case: Path, measurement: Path, out: Path) -> int:
         found = calibrate_case(loaded, measurement, say=progress)
         write_calibrated(found, out)
     print_constants(found, out)
+    return 0
+
+
+@app.command
+def mesh(case: Path, *, out: Path, fidelity: Fidelity = "standard") -> int:
+    """Write the housings of a case as gmsh files with all their names: examples of what mesh_file reads.
+
+    Parameters
+    ----------
+    case
+        Case folder or its case.toml.
+    out
+        Folder for one file per housing, NAME.msh.
+    fidelity
+        Size of the meshes: quick, standard or reference.
+    """
+    from rigdesign.case import load_case
+    from rigdesign.mesh_export import export_meshes
+    from rigdesign.report import prepare_output
+    from rigdesign.terminal import Progress, print_meshes
+
+    loaded = load_case(case)
+    prepare_output(out)
+    with Progress() as progress, _interrupted(NOTHING_KEPT):
+        progress("meshing")
+        written = export_meshes(loaded, out, fidelity)
+    print_meshes(written)
     return 0
 
 

@@ -165,6 +165,13 @@ def print_comparison(comparison: "Comparison", out: Path | None) -> None:
         console.print(f"{out / 'compare.html'}")
 
 
+def print_meshes(written: Sequence[tuple[str, Path, int]]) -> None:
+    """Every mesh that was written, and the lines that make a case read it."""
+    console = _console()
+    for name, file, nodes in written:
+        console.print(f'{file}: {nodes} nodes; [gearboxes.{name}.housing] mesh_file = "{file.name}" reads it')
+
+
 DIAGNOSIS_STYLES = {"named": "bold green", "within_noise": "green", "input_error_suspected": "bold red"}
 
 

@@ -49,12 +49,13 @@ def heat_split_rows(rig: Rig, result: PointResult, field: HousingField) -> list[
 
 
 def split_as_solved(rig: Rig, result: PointResult, field: HousingField) -> dict[str, HeatSplitRow]:
-    """Row of every gear that friction heats, without its range: nothing is solved again."""
-    films = _films(rig, field.gearbox)
+    """Row of every meshed gear that friction heats, without its range: nothing is solved again."""
+    films, box = _films(rig, field.gearbox), rig.case.gearboxes[field.gearbox]
+    bodies = rig.models[field.gearbox].mesh.bodies
     return {
         gear: _row(rig, result, field, gear, heat, films.get(gear))
         for gear, heat in friction_heat(rig, result, field.gearbox).items()
-        if heat
+        if heat and f"gear_{box.gears[gear].shaft}" in bodies
     }
 
 

@@ -321,8 +321,12 @@ class Housing(Part):
     mesh_file: Text | None = None
     """A gmsh .msh beside the case file in place of the parametric box: 10-node tetrahedra or hexahedra of 20 or
     27 nodes, in metres, physical volumes named like the bodies of the box, physical surfaces with the names that
-    ``boundary`` covers. Heights of films, diameters and speeds of shafts stay those of this table; clearances are read
-    where bearings, shafts and gears carry the names of the box."""
+    ``boundary`` covers, every boundary facet in one of them; ``rigdesign mesh CASE --out DIR`` writes an example.
+    A housing alone will do where heat goes nowhere else: the body ``housing`` is always needed, ``gear_<shaft>_rim``
+    for heat of the mesh into the gears (or ``flank_film``), body ``gear_<shaft>`` for windage into the gears, the
+    ``seal_bore_…`` and ``shaft_<shaft>_seal_…`` for heat of the seals into housing and shaft (``heat_split``), and
+    ``field``, ``housing_foot`` and ``field_seat`` for a ``foot_contact``. Heights of films, diameters and speeds of
+    shafts stay those of this table; clearances are read where bearings, shafts and gears carry the names of the box."""
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
     boundary: Mapping[Name, Condition] = Field(min_length=1)
     ambient_film_factor: FilmFactor = 1.0

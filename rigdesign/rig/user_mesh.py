@@ -1,5 +1,6 @@
 """The mesh file of a housing in place of the parametric box: read once, held against the case."""
 
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 
@@ -11,7 +12,8 @@ from thermal.fe.mesh import MeshError
 from thermal.housing_file import read_mesh
 from thermal.housing_fitted import fitted_model
 from thermal.housing_geometry import HousingGeometry
-from thermal.housing_surfaces import body_names
+from thermal.housing_stations import seal_stations
+from thermal.housing_surfaces import FOOT, SEAT, body_names
 from thermal.stations import GearboxModel
 
 LARGEST_MESH = 2_000_000_000
@@ -24,8 +26,8 @@ def user_model(name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Pat
     Raises
     ------
     CaseError
-        A file that is no mesh to compute with, bodies without a material, surfaces without a condition or
-        conditions without a surface.
+        A file that is no mesh to compute with, one that lacks a part into which the case lets heat go, bodies without
+        a material, surfaces without a condition or conditions without a surface.
     """
     housing = gearbox.housing
     assert housing is not None and housing.mesh_file is not None
@@ -41,8 +43,11 @@ def user_model(name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Pat
     except MeshError as error:
         text, _, remedy = str(error).rpartition("; ")
         raise CaseError([Fault(at, given, text, remedy)], str(case)) from error
+    held = (*model.mesh.bodies, *model.mesh.surfaces)
+    lost = {name: why for name, why in _needed(gearbox, geometry).items() if name not in held}
     known = body_names(geometry)
-    faults = [
+    faults = [_lacking(at, given, model, lost)] if lost else []
+    faults += [
         Fault(at, given, f"body {body!r} has no material", f"name bodies {', '.join(known)}")
         for body in model.mesh.bodies
         if body not in known
@@ -50,6 +55,40 @@ def user_model(name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Pat
     if faults := [*faults, *boundary_faults(name, gearbox, tuple(model.mesh.surfaces))]:
         raise CaseError(faults, str(case))
     return model
+
+
+def _needed(gearbox: Gearbox, geometry: HousingGeometry) -> dict[str, str]:
+    """Bodies and surfaces into which the case lets heat go, or which a joint needs: name -> what needs it."""
+    split = gearbox.heat_split
+    needed = {"housing": "every case"}
+    if geometry.foot_joint:
+        needed |= dict.fromkeys(("field", FOOT, SEAT), "foot_contact")
+    for gear in gearbox.gears.values():
+        if split.mesh == "flank_film":
+            needed[f"gear_{gear.shaft}_rim"] = 'heat_split.mesh = "flank_film"'
+        elif split.mesh_into_gears:
+            needed[f"gear_{gear.shaft}_rim"] = "heat_split.mesh_into_gears"
+        if split.windage_into_gears:
+            needed[f"gear_{gear.shaft}"] = "heat_split.windage_into_gears"
+    for seal in seal_stations(geometry):
+        if split.seal_into_housing:
+            needed[seal.bore_surface] = "heat_split.seal_into_housing"
+        if split.seal_into_shaft:
+            needed[seal.shaft_surface] = "heat_split.seal_into_shaft"
+    return needed
+
+
+def _lacking(at: str, given: str, model: GearboxModel, lost: Mapping[str, str]) -> Fault:
+    """The names a mesh lacks, each with what needs it, and the ways out."""
+    listed = "; ".join(
+        f"{', '.join(name for name, why in lost.items() if why == reason)} for {reason}"
+        for reason in dict.fromkeys(lost.values())
+    )
+    return Fault(
+        at, given, f"has the bodies {', '.join(model.mesh.bodies)} and lacks {listed}",
+        "add them to the mesh under these names (rigdesign mesh CASE --out DIR writes an example), or set the shares "
+        "of heat_split that go into parts without a mesh to 0",
+    )  # fmt: skip
 
 
 @lru_cache(maxsize=8)

@@ -142,10 +142,12 @@ def help_text(*command: str) -> str:
 def test_help_lists_the_commands_that_exist() -> None:
     words = [line.strip("│ ").split(" ")[0] for line in help_text().splitlines() if line.startswith("│")]
     commands = [word for word in words if word and word[0] != "-" and word.islower()]
-    assert {"check", "study", "compare", "diagnose", "validate", "new", "schema", "doctor"} <= set(commands)
+    assert {"check", "study", "compare", "diagnose", "validate", "new", "mesh", "schema", "doctor"} <= set(
+        commands
+    )
     assert not {"explain", "diff", "import"} & set(commands)
     listed = {name for name in cli.app if not name.startswith("-")}
-    assert listed == {"check", "study", "compare", "diagnose", "validate", "new", "schema", "doctor"}
+    assert listed == {"check", "study", "compare", "diagnose", "validate", "new", "mesh", "schema", "doctor"}
 
 
 def test_help_of_check_lists_its_options() -> None:

@@ -3,15 +3,19 @@
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
-from rigdesign import load_case, run_case
+from rigdesign import cli, load_case, run_case
 from rigdesign.case.model import Case
-from rigdesign.errors import CaseError
+from rigdesign.errors import CaseError, UsageError
+from rigdesign.mesh_export import export_meshes
 from rigdesign.results import RunResult
 from rigdesign.rig.model import build_rig
 from tests.msh_file import write_msh
-from thermal.fe.mesh import NamedMesh
+from thermal.fe.mesh import NamedMesh, named_mesh
+from thermal.housing_file import read_mesh
 
 GIVEN = Path(__file__).parents[2] / "cases" / "uhcf_prototype" / "given_losses.toml"
 END = "shaft_test_pinion_end_front"
@@ -91,3 +95,82 @@ def test_the_content_of_the_mesh_is_part_of_the_case(tmp_path: Path) -> None:
     assert case.hash != before
     with pytest.raises(CaseError, match="element sizes do nothing"):
         on_file(tmp_path, '[gearboxes.test.housing.mesh]\nwalls = "20 mm"\n')
+
+
+def test_the_exported_mesh_works_when_given_back(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """`rigdesign mesh` writes the box with all its names: the same temperatures, clearances and verdicts."""
+    whole, mesh = box()
+    tokens = ["mesh", str(GIVEN), "--fidelity", "quick", "--out", str(tmp_path)]
+    assert cli._exit_status(lambda: cli.app(tokens, result_action="return_value")) == 0
+    assert 'mesh_file = "test.msh" reads it' in capsys.readouterr().out
+    assert [path.name for path in tmp_path.iterdir()] == ["test.msh"]
+    read = read_mesh(tmp_path / "test.msh")
+    assert read.surfaces.keys() == mesh.surfaces.keys() and read.bodies.keys() == mesh.bodies.keys()
+    for body, cells in mesh.bodies.items():
+        assert_array_equal(read.points[read.cells[read.bodies[body]]], mesh.points[mesh.cells[cells]])
+    found = run_case(on_file(tmp_path, name="test.msh"), "quick")
+    ours, theirs = whole.thermal[0], found.thermal[0]
+    assert theirs.max_temperature_degC == pytest.approx(ours.max_temperature_degC, abs=1e-4)
+    assert {row.surface: row.power_W for row in theirs.heat} == pytest.approx(
+        {row.surface: row.power_W for row in ours.heat}, rel=1e-5, abs=1e-4
+    )
+    for here, there in zip(whole.checks, found.checks, strict=True):
+        assert (here.id, here.verdict) == (there.id, there.verdict)
+        if here.utilisation is not None:
+            assert there.utilisation == pytest.approx(here.utilisation, rel=1e-4), here.id
+
+
+def test_a_case_without_a_housing_has_no_mesh_to_export(tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(
+        f'extends = "{GIVEN.as_posix()}"\n[gearboxes.test]\nremove = ["housing"]\n'
+    )
+    with pytest.raises(UsageError, match="no gearbox has a housing"):
+        export_meshes(load_case(tmp_path), tmp_path / "out", "quick")
+    assert not (tmp_path / "out").exists()
+
+
+ALONE = """
+[gearboxes.test.housing.boundary]
+remove = [
+    "bearings", "shaft_seal", "shaft_warm", "shaft_cold", "shaft_outside", "shaft_outside_radiation", "shaft_ends",
+    "shaft_end_behind_cover", "gear_rims", "gear_sides",
+]
+[gearboxes.test.housing.boundary.bores]
+surfaces = ["bearing_bore_*"]
+law = "constant_film"
+fluid = "bearing_oil_mean"
+heat_transfer_coefficient = "100 W/(m2 K)"
+[gearboxes.test.heat_split]
+"""
+
+
+def housing_alone(mesh: NamedMesh) -> NamedMesh:
+    """Housing and field of a box, without shafts and gears."""
+    counts = [len(mesh.bodies[name]) for name in ("housing", "field")]
+    cells = mesh.cells[np.concatenate([mesh.bodies[name] for name in ("housing", "field")])]
+    used, packed = np.unique(cells, return_inverse=True)
+    index = np.full(len(mesh.points), -1, dtype=np.int32)
+    index[used] = np.arange(len(used))
+    surfaces = {name: index[nodes] for name, nodes in mesh.surfaces.items() if (index[nodes] >= 0).all()}
+    numbers = np.arange(sum(counts), dtype=np.int32)
+    bodies = {"housing": numbers[: counts[0]], "field": numbers[counts[0] :]}
+    return named_mesh(mesh.points[used], packed.reshape(cells.shape).astype(np.int32), bodies, surfaces)
+
+
+def test_a_housing_alone_is_held_against_what_the_case_needs_first(tmp_path: Path) -> None:
+    _, mesh = box()
+    write_msh(housing_alone(mesh), tmp_path / "box.msh")
+    refused(
+        on_file(tmp_path), "has the bodies field, housing and lacks gear_test_pinion_rim, gear_test_wheel_rim for",
+        "gear_test_pinion, gear_test_wheel for heat_split.windage_into_gears",
+        "rigdesign mesh CASE --out DIR writes an example", "shares of heat_split",
+    )  # fmt: skip
+    shares = (
+        "mesh_into_gears = {0}\nwindage_into_gears = {0}\nseal_into_shaft = {0}\nseal_into_housing = {0}\n"
+    )
+    refused(on_file(tmp_path, ALONE + shares.format(0.2)), "shaft_test_pinion_seal_front")
+    found = run_case(on_file(tmp_path, ALONE + shares.format(0.0)), "quick")
+    assert 30.0 < found.thermal[0].max_temperature_degC < 190.0
+    assert abs(found.thermal[0].closure_relative) < 1e-6
+    gap = next(check for check in found.checks if check.id == "clearance.seal_gap")
+    assert gap.verdict == "not applicable" and "body shaft_test_pinion" in gap.reason
