@@ -1,6 +1,6 @@
 """Ledgers of a study damaged in many places: no traceback, no false point, whole after the next run.
 
-    pytest -m slow -s tests/regression/test_damaged_ledgers.py      prints the counts
+pytest -m slow -s tests/regression/test_damaged_ledgers.py      prints the counts
 """
 
 import random
