@@ -14,8 +14,6 @@ SIGNATURES = (
     (b"\x1f\x8b", "a gzip file"),
     (b"\x89PNG", "a PNG picture"),
     (b"\xff\xd8\xff", "a JPEG picture"),
-    (b"\xff\xfe", "UTF-16 text"),
-    (b"\xfe\xff", "UTF-16 text"),
 )
 OFFICE = (
     (b"xl/", "an Excel workbook (.xlsx)"),

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from rigdesign.case.faults import written
 from rigdesign.errors import Fault, MeasurementError
+from rigdesign.files import foreign
 from rigdesign.measurement.document import Data
 from rigdesign.measurement.files import set_file
 
@@ -147,7 +148,12 @@ def numbers(table: Table, name: str, decimal: str) -> tuple[list[float], list[Fa
 def _text(path: Path, name: str, data: Data) -> str:
     encoding = "utf-8-sig" if data.encoding == "utf-8" else data.encoding
     try:
-        text = path.read_bytes().decode(encoding)
+        content = path.read_bytes()
+        if (what := foreign(content)) is not None:
+            raise MeasurementError(
+                [Fault(name, "", f"is {what}, not a table of text", "export the sheet as CSV")]
+            )
+        text = content.decode(encoding)
     except OSError as error:
         raise _refused(name, f"cannot be read: {error.strerror}", "check its rights") from None
     except UnicodeError:

@@ -106,7 +106,6 @@ def test_extends_of_an_impossible_name(extends: str, tmp_path: Path) -> None:
         (b"PK\x03\x04\x14\x00mimetypeapplication/vnd.oasis.opendocument.spreadsheet", "spreadsheet (.ods)"),
         (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "(.xls, .doc)"),
         (b"%PDF-1.7", "a PDF document"),
-        ("name = 1".encode("utf-16"), "UTF-16 text"),
     ],
 )
 def test_a_case_of_another_format_is_named_as_such(content: bytes, named: str, tmp_path: Path) -> None:

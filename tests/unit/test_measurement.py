@@ -194,6 +194,16 @@ def test_a_spoilt_file_is_refused_with_a_remedy(folder: Path, case, name, spoil,
     assert words in faults(folder, case)
 
 
+@pytest.mark.parametrize(
+    ("content", "named"),
+    [(b"PK\x03\x04\x14\0 xl/workbook.xml", "an Excel workbook (.xlsx)"), (b"TDSm\x0e\0", "a TDMS recording")],
+)
+def test_a_table_of_another_format_is_named_as_such(folder: Path, case, content: bytes, named: str) -> None:
+    (folder / "data.csv").write_bytes(content)
+    told = faults(folder, case)
+    assert f"is {named}, not a table of text; export the sheet as CSV" in told
+
+
 @pytest.mark.parametrize("content", [bytes(range(256)) * 4, b"a,b\0c\n1,2\n"])
 def test_bytes_that_are_no_text(folder: Path, case, content: bytes) -> None:
     (folder / "data.csv").write_bytes(content)
