@@ -80,7 +80,10 @@ def _pool(
         initargs=(end_of_workers,),
     )
     try:
-        futures: dict[Future[Outcome], int] = {pool.submit(work, tasks[index]): index for index in indices}
+        with _interrupts_held():
+            futures: dict[Future[Outcome], int] = {
+                pool.submit(work, tasks[index]): index for index in indices
+            }
         for future in as_completed(futures):
             yield futures[future], future.result()
         pool.shutdown()
@@ -90,6 +93,19 @@ def _pool(
     finally:
         end_of_parent.close()
         end_of_workers.close()
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Interrupts wait, and processes started meanwhile never see one: they would print a traceback while they load."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager

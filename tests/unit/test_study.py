@@ -307,3 +307,28 @@ def test_interrupt_ends_the_workers_at_once(tmp_path):
     assert process.wait(timeout=20) != 0
     _wait(lambda: not any(_alive(int(line.split()[1])) for line in log.read_text().splitlines()))
     assert 1 <= _stored(tmp_path / "out") < POINTS
+
+
+def _mapped(pid):
+    """Libraries a process has loaded."""
+    try:
+        return Path(f"/proc/{pid}/maps").read_text()
+    except OSError:
+        return ""
+
+
+def test_an_interrupt_of_all_processes_while_workers_start_prints_no_traceback(tmp_path):
+    """Ctrl-C reaches every process of the terminal, also one that is still importing."""
+    script = tmp_path / "driver.py"
+    script.write_text(DRIVER.format(root=str(ROOT), values="oil.inlet=90:118:2 degC"))
+    with subprocess.Popen(
+        [sys.executable, str(script), str(tmp_path / "out")],
+        stderr=subprocess.PIPE, text=True, start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    ) as process:  # fmt: skip
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        _wait(lambda: any("numpy" in _mapped(pid) for pid in children.read_text().split()))
+        os.killpg(process.pid, signal.SIGINT)
+        told = process.stderr.read()
+    assert process.returncode != 0
+    assert told.count("KeyboardInterrupt") == 1 and "spawn_main" not in told
