@@ -1,8 +1,8 @@
 """Parameter studies: the case over a grid of values, resumable, with failed points kept."""
 
 import traceback
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -129,17 +129,10 @@ def run_study(
         )
         say(f"{len(points)} points, {len(points) - len(missing)} of them settled, {count} workers")
         try:
-            for task, failed, record in _compute(missing, fidelity, count, run):
-                ledger.store(
-                    task.key,
-                    fidelity=fidelity,
-                    case_hash=task.case.hash,
-                    inputs=task.values,
-                    failed=failed,
-                    record=record,
-                )
-                stored[task.key] = (failed, record)
-                say(_progress_line(task, failed, record))
+            with closing(_compute(missing, fidelity, count, run)) as finished:
+                for task, failed, record in _stored(ledger, finished, fidelity):
+                    stored[task.key] = (failed, record)
+                    say(_progress_line(task, failed, record))
         except KeyboardInterrupt as stop:
             left = sum(task.key not in stored for task in missing)
             stop.add_note(
@@ -204,11 +197,27 @@ def _tasks(
 
 def _compute(
     tasks: Sequence[_Task], fidelity: Fidelity, workers: int, run: Run | None
-) -> Iterator[tuple[_Task, bool, Record]]:
+) -> Generator[tuple[_Task, bool, Record], None, None]:
     work = partial(_solve, fidelity=fidelity, run=run)
     for index, outcome in compute_all(work, [task.case for task in tasks], workers):
         failed, record = outcome or (True, {"error": "the worker process died; look for a lack of memory"})
         yield tasks[index], failed, record
+
+
+def _stored(
+    ledger: Ledger, finished: Iterator[tuple[_Task, bool, Record]], fidelity: Fidelity
+) -> Iterator[tuple[_Task, bool, Record]]:
+    """Every finished point, once it is in the ledger."""
+    for task, failed, record in finished:
+        ledger.store(
+            task.key,
+            fidelity=fidelity,
+            case_hash=task.case.hash,
+            inputs=task.values,
+            failed=failed,
+            record=record,
+        )
+        yield task, failed, record
 
 
 def _solve(case: "Case", *, fidelity: Fidelity, run: Run | None) -> tuple[bool, Record]:
