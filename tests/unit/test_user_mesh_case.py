@@ -114,10 +114,16 @@ def test_the_exported_mesh_works_when_given_back(tmp_path: Path, capsys: pytest.
     assert {row.surface: row.power_W for row in theirs.heat} == pytest.approx(
         {row.surface: row.power_W for row in ours.heat}, rel=1e-5, abs=1e-4
     )
+    off = {}
     for here, there in zip(whole.checks, found.checks, strict=True):
         assert (here.id, here.verdict) == (there.id, there.verdict)
-        if here.utilisation is not None:
-            assert there.utilisation == pytest.approx(here.utilisation, rel=1e-4), here.id
+        if here.utilisation:
+            assert there.utilisation is not None
+            off[here.id] = abs(there.utilisation - here.utilisation)
+    # bearings of a mesh file are circles fitted to it: the tilts between them are differences of micrometres
+    tilts = {name: value for name, value in off.items() if name.startswith("alignment.")}
+    assert max(tilts.values()) < 2e-4, tilts
+    assert max(value for name, value in off.items() if name not in tilts) < 2e-5, off
 
 
 def test_a_case_without_a_housing_has_no_mesh_to_export(tmp_path: Path) -> None:
