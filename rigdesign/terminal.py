@@ -222,12 +222,15 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
         console.print(Text("suspect   ", "bold yellow") + Text(text))
     if len(doubts) > MOST_DOUBTS:
         console.print(Text(f"          {len(doubts) - MOST_DOUBTS} more in the report", "dim"))
-    if found.gap is not None and outcome.named:
+    for refusal in found.refused:
+        against = "bold red" if refusal.gap is not None and refusal.gap.grown else ""
+        console.print(Text("not named ", "bold") + Text(f"{refusal.name}: {refusal.reason}", against))
+    if outcome.gap is not None and outcome.applied:
         text = (
-            f"{found.gap.before:.2f} -> {found.gap.after:.2f} standard deviations on points the fit never saw "
-            f"({', '.join(found.gap.points)}), a healthy rig has 1"
+            f"{outcome.gap.before:.2f} -> {outcome.gap.after:.2f} standard deviations on points the fit never saw "
+            f"({', '.join(outcome.gap.points)}), a healthy rig has 1"
         )
-        console.print(Text("gap       ", "bold") + Text(text))
+        console.print(Text("gap       ", "bold") + Text(text, "bold red" if outcome.gap.grown else ""))
     left = sentences(outcome.after, measurement) if outcome.named else []
     for text in left[:3]:
         console.print(Text("remains   ", "bold") + Text(text))

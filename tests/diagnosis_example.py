@@ -269,8 +269,20 @@ def result_of(folder: Path, *, without: Sequence[str] = (), calibration: Calibra
     )  # fmt: skip
     return Result(
         case=case, measurement=measurement, data=data, baseline=healthy, problem=problem, effects=effects,
-        diagnosis=diagnose(problem, calibration), calibration=calibration,
+        diagnosis=diagnose(problem, calibration, rerun(data.settings)), calibration=calibration,
     )  # fmt: skip
+
+
+def rerun(runs: Sequence[Setting]):
+    """The formulas with effects in them, as `rigdesign.diagnosis.proof.FullRun` runs the model."""
+    by_name = {run.name: run for run in runs}
+
+    def again(some: Sequence[Feature], sizes: Mapping[str, tuple[float, ...]]) -> np.ndarray:
+        return np.array(
+            [sum(answer(name, at, f, by_name[f.setting]) for name, at in sizes.items()) for f in some]
+        )
+
+    return again
 
 
 @cache

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from rigdesign.diagnosis.effects import Effect
-from rigdesign.diagnosis.heldout import LEAST_POINTS
+from rigdesign.diagnosis.heldout import LEAST_POINTS, course
 from rigdesign.diagnosis.naming import told
 from rigdesign.diagnosis.next_measurement import Ranked
 from rigdesign.diagnosis.outcome import Outcome
@@ -55,12 +55,15 @@ def headline(outcome: Outcome) -> str:
         case "named":
             return " ".join(_named(outcome))
         case "alias_group":
-            return f"One of these is at work, the data cannot tell which: {_titles(outcome)}."
+            apart = " and ".join(outcome.names.title(name) for name in found.decision.apart)
+            more = f" Apart from that: {apart}." if apart else ""
+            return f"One of these is at work, the data cannot tell which: {_titles(outcome)}.{more}"
         case "input_error_suspected":
             return f"The data look wrong rather than the model: {_titles(outcome)}."
         case "unknown_located":
             reason = found.decision.reason
-            return f"Something is at work, and no name for it is safe: {reason}. {_where(outcome)}".rstrip()
+            lead = "An effect is present; the data do not identify it"
+            return f"{lead}: {reason}. {_where(outcome)}".rstrip()
         case "within_noise":
             return "Nothing is missing that these data could show: a healthy rig leaves as much."
         case "too_small":
@@ -100,13 +103,12 @@ def _foremost(outcome: Outcome) -> str:
 def certainty(outcome: Outcome) -> str:
     """Why the verdict is proven or only indicative."""
     found = outcome.result.diagnosis
-    if found.strength == "proven":
-        count = len(found.held_out_points)
+    if found.strength == "proven" and found.gap is not None:
         return (
-            f"Proven: the noise is known from repeats, and {count} operating point{'s were' if count > 1 else ' was'} "
-            "kept aside before anything was fitted."
+            "Proven: the noise is known from repeats, and with what is named in the model, run in full, the gap "
+            f"{course(found.gap)}."
         )
-    missing = []
+    missing = [] if found.found else ["nothing is named that could be put to the proof"]
     if not outcome.result.problem.repeated:
         missing.append("most numbers have a single reading, so the noise is what the set declares")
     if not found.held_out_points:

@@ -78,12 +78,14 @@ class Posterior:
 class Decision:
     """The verdict with the parts it rests on.
 
-    named : effects of a name, or the members of an alias group; reason : in one sentence
+    named : effects of a name, or the members of an alias group; reason : in one sentence; apart : what is at work as
+        well, whichever of the group is
     """
 
     verdict: Verdict
     named: tuple[str, ...]
     reason: str
+    apart: tuple[str, ...] = ()
 
 
 def posterior(

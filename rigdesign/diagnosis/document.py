@@ -12,6 +12,7 @@ from rigdesign.diagnosis.advice import certainty, headline, steps
 from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.detectability import Detectability
 from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.heldout import Gap
 from rigdesign.diagnosis.naming import Names, Sized, Value, from_evidence, parameter_of, size_value
 from rigdesign.diagnosis.outcome import Outcome
 from rigdesign.measurement import MeasurementSet
@@ -54,6 +55,7 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
             }
             for one in outcome.suspects
         ],
+        "refused": _refused(outcome),
         "suspected_inputs": suspected_inputs(outcome),
         "picked": None if outcome.picked is None else _sized(outcome.picked),
         "alternatives": _alternatives(outcome),
@@ -250,19 +252,39 @@ def _aliases(outcome: Outcome) -> list[dict[str, Any]]:
 
 
 def _gap(outcome: Outcome) -> dict[str, Any] | None:
-    """On points the fit never saw; None without any. ``after`` equals ``before`` where nothing was named."""
-    found = outcome.result.diagnosis
-    if found.gap is None:
+    """On points the fit never saw; None without any. ``after`` equals ``before`` where nothing was named or picked."""
+    if outcome.gap is None:
         return None
     return {
-        "before": found.gap.before,
-        "after": found.gap.after,
+        **_course(outcome.gap),
         "floor": 1.0,
         "unit": "standard deviations of a healthy rig",
-        "held_out_points": list(found.gap.points),
-        "effects_added": [one.explanation for one in outcome.named],
+        "held_out_points": list(outcome.gap.points),
+        "effects_added": [one.explanation for one in outcome.applied],
         "channels": gap_rows(outcome),
     }
+
+
+def _course(gap: Gap) -> dict[str, Any]:
+    """``fall`` is that of the whitened square, with its standard deviation."""
+    return {
+        "before": gap.before, "after": gap.after, "fall": gap.fall, "scatter": gap.scatter, "shrunk": gap.shrunk,
+        "grown": gap.grown,
+    }  # fmt: skip
+
+
+def _refused(outcome: Outcome) -> list[dict[str, Any]]:
+    """Names that the search gave and that are not claimed, with the gap that speaks against them."""
+    return [
+        {
+            "effect": one.name,
+            "title": outcome.names.title(one.explanation),
+            "explanation": one.explanation,
+            "reason": one.reason,
+            "gap": None if one.gap is None else _course(one.gap),
+        }
+        for one in outcome.result.diagnosis.refused
+    ]
 
 
 def gap_rows(outcome: Outcome) -> list[dict[str, Any]]:
@@ -281,14 +303,14 @@ def gap_rows(outcome: Outcome) -> list[dict[str, Any]]:
         )
         if not own.any():
             continue
-        numbers = (found.residual, found.residual - found.answer, found.answer, noise)
+        numbers = (found.residual, found.residual - outcome.answer, outcome.answer, noise)
         shown = [display_residual(_rms(one[own]), entry.channel.quantity, entry.unit) for one in numbers]
         before, after, moved, floor = (value for value, _ in shown)
         rows.append(
             {
                 "channel": name, "quantity": entry.channel.quantity, "unit": shown[0][1], "before": before,
                 "after": after, "moved": moved, "noise": floor,
-                "moved_over_spread": _rms(found.answer[own] / spread[own]), "numbers": int(own.sum()),
+                "moved_over_spread": _rms(outcome.answer[own] / spread[own]), "numbers": int(own.sum()),
             }
         )  # fmt: skip
     return sorted(rows, key=lambda row: -row["moved_over_spread"])

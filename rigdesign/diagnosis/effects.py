@@ -80,6 +80,9 @@ class Effect:
     """Change of the case at the values of the parameters."""
     healthy: float = 0.0
     """Standard deviation of the coordinate in a healthy rig; zero for what a healthy rig does not have."""
+    matters: float = 0.0
+    """Smallest coordinate that is named, of a harmonic its amplitude; for what a healthy rig does not have, of which no
+    spread says what is too little to count."""
     any_tooth: int = 0
     """Teeth of the gear of which any one may be meant; the change is made for tooth 0 unless one more value, the
     number of the tooth, says otherwise."""

@@ -6,7 +6,7 @@ once, here: what a report says is what a patch writes.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import atan2, exp, hypot, isfinite, pi
+from math import atan2, exp, hypot, isfinite, log, pi
 
 from rigdesign.diagnosis.effects import Effect, Parameter
 from rigdesign.diagnosis.evidence import Evidence
@@ -63,6 +63,14 @@ class Sized:
     def kind(self) -> str:
         """The part of the name before its place."""
         return self.name.split(":")[0].split("/")[0]
+
+    @property
+    def coordinates(self) -> tuple[float, ...]:
+        """Of the entry's parameters, as a hypothesis has them."""
+        parameters = _parameters(self.entry)
+        return tuple(
+            log(value) if p.factor else value for p, value in zip(parameters, self.values, strict=True)
+        )
 
 
 class Names:

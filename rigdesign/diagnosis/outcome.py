@@ -5,15 +5,17 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any
 
+from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.correction import Correction, of_data, of_sensor
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.evidence import Evidence
+from rigdesign.diagnosis.heldout import Gap, course
 from rigdesign.diagnosis.located import located
 from rigdesign.diagnosis.naming import Names, Sized, from_evidence, from_fit, told
 from rigdesign.diagnosis.next_measurement import Ranked
 from rigdesign.diagnosis.patch import Fitted, patched_title, patched_values
 from rigdesign.diagnosis.run import Result
-from rigdesign.errors import CaseError, UsageError
+from rigdesign.errors import CaseError, RigdesignError, UsageError
 from rigdesign.measurement.locate import Located
 
 SHOWN = 3
@@ -47,6 +49,7 @@ class Outcome:
 
     named : of verdict ``named``; suspects : members of an alias group, suspected data, or the leading explanations
     picked : what the user chose among those not named; case_patch : None where refused, with the reason in ``refused``
+    answer : (n,) what named or picked effects add to the kept numbers; gap : with them on the points kept aside
     before, after : where the residual sits without and with the named effects
     """
 
@@ -57,6 +60,8 @@ class Outcome:
     picked: Sized | None
     case_patch: CasePatch | None
     refused: str
+    answer: Array
+    gap: Gap | None
     corrections: tuple[Correction, ...]
     before: tuple[Located, ...]
     after: tuple[Located, ...]
@@ -90,7 +95,14 @@ def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Rank
     suspects = () if named else _suspects(result, names)
     picked = None if pick is None else _picked(result, names, named, pick)
     applied = named if picked is None else (picked,)
+    answer, gap, failure = (
+        (found.answer, found.gap, "") if picked is None else _put_to_the_proof(result, picked)
+    )
     patch, refused = _case_patch(result, applied, picked is not None)
+    if picked is not None and patch is not None and failure:
+        patch, refused = None, failure
+    elif picked is not None and patch is not None and gap is not None and gap.grown:
+        patch, refused = None, f"with {picked.explanation} in the model the gap {course(gap)}"
     corrections = [of_sensor(one) for one in applied if not isinstance(one.entry, Effect)]
     if found.decision.verdict == "input_error_suspected":
         corrections += [of_data(name, result.measurement) for name in found.decision.named]
@@ -102,6 +114,8 @@ def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Rank
         picked=picked,
         case_patch=patch,
         refused=refused,
+        answer=answer,
+        gap=gap,
         corrections=tuple(corrections),
         before=located(result, found.residual),
         after=located(result, found.residual - found.answer),
@@ -185,6 +199,20 @@ def _picked(result: Result, names: Names, named: Sequence[Sized], pick: str) -> 
         ]
         raise UsageError(f"--name {pick}: these sensors and points do not see it; {_nearest(pick, weighed)}")
     return from_evidence(names, best, result.calibration.signature_error)
+
+
+def _put_to_the_proof(result: Result, picked: Sized) -> tuple[Array, Gap | None, str]:
+    """What a picked effect adds, the gap with it on the points kept aside, and why that is not known."""
+    proof = result.diagnosis.proof
+    sizes = {picked.explanation: picked.coordinates}
+    if not proof.points:
+        return proof.stored(sizes), None, ""
+    try:
+        answer = proof.again(sizes)
+    except RigdesignError as error:
+        answer = proof.stored(sizes)
+        return answer, proof.gap(answer), f"the case with {picked.explanation} does not run: {error}"
+    return answer, proof.gap(answer), ""
 
 
 def _case_patch(result: Result, applied: Sequence[Sized], picked: bool) -> tuple[CasePatch | None, str]:

@@ -75,6 +75,19 @@ def patched_values(case: Case, fitted: Sequence[Fitted]) -> dict[str, dict[str, 
     return values
 
 
+def patched_case(case: Case, fitted: Sequence[Fitted]) -> Case:
+    """The case with all effects together.
+
+    Raises
+    ------
+    CaseError
+        The case does not admit a value.
+    """
+    for one in fitted:
+        case = changed_case(case, one.changes(case))
+    return case
+
+
 def patched_title(case: Case, fitted: Sequence[Fitted]) -> str:
     """Title of the variant: that of the case with what was added."""
     return f"{case.title}, with {' and '.join(one.effect.title for one in fitted)} as diagnosed"

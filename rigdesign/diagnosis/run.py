@@ -16,6 +16,7 @@ from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.library import Library
 from rigdesign.diagnosis.next_measurement import Ranked
 from rigdesign.diagnosis.patch import patched_values
+from rigdesign.diagnosis.proof import FullRun
 from rigdesign.diagnosis.proposals import extras_of, proposals
 from rigdesign.diagnosis.sensors import Stated
 from rigdesign.diagnosis.subject import Comparison, compare, plain
@@ -72,7 +73,9 @@ def diagnose_measurement(
             repeated=data.strength == "proven",
         )
         say("weighing explanations")
-        found = diagnose(problem, calibration)
+        channels = tuple(entry.channel for entry in data.channels.values())
+        rerun = FullRun(case=case, settings=data.settings, channels=channels, effects=effects)
+        found = diagnose(problem, calibration, rerun)
         extras = extras_of(case, data.settings)
         offered = candidates_of(case, measurement, data.settings)
         ahead = proposals(problem, found, offered, extras, calibration.amplitudes) if offered else ()

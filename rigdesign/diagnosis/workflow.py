@@ -1,7 +1,7 @@
 """The workflow of a diagnosis on numbers in memory: from readings and library to a verdict with its proof.
 
 readings -> single outliers out -> points held out -> evidence -> verdict, again for what is left
-         -> joint fit with intervals -> gap on the held-out points -> alternatives
+         -> joint fit with intervals -> what may be claimed -> alternatives
 """
 
 from collections.abc import Mapping, Sequence
@@ -13,6 +13,7 @@ import numpy as np
 
 from rigdesign.diagnosis.anonymous import anonymous
 from rigdesign.diagnosis.baseline import differenced
+from rigdesign.diagnosis.claims import Refusal, Traces, claim
 from rigdesign.diagnosis.columns import Array, Column
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.decision import Decision, posterior
@@ -22,11 +23,12 @@ from rigdesign.diagnosis.effects import CIRCUIT, DYNAMIC
 from rigdesign.diagnosis.evidence import Evidence, weigh
 from rigdesign.diagnosis.examine import Earlier, Examination, Explanations, examine
 from rigdesign.diagnosis.healthy import relative_speed
-from rigdesign.diagnosis.heldout import Gap, gap, held_out
+from rigdesign.diagnosis.heldout import Gap, held_out
 from rigdesign.diagnosis.hypotheses import physical, sensor, without_a_name
 from rigdesign.diagnosis.intervals import JointFit, fit_together
 from rigdesign.diagnosis.outliers import reject
 from rigdesign.diagnosis.own_error import OwnError
+from rigdesign.diagnosis.proof import Proof, Rerun
 from rigdesign.diagnosis.signature import Contest, Signature
 from rigdesign.diagnosis.subject import Comparison, plain
 from rigdesign.diagnosis.wrong_data import wrong_data
@@ -67,7 +69,10 @@ class Alternative:
 class Diagnosis:
     """What the data say.
 
-    named : names, or members of an alias group; fit : of named effects; rejected : outliers with their feature
+    strength : proven where the gap shrinks by more than its scatter with the named effects in the model, run in full,
+        and the noise is known from repeats; named : names, or members of an alias group; fit : of named effects; gap :
+        on the points kept aside; refused : names that the search gave and that are not claimed; rejected :
+        outliers with their feature
     """
 
     decision: Decision
@@ -76,6 +81,7 @@ class Diagnosis:
     found: tuple[Evidence, ...]
     fit: JointFit | None
     gap: Gap | None
+    refused: tuple[Refusal, ...]
     alternatives: tuple[Alternative, ...]
     detectability: tuple[Detectability, ...]
     aliases: tuple[tuple[str, str, float], ...]
@@ -86,16 +92,22 @@ class Diagnosis:
     examinations: tuple[Examination, ...] = field(repr=False)
     covariance: Covariance = field(repr=False)
     """Of all numbers that were kept, held-out ones included."""
+    proof: Proof = field(repr=False)
+    """What names were held against."""
     answer: Array = field(repr=False)
-    """(n,) what the named effects add to the prediction, in the units of the features."""
+    """(n,) what the named effects add to the prediction, in the units of the features; at points kept aside by the full
+    model."""
     kept: tuple[int, ...] = field(repr=False)
     """Rows of the subject that were kept."""
     residual: Array = field(repr=False)
     """(n,) what was to be explained at the kept rows: against the model, or given the baseline."""
 
 
-def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
-    """Find what the model lacks, or say that these data cannot tell."""
+def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun | None = None) -> Diagnosis:
+    """Find what the model lacks, or say that these data cannot tell.
+
+    rerun : the full model with named effects in it; without one the proof is left at the stored runs, and indicative
+    """
     everything = _space(problem, problem.subject, calibration)
     series = [(one.channel, one.order) for one in problem.subject.features]
     outliers = reject(everything.covariance.matrix, everything.raw, series)
@@ -113,18 +125,27 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
     looked_at = (subject, whole) if problem.baseline is None else (problem.subject, everything)
     wrong = None if refused else _wrong_data(problem, *looked_at, calibration)
     deciding = wrong or examinations[0]
-    decision = refused or deciding.decision
-    if decision.verdict != "named":
-        found = ()
-    fit = _fitted(space, found, calibration) if found else None
-    answer = _answer(problem, subject, found, fit) if fit is not None else np.zeros(len(kept))
+    proof = Proof(subject=subject, whole=whole, points=points, rerun=rerun)
+    claimed = claim(
+        refused or deciding.decision,
+        found,
+        Traces(
+            space=space,
+            weighed=examinations[0].evidence,
+            assembly=_assemblies(seen),
+        ),
+        proof,
+        lambda some: _fitted(space, some, calibration),
+    )
+    proven = claimed.gap is not None and claimed.gap.shrunk and rerun is not None
     return Diagnosis(
-        decision=decision,
-        strength="proven" if problem.repeated and points else "indicative",
-        named=tuple(dict.fromkeys(part for one in found for part in one.hypothesis.parts)) or decision.named,
-        found=found,
-        fit=fit,
-        gap=_proof(whole, subject, points, answer) if points else None,
+        decision=claimed.decision,
+        strength="proven" if problem.repeated and proven else "indicative",
+        named=claimed.decision.named,
+        found=claimed.found,
+        fit=claimed.fit,
+        gap=claimed.gap,
+        refused=claimed.refused,
         alternatives=_alternatives(deciding),
         detectability=examinations[0].detectability,
         aliases=tuple(aliases(space, explanations.physical)),
@@ -133,7 +154,8 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT) -> Diagnosis:
         examinations=tuple(examinations),
         deciding=deciding,
         covariance=whole.covariance,
-        answer=answer,
+        proof=proof,
+        answer=claimed.answer,
         kept=tuple(kept),
         residual=whole.raw,
     )
@@ -163,6 +185,12 @@ def _cut(
         if problem.baseline is None
         else space.rows(rows)
     )
+
+
+def _assemblies(subject: Comparison) -> list[tuple[tuple[str, int], ...]]:
+    """(n,) teeth by which meshes were put on further at the point of each number."""
+    found = {one.name: tuple(sorted(one.tooth_offset.items())) for one in subject.library.settings}
+    return [found.get(feature.setting, ()) for feature in subject.features]
 
 
 def _explanations(
@@ -335,39 +363,6 @@ def _bounds(one: Evidence) -> list[tuple[float, float]]:
     if curve is not None:
         return [curve.bounds]
     return [(-one.hypothesis.half, one.hypothesis.half)] * one.columns.shape[1]
-
-
-def _answer(problem: Problem, subject: Comparison, found: Sequence[Evidence], fit: JointFit) -> Array:
-    """(n,) what the named effects at their fitted sizes add at all kept numbers."""
-    plain_space = Covariance(base=np.eye(len(subject.features)), columns=(), amplitudes={})
-    claimed = {one.hypothesis.name for one in found}
-    effects = physical(
-        plain_space, subject.features, subject.effects, subject.library.responses, subject.teeth_a_turn, 0.0
-    )
-    by_name = {
-        one.name: one for one in (*effects, *sensor(plain_space, subject.errors)) if one.name in claimed
-    }
-    answer = np.zeros(len(subject.features))
-    for one, size in zip(found, fit.coordinates, strict=True):
-        hypothesis = by_name[one.hypothesis.name]
-        if hypothesis.curve is not None:
-            answer += hypothesis.curve.at(np.array(size))[0]
-        elif hypothesis.columns is not None:
-            answer += hypothesis.columns @ np.array(size)
-    return answer
-
-
-def _proof(whole: Whitened, subject: Comparison, points: tuple[str, ...], answer: Array) -> Gap:
-    rows = np.array([row for row, one in enumerate(subject.features) if one.setting in points])
-    matrix = whole.covariance.matrix[np.ix_(rows, rows)]
-    return gap(
-        Covariance(base=matrix, columns=(), amplitudes={}),
-        whole.raw[rows],
-        answer[rows],
-        subject.noise[rows],
-        [subject.channels[subject.features[row].channel].quantity for row in rows],
-        points,
-    )
 
 
 def _alternatives(examination: Examination, count: int = 12) -> tuple[Alternative, ...]:

@@ -7,8 +7,12 @@ from rigdesign.diagnosis.effects import Effect
 
 
 def effects_of(case: Case) -> tuple[Effect, ...]:
-    """All entries for this case, in a fixed order; names are unique."""
+    """All entries for this case, in a fixed order; names are unique.
+
+    Each has a healthy spread or a smallest size that matters.
+    """
     found = (*loop_effects(case), *heat_effects(case))
     names = [effect.name for effect in found]
     assert len(set(names)) == len(names)
+    assert all(effect.healthy > 0.0 or effect.matters > 0.0 for effect in found)
     return found

@@ -2,7 +2,9 @@
 
 Excitations are written by their parts along cosine and sine, so that an unknown phase costs nothing. Bounds are
 starting values of rig practice (design of the workflow, section 4); what a healthy gear has follows from its quality
-grade (ISO 1328-1).
+grade (ISO 1328-1). Of what a healthy rig does not have the entry says which size matters: a pitch deviation beyond the
+tolerance of its grade, a tooth softer by more than the teeth of one gear differ anyway, harmonic torques of half a per
+cent of their bound, a bracing torque that drifts by half a per cent over 50 K.
 """
 
 from collections.abc import Iterator, Mapping
@@ -17,6 +19,13 @@ from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, Scaled, facto
 from rigdesign.diagnosis.effects import Changes, Effect, Family, Parameter
 
 MICROMETRE = 1e-6
+
+LEAST_TORQUE = 0.1
+"""Amplitude of a harmonic torque that matters [N m]: the motor of a power circuit gives tens of newton metres, of which
+one to two per cent ripple anyway."""
+
+LEAST_SOFTENING = 0.02
+"""Share of its stiffness that a tooth must have lost to matter: less than a crack through a tenth of the root takes."""
 
 
 def loop_effects(case: Case) -> Iterator[Effect]:
@@ -67,6 +76,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         change=_SinglePitch(at, gear.teeth),
         any_tooth=gear.teeth,
         linear=True,
+        matters=spread["pitch_tolerance"],
     )
     yield Effect(
         name=f"weak_tooth:{label}",
@@ -76,6 +86,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         parameters=(Parameter(name="softening", unit="", low=0.0, high=0.8, source=PRACTICE),),
         change=_WeakTooth(at),
         any_tooth=gear.teeth,
+        matters=LEAST_SOFTENING,
     )
     yield Effect(
         name=f"profile_slope:{label}",
@@ -99,7 +110,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
 
 
 def _healthy_teeth(box: Gearbox, name: str) -> Mapping[str, float]:
-    """Spreads of one part of run-out, of a pitch wave, and of the profile slope [m].
+    """Spreads of one part of run-out, of a pitch wave, and of the profile slope, and the tolerance of a pitch [m].
 
     Gears are made to lie within the tolerance of their grade; half of it is taken as two standard deviations of the
     whole, a wave of the cumulative pitch as a third of the run-out.
@@ -112,7 +123,12 @@ def _healthy_teeth(box: Gearbox, name: str) -> Mapping[str, float]:
         mesh.helix_angle,
     )  # fmt: skip
     run_out = 0.25 * 0.5 * 0.9 * limits.F_pT * MICROMETRE
-    return {"run_out": run_out, "pitch_wave": run_out / 3.0, "slope": 0.25 * limits.f_HalphaT * MICROMETRE}
+    return {
+        "run_out": run_out,
+        "pitch_wave": run_out / 3.0,
+        "slope": 0.25 * limits.f_HalphaT * MICROMETRE,
+        "pitch_tolerance": limits.f_pT * MICROMETRE,
+    }
 
 
 def _length(name: str, low: float, high: float) -> Parameter:
@@ -260,6 +276,7 @@ def _joints(case: Case) -> Iterator[Effect]:
             parameters=_amplitudes("torque", 20.0, "N m"),
             change=_Harmonic(f"{at}.excitation", coupling.excitation, 2.0),
             linear=True,
+            matters=LEAST_TORQUE,
         )
 
 
@@ -292,6 +309,7 @@ def _drive(case: Case) -> Iterator[Effect]:
             parameters=_amplitudes("torque", 20.0, "N m"),
             change=_Harmonic("drivetrain.motor.ripple", motor.ripple, float(order)),
             linear=True,
+            matters=LEAST_TORQUE,
         )
     if motor.inertia > 0.0:
         yield _scaled(
@@ -306,4 +324,5 @@ def _drive(case: Case) -> Iterator[Effect]:
         parameters=(Parameter(name="drift", unit="1/K", low=-0.003, high=0.003, source=PRACTICE),),
         change=Added("drivetrain.bracing.temperature_drift", bracing.temperature_drift),
         linear=True,
+        matters=1e-4,
     )

@@ -15,7 +15,9 @@ Written by `python -m rigdesign.diagnosis.catalogue CASE ...`; do not edit by ha
 
 `rigdesign diagnose` names an effect of this page, a few that the data cannot tell apart, or nothing. An entry is named
 `kind:place`. It changes the case, and the ordinary model computes what follows; bounds are what is believed of a rig, a
-healthy spread is what no rig is free of. Which of them a measurement can see and tell apart is in its report.
+healthy spread is what no rig is free of. What a healthy rig does not have at all is named from the size on that
+matters. Effects whose traces correlate above 0.95 end as a group, and a name has to close the gap on operating points
+that were kept aside. Which of them a measurement can see and tell apart is in its report.
 """
 
 SENSORS = (
@@ -62,13 +64,22 @@ def effects_page(cases: Sequence[Case]) -> str:
             kinds.setdefault(effect.kind, (effect, set()))[1].add(case.name)
     lines = [HEAD, "## In the case\n"]
     lines += _table(
-        ("kind", "example", "parameters and bounds", "healthy spread", "how it shows", "cases that have it"),
+        (
+            "kind",
+            "example",
+            "parameters and bounds",
+            "healthy spread",
+            "matters from",
+            "how it shows",
+            "cases that have it",
+        ),
         [
             (
                 f"`{kind}`",
                 f"`{effect.name}`: {effect.title}",
                 "; ".join(_bounds(parameter) for parameter in effect.parameters[:1]) + _more(effect),
-                _healthy(effect),
+                _size(effect, effect.healthy),
+                _size(effect, effect.matters),
                 effect.signature,
                 ", ".join(case.name for case in cases if case.name in names),
             )
@@ -113,11 +124,12 @@ def _more(effect: Effect) -> str:
     return ", any tooth" if effect.any_tooth else ""
 
 
-def _healthy(effect: Effect) -> str:
-    if effect.healthy == 0.0:
+def _size(effect: Effect, size: float) -> str:
+    """A size of the first parameter, a dash for zero."""
+    if size == 0.0:
         return "–"
     parameter = effect.parameters[0]
     if parameter.factor:
-        return f"{100.0 * effect.healthy:.3g} %"
+        return f"{100.0 * size:.3g} %"
     scale, unit = display_scale(parameter.unit, False)
-    return f"{scale * effect.healthy:.3g} {unit}"
+    return f"{scale * size:.3g} {unit}"

@@ -1,0 +1,257 @@
+"""What may be claimed of the effects that a search has found.
+
+A name is given if its size matters, if it shrinks the gap on the points kept aside by more than the scatter of that
+(`rigdesign.diagnosis.heldout`), and if no other effect leaves the same trace; the case with all names in it, run in
+full, has to shrink the gap as well. What does not hold is told with its reason.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import hypot
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from rigdesign.diagnosis.columns import Array
+from rigdesign.diagnosis.covariance import Whitened
+from rigdesign.diagnosis.decision import Decision
+from rigdesign.diagnosis.detectability import ALIAS, SEEN
+from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.evidence import Evidence
+from rigdesign.diagnosis.heldout import LEAST_POINTS, Gap, course
+from rigdesign.diagnosis.intervals import JointFit
+from rigdesign.diagnosis.naming import Names, display_scale
+from rigdesign.diagnosis.proof import Proof, Sizes
+from rigdesign.errors import RigdesignError
+
+REACHES = 0.5
+"""Share of what a name explains that another effect must explain within its bounds to stand for it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refusal:
+    """A name that the search gave and that is not claimed.
+
+    name : of the entry; explanation : with tooth or order; coordinates : its fitted size; gap : without and with it on
+        the points kept aside, None where none were or where its size was enough to refuse it
+    """
+
+    name: str
+    explanation: str
+    coordinates: tuple[float, ...]
+    reason: str
+    gap: Gap | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """What is left of the names, and why the others are gone.
+
+    answer : (n,) of the names at all kept numbers, zero without any; gap : with them, None without points kept aside
+    """
+
+    decision: Decision
+    found: tuple[Evidence, ...]
+    fit: JointFit | None
+    answer: Array
+    gap: Gap | None
+    refused: tuple[Refusal, ...]
+
+
+def claim(
+    decision: Decision,
+    found: Sequence[Evidence],
+    traces: "Traces",
+    proof: Proof,
+    fitted: Callable[[Sequence[Evidence]], JointFit],
+) -> Claim:
+    """Hold the names of a decision against their sizes, the points kept aside and all other effects.
+
+    found : the explanation of every name; traces : of all in the first look; fitted : the joint fit of some
+    """
+    refused: list[Refusal] = []
+    if decision.verdict != "named":
+        return _without(decision, proof, refused)
+    left = list(found)
+    while left:
+        fit = fitted(left)
+        doubt = _weakest(left, fit, proof)
+        if doubt is None:
+            break
+        refused.append(doubt)
+        left = [one for one in left if one.hypothesis.name != doubt.explanation]
+    if not left:
+        return _without(_unclaimed(decision, refused), proof, refused)
+    group = _group(left, traces)
+    if group is not None:
+        return _without(group, proof, refused)
+    sizes = _sizes(left, fit)
+    try:
+        answer = proof.again(sizes)
+    except RigdesignError as error:
+        refused += [
+            _refusal(one, sizes, f"the case with {one.hypothesis.name} does not run: {error}") for one in left
+        ]
+        return _without(_unclaimed(decision, refused), proof, refused)
+    whole = proof.gap(answer)
+    if not whole.shrunk:
+        refused += [_refusal(one, sizes, _unproven(one.hypothesis.name, whole), whole) for one in left]
+        return _without(_unclaimed(decision, refused), proof, refused)
+    named = tuple(dict.fromkeys(part for one in left for part in one.hypothesis.parts))
+    return Claim(
+        decision=replace(decision, named=named),
+        found=tuple(left),
+        fit=fit,
+        answer=answer,
+        gap=whole,
+        refused=tuple(refused),
+    )
+
+
+def _without(decision: Decision, proof: Proof, refused: Sequence[Refusal]) -> Claim:
+    """No names."""
+    nothing = np.zeros(len(proof.subject.features))
+    return Claim(
+        decision=decision,
+        found=(),
+        fit=None,
+        answer=nothing,
+        gap=proof.gap(nothing) if proof.points else None,
+        refused=tuple(refused),
+    )
+
+
+def _sizes(found: Sequence[Evidence], fit: JointFit) -> Sizes:
+    return {one.hypothesis.name: size for one, size in zip(found, fit.coordinates, strict=True)}
+
+
+def _refusal(one: Evidence, sizes: Sizes, reason: str, gap: Gap | None = None) -> Refusal:
+    name = one.hypothesis.name
+    return Refusal(
+        name=one.hypothesis.parts[0], explanation=name, coordinates=sizes[name], reason=reason, gap=gap
+    )
+
+
+def _weakest(found: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal | None:
+    """The first name too small to matter, else that of those not proven which shrinks the gap least; None if all hold.
+
+    Each is proven by itself, with the others in the model: by the stored runs.
+    """
+    sizes = _sizes(found, fit)
+    for one in found:
+        if text := too_little(proof.subject.effects, one.hypothesis.name, sizes[one.hypothesis.name]):
+            return _refusal(one, sizes, text)
+    if not proof.points:
+        running = len(proof.subject.library.settings)
+        text = f"none of {running} operating points could be kept aside to prove it; at least {LEAST_POINTS} are needed"
+        return _refusal(found[0], sizes, f"{found[0].hypothesis.name} fits best, but {text}")
+    gaps = []
+    for one in found:
+        name = one.hypothesis.name
+        others = proof.stored({other: size for other, size in sizes.items() if other != name})
+        gaps.append(proof.gap(proof.stored({name: sizes[name]}), others))
+    least = min(range(len(found)), key=lambda place: gaps[place].fall / max(gaps[place].scatter, 1e-300))
+    if gaps[least].shrunk:
+        return None
+    return _refusal(found[least], sizes, _unproven(found[least].hypothesis.name, gaps[least]), gaps[least])
+
+
+def too_little(effects: Sequence[Effect], explanation: str, coordinates: Sequence[float]) -> str:
+    """Why an effect of this size does not matter; empty where it does."""
+    known = Names(effects, ()).entry(explanation)
+    if known is None or not isinstance(known[0], Effect) or hypot(*coordinates) >= known[0].matters:
+        return ""
+    effect = known[0]
+    scale, unit = display_scale(effect.parameters[0].unit, effect.parameters[0].factor)
+    size, least = (f"{scale * value:.3g} {unit}".rstrip() for value in (hypot(*coordinates), effect.matters))
+    return f"{explanation} fits best with {size}; less than {least} does not matter"
+
+
+def _unproven(name: str, whole: Gap) -> str:
+    return f"with {name} in the model the gap {course(whole)}"
+
+
+def _unclaimed(decision: Decision, refused: Sequence[Refusal]) -> Decision:
+    """The verdict where no name is left: contradicted, without points to prove it, or too little."""
+    if not refused:
+        reason = f"{decision.named[0]} is in every explanation that counts, but none of them is it alone"
+        return Decision(verdict="unknown_located", named=(), reason=reason)
+    grown = next((one for one in refused if one.gap is not None and one.gap.grown), None)
+    if grown is not None:
+        return Decision(verdict="unknown_located", named=(), reason=grown.reason)
+    last = refused[-1]
+    failed = "kept aside to prove" in last.reason
+    return Decision(verdict="data_insufficient" if failed else "too_small", named=(), reason=last.reason)
+
+
+def _group(found: Sequence[Evidence], traces: "Traces") -> Decision | None:
+    """The verdict where another effect leaves the trace of a name; None where every name stands alone."""
+    for one in found:
+        name = one.hypothesis.parts[0]
+        rivals = traces.like(name)
+        if rivals:
+            rival, correlation = rivals[0]
+            group = (name, *(other for other, _ in rivals))
+            return Decision(
+                verdict="alias_group",
+                named=group,
+                reason=f"{rival} leaves the trace of {name}, correlation {correlation:.3f}",
+                apart=tuple(part for other in found for part in other.hypothesis.parts if part not in group),
+            )
+    return None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Traces:
+    """What single effects and sensor errors leave in the numbers they were sought in.
+
+    space : of the first look; weighed : its explanations; assembly : (n,) how the rig was put together at the point of
+        each number
+    """
+
+    space: Whitened
+    weighed: Sequence[Evidence]
+    assembly: Sequence[object]
+
+    def like(self, name: str) -> list[tuple[str, float]]:
+        """Effects and sensor errors whose trace correlates with that of a name above `ALIAS`, those most alike first.
+
+        The trace of a name is its answer at its best size, by itself. It is held against the answer of every other one
+        at its own best size, of two parameters against the plane they span, under the covariance of the data. Where the
+        rig was put together otherwise at some points, to tell such effects apart, they are alike only if they also are
+        with the trace counting as much in each assembly: one may be read far more exactly than the other. What explains
+        less than `REACHES` of what the name does within its bounds cannot stand for it.
+        """
+        single = [one for one in self.weighed if one.hypothesis.family in ("physical", "sensor")]
+        own = next((one for one in single if one.hypothesis.parts == (name,)), None)
+        if own is None or not np.any(own.answer):
+            return []
+        found: dict[str, float] = {}
+        for one in single:
+            other = one.hypothesis.parts[0]
+            if other == name or one.gain < REACHES * own.gain or not np.any(one.answer):
+                continue
+            plane = one.answer[:, None] if one.hypothesis.curve is not None else one.columns
+            correlation = _cosine(plane, own.answer)
+            if correlation > ALIAS and _cosine(*self._by_assembly(plane, own.answer)) > ALIAS:
+                found[other] = max(found.get(other, 0.0), correlation)
+        return sorted(found.items(), key=lambda pair: -pair[1])
+
+    def _by_assembly(self, plane: Array, trace: Array) -> tuple[Array, Array]:
+        """Columns (n, k) and a trace (n,), scaled so that no assembly in which the trace is seen outweighs another."""
+        states = list(dict.fromkeys(self.assembly))
+        if len(states) == 1:
+            return plane, trace
+        lower, matrix = self.space.covariance.lower, self.space.covariance.matrix
+        both = lower @ np.column_stack([plane, trace])
+        for state in states:
+            rows = np.array([row for row, one in enumerate(self.assembly) if one == state])
+            factor = np.linalg.cholesky(matrix[np.ix_(rows, rows)])
+            own = solve_triangular(factor, both[rows], lower=True, check_finite=False)
+            both[rows] = own / max(1.0, float(np.linalg.norm(own[:, -1])) / SEEN)
+        return both[:, :-1], both[:, -1]
+
+
+def _cosine(plane: Array, trace: Array) -> float:
+    """Between a trace (n,) and what columns (n, k) span."""
+    return float(np.linalg.norm(np.linalg.qr(plane)[0].T @ trace) / np.linalg.norm(trace))
