@@ -88,9 +88,16 @@ def wrong(row: Row) -> bool:
     )
 
 
-def size_of(row: Row) -> float:
-    """Detectable sizes of a single effect by the truth."""
-    return float(row["effects"][0].get("detectable_sizes") or 0.0)
+SIZES = {"measured": "detectable_sizes", "declared": "detectable_sizes_declared"}
+"""Floor (`tests.virtual_rig.detect.FLOORS`) -> key of an effect."""
+
+
+def size_of(row: Row, floor: str = "measured") -> float:
+    """Detectable sizes of a single effect by the truth, over one of two floors.
+
+    Raises KeyError for an answer that does not hold them; `tests.blind.score generate` adds them.
+    """
+    return float(row["effects"][0][SIZES[floor]] or 0.0)
 
 
 def easy(row: Row) -> bool:
@@ -103,12 +110,13 @@ def among_three(row: Row) -> bool:
     return right(row) or bool(set(truths(row)) & {part for one in row["top"][:3] for part in one})
 
 
-def table(rows: Sequence[Row]) -> list[tuple[str, str, str]]:
-    """(metric, target, measured) of one mode."""
+def table(rows: Sequence[Row], floor: str = "measured") -> list[tuple[str, str, str]]:
+    """(metric, target, measured) of one mode, detectable sizes over one of two floors."""
     kinds = {kind: [row for row in rows if row["kind"] == kind] for kind in
              ("none", "single", "pair", "out", "small", "input")}  # fmt: skip
-    large = [row for row in kinds["single"] if size_of(row) >= 2.0]
-    between = [row for row in kinds["single"] if 1.0 <= size_of(row) < 2.0]
+    large = [row for row in kinds["single"] if size_of(row, floor) >= 2.0]
+    between = [row for row in kinds["single"] if 1.0 <= size_of(row, floor) < 2.0]
+    of_data = [row for row in rows if row["kind"] != "input"]
     anything = [
         row for row in (*kinds["single"], *kinds["pair"]) if named(row) or row["verdict"] == "alias_group"
     ]
@@ -120,6 +128,10 @@ def table(rows: Sequence[Row]) -> list[tuple[str, str, str]]:
     plain = [one for one in large if not easy(one)]
     return [
         ("named without effect", "<= 2 %", str(rate(kinds["none"], spoke))),
+        ("alarm without effect: present, not identified", "-", str(rate(kinds["none"], alarmed))),
+        ("alarm without effect: data suspected", "-", str(rate(kinds["none"], suspected))),
+        ("data suspected where none are wrong", "-", str(rate(of_data, suspected))),
+        ("exchange told where there is none", "-", str(rate(rows, exchanged_falsely))),
         ("named out of catalogue", "<= 5 %", str(rate(kinds["out"], spoke))),
         (
             "out of catalogue flagged",
@@ -162,6 +174,22 @@ def raw_shrink(row: Row) -> float | None:
 def spoke(row: Row) -> bool:
     """Something was named, or a group."""
     return bool(named(row)) or row["verdict"] == "alias_group"
+
+
+def alarmed(row: Row) -> bool:
+    """An effect is said to be present, without a name."""
+    return bool(row["verdict"] == "unknown_located")
+
+
+def suspected(row: Row) -> bool:
+    """The data are said to be wrong."""
+    return bool(row["verdict"] == "input_error_suspected")
+
+
+def exchanged_falsely(row: Row) -> bool:
+    """Channels or points are said to be exchanged that are not."""
+    told = {name for name in named(row) if name.startswith("swapped")}
+    return bool(told - set(truths(row)))
 
 
 def one_is_in(row: Row) -> bool:

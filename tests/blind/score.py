@@ -4,15 +4,18 @@
     python -m tests.blind.score calibrate --out WORK [--without RIG]
     python -m tests.blind.score run dev plain --out WORK [--calibration FILE]
     python -m tests.blind.score run test plain --out WORK --commit HASH
-    python -m tests.blind.score report dev plain --out WORK
+    python -m tests.blind.score report dev plain --out WORK [--floor declared]
 
-Every step goes on where it was stopped. Sets and results stay in WORK, outside of the repository.
+A report counts detectable sizes over the floor they were drawn by, or over the one declared before any set was
+diagnosed (`tests.virtual_rig.detect`); `generate` adds these to answers that were stored without them. Every step goes
+on where it was stopped. Sets and results stay in WORK, outside of the repository.
 """
 
 import argparse
 import csv
 import json
 import shutil
+import tempfile
 import time
 import tomllib
 from collections.abc import Iterable
@@ -38,7 +41,7 @@ from rigdesign.diagnosis.subject import Comparison, plain
 from rigdesign.diagnosis.widening import widen_drift
 from rigdesign.measurement import load_measurement
 from tests.blind.ablations import ABLATIONS
-from tests.blind.metrics import Row, canonical, table
+from tests.blind.metrics import SIZES, Row, canonical, table
 from tests.blind.splits import RIGS, SENSORS, Spec, specs
 from tests.virtual_rig.generate import make_set
 
@@ -69,9 +72,14 @@ def _generate(job: tuple[str, str, Path, Spec]) -> str:
     split, mode, out, spec = job
     folder = folder_of(out, split, mode, spec)
     answer = out / "answers" / split / mode / f"{spec.name}.json"
-    if answer.exists():
-        return "there"
     started = time.perf_counter()
+    if answer.exists():
+        if all(set(SIZES.values()) <= set(effect) for effect in json.loads(answer.read_text())["effects"]):
+            return "there"
+        with tempfile.TemporaryDirectory() as scratch:  # the same set again by its seed, for its sizes
+            entry = make_set(spec.rig, spec.wanted, spec.seed, Path(scratch))
+        answer.write_text(json.dumps(entry))
+        return f"{spec.rig} {spec.wanted['kind']}: sizes added in {time.perf_counter() - started:.1f} s"
     try:
         entry = make_set(spec.rig, spec.wanted, spec.seed, folder)
     except ValueError as error:
@@ -225,6 +233,7 @@ def _run(job: tuple[str, str, Path, Spec, Method]) -> Row | None:
         "named": list(found.named),
         "reason": found.decision.reason,
         "strength": found.strength,
+        "refused": [one.explanation for one in found.refused],
         "top": [list(one.parts) for one in found.alternatives],
         "masses": [one.posterior for one in found.alternatives],
         "evidence": max(one.log_bayes for one in found.examinations[0].evidence),
@@ -331,14 +340,25 @@ def _sizes(row: Row, result: Any) -> None:
     row["size_error"] = abs(value - true) / max(abs(true), 1e-12)
 
 
-def report(split: str, mode: str, out: Path, tag: str) -> None:
-    """Print the table of a split in one mode: all sets, by rig, by the sensors they have."""
+def stored_rows(split: str, mode: str, out: Path, tag: str) -> list[Row]:
+    """Stored results with the effects as the answers have them now: sizes may have been added since."""
     text = (out / "results" / f"{split}_{mode}{tag}.jsonl").read_text()
     rows = [json.loads(line) for line in text.splitlines()]
+    answers = out / "answers" / split / mode
+    for row in rows:
+        answer = answers / f"{row['name']}.json"
+        if answer.exists():
+            row["effects"] = json.loads(answer.read_text())["effects"]
+    return rows
+
+
+def report(split: str, mode: str, out: Path, tag: str, floor: str) -> None:
+    """Print the table of a split in one mode: all sets, by rig, by the sensors they have."""
+    rows = stored_rows(split, mode, out, tag)
     for chosen in (None, *RIGS, *SENSORS):
         own = [row for row in rows if chosen in (None, row["rig"], row["sensors"])]
-        print(f"\n{split}, {mode}, {chosen or 'all'}: {len(own)} sets")
-        for name, target, measured in table(own):
+        print(f"\n{split}, {mode}, {chosen or 'all'}: {len(own)} sets, sizes over the {floor} floor")
+        for name, target, measured in table(own, floor):
             print(f"  {name:48s} {target:14s} {measured}")
 
 
@@ -357,6 +377,7 @@ def main() -> None:
     parser.add_argument("--placebo", action="store_true", help="readings shuffled over the points")
     parser.add_argument("--without")
     parser.add_argument("--tag", default="")
+    parser.add_argument("--floor", choices=sorted(SIZES), default="measured")
     parser.add_argument("--workers", type=int, default=2)
     args = parser.parse_args()
     match args.step:
@@ -374,7 +395,7 @@ def main() -> None:
             )
             run(args.split, args.mode, args.out, args.commit, method, args.workers, tag)
         case _:
-            report(args.split, args.mode, args.out, args.tag)
+            report(args.split, args.mode, args.out, args.tag, args.floor)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -66,8 +66,7 @@ def make_set(
         rng = np.random.default_rng([seed, RIGS.index(rig), *spec.get("kind", "given").encode()])
     points = _reindexed(true_points(rig, plan_points(rig, plan), rng), rig, int(spec.get("reindex", 0)))
     again = _reindexed(true_points(rig, plan_points(rig, plan), rng), rig, int(spec.get("reindex", 0)))
-    found = detector(rig, level, plan)
-    job = _Set(rig, own, constants, points, found, paired, rng)
+    job = _Set(rig, own, constants, points, Detectors.of(rig, level, plan), paired, rng)
     effects = job.effects(spec)
     entry: dict[str, Any] = {
         "rig": rig, "kind": spec.get("kind", "given"), "effects": [_shown(e) for e in effects], "sensors": level,
@@ -90,6 +89,18 @@ def make_set(
     return entry
 
 
+class Detectors(NamedTuple):
+    """Over the floor that sizes are drawn by, and over the one declared before any set was diagnosed."""
+
+    measured: Detector
+    declared: Detector
+
+    @classmethod
+    def of(cls, rig: str, level: str, plan: int) -> "Detectors":
+        """Of a rig, its sensors and a plan."""
+        return cls(detector(rig, level, plan, "measured"), detector(rig, level, plan, "declared"))
+
+
 class _Set:
     """One set in the making: truth with and without effects, and sizes found by detectability."""
 
@@ -99,12 +110,12 @@ class _Set:
         own: Sequence[Sensor],
         constants: Constants,
         points: Sequence[TruePoint],
-        found: Detector,
+        found: Detectors,
         paired: bool,
         rng: np.random.Generator,
     ) -> None:
         self.rig, self.own, self.constants, self.points = rig, own, constants, points
-        self.detector, self.paired, self.rng = found, paired, rng
+        self.detector, self.declared, self.paired, self.rng = found.measured, found.declared, paired, rng
         self.rows = readings(own, points)
         self._base: np.ndarray | None = None
         self._known: dict[str, np.ndarray] = {}
@@ -181,9 +192,10 @@ class _Set:
         return effect["effect"].partition(":")[0] in CHAIN_KINDS
 
     def _measured(self, effect: dict[str, Any]) -> dict[str, Any]:
-        """The effect with how many detectable sizes it has, alone."""
+        """The effect with how many detectable sizes it has, alone, over either floor."""
         change = self._seen(effect) if self._of_chain(effect) else self.truth([effect]) - self.truth([])
         effect["detectable_sizes"] = self.detector.detectable_sizes(change, baseline=self.paired)
+        effect["detectable_sizes_declared"] = self.declared.detectable_sizes(change, baseline=self.paired)
         return effect
 
     def _seen(self, effect: Mapping[str, Any]) -> np.ndarray:

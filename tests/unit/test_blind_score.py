@@ -1,0 +1,108 @@
+"""The blind score counts what is said, not names alone, and detectable sizes over either floor."""
+
+import json
+
+import numpy as np
+import pytest
+
+from tests.blind import score
+from tests.blind.metrics import table
+from tests.blind.splits import Spec
+from tests.virtual_rig import detect
+from tests.virtual_rig.generate_plans import plan_points, sensors
+from tests.virtual_rig.generate_truth import readings, true_points
+
+
+def row(kind, verdict, named=(), effects=(), **more):
+    return {
+        "kind": kind, "rig": "uhcf_prototype", "verdict": verdict, "named": list(named), "effects": list(effects),
+        "top": [], "covered": None, "size_error": None, "gap_shrink": None, "gap_worse": None, "seconds": 1.0, **more,
+    }  # fmt: skip
+
+
+def loss(measured, declared):
+    return {"effect": "mesh_loss:test", "detectable_sizes": measured, "detectable_sizes_declared": declared}
+
+
+def numbers(rows, floor="measured"):
+    return {name: text.split(" ")[0] for name, _, text in table(rows, floor)}
+
+
+def test_false_alarms_are_counted_beside_names():
+    swapped = "swapped_channels:TC01,TC02"
+    found = numbers(
+        [
+            row("none", "unknown_located"), row("none", "within_noise"), row("none", "too_small"),
+            row("none", "input_error_suspected", [swapped]),
+            row("single", "input_error_suspected", ["swapped_points:P01,P02"], [loss(3.0, 3.0)]),
+            row("single", "unknown_located", (), [loss(3.0, 3.0)]),
+            row("input", "input_error_suspected", [swapped], [{"effect": swapped}]),
+        ]
+    )  # fmt: skip
+    assert found["alarm without effect: present, not identified"] == "1/4"
+    assert found["alarm without effect: data suspected"] == "1/4"
+    assert found["data suspected where none are wrong"] == "2/6"
+    assert found["exchange told where there is none"] == "2/7"
+
+
+def test_effects_count_as_detectable_over_either_floor():
+    rows = [
+        row("single", "named", ["mesh_loss:test"], [loss(4.0, 9.0)]),
+        row("single", "too_small", (), [loss(1.5, 3.0)]),
+        row("single", "too_small", (), [loss(2.5, 1.2)]),
+        row("single", "within_noise", (), [loss(0.4, 0.9)]),
+    ]
+    large, between = "single >= 2 MDE right, excitation/loss/flow", "single 1-2 MDE right"
+    assert (numbers(rows)[large], numbers(rows)[between]) == ("1/2", "0/1")
+    assert (numbers(rows, "declared")[large], numbers(rows, "declared")[between]) == ("1/2", "0/1")
+    rows += [row("single", "named", ["mesh_loss:test"], [loss(1.9, 2.1)])]
+    assert numbers(rows)[large] == "1/2" and numbers(rows, "declared")[large] == "2/3"
+
+
+def test_a_set_stored_without_the_declared_size_is_no_silent_zero():
+    with pytest.raises(KeyError, match="detectable_sizes_declared"):
+        table(
+            [row("single", "named", [], [{"effect": "mesh_loss:test", "detectable_sizes": 2.0}])], "declared"
+        )
+
+
+def test_generate_adds_sizes_to_stored_answers_and_leaves_the_set(monkeypatch, tmp_path):
+    spec = Spec("0001", "uhcf_prototype", 7, {"kind": "single"})
+    answer = tmp_path / "answers" / "dev" / "plain" / "0001.json"
+    answer.parent.mkdir(parents=True)
+    answer.write_text(json.dumps({"effects": [{"effect": "mesh_loss:test", "detectable_sizes": 2.0}]}))
+    made = []
+
+    def again(rig, wanted, seed, folder):
+        made.append((rig, wanted, seed))
+        assert folder != score.folder_of(tmp_path, "dev", "plain", spec)
+        return {"effects": [loss(2.0, 4.0)]}
+
+    monkeypatch.setattr(score, "make_set", again)
+    assert "sizes added" in score._generate(("dev", "plain", tmp_path, spec))
+    assert json.loads(answer.read_text())["effects"][0]["detectable_sizes_declared"] == 4.0
+    assert score._generate(("dev", "plain", tmp_path, spec)) == "there"
+    assert made == [("uhcf_prototype", {"kind": "single"}, 7)]
+    stored = tmp_path / "results" / "dev_plain.jsonl"
+    stored.parent.mkdir()
+    stored.write_text(json.dumps({"name": "0001", "effects": [{"effect": "mesh_loss:test"}]}) + "\n")
+    (found,) = score.stored_rows("dev", "plain", tmp_path, "")
+    assert found["effects"] == [loss(2.0, 4.0)]
+
+
+def test_the_two_floors_are_those_of_the_history(monkeypatch):
+    """763ff1a and 636b546: mesh orders 0.20 and 1.0, power 3 and 6 %, temperatures 0.5 and 1.0 K."""
+    rig = "loop_1to1"
+    rows = readings(sensors(rig, "rich"), true_points(rig, plan_points(rig, 15)))
+    base = np.array([1e3 if one.order else 1.0 for one in rows])
+    monkeypatch.setattr(detect, "_sensitivities", lambda rig: (base, np.zeros((len(rows), 1)), ("none",)))
+    found = {floor: detect.Detector(rig, "rich", 15, floor=floor) for floor in detect.FLOORS}
+    mesh = next(i for i, one in enumerate(found["declared"].rows) if one.order == 28.0)
+    ratio = np.sqrt(np.diagonal(found["measured"].floor)[mesh] / np.diagonal(found["declared"].floor)[mesh])
+    assert ratio == pytest.approx(1.0 / 0.20)
+    change = np.zeros(len(rows))
+    change[mesh] = 1.0
+    assert found["declared"].delta(change) > 3.0 * found["measured"].delta(change)
+    for key, ratio in (("power", 2.0), ("temperature_each", 2.0), ("temperature_common", 2.2)):
+        assert detect.MEASURED[key] / detect.DECLARED[key] == pytest.approx(ratio)
+    assert detect.detector.__wrapped__(rig, "rich", 15).shares is detect.MEASURED
