@@ -43,7 +43,7 @@ VERDICTS = {
     "set_04": "unknown_located",
     "set_05": "within_noise",
     "set_06": "within_noise",
-    "set_07": "named",
+    "set_07": "alias_group",
     "set_08": "alias_group",
     "set_09": "unknown_located",
     "set_10": "input_error_suspected",

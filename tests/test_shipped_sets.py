@@ -33,12 +33,18 @@ WANTED = {
     ("uhcf_prototype", "set_3"): ("within_noise", set()),
     ("uhcf_prototype", "set_4"): ("unknown_located", set()),
     ("uhcf_prototype", "set_5"): ("input_error_suspected", {"swapped_points:P05,P08"}),
-    ("uhcf_prototype", "set_6"): ("named", {"bearing_loss:test", "film:test.chamber_oil"}),
+    ("uhcf_prototype", "set_6"): ("alias_group", {"bearing_loss:test", "oil_viscosity:test"}),
     ("loop_1to1", "set_0"): ("within_noise", set()),
     ("loop_1to1", "set_1"): ("alias_group", {"run_out:test.pinion", "run_out:test.wheel"}),
     ("loop_1to1", "set_2"): ("named", {"run_out:test.pinion"}),
 }
-"""Rig and set -> verdict and names it must end with."""
+"""Rig and set -> verdict and names it must end with.
+
+Friction of the bearings and viscosity leave one trace on the prototype (correlation 0.996): a group.
+"""
+
+APART = {("uhcf_prototype", "set_6"): {"film:test.chamber_oil"}}
+"""Names that hold whichever of the group is at work."""
 
 
 def diagnosed(rig, name):
@@ -52,7 +58,9 @@ def test_every_set_ends_as_it_should(rig, name):
     assert (found.decision.verdict, set(found.named)) == (verdict, names)
     answer = ANSWERS.get(f"{rig}/{name}", {"effects": []})
     hidden = {canonical(effect["effect"], rig) for effect in answer["effects"]}
-    assert hidden <= names if verdict == "alias_group" else names <= hidden
+    apart = APART.get((rig, name), set())
+    assert set(found.decision.apart) == apart
+    assert hidden <= names | apart if verdict == "alias_group" else names <= hidden
 
 
 @pytest.mark.parametrize("name", ["set_1", "set_6"])

@@ -55,9 +55,8 @@ def headline(outcome: Outcome) -> str:
         case "named":
             return " ".join(_named(outcome))
         case "alias_group":
-            apart = " and ".join(outcome.names.title(name) for name in found.decision.apart)
-            more = f" Apart from that: {apart}." if apart else ""
-            return f"One of these is at work, the data cannot tell which: {_titles(outcome)}.{more}"
+            group = f"One of these is at work, the data cannot tell which: {_titles(outcome)}."
+            return " ".join([group, *_named(outcome)])
         case "input_error_suspected":
             return f"The data look wrong rather than the model: {_titles(outcome)}."
         case "unknown_located":
@@ -68,7 +67,7 @@ def headline(outcome: Outcome) -> str:
             return "Nothing is missing that these data could show: a healthy rig leaves as much."
         case "too_small":
             first = _titles(outcome)
-            return f"Something may be at work, too small to be told from its rivals; first of them: {first}."
+            return f"An effect may be present, too small to be told from its rivals; first of them: {first}."
     return f"These data cannot name anything: {found.decision.reason}. {_foremost(outcome)}".rstrip()
 
 

@@ -5,7 +5,7 @@ A name is given if its size matters, if it shrinks the gap on the points kept as
 full, has to shrink the gap as well. What does not hold is told with its reason.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot
 
@@ -47,12 +47,15 @@ class Refusal:
 class Claim:
     """What is left of the names, and why the others are gone.
 
-    answer : (n,) of the names at all kept numbers, zero without any; gap : with them, None without points kept aside
+    found : of names, with the leader of a group apart from which they hold; fit : of these together; fits : member of
+        such a group -> the fit with it in the place of the leader; answer : (n,) of what was fitted, at all kept
+        numbers, zero without any; gap : with it, None without points kept aside
     """
 
     decision: Decision
     found: tuple[Evidence, ...]
     fit: JointFit | None
+    fits: Mapping[str, JointFit]
     answer: Array
     gap: Gap | None
     refused: tuple[Refusal, ...]
@@ -83,7 +86,7 @@ def claim(
     if not left:
         return _without(_unclaimed(decision, refused), proof, refused)
     group = _group(left, traces)
-    if group is not None:
+    if group is not None and not group.apart:
         return _without(group, proof, refused)
     sizes = _sizes(left, fit)
     try:
@@ -98,10 +101,15 @@ def claim(
         refused += [_refusal(one, sizes, _unproven(one.hypothesis.name, whole), whole) for one in left]
         return _without(_unclaimed(decision, refused), proof, refused)
     named = tuple(dict.fromkeys(part for one in left for part in one.hypothesis.parts))
+    fits: dict[str, JointFit] = {}
+    if group is not None:
+        others = [one for one in left if one.hypothesis.parts[0] in group.apart]
+        fits = {member: fitted([*others, traces.of(member)]) for member in group.named}
     return Claim(
-        decision=replace(decision, named=named),
+        decision=group or replace(decision, named=named),
         found=tuple(left),
         fit=fit,
+        fits=fits,
         answer=answer,
         gap=whole,
         refused=tuple(refused),
@@ -115,6 +123,7 @@ def _without(decision: Decision, proof: Proof, refused: Sequence[Refusal]) -> Cl
         decision=decision,
         found=(),
         fit=None,
+        fits={},
         answer=nothing,
         gap=proof.gap(nothing) if proof.points else None,
         refused=tuple(refused),
@@ -220,22 +229,35 @@ class Traces:
         at its own best size, of two parameters against the plane they span, under the covariance of the data. Where the
         rig was put together otherwise at some points, to tell such effects apart, they are alike only if they also are
         with the trace counting as much in each assembly: one may be read far more exactly than the other. What explains
-        less than `REACHES` of what the name does within its bounds cannot stand for it.
+        less than `REACHES` of what the name does within its bounds cannot stand for it; offset and scale of one sensor
+        are one finding.
         """
-        single = [one for one in self.weighed if one.hypothesis.family in ("physical", "sensor")]
-        own = next((one for one in single if one.hypothesis.parts == (name,)), None)
-        if own is None or not np.any(own.answer):
+        own = self.of(name)
+        if not np.any(own.answer):
             return []
         found: dict[str, float] = {}
-        for one in single:
+        for one in self._single:
             other = one.hypothesis.parts[0]
-            if other == name or one.gain < REACHES * own.gain or not np.any(one.answer):
+            if (
+                other == name
+                or _of_one_sensor(own, one)
+                or one.gain < REACHES * own.gain
+                or not np.any(one.answer)
+            ):
                 continue
             plane = one.answer[:, None] if one.hypothesis.curve is not None else one.columns
             correlation = _cosine(plane, own.answer)
             if correlation > ALIAS and _cosine(*self._by_assembly(plane, own.answer)) > ALIAS:
                 found[other] = max(found.get(other, 0.0), correlation)
         return sorted(found.items(), key=lambda pair: -pair[1])
+
+    def of(self, name: str) -> Evidence:
+        """The best explanation by a name alone."""
+        return next(one for one in self._single if one.hypothesis.parts == (name,))
+
+    @property
+    def _single(self) -> list[Evidence]:
+        return [one for one in self.weighed if one.hypothesis.family in ("physical", "sensor")]
 
     def _by_assembly(self, plane: Array, trace: Array) -> tuple[Array, Array]:
         """Columns (n, k) and a trace (n,), scaled so that no assembly in which the trace is seen outweighs another."""
@@ -250,6 +272,16 @@ class Traces:
             own = solve_triangular(factor, both[rows], lower=True, check_finite=False)
             both[rows] = own / max(1.0, float(np.linalg.norm(own[:, -1])) / SEEN)
         return both[:, :-1], both[:, -1]
+
+
+def _of_one_sensor(first: Evidence, second: Evidence) -> bool:
+    """Whether two explanations are errors of the same sensor or setting."""
+    if {first.hypothesis.family, second.hypothesis.family} != {"sensor"}:
+        return False
+    kinds, places = zip(
+        *(one.hypothesis.parts[0].partition(":")[::2] for one in (first, second)), strict=True
+    )
+    return len({kind.rpartition("_")[0] for kind in kinds}) == len(set(places)) == 1
 
 
 def _cosine(plane: Array, trace: Array) -> float:

@@ -78,8 +78,8 @@ class Posterior:
 class Decision:
     """The verdict with the parts it rests on.
 
-    named : effects of a name, or the members of an alias group; reason : in one sentence; apart : what is at work as
-        well, whichever of the group is
+    named : effects of a name, or the members of an alias group; reason : in one sentence; apart : names that hold
+        whichever of the group is at work
     """
 
     verdict: Verdict
@@ -151,7 +151,7 @@ def decide(
         return _silent(weights, evidence, chi_square, count, thresholds, detectable)
     floor = thresholds.evidence if loop.isdisjoint(best.hypothesis.parts) else thresholds.evidence_loop
     if best.log_bayes < floor * len(set(best.hypothesis.parts)) and weights.masses["none"] < 0.5:
-        reason = "something may be at work; healthy rigs have given as much evidence"
+        reason = "an effect may be present; healthy rigs have given as much evidence"
         return Decision(verdict="too_small", named=(), reason=reason)
     left = chi_square - best.gain - count
     if left > max(thresholds.misfit * (2.0 * count) ** 0.5, thresholds.share * best.gain):
@@ -187,7 +187,7 @@ def decide(
                 reason="one of them is at work; these data cannot tell which",
             )
         return Decision(
-            verdict="unknown_located", named=(), reason="something is at work that no few effects account for"
+            verdict="unknown_located", named=(), reason="an effect is present that no few of the catalogue account for"
         )
     return _silent(weights, evidence, chi_square, count, thresholds, detectable)
 
@@ -241,7 +241,7 @@ def _silent(
     if weights.masses["none"] >= 0.5:
         return Decision(verdict="within_noise", named=(), reason="a healthy rig leaves as much")
     return Decision(
-        verdict="too_small", named=(), reason="something may be at work, too small to be told from its rivals"
+        verdict="too_small", named=(), reason="an effect may be present, too small to be told from its rivals"
     )
 
 

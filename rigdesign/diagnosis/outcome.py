@@ -47,7 +47,8 @@ class CasePatch:
 class Outcome:
     """Everything the document, the page and the terminal say.
 
-    named : of verdict ``named``; suspects : members of an alias group, suspected data, or the leading explanations
+    named : of verdict ``named``, and what stands apart from an alias group; suspects : members of an alias group,
+        suspected data, or the leading explanations
     picked : what the user chose among those not named; case_patch : None where refused, with the reason in ``refused``
     answer : (n,) what named or picked effects add to the kept numbers; gap : with them on the points kept aside
     before, after : where the residual sits without and with the named effects
@@ -74,8 +75,14 @@ class Outcome:
 
     @property
     def applied(self) -> tuple[Sized, ...]:
-        """What a patch holds: the named effects, or the one the user picked."""
-        return self.named if self.picked is None else (self.picked,)
+        """What a patch holds: the named effects, or the one the user picked with those apart from its group."""
+        return _applied(self.verdict, self.named, self.picked)
+
+
+def _applied(verdict: str, named: tuple[Sized, ...], picked: Sized | None) -> tuple[Sized, ...]:
+    if picked is None:
+        return named
+    return (*named, picked) if verdict == "alias_group" else (picked,)
 
 
 def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Ranked] = ()) -> Outcome:
@@ -91,18 +98,21 @@ def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Rank
     """
     found = result.diagnosis
     names = Names(result.effects, result.problem.subject.errors)
-    named = from_fit(names, found.fit.sizes) if found.fit is not None else ()
-    suspects = () if named else _suspects(result, names)
-    picked = None if pick is None else _picked(result, names, named, pick)
-    applied = named if picked is None else (picked,)
-    answer, gap, failure = (
-        (found.answer, found.gap, "") if picked is None else _put_to_the_proof(result, picked)
-    )
-    patch, refused = _case_patch(result, applied, picked is not None)
-    if picked is not None and patch is not None and failure:
-        patch, refused = None, failure
-    elif picked is not None and patch is not None and gap is not None and gap.grown:
-        patch, refused = None, f"with {picked.explanation} in the model the gap {course(gap)}"
+    fit = found.fit if pick is None else found.fits.get(pick, found.fit)
+    fitted = () if fit is None else from_fit(names, fit.sizes)
+    group = found.decision.verdict == "alias_group"
+    named = tuple(one for one in fitted if not group or one.name in found.decision.apart)
+    picked = None if pick is None else _picked(result, names, fitted, pick)
+    applied = _applied(found.decision.verdict, named, picked)
+    answer, gap = found.answer, found.gap
+    if group and picked is None:
+        patch, refused = None, _why_not(result, False)
+    else:
+        patch, refused = _case_patch(result, applied, picked is not None)
+    if picked is not None:
+        answer, gap, failure = _put_to_the_proof(result, applied)
+        if patch is not None and failure:
+            patch, refused = None, failure
     corrections = [of_sensor(one) for one in applied if not isinstance(one.entry, Effect)]
     if found.decision.verdict == "input_error_suspected":
         corrections += [of_data(name, result.measurement) for name in found.decision.named]
@@ -110,7 +120,7 @@ def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Rank
         result=result,
         names=names,
         named=named,
-        suspects=suspects,
+        suspects=() if named and not group else _suspects(result, names),
         picked=picked,
         case_patch=patch,
         refused=refused,
@@ -182,14 +192,13 @@ def _best(result: Result, names: Names, name: str) -> Evidence | None:
     return None
 
 
-def _picked(result: Result, names: Names, named: Sequence[Sized], pick: str) -> Sized:
-    if named:
-        own = next((one for one in named if pick in (one.name, one.explanation)), None)
-        if own is None:
-            raise UsageError(
-                f"--name {pick}: the data name {', '.join(one.name for one in named)}; leave --name out or pick of them"
-            )
+def _picked(result: Result, names: Names, fitted: Sequence[Sized], pick: str) -> Sized:
+    own = next((one for one in fitted if pick in (one.name, one.explanation)), None)
+    if own is not None:
         return own
+    if result.diagnosis.decision.verdict == "named":
+        named = ", ".join(one.name for one in fitted)
+        raise UsageError(f"--name {pick}: the data name {named}; leave --name out or pick of them")
     best = _best(result, names, pick)
     if best is None:
         weighed = [
@@ -201,18 +210,20 @@ def _picked(result: Result, names: Names, named: Sequence[Sized], pick: str) -> 
     return from_evidence(names, best, result.calibration.signature_error)
 
 
-def _put_to_the_proof(result: Result, picked: Sized) -> tuple[Array, Gap | None, str]:
-    """What a picked effect adds, the gap with it on the points kept aside, and why that is not known."""
+def _put_to_the_proof(result: Result, applied: Sequence[Sized]) -> tuple[Array, Gap | None, str]:
+    """What picked effects add, the gap with them on the points kept aside, and why they are not patched or nothing."""
     proof = result.diagnosis.proof
-    sizes = {picked.explanation: picked.coordinates}
+    sizes = {one.explanation: one.coordinates for one in applied}
+    together = " and ".join(sizes)
     if not proof.points:
         return proof.stored(sizes), None, ""
     try:
         answer = proof.again(sizes)
     except RigdesignError as error:
         answer = proof.stored(sizes)
-        return answer, proof.gap(answer), f"the case with {picked.explanation} does not run: {error}"
-    return answer, proof.gap(answer), ""
+        return answer, proof.gap(answer), f"the case with {together} does not run: {error}"
+    gap = proof.gap(answer)
+    return answer, gap, f"with {together} in the model the gap {course(gap)}" if gap.grown else ""
 
 
 def _case_patch(result: Result, applied: Sequence[Sized], picked: bool) -> tuple[CasePatch | None, str]:

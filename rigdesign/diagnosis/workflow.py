@@ -70,9 +70,9 @@ class Diagnosis:
     """What the data say.
 
     strength : proven where the gap shrinks by more than its scatter with the named effects in the model, run in full,
-        and the noise is known from repeats; named : names, or members of an alias group; fit : of named effects; gap :
-        on the points kept aside; refused : names that the search gave and that are not claimed; rejected :
-        outliers with their feature
+        and the noise is known from repeats; named : names, or members of an alias group; fit : of named effects;
+        fits : member of a group -> the fit of it with the names apart from the group; gap : on the points kept aside;
+        refused : names that the search gave and that are not claimed; rejected : outliers with their feature
     """
 
     decision: Decision
@@ -80,6 +80,7 @@ class Diagnosis:
     named: tuple[str, ...]
     found: tuple[Evidence, ...]
     fit: JointFit | None
+    fits: Mapping[str, JointFit]
     gap: Gap | None
     refused: tuple[Refusal, ...]
     alternatives: tuple[Alternative, ...]
@@ -137,13 +138,15 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun 
         proof,
         lambda some: _fitted(space, some, calibration),
     )
-    proven = claimed.gap is not None and claimed.gap.shrunk and rerun is not None
+    shrunk = claimed.gap is not None and claimed.gap.shrunk
+    proven = claimed.decision.verdict == "named" and shrunk and rerun is not None
     return Diagnosis(
         decision=claimed.decision,
         strength="proven" if problem.repeated and proven else "indicative",
         named=claimed.decision.named,
         found=claimed.found,
         fit=claimed.fit,
+        fits=claimed.fits,
         gap=claimed.gap,
         refused=claimed.refused,
         alternatives=_alternatives(deciding),

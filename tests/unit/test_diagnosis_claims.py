@@ -204,8 +204,16 @@ def test_what_is_at_work_apart_from_a_group_is_told():
     found = diagnosed(with_added(problem, stored(problem, both)))
     assert (found.decision.verdict, found.decision.apart) == ("alias_group", ("run_out:reference.pinion",))
     told = outcome(replace(story("mesh loss"), problem=problem, diagnosis=found))
-    assert "Apart from that: run-out of reference.pinion" in diagnosis_document(told)["headline"]
-    assert told.case_patch is None
+    document = diagnosis_document(told)
+    assert [row["effect"] for row in document["named"]] == ["run_out:reference.pinion"]
+    assert {row["effect"] for row in document["suspects"]} == {"bearing_loss:test", "oil_viscosity:test"}
+    assert "What the model lacks: run-out of reference.pinion" in document["headline"]
+    assert told.case_patch is None and "--name" in told.refused and document["gap"]["shrunk"]
+    for pick in ("bearing_loss:test", "oil_viscosity:test"):
+        picked = outcome(told.result, pick=pick)
+        assert [one.name for one in picked.applied] == ["run_out:reference.pinion", pick]
+        assert picked.gap is not None and picked.gap.shrunk and picked.case_patch is not None
+        assert len(picked.case_patch.values) >= 3
 
 
 def traces(columns, *, noise=None, assembly=None):
@@ -243,6 +251,19 @@ def test_a_mesh_put_together_otherwise_tells_its_gears_apart():
     assert traces(columns, noise=noise, assembly=further).like("a") == []
     same = [[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [1.0, 0.9, 0.0], [1.0, 0.9, 0.0]]
     assert [name for name, _ in traces(same, noise=noise, assembly=further).like("a")] == ["b"]
+
+
+def test_offset_and_scale_of_one_sensor_are_one_finding():
+    columns = [[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 0.1, 1.0]]
+    found = traces(columns)
+    names = ("sensor_offset:T1", "sensor_scale:T1")
+    for other, alike in (("sensor_scale:T1", []), ("sensor_scale:T2", ["sensor_scale:T2"])):
+        weighed = [
+            replace(one, hypothesis=replace(one.hypothesis, family="sensor", parts=(name,)))
+            for one, name in zip(found.weighed, (names[0], other))
+        ]
+        rivals = Traces(space=found.space, weighed=weighed, assembly=[()] * 3).like(names[0])
+        assert [name for name, _ in rivals] == alike
 
 
 def test_what_its_bounds_keep_too_small_cannot_stand_for_a_name():
