@@ -187,7 +187,9 @@ def decide(
                 reason="one of them is at work; these data cannot tell which",
             )
         return Decision(
-            verdict="unknown_located", named=(), reason="an effect is present that no few of the catalogue account for"
+            verdict="unknown_located",
+            named=(),
+            reason="an effect is present that no few of the catalogue account for",
         )
     return _silent(weights, evidence, chi_square, count, thresholds, detectable)
 

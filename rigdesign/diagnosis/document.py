@@ -9,17 +9,15 @@ import numpy as np
 
 from rigdesign import __version__, units
 from rigdesign.diagnosis.advice import certainty, headline, steps
-from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.detectability import Detectability
+from rigdesign.diagnosis.document_gap import gap_document, refused_rows
 from rigdesign.diagnosis.effects import Effect
-from rigdesign.diagnosis.heldout import Gap
 from rigdesign.diagnosis.naming import Names, Sized, Value, from_evidence, parameter_of, size_value
 from rigdesign.diagnosis.outcome import Outcome
 from rigdesign.measurement import MeasurementSet
-from rigdesign.measurement.compare import display_residual, sentence, significant
+from rigdesign.measurement.compare import sentence, significant
 from rigdesign.measurement.locate import Located
 from rigdesign.measurement.quantities import CHANNELS
-from rigdesign.prediction.model import Feature
 from rigdesign.report.results_json import to_plain
 
 SCHEMA = 1
@@ -55,13 +53,13 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
             }
             for one in outcome.suspects
         ],
-        "refused": _refused(outcome),
+        "refused": refused_rows(outcome),
         "suspected_inputs": suspected_inputs(outcome),
         "picked": None if outcome.picked is None else _sized(outcome.picked),
         "alternatives": _alternatives(outcome),
         "detectability": detectability_rows(outcome),
         "aliases": _aliases(outcome),
-        "gap": _gap(outcome),
+        "gap": gap_document(outcome),
         "located": [_located(one, result.measurement) for one in outcome.before],
         "unexplained": _unexplained(outcome),
         "next_measurements": [
@@ -249,80 +247,6 @@ def _aliases(outcome: Outcome) -> list[dict[str, Any]]:
         {"effects": list(pair), "titles": [names.title(one) for one in pair], "correlation": correlation}
         for pair, correlation in sorted(strongest.items(), key=lambda item: (-item[1], item[0]))
     ]
-
-
-def _gap(outcome: Outcome) -> dict[str, Any] | None:
-    """On points the fit never saw; None without any. ``after`` equals ``before`` where nothing was named or picked."""
-    if outcome.gap is None:
-        return None
-    return {
-        **_course(outcome.gap),
-        "floor": 1.0,
-        "unit": "standard deviations of a healthy rig",
-        "held_out_points": list(outcome.gap.points),
-        "effects_added": [one.explanation for one in outcome.applied],
-        "channels": gap_rows(outcome),
-    }
-
-
-def _course(gap: Gap) -> dict[str, Any]:
-    """``fall`` is that of the whitened square, with its standard deviation."""
-    return {
-        "before": gap.before, "after": gap.after, "fall": gap.fall, "scatter": gap.scatter, "shrunk": gap.shrunk,
-        "grown": gap.grown,
-    }  # fmt: skip
-
-
-def _refused(outcome: Outcome) -> list[dict[str, Any]]:
-    """Names that the search gave and that are not claimed, with the gap that speaks against them."""
-    return [
-        {
-            "effect": one.name,
-            "title": outcome.names.title(one.explanation),
-            "explanation": one.explanation,
-            "reason": one.reason,
-            "gap": None if one.gap is None else _course(one.gap),
-        }
-        for one in outcome.result.diagnosis.refused
-    ]
-
-
-def gap_rows(outcome: Outcome) -> list[dict[str, Any]]:
-    """Root mean square of measured minus simulated by channel on the held-out points, in the unit of the channel.
-
-    Those that the named effects move most come first; ``moved`` is the change they make.
-    """
-    result, found = outcome.result, outcome.result.diagnosis
-    features = kept_features(outcome)
-    noise = result.problem.subject.noise[list(found.kept)]
-    spread = np.sqrt(np.diagonal(found.covariance.matrix))
-    rows = []
-    for name, entry in result.data.channels.items():
-        own = np.array(
-            [f.channel == name and f.setting in found.held_out_points for f in features], dtype=np.bool_
-        )
-        if not own.any():
-            continue
-        numbers = (found.residual, found.residual - outcome.answer, outcome.answer, noise)
-        shown = [display_residual(_rms(one[own]), entry.channel.quantity, entry.unit) for one in numbers]
-        before, after, moved, floor = (value for value, _ in shown)
-        rows.append(
-            {
-                "channel": name, "quantity": entry.channel.quantity, "unit": shown[0][1], "before": before,
-                "after": after, "moved": moved, "noise": floor,
-                "moved_over_spread": _rms(outcome.answer[own] / spread[own]), "numbers": int(own.sum()),
-            }
-        )  # fmt: skip
-    return sorted(rows, key=lambda row: -row["moved_over_spread"])
-
-
-def kept_features(outcome: Outcome) -> tuple[Feature, ...]:
-    """The numbers that were kept, in the order of residual and answer."""
-    return tuple(outcome.result.problem.subject.features[row] for row in outcome.result.diagnosis.kept)
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def _located(item: Located, measurement: MeasurementSet) -> dict[str, Any]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign import units
-from rigdesign.diagnosis.document import kept_features
+from rigdesign.diagnosis.document_gap import kept_features
 from rigdesign.diagnosis.outcome import Outcome
 from rigdesign.measurement.compare import series_of
 from rigdesign.measurement.quantities import CHANNELS
