@@ -1,4 +1,4 @@
-"""The gap on points kept aside in diagnosis.json: with what is named or picked, by channel, and with what is refused."""
+"""The gap on points kept aside in diagnosis.json, with what is named or picked and with what is refused."""
 
 from typing import Any
 

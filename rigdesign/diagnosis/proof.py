@@ -5,7 +5,7 @@ full model: the case as it is and the case with the effects in it, both solved a
 for the sensors in question; the difference is what the effects add.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Protocol
@@ -41,12 +41,13 @@ class Rerun(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class FullRun:
-    """The full model of a case at the operating points and for the sensors of a set."""
+    """The full model of a case at the operating points and for the sensors of a set; ``say`` is told before it runs."""
 
     case: Case
     settings: tuple[Setting, ...]
     channels: tuple[Channel, ...]
     effects: tuple[Effect, ...]
+    say: Callable[[str], None] = lambda message: None
 
     def __call__(self, features: Sequence[Feature], sizes: Sizes) -> Array:
         """(n,) prediction of the case with the effects less that of the case as it is; sizes as a patch writes them.
@@ -65,6 +66,9 @@ class FullRun:
         settings = [one for one in self.settings if one.name in points]
         channels = [one for one in self.channels if one.name in sensors]
         cases = (self.case, patched_case(self.case, fitted))
+        self.say(
+            f"full model at {', '.join(one.name for one in settings)}, without and with {' and '.join(sizes)}"
+        )
         with Beside([partial(predict, case, settings, channels) for case in cases]) as beside:
             before, after = beside.results()
         place = {feature: row for row, feature in enumerate(before.features)}

@@ -74,7 +74,7 @@ def diagnose_measurement(
         )
         say("weighing explanations")
         channels = tuple(entry.channel for entry in data.channels.values())
-        rerun = FullRun(case=case, settings=data.settings, channels=channels, effects=effects)
+        rerun = FullRun(case=case, settings=data.settings, channels=channels, effects=effects, say=say)
         found = diagnose(problem, calibration, rerun)
         extras = extras_of(case, data.settings)
         offered = candidates_of(case, measurement, data.settings)
