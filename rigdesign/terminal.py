@@ -225,7 +225,7 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     for refusal in found.refused:
         against = "bold red" if refusal.gap is not None and refusal.gap.grown else ""
         console.print(Text("not named ", "bold") + Text(f"{refusal.name}: {refusal.reason}", against))
-    if outcome.gap is not None and outcome.applied:
+    if outcome.gap is not None and outcome.in_model:
         text = (
             f"{outcome.gap.before:.2f} -> {outcome.gap.after:.2f} standard deviations on points the fit never saw "
             f"({', '.join(outcome.gap.points)}), a healthy rig has 1"

@@ -107,7 +107,13 @@ def certainty(outcome: Outcome) -> str:
             "Proven: the noise is known from repeats, and with what is named in the model, run in full, the gap "
             f"{course(found.gap)}."
         )
-    missing = [] if found.found else ["nothing is named that could be put to the proof"]
+    missing = []
+    if outcome.verdict == "alias_group":
+        missing.append("a group is no name")
+    elif not found.found:
+        missing.append("nothing is named that could be put to the proof")
+    elif found.proof.rerun is None:
+        missing.append("the case with what is named was not run in full")
     if not outcome.result.problem.repeated:
         missing.append("most numbers have a single reading, so the noise is what the set declares")
     if not found.held_out_points:

@@ -14,7 +14,7 @@ from scipy.linalg import solve_triangular
 
 from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.covariance import Whitened
-from rigdesign.diagnosis.decision import Decision
+from rigdesign.diagnosis.decision import Decision, Verdict
 from rigdesign.diagnosis.detectability import ALIAS, SEEN
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.evidence import Evidence
@@ -32,13 +32,15 @@ REACHES = 0.5
 class Refusal:
     """A name that the search gave and that is not claimed.
 
-    name : of the entry; explanation : with tooth or order; coordinates : its fitted size; gap : without and with it on
-        the points kept aside, None where none were or where its size was enough to refuse it
+    name : of the entry; explanation : with tooth or order; coordinates : its fitted size; verdict : where it was the
+        only name; gap : without and with it on the points kept aside, None where none were or where its size was enough
+        to refuse it
     """
 
     name: str
     explanation: str
     coordinates: tuple[float, ...]
+    verdict: Verdict
     reason: str
     gap: Gap | None
 
@@ -92,13 +94,12 @@ def claim(
     try:
         answer = proof.again(sizes)
     except RigdesignError as error:
-        refused += [
-            _refusal(one, sizes, f"the case with {one.hypothesis.name} does not run: {error}") for one in left
-        ]
+        reason = f"the case with {' and '.join(sizes)} does not run: {error}"
+        refused += [_refusal(one, sizes, "unknown_located", reason) for one in left]
         return _without(_unclaimed(decision, refused), proof, refused)
     whole = proof.gap(answer)
     if not whole.shrunk:
-        refused += [_refusal(one, sizes, _unproven(one.hypothesis.name, whole), whole) for one in left]
+        refused += [_unproven(one, sizes, whole) for one in left]
         return _without(_unclaimed(decision, refused), proof, refused)
     named = tuple(dict.fromkeys(part for one in left for part in one.hypothesis.parts))
     fits: dict[str, JointFit] = {}
@@ -134,11 +135,22 @@ def _sizes(found: Sequence[Evidence], fit: JointFit) -> Sizes:
     return {one.hypothesis.name: size for one, size in zip(found, fit.coordinates, strict=True)}
 
 
-def _refusal(one: Evidence, sizes: Sizes, reason: str, gap: Gap | None = None) -> Refusal:
+def _refusal(one: Evidence, sizes: Sizes, verdict: Verdict, reason: str, gap: Gap | None = None) -> Refusal:
     name = one.hypothesis.name
     return Refusal(
-        name=one.hypothesis.parts[0], explanation=name, coordinates=sizes[name], reason=reason, gap=gap
+        name=one.hypothesis.parts[0],
+        explanation=name,
+        coordinates=sizes[name],
+        verdict=verdict,
+        reason=reason,
+        gap=gap,
     )
+
+
+def _unproven(one: Evidence, sizes: Sizes, whole: Gap) -> Refusal:
+    """Of a name that does not shrink the gap by more than its scatter, or with others does not."""
+    reason = f"with {one.hypothesis.name} in the model the gap {course(whole)}"
+    return _refusal(one, sizes, "unknown_located" if whole.grown else "too_small", reason, whole)
 
 
 def _weakest(found: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal | None:
@@ -149,11 +161,12 @@ def _weakest(found: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal 
     sizes = _sizes(found, fit)
     for one in found:
         if text := too_little(proof.subject.effects, one.hypothesis.name, sizes[one.hypothesis.name]):
-            return _refusal(one, sizes, text)
+            return _refusal(one, sizes, "too_small", text)
     if not proof.points:
         running = len(proof.subject.library.settings)
         text = f"none of {running} operating points could be kept aside to prove it; at least {LEAST_POINTS} are needed"
-        return _refusal(found[0], sizes, f"{found[0].hypothesis.name} fits best, but {text}")
+        reason = f"{found[0].hypothesis.name} fits best, but {text}"
+        return _refusal(found[0], sizes, "data_insufficient", reason)
     gaps = []
     for one in found:
         name = one.hypothesis.name
@@ -162,7 +175,7 @@ def _weakest(found: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal 
     least = min(range(len(found)), key=lambda place: gaps[place].fall / max(gaps[place].scatter, 1e-300))
     if gaps[least].shrunk:
         return None
-    return _refusal(found[least], sizes, _unproven(found[least].hypothesis.name, gaps[least]), gaps[least])
+    return _unproven(found[least], sizes, gaps[least])
 
 
 def too_little(effects: Sequence[Effect], explanation: str, coordinates: Sequence[float]) -> str:
@@ -176,21 +189,13 @@ def too_little(effects: Sequence[Effect], explanation: str, coordinates: Sequenc
     return f"{explanation} fits best with {size}; less than {least} does not matter"
 
 
-def _unproven(name: str, whole: Gap) -> str:
-    return f"with {name} in the model the gap {course(whole)}"
-
-
 def _unclaimed(decision: Decision, refused: Sequence[Refusal]) -> Decision:
-    """The verdict where no name is left: contradicted, without points to prove it, or too little."""
+    """The verdict where no name is left: that of one that was contradicted, else of the last one."""
     if not refused:
         reason = f"{decision.named[0]} is in every explanation that counts, but none of them is it alone"
         return Decision(verdict="unknown_located", named=(), reason=reason)
-    grown = next((one for one in refused if one.gap is not None and one.gap.grown), None)
-    if grown is not None:
-        return Decision(verdict="unknown_located", named=(), reason=grown.reason)
-    last = refused[-1]
-    failed = "kept aside to prove" in last.reason
-    return Decision(verdict="data_insufficient" if failed else "too_small", named=(), reason=last.reason)
+    worst = next((one for one in refused if one.verdict == "unknown_located"), refused[-1])
+    return Decision(verdict=worst.verdict, named=(), reason=worst.reason)
 
 
 def _group(found: Sequence[Evidence], traces: "Traces") -> Decision | None:

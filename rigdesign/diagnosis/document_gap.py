@@ -20,7 +20,7 @@ def gap_document(outcome: Outcome) -> dict[str, Any] | None:
         "floor": 1.0,
         "unit": "standard deviations of a healthy rig",
         "held_out_points": list(outcome.gap.points),
-        "effects_added": [one.explanation for one in outcome.applied],
+        "effects_added": list(outcome.in_model),
         "channels": gap_rows(outcome),
     }
 

@@ -78,6 +78,13 @@ class Outcome:
         """What a patch holds: the named effects, or the one the user picked with those apart from its group."""
         return _applied(self.verdict, self.named, self.picked)
 
+    @property
+    def in_model(self) -> tuple[str, ...]:
+        """Explanations in ``answer`` and ``gap``; a group from which others stand apart is there by its leader."""
+        if self.picked is None:
+            return tuple(one.hypothesis.name for one in self.result.diagnosis.found)
+        return tuple(one.explanation for one in self.applied)
+
 
 def _applied(verdict: str, named: tuple[Sized, ...], picked: Sized | None) -> tuple[Sized, ...]:
     if picked is None:
@@ -108,7 +115,7 @@ def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Rank
     if group and picked is None:
         patch, refused = None, _why_not(result, False)
     else:
-        patch, refused = _case_patch(result, applied, picked is not None)
+        patch, refused = _case_patch(result, applied, picked)
     if picked is not None:
         answer, gap, failure = _put_to_the_proof(result, applied)
         if patch is not None and failure:
@@ -226,12 +233,14 @@ def _put_to_the_proof(result: Result, applied: Sequence[Sized]) -> tuple[Array, 
     return answer, gap, f"with {together} in the model the gap {course(gap)}" if gap.grown else ""
 
 
-def _case_patch(result: Result, applied: Sequence[Sized], picked: bool) -> tuple[CasePatch | None, str]:
+def _case_patch(
+    result: Result, applied: Sequence[Sized], picked: Sized | None
+) -> tuple[CasePatch | None, str]:
     """The patch, or why there is none."""
     fitted = [
         Fitted(
             effect=one.entry, values=one.values, ends=one.ends, tooth=one.tooth,
-            reason=_evidence_text(result, one, picked),
+            reason=_evidence_text(result, one, one is picked),
         )
         for one in applied
         if isinstance(one.entry, Effect)

@@ -57,15 +57,16 @@ def proposals(
 
 
 def _rivals(found: Diagnosis) -> list[Evidence]:
-    """The likeliest single explanations of different things."""
-    masses = found.examinations[0].weights.inclusion
+    """The likeliest single explanations of different things, the members of a group first."""
+    masses, group = found.examinations[0].weights.inclusion, found.decision.named
     singles = [
         one
         for one in found.examinations[0].evidence
         if one.hypothesis.family in ("physical", "sensor") and len(one.hypothesis.parts) == 1
     ]
     best = {one.hypothesis.parts[0]: one for one in reversed(singles)}
-    return sorted(best.values(), key=lambda one: -masses.get(one.hypothesis.parts[0], 0.0))[:RIVALS]
+    ordered = sorted(best.items(), key=lambda item: (item[0] not in group, -masses.get(item[0], 0.0)))
+    return [one for _, one in ordered][:RIVALS]
 
 
 def _with_candidates(subject: Comparison, library: Library) -> tuple[Comparison, int]:

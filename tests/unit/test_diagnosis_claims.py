@@ -134,6 +134,8 @@ def test_without_a_full_run_nothing_is_proven():
     problem = with_added(healthy(), stored(healthy(), SIZE))
     found = diagnose(problem, DESIGN)
     assert found.named == ("mesh_loss:test",) and found.strength == "indicative"
+    told = outcome(replace(story("mesh loss"), problem=problem, diagnosis=found))
+    assert "not run in full" in diagnosis_document(told)["certainty"]
 
 
 def test_of_two_names_only_the_one_that_closes_the_gap_is_given():
@@ -209,6 +211,8 @@ def test_what_is_at_work_apart_from_a_group_is_told():
     assert {row["effect"] for row in document["suspects"]} == {"bearing_loss:test", "oil_viscosity:test"}
     assert "What the model lacks: run-out of reference.pinion" in document["headline"]
     assert told.case_patch is None and "--name" in told.refused and document["gap"]["shrunk"]
+    assert document["gap"]["effects_added"] == ["bearing_loss:test", "run_out:reference.pinion"]
+    assert document["strength"] == "indicative" and "a group is no name" in document["certainty"]
     for pick in ("bearing_loss:test", "oil_viscosity:test"):
         picked = outcome(told.result, pick=pick)
         assert [one.name for one in picked.applied] == ["run_out:reference.pinion", pick]
