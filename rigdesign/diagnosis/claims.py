@@ -17,7 +17,7 @@ from rigdesign.diagnosis.covariance import Whitened
 from rigdesign.diagnosis.decision import Decision, Verdict
 from rigdesign.diagnosis.detectability import ALIAS, SEEN
 from rigdesign.diagnosis.effects import Effect
-from rigdesign.diagnosis.evidence import Evidence
+from rigdesign.diagnosis.evidence import Evidence, Hypothesis
 from rigdesign.diagnosis.heldout import LEAST_POINTS, Gap, course
 from rigdesign.diagnosis.intervals import JointFit
 from rigdesign.diagnosis.naming import Names, display_scale
@@ -25,7 +25,10 @@ from rigdesign.diagnosis.proof import Proof, Sizes
 from rigdesign.errors import RigdesignError
 
 REACHES = 0.5
-"""Share of what a name explains that another effect must explain within its bounds to stand for it."""
+"""Share of the trace of a name that another effect must leave within its bounds to stand for it."""
+
+SIZES = 13
+"""Sizes over the bounds of a curve at which its answer is held against a trace."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,10 +90,10 @@ def claim(
         left = [one for one in left if one.hypothesis.name != doubt.explanation]
     if not left:
         return _without(_unclaimed(decision, refused), proof, refused)
-    group = _group(left, traces)
+    sizes = _sizes(left, fit)
+    group = _group(left, sizes, traces)
     if group is not None and not group.apart:
         return _without(group, proof, refused)
-    sizes = _sizes(left, fit)
     try:
         answer = proof.again(sizes)
     except RigdesignError as error:
@@ -198,21 +201,28 @@ def _unclaimed(decision: Decision, refused: Sequence[Refusal]) -> Decision:
     return Decision(verdict=worst.verdict, named=(), reason=worst.reason)
 
 
-def _group(found: Sequence[Evidence], traces: "Traces") -> Decision | None:
-    """The verdict where another effect leaves the trace of a name; None where every name stands alone."""
-    for one in found:
-        name = one.hypothesis.parts[0]
-        rivals = traces.like(name)
-        if rivals:
-            rival, correlation = rivals[0]
-            group = (name, *(other for other, _ in rivals))
-            return Decision(
-                verdict="alias_group",
-                named=group,
-                reason=f"{rival} leaves the trace of {name}, correlation {correlation:.3f}",
-                apart=tuple(part for other in found for part in other.hypothesis.parts if part not in group),
-            )
-    return None
+def _group(found: Sequence[Evidence], sizes: Sizes, traces: "Traces") -> Decision | None:
+    """The verdict where another effect leaves the trace of a name; None where every name stands alone.
+
+    The group is that of the first such name; those of further ones are told in the reason.
+    """
+    rivals = {
+        one.hypothesis.parts[0]: traces.like(one.hypothesis.name, sizes[one.hypothesis.name]) for one in found
+    }
+    unclear = [name for name, others in rivals.items() if others]
+    if not unclear:
+        return None
+    told = [
+        f"{rivals[name][0][0]} leaves the trace of {name}, correlation {rivals[name][0][1]:.3f}"
+        for name in unclear
+    ]
+    group = (unclear[0], *(other for other, _ in rivals[unclear[0]]))
+    return Decision(
+        verdict="alias_group",
+        named=group,
+        reason="; ".join(told),
+        apart=tuple(name for name in rivals if name not in unclear and name not in group),
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -227,33 +237,27 @@ class Traces:
     weighed: Sequence[Evidence]
     assembly: Sequence[object]
 
-    def like(self, name: str) -> list[tuple[str, float]]:
+    def like(self, explanation: str, size: Sequence[float]) -> list[tuple[str, float]]:
         """Effects and sensor errors whose trace correlates with that of a name above `ALIAS`, those most alike first.
 
-        The trace of a name is its answer at its best size, by itself. It is held against the answer of every other one
-        at its own best size, of two parameters against the plane they span, under the covariance of the data. Where the
-        rig was put together otherwise at some points, to tell such effects apart, they are alike only if they also are
-        with the trace counting as much in each assembly: one may be read far more exactly than the other. What explains
-        less than `REACHES` of what the name does within its bounds cannot stand for it; offset and scale of one sensor
-        are one finding.
+        The trace of a name is its whitened answer at its size. It is held against the answers of every other one over
+        its bounds, of two parameters against the plane they span, under the covariance of the data. Where the rig was
+        put together otherwise at some points, to tell such effects apart, they are alike only if they also are with the
+        trace counting as much in each assembly: one may be read far more exactly than the other. What within its bounds
+        leaves less than `REACHES` of the trace cannot stand for it; offset and scale of one sensor are one finding.
         """
-        own = self.of(name)
-        if not np.any(own.answer):
-            return []
+        own = next(one for one in self._single if one.hypothesis.name == explanation)
+        name = own.hypothesis.parts[0]
+        trace = _answers(own.hypothesis, np.array([size]))[0]
         found: dict[str, float] = {}
         for one in self._single:
             other = one.hypothesis.parts[0]
-            if (
-                other == name
-                or _of_one_sensor(own, one)
-                or one.gain < REACHES * own.gain
-                or not np.any(one.answer)
-            ):
+            if other == name or _of_one_sensor(own, one):
                 continue
-            plane = one.answer[:, None] if one.hypothesis.curve is not None else one.columns
-            correlation = _cosine(plane, own.answer)
-            if correlation > ALIAS and _cosine(*self._by_assembly(plane, own.answer)) > ALIAS:
-                found[other] = max(found.get(other, 0.0), correlation)
+            for plane in _planes(one.hypothesis, trace):
+                correlation = _cosine(plane, trace)
+                if correlation > ALIAS and _cosine(*self._by_assembly(plane, trace)) > ALIAS:
+                    found[other] = max(found.get(other, 0.0), correlation)
         return sorted(found.items(), key=lambda pair: -pair[1])
 
     def of(self, name: str) -> Evidence:
@@ -277,6 +281,25 @@ class Traces:
             own = solve_triangular(factor, both[rows], lower=True, check_finite=False)
             both[rows] = own / max(1.0, float(np.linalg.norm(own[:, -1])) / SEEN)
         return both[:, :-1], both[:, -1]
+
+
+def _answers(hypothesis: Hypothesis, sizes: Array) -> Array:
+    """(m, n) whitened answers at sizes (m, k)."""
+    if hypothesis.curve is not None:
+        return hypothesis.curve.at(sizes[:, 0])
+    assert hypothesis.columns is not None
+    return np.asarray(sizes @ hypothesis.columns.T)
+
+
+def _planes(hypothesis: Hypothesis, trace: Array) -> list[Array]:
+    """Columns (n, k) of what may stand for a trace (n,): a curve at sizes over its bounds, a plane as it is."""
+    least = REACHES * float(trace @ trace)
+    if hypothesis.curve is None:
+        assert hypothesis.columns is not None
+        reach = hypothesis.half * float(np.linalg.norm(hypothesis.columns.T @ trace))
+        return [hypothesis.columns] if reach >= least else []
+    sizes = np.linspace(*hypothesis.curve.bounds, SIZES)[:, None]
+    return [answer[:, None] for answer in _answers(hypothesis, sizes) if answer @ trace >= least]
 
 
 def _of_one_sensor(first: Evidence, second: Evidence) -> bool:

@@ -9,7 +9,7 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
-from rigdesign.diagnosis.claims import Traces
+from rigdesign.diagnosis.claims import Traces, _group
 from rigdesign.diagnosis.covariance import Covariance, Whitened
 from rigdesign.diagnosis.document import diagnosis_document
 from rigdesign.diagnosis.evidence import Hypothesis, weigh
@@ -197,27 +197,27 @@ def test_effects_of_one_trace_end_as_a_group():
     assert found.examinations[0].decision.verdict == "named"
     assert found.decision.verdict == "alias_group" and found.strength == "indicative"
     assert set(found.named) == {"bearing_loss:test", "oil_viscosity:test"}
-    assert "correlation 0.99" in found.decision.reason
+    assert "oil_viscosity:test leaves the trace of bearing_loss:test" in found.decision.reason
 
 
 def test_what_is_at_work_apart_from_a_group_is_told():
     problem = thin_oil(healthy())
-    both = {"bearing_loss:test": (log(1.35),), "run_out:reference.pinion": (25e-6, -10e-6)}
+    both = {"bearing_loss:test": (log(1.12),), "single_pitch:test.pinion/5": (60e-6,)}
     found = diagnosed(with_added(problem, stored(problem, both)))
-    assert (found.decision.verdict, found.decision.apart) == ("alias_group", ("run_out:reference.pinion",))
+    assert (found.decision.verdict, found.decision.apart) == ("alias_group", ("single_pitch:test.pinion",))
     told = outcome(replace(story("mesh loss"), problem=problem, diagnosis=found))
     document = diagnosis_document(told)
-    assert [row["effect"] for row in document["named"]] == ["run_out:reference.pinion"]
+    assert [row["effect"] for row in document["named"]] == ["single_pitch:test.pinion"]
     assert {row["effect"] for row in document["suspects"]} == {"bearing_loss:test", "oil_viscosity:test"}
-    assert "What the model lacks: run-out of reference.pinion" in document["headline"]
+    assert "What the model lacks: pitch of one tooth of test.pinion: tooth 5" in document["headline"]
     assert told.case_patch is None and "--name" in told.refused and document["gap"]["shrunk"]
-    assert document["gap"]["effects_added"] == ["bearing_loss:test", "run_out:reference.pinion"]
+    assert document["gap"]["effects_added"] == ["single_pitch:test.pinion/5", "bearing_loss:test"]
     assert document["strength"] == "indicative" and "a group is no name" in document["certainty"]
     for pick in ("bearing_loss:test", "oil_viscosity:test"):
         picked = outcome(told.result, pick=pick)
-        assert [one.name for one in picked.applied] == ["run_out:reference.pinion", pick]
+        assert [one.name for one in picked.applied] == ["single_pitch:test.pinion", pick]
         assert picked.gap is not None and picked.gap.shrunk and picked.case_patch is not None
-        assert len(picked.case_patch.values) >= 3
+        assert len(picked.case_patch.values) >= 2
 
 
 def traces(columns, *, noise=None, assembly=None):
@@ -242,7 +242,7 @@ def traces(columns, *, noise=None, assembly=None):
 
 def test_the_group_begins_at_a_correlation_of_95_per_cent():
     columns = [[1.0, 0.96, 0.94], [0.0, (1 - 0.96**2) ** 0.5, 0.0], [0.0, 0.0, (1 - 0.94**2) ** 0.5]]
-    ((rival, correlation),) = traces(columns).like("a")
+    ((rival, correlation),) = traces(columns).like("a", (9.0,))
     assert rival == "b" and correlation == pytest.approx(0.96)
 
 
@@ -250,11 +250,32 @@ def test_a_mesh_put_together_otherwise_tells_its_gears_apart():
     """The same trace at points read exactly, another one at points where the wheel stands further, read less so."""
     noise = np.array([0.001, 0.001, 0.1, 0.1])
     columns = [[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [1.0, -0.4, 0.0], [1.0, -0.4, 0.0]]
-    assert [name for name, _ in traces(columns, noise=noise).like("a")] == ["b"]
+    assert [name for name, _ in traces(columns, noise=noise).like("a", (9.0,))] == ["b"]
     further = [(), (), (("test.main", 9),), (("test.main", 9),)]
-    assert traces(columns, noise=noise, assembly=further).like("a") == []
+    assert traces(columns, noise=noise, assembly=further).like("a", (9.0,)) == []
     same = [[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [1.0, 0.9, 0.0], [1.0, 0.9, 0.0]]
-    assert [name for name, _ in traces(same, noise=noise, assembly=further).like("a")] == ["b"]
+    assert [name for name, _ in traces(same, noise=noise, assembly=further).like("a", (9.0,))] == ["b"]
+
+
+def test_a_second_group_is_not_apart_from_the_first():
+    """Two pairs of effects, each of one trace, and a fifth by itself."""
+    columns = np.zeros((6, 5))
+    columns[0, :2] = columns[2, 2:4] = columns[4, 4] = 1.0
+    columns[1, 1] = columns[3, 3] = 0.1
+    space = Whitened.of(
+        Covariance.of_noise(np.ones(6), [], {}), 9.0 * (columns[:, 0] + columns[:, 2] + columns[:, 4])
+    )
+    effects = [
+        Hypothesis(name=name, family="physical", parts=(name,), columns=column[:, None], half=20.0)
+        for name, column in zip("abcde", columns.T)
+    ]
+    weighed = [weigh(space, one) for one in effects]
+    found = [weighed[0], weighed[2], weighed[4]]
+    sizes = dict.fromkeys("ace", (9.0,))
+    decision = _group(found, sizes, Traces(space=space, weighed=weighed, assembly=[()] * 6))
+    assert decision is not None and decision.named == ("a", "b") and decision.apart == ("e",)
+    assert "b leaves the trace of a" in decision.reason and "d leaves the trace of c" in decision.reason
+    assert _group([weighed[4]], sizes, Traces(space=space, weighed=weighed, assembly=[()] * 6)) is None
 
 
 def test_offset_and_scale_of_one_sensor_are_one_finding():
@@ -266,7 +287,7 @@ def test_offset_and_scale_of_one_sensor_are_one_finding():
             replace(one, hypothesis=replace(one.hypothesis, family="sensor", parts=(name,)))
             for one, name in zip(found.weighed, (names[0], other))
         ]
-        rivals = Traces(space=found.space, weighed=weighed, assembly=[()] * 3).like(names[0])
+        rivals = Traces(space=found.space, weighed=weighed, assembly=[()] * 3).like("a", (9.0,))
         assert [name for name, _ in rivals] == alike
 
 
@@ -275,7 +296,10 @@ def test_what_its_bounds_keep_too_small_cannot_stand_for_a_name():
     space = traces([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 0.1, 1.0]]).space
     small = replace(weighed[1].hypothesis, half=2.0)
     again = Traces(space=space, weighed=[weighed[0], weigh(space, small)], assembly=[()] * 3)
-    assert traces([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 0.1, 1.0]]).like("a") and again.like("a") == []
+    assert (
+        traces([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 0.1, 1.0]]).like("a", (9.0,))
+        and again.like("a", (9.0,)) == []
+    )
 
 
 @pytest.mark.parametrize("size", [0.0, 1.0])
