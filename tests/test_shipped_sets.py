@@ -40,7 +40,7 @@ WANTED = {
 }
 """Rig and set -> verdict and names it must end with.
 
-Friction of the bearings and viscosity leave one trace on the prototype (correlation 0.996): a group.
+Friction of the bearings and viscosity leave one trace on the prototype (correlation 0.997): a group.
 """
 
 APART = {("uhcf_prototype", "set_6"): {"film:test.chamber_oil"}}
