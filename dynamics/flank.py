@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dynamics.gear import GearPair
-from dynamics.mesh_law import MeshLaw
+from dynamics.mesh_law import DampedRate, MeshLaw
 from dynamics.tip_contact import path_reach, tip_separation
 from dynamics.tooth_stiffness import PairStiffness
 
@@ -88,6 +88,7 @@ def mesh_law(
     n_slices: int | None = None,
     n_path: int = 241,
     damping: float = 0.0,
+    damping_acts_on: DampedRate = "relative_rotation",
     friction: float = 0.0,
     friction_reversal_speed: float = 0.05,
     offset: float = 0.0,
@@ -102,8 +103,8 @@ def mesh_law(
     stiffness : course of the single-pair stiffness; a slice of width db takes c'(s) db
     n_slices : over the common face width; default 1 (spur, flat in face), 5 (spur), 12 (helical)
     n_path : points of the uniform grid over the path, active part and premature engagement
-    damping [N s/m], friction [-], friction_reversal_speed [m/s], offset [m], phase [m], tooth_offset_2: as
-        in ``MeshLaw``
+    damping [N s/m], damping_acts_on, friction [-], friction_reversal_speed [m/s], offset [m], phase [m],
+        tooth_offset_2: as in ``MeshLaw``
     misalignment : gap per face width [rad], growing with z over the common width
     reach : tip separation at the ends of the grid, the largest approach the law is good for [m]; default 0.15
         normal modules, at least 0.1 mm, at most 0.3 mm
@@ -157,6 +158,7 @@ def mesh_law(
         phase=phase,
         back_phase=back_phase,
         damping=damping,
+        damping_acts_on=damping_acts_on,
         mean_stiffness=stiffness.mesh_mean * width * float(scales[0].mean() * scales[1].mean()),
         friction=friction,
         rolling_radius_1=pair.rolling_radii[0],

@@ -146,6 +146,7 @@ def _values(law: MeshLaw, derivative_torques: bool) -> tuple[float, ...]:
         1e-12 * law.mean_stiffness * law.base_radius_1, 1.0 / law.base_pitch,
         law.friction / law.base_radius_1, law.friction / law.base_radius_2, law.base_pitch / phase_count(law),
         phase_count(law) / law.base_pitch, law.damping_depth, 1.0 / law.damping_depth,
+        float(law.damping_acts_on == "contact_closing_rate"),
     )  # fmt: skip
 
 

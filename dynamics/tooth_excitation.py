@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from dynamics.kernels.contact import CELLS_AT, DAMP_TIME, LEAST_GAP, N_CELLS, PackedMeshes
+from dynamics.kernels.contact import CELLS_AT, CLOSING, DAMP_TIME, LEAST_GAP, N_CELLS, PackedMeshes
 from dynamics.mesh_law import MeshLaw
 
 Array = NDArray[np.float64]
@@ -173,7 +173,8 @@ def _contacts(law: MeshLaw, packed: PackedMeshes, motion: Motion, sign: float) -
     s = law.path_start + (cell + f) * law.path_step
     omega_1, omega_2 = motion.omega_1[at], motion.omega_2[at]
     damp_time = packed.values[0, DAMP_TIME]
-    path_speed = sign * law.base_radius_1 * omega_1
+    closes = packed.values[0, CLOSING]
+    path_speed = closes * sign * law.base_radius_1 * omega_1
     closing = damp_time * (
         sign * (law.base_radius_1 * omega_1 - law.base_radius_2 * omega_2) - gap_slope * path_speed
     )
@@ -190,12 +191,22 @@ def _contacts(law: MeshLaw, packed: PackedMeshes, motion: Motion, sign: float) -
     lever_2 = 1.0 + rub * rho_2 / law.base_radius_2
     force, force_gap = k * pressed, -k * (1.0 + grown_slope * closing)
     force_slope = -k * grown * damp_time * path_speed
+    damped, damped_gap, rotation = force - stiffness * depth, force_gap + stiffness, 1.0 - closes
+    turned = rotation * gap_slope
     r_1, r_2 = -sign * law.base_radius_1, sign * law.base_radius_2
     none = np.zeros_like(force)
     return _Contacts(
         at, pair, cell, f,
-        np.array([r_1 * (force_gap * lever_1 - stiffness_slope * depth), r_2 * force_gap * lever_2, -r_1 * force_gap]),
-        np.array([r_1 * (force_slope * lever_1 - force), r_2 * force_slope * lever_2, -r_1 * force_slope]),
-        np.array([r_1 * (force * lever_1 + 0.5 * stiffness_slope * depth**2), r_2 * force * lever_2, -r_1 * force])
-        + none,
+        np.array([
+            r_1 * (force_gap * lever_1 + damped_gap * turned - stiffness_slope * depth), r_2 * force_gap * lever_2,
+            -r_1 * force_gap,
+        ]),
+        np.array([
+            r_1 * (force_slope * (lever_1 + turned) - force + damped * rotation), r_2 * force_slope * lever_2,
+            -r_1 * force_slope,
+        ]),
+        np.array([
+            r_1 * (force * lever_1 + damped * turned + 0.5 * stiffness_slope * depth**2), r_2 * force * lever_2,
+            -r_1 * force,
+        ]) + none,
     )  # fmt: skip

@@ -2,13 +2,16 @@
 
 With ``sign`` +1 in front and -1 on the back, ``play`` 0 in front and the backlash behind, the penetration is
 ``d = sign x - play - e(s)`` and the path position moves with ``ds/dt = sign r_b1 omega_1``. From the
-potential ``k(s) d^2 / 2``
+potential ``k(s) d^2 / 2`` and a damper on the rate ``v = sign dx/dt - q e' ds/dt``
 
-    tau_1 = -sign r_b1 [ F (1 - e') + k' d^2 / 2 ],   tau_2 = sign r_b2 F,   F = max(0, k d + c g (d/dt) d)
+    tau_1 = -sign r_b1 [ F (1 - e') + D e' (1 - q) + k' d^2 / 2 ],   tau_2 = sign r_b2 F,
+    F = max(0, k d + c g v),   D = F - k d
 
-where the damping grows with ``g = min(1, d / damping depth)``, and friction adds ``-mu F sgn(v_g) rho_1``
-and ``+mu F sgn(v_g) rho_2`` with the sliding speed ``v_g = omega_1 rho_1 - omega_2 rho_2``, ``rho_1 = T1C +
-s``, ``rho_2 = T2C - s``.
+where ``q`` is 0 with the damper on the relative rotation (``v`` is the approach rate, whose lever on the pinion is
+``r_b1``) and 1 with it on the closing rate of the contact (``v = (d/dt) d``), so that ``D v`` is what the damper
+takes in either case. The damping grows with ``g = min(1, d / damping depth)``, and friction adds
+``-mu F sgn(v_g) rho_1`` and ``+mu F sgn(v_g) rho_2`` with the sliding speed ``v_g = omega_1 rho_1 - omega_2
+rho_2``, ``rho_1 = T1C + s``, ``rho_2 = T2C - s``.
 
 All contacts of a flank stand beside each other in a table with N_PHASE rows, so that the compiler makes vector
 instructions of a loop over them. Teeth that are all alike are tabulated over the phase within one base pitch; with
@@ -55,8 +58,8 @@ class PackedMeshes(NamedTuple):
 # columns of PackedMeshes.values
 R1, R2, PITCH, PHASE, BACK_PHASE, BACKLASH, START, PER_STEP = 0, 1, 2, 3, 4, 5, 6, 7
 DAMP_TIME, FRICTION, ROLL_1, ROLL_2, PER_REVERSAL, LEAST_GAP, DERIVATIVE, FLOOR = 8, 9, 10, 11, 12, 13, 14, 15
-PER_PITCH, MU_1, MU_2, PHASE_STEP, PER_PHASE_STEP, DEPTH, PER_DEPTH = 16, 17, 18, 19, 20, 21, 22
-N_VALUES = 23
+PER_PITCH, MU_1, MU_2, PHASE_STEP, PER_PHASE_STEP, DEPTH, PER_DEPTH, CLOSING = 16, 17, 18, 19, 20, 21, 22, 23
+N_VALUES = 24
 # columns of PackedMeshes.counts
 N_SLICES, N_CELLS, CELLS_AT, SHIFTS_AT, INDIVIDUAL, TEETH_1, TEETH_2, OFFSET_2 = 0, 1, 2, 3, 4, 5, 6, 7
 ROWS_1, DEVIATION_1_AT, ROWS_2, DEVIATION_2_AT = 8, 9, 10, 11
@@ -250,6 +253,8 @@ class _Pass(NamedTuple):
     from_rate: float
     from_slope: float
     derivative: float
+    rotation: float
+    """Part of ``derivative`` that the damper does not follow"""
     slip: float
     slip_slope: float
     mu_1: float
@@ -287,12 +292,16 @@ def _press_contact(table: Array, c: int, stride: int, same: _Pass) -> Pressed:
     k = stiffness if pressed > 0.0 else 0.0  # never where depth = 0
     bent = 0.5 * same.derivative * (k_1 + f_2 * k_2 + f_3 * k_3) * depth
     force, k_x, k_v = k * pressed, k * (1.0 + per * closing), k * grown
+    turned = slope * same.rotation
+    elastic = stiffness if over > 0.0 else 0.0
+    damped = force - elastic * depth
     margin = abs(pressed) if abs(pressed) < abs(over - same.full_depth) else abs(over - same.full_depth)
     margin = margin if margin < abs(over) else abs(over)
     margin = margin if over > -same.guard else same.guard
     return Pressed(
-        force, force * m_1 + bent * depth, force * m_2, k_x, k_x * m_1 + 2.0 * bent, k_x * m_2, k_v, k_v * m_1,
-        k_v * m_2, stiffness if margin < same.guard else 0.0, k * per,
+        force, force * m_1 + damped * turned + bent * depth, force * m_2, k_x,
+        k_x * m_1 + (k_x - elastic) * turned + 2.0 * bent, k_x * m_2, k_v, k_v * (m_1 + turned), k_v * m_2,
+        stiffness if margin < same.guard else 0.0, k * per,
     )  # fmt: skip
 
 
@@ -302,10 +311,11 @@ def press_flank(
     guard: float,
 ) -> Pressed:  # fmt: skip
     """Sum the contacts of one flank, pressed by ``reach`` and closing with ``rate``, both seen from this flank."""
-    damp_time, per_reversal = book[at + DAMP_TIME], book[at + PER_REVERSAL]
+    damp_time, per_reversal, closes = book[at + DAMP_TIME], book[at + PER_REVERSAL], book[at + CLOSING]
     same = _Pass(
         flank.place, 2.0 * flank.place, 3.0 * flank.place * flank.place, reach, damp_time * rate,
-        damp_time * sign * book[at + R1] * omega_1 * flank.per_metre, book[at + DERIVATIVE] * flank.per_metre,
+        damp_time * closes * sign * book[at + R1] * omega_1 * flank.per_metre, book[at + DERIVATIVE] * flank.per_metre,
+        (1.0 - closes) * book[at + DERIVATIVE] * flank.per_metre,
         (flank.omega_1 * flank.roll_1 - flank.omega_2 * flank.roll_2) * per_reversal,
         (flank.omega_1 + flank.omega_2) * per_reversal, sign * book[at + MU_1], sign * book[at + MU_2], flank.roll_1,
         flank.roll_2, book[at + PER_DEPTH], book[at + DEPTH], guard,
@@ -373,7 +383,7 @@ def flank_powers(
     friction_power, damping_power, damping_force = 0.0, 0.0, 0.0
     f = flank.place
     damp_time, per_depth = book[at + DAMP_TIME], book[at + PER_DEPTH]
-    path_speed = sign * book[at + R1] * omega_1 * flank.per_metre
+    path_speed = book[at + CLOSING] * sign * book[at + R1] * omega_1 * flank.per_metre
     first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     for i in range(flank.n):
         s, k, _, gap, gap_slope = contact_at(table, first + i, stride, f)

@@ -19,7 +19,7 @@ from dynamics.kernels.book import N_BOOK, OLD, PORT, RATE, REACH, SPEED, TAU, TU
 from dynamics.kernels.contact import LOOSE, POSITIVE, R1, R2, inlined, sliding_direction
 from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, N_BANK, STATE_AT, WIDTH, DragModes
 
-# compiled from sources 7994a7e8
+# compiled from sources a93bbc61
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

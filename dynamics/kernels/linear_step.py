@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.book import OLD, SPEED, TAU, TURN
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
 
-# compiled from sources 7994a7e8
+# compiled from sources a93bbc61
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_solve import (
     react,
 )
 
-# compiled from sources 7994a7e8
+# compiled from sources a93bbc61
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

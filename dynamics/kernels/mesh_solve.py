@@ -60,7 +60,7 @@ from dynamics.kernels.contact import (
     press_flank,
 )
 
-# compiled from sources 7994a7e8
+# compiled from sources a93bbc61
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

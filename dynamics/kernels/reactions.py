@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from dynamics.kernels.contact import (
     BACKLASH,
+    CLOSING,
     DAMP_TIME,
     DERIVATIVE,
     INDIVIDUAL,
@@ -34,7 +35,7 @@ from dynamics.kernels.contact import (
     sliding_direction,
 )
 
-# compiled from sources 7994a7e8
+# compiled from sources a93bbc61
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -47,7 +48,8 @@ def _path_slopes(
     slope_1, slope_2, energy = 0.0, 0.0, 0.0
     f = flank.place
     damp_time, per_depth = law[DAMP_TIME], law[PER_DEPTH]
-    path_speed = sign * law[R1] * omega_1
+    path_speed = law[CLOSING] * sign * law[R1] * omega_1
+    rotation = (1.0 - law[CLOSING]) * law[DERIVATIVE]
     mu_1, mu_2 = sign * law[MU_1], sign * law[MU_2]
     first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     for i in range(flank.n):
@@ -71,7 +73,8 @@ def _path_slopes(
         df = stiffness_slope * pressed - k * gap_slope * (1.0 + grown_slope * closing)
         df = df if (depth > 0.0 and pressed > 0.0) else 0.0
         energy += 0.5 * k * depth * depth
-        slope_1 += df * m_1 - stiffness_slope * depth * gap_slope
+        de = stiffness_slope * depth - k * gap_slope
+        slope_1 += df * m_1 + (df - de) * rotation * gap_slope - stiffness_slope * depth * gap_slope
         slope_2 += df * m_2
     return slope_1, slope_2, energy
 
@@ -168,7 +171,7 @@ def tooth_pair_forces(
             found = list_on_path(
                 law, 0, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], contacts, 0, stride, pairs
             )  # fmt: skip
-            path_speed = sign * law[R1] * omega_1[n]
+            path_speed = law[CLOSING] * sign * law[R1] * omega_1[n]
             rate = sign * (law[R1] * omega_1[n] - law[R2] * omega_2[n])
             for i in range(found):
                 depth = pressed - contacts[ROW_E * stride + i]

@@ -100,7 +100,7 @@ def test_run_out_of_a_pair_cancels_where_both_lead_together():
 
 
 def test_corrections_vanish_with_the_deviation():
-    for size, limit in ((0.02, 2e-4), (2.0, 2e-2)):
+    for size, limit in ((0.002, 2e-4), (2.0, 2e-2)):
         value = {PINION + "single_pitch": [f"{size * (-1) ** tooth} um" for tooth in range(28)]}
         first, whole = (linear(orders=(14.0, 42.0), steps=steps, **value) for steps in (0, 30))
         assert abs(first["wheel side", 14.0] - whole["wheel side", 14.0]) < limit * abs(

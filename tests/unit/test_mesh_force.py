@@ -1,10 +1,12 @@
 """Mesh forces: one potential, tangents, friction, damping, tooth identity."""
 
+from typing import get_args
+
 import numpy as np
 import pytest
 
 from dynamics.mesh_force import evaluate_mesh, pack_meshes, tooth_forces
-from dynamics.mesh_law import MeshLaw, check_mesh_law
+from dynamics.mesh_law import DampedRate, MeshLaw, check_mesh_law
 from tests.mesh_example import BASE_PITCH, BASE_RADIUS_1, BASE_RADIUS_2, spur_law
 
 HELIX = {"n_slices": 7, "contact_ratio": 1.448, "span": 11.6e-3}
@@ -35,8 +37,14 @@ def test_torques_are_the_gradient_of_the_contact_energy(law: MeshLaw) -> None:
     assert np.abs(here.torque_1 + BASE_RADIUS_1 * (here.force_front - here.force_back)).max() > 1e-3 * largest
 
 
+CLOSING = {"damping_acts_on": "contact_closing_rate"}
+RATES = pytest.mark.parametrize("acts_on", get_args(DampedRate))
+
+
+@RATES
 @pytest.mark.parametrize("law", [spur_law(damping=1e3, friction=0.05), individual(spur_law(damping=1e3))])
-def test_tangents_are_the_derivatives_of_the_torques(law: MeshLaw) -> None:
+def test_tangents_are_the_derivatives_of_the_torques(law: MeshLaw, acts_on: DampedRate) -> None:
+    law = law._replace(damping_acts_on=acts_on)
     w_1, w_2 = 100.0, 100.0 * BASE_RADIUS_1 / BASE_RADIUS_2 - 0.05
     here = evaluate_mesh(law, THETA, APPROACH, w_1, w_2)
     largest = np.abs(here.torque_1_per_approach).max()
@@ -52,23 +60,30 @@ def test_tangents_are_the_derivatives_of_the_torques(law: MeshLaw) -> None:
     faster = evaluate_mesh(law, THETA, APPROACH, w_1, w_2 - rate / BASE_RADIUS_2).torque_2
     slope = (faster - here.torque_2) / rate
     np.testing.assert_allclose(slope, here.torque_2_per_rate, atol=2e-3 * np.abs(slope).max())
+    # where the wheel alone moves the path stands still, so that both torques answer to the rate alone
+    slope = (
+        evaluate_mesh(law, THETA, APPROACH, w_1, w_2 - rate / BASE_RADIUS_2).torque_1 - here.torque_1
+    ) / rate
+    np.testing.assert_allclose(slope, here.torque_1_per_rate, atol=2e-3 * np.abs(slope).max())
 
 
-def test_angle_tangent_without_friction() -> None:
-    law = spur_law(**HELIX)
+@pytest.mark.parametrize(("damping", "w_2"), [(0.0, 0.0), (1e3, -0.3)])
+def test_angle_tangent_without_friction(damping: float, w_2: float) -> None:
+    law = spur_law(**HELIX, damping=damping)
     h = 1e-8
-    here = evaluate_mesh(law, THETA, APPROACH, 0.0, 0.0)
-    high = evaluate_mesh(law, THETA + h, APPROACH, 0.0, 0.0).torque_2
-    low = evaluate_mesh(law, THETA - h, APPROACH, 0.0, 0.0).torque_2
+    here = evaluate_mesh(law, THETA, APPROACH, 0.0, w_2)
+    high = evaluate_mesh(law, THETA + h, APPROACH, 0.0, w_2).torque_2
+    low = evaluate_mesh(law, THETA - h, APPROACH, 0.0, w_2).torque_2
     slope = (high - low) / (2 * h)
     difference = np.abs(slope - here.torque_2_per_angle)
     assert np.mean(difference > 1e-3 * np.abs(slope).max()) < 0.02
 
 
-def test_mesh_power_is_friction_damping_and_stored_energy() -> None:
-    law = spur_law(damping=1e3, friction=0.05)
+@RATES
+def test_mesh_power_is_friction_damping_and_stored_energy(acts_on: DampedRate) -> None:
+    law = spur_law(damping=1e3, friction=0.05, damping_acts_on=acts_on)
     w_1 = np.full_like(THETA, 120.0)
-    w_2 = w_1 * BASE_RADIUS_1 / BASE_RADIUS_2 + STATES.normal(size=len(THETA)) * 0.2
+    w_2 = w_1 * BASE_RADIUS_1 / BASE_RADIUS_2 + STATES.normal(size=len(THETA))
     rate = BASE_RADIUS_1 * w_1 - BASE_RADIUS_2 * w_2
     here = evaluate_mesh(law, THETA, APPROACH, w_1, w_2)
     t = 1e-10
@@ -81,6 +96,41 @@ def test_mesh_power_is_friction_damping_and_stored_energy() -> None:
     assert here.damping_power.min() >= 0.0
     assert here.friction_power.max() > 1.0
     assert here.damping_power.max() > 1.0
+
+
+def test_flanks_that_roll_off_steadily_lose_nothing_in_a_damper_on_the_relative_rotation() -> None:
+    # both gears at constant speed: the approach stays, the tip corners come in and go out with the gap
+    law = spur_law(n_slices=1, damping=1e3)
+    theta = np.linspace(0.0, 2.0 * np.pi / law.teeth_1, 200, endpoint=False)
+    w_1, w_2 = 1256.6, 1256.6 * BASE_RADIUS_1 / BASE_RADIUS_2
+    rotation = evaluate_mesh(law, theta, 4e-5, w_1, w_2)
+    elastic = evaluate_mesh(law._replace(damping=0.0), theta, 4e-5, w_1, w_2)
+    assert np.abs(rotation.damping_power).max() < 1e-20
+    np.testing.assert_allclose(rotation.torque_1, elastic.torque_1, rtol=1e-12)
+    closing = evaluate_mesh(law._replace(**CLOSING), theta, 4e-5, w_1, w_2)
+    slope = np.gradient(law.gap[0], law.path_step)
+    place = (law.phase + BASE_RADIUS_1 * theta)[:, None] + BASE_PITCH * np.arange(-2, 3)
+    gap, e, k = (
+        np.interp(place, law.path_start + law.path_step * np.arange(slope.size), table, right=0.0, left=0.0)
+        for table in (law.gap[0], slope, law.stiffness[0])
+    )
+    rate, depth = -e * BASE_RADIUS_1 * w_1, np.maximum(4e-5 - gap, 0.0)
+    share = law.damping / law.mean_stiffness * np.minimum(depth / law.damping_depth, 1.0)
+    by_hand = (k * np.maximum(share * rate, -depth) * rate).sum(axis=1)  # flanks do not pull
+    assert closing.damping_power.mean() == pytest.approx(by_hand.mean(), rel=0.01)
+    assert closing.damping_power.mean() > 20.0
+
+
+@RATES
+def test_damper_torques_do_the_work_that_is_booked(acts_on: DampedRate) -> None:
+    law = spur_law(n_slices=1, damping=1e3, damping_acts_on=acts_on)
+    w_1 = 1256.6
+    w_2 = w_1 * BASE_RADIUS_1 / BASE_RADIUS_2 + STATES.normal(size=len(THETA)) * 0.5
+    damped = evaluate_mesh(law, THETA, APPROACH, w_1, w_2)
+    elastic = evaluate_mesh(law._replace(damping=0.0), THETA, APPROACH, w_1, w_2)
+    taken = (elastic.torque_1 - damped.torque_1) * w_1 + (elastic.torque_2 - damped.torque_2) * w_2
+    np.testing.assert_allclose(taken, damped.damping_power, atol=1e-9 * damped.damping_power.max())
+    assert damped.damping_power.min() >= 0.0
 
 
 def test_friction_reverses_with_the_direction_of_rotation() -> None:

@@ -5,12 +5,15 @@ torques hold the derivative terms. Two free gears of the size of P2's test gear 
 drift is relative to the strain energy at the mean load.
 """
 
+from typing import get_args
+
 import numpy as np
 import pytest
 
-from dynamics.mesh_law import MeshLaw
+from dynamics.mesh_force import evaluate_mesh
+from dynamics.mesh_law import DampedRate, MeshLaw
 from dynamics.time_march import DriveState, TimeMarch
-from tests.mesh_example import BASE_RADIUS_1, BASE_RADIUS_2, TEETH, ramped_law, two_bodies, wavy_law
+from tests.mesh_example import BASE_RADIUS_1, BASE_RADIUS_2, TEETH, ramped_law, spur_law, two_bodies, wavy_law
 
 TORQUE = 180.0
 
@@ -96,3 +99,51 @@ def test_accounts_tell_the_same_drift(rpm: float) -> None:
     work = march.accounts().slow_work
     assert work[0] == pytest.approx(TORQUE * turned[0], rel=1e-8)
     assert work[1] == pytest.approx(-brake * turned[1], rel=1e-8)
+
+
+@pytest.mark.parametrize("acts_on", get_args(DampedRate))
+def test_march_books_all_that_the_damper_takes(acts_on: DampedRate) -> None:
+    # a free oscillation under steady load dies out: what is gone of the energy is in the account of the damper
+    law = spur_law(n_slices=1, damping=1e3, damping_acts_on=acts_on)
+    force = TORQUE / BASE_RADIUS_1
+    brake = TORQUE * BASE_RADIUS_2 / BASE_RADIUS_1
+    speed = 12000.0 * np.pi / 30.0
+    start = DriveState(
+        angles=np.array([0.0, -1.3 * force / law.mean_stiffness / BASE_RADIUS_2]),
+        speeds=speed * np.array([1.0, BASE_RADIUS_1 / BASE_RADIUS_2]),
+        twist=brake,
+    )
+    errors = []
+    for step in (1.0 / 640e3, 1.0 / 2560e3):
+        march = TimeMarch(two_bodies(), [law], start, step=step, drive_torque=TORQUE)
+        before = march.energy()
+        march.advance(np.tile([TORQUE, brake, 0.0, 0.0], (round(5e-3 / step), 1)))
+        work = march.accounts().slow_work.sum()
+        lost = float(march.accounts().mesh_damping[0])
+        errors.append(abs(march.energy() - before - work + lost))
+        assert lost > 0.01
+    assert errors[1] < 0.25 * errors[0]
+    assert errors[1] < 0.01 * lost
+
+
+def test_damper_on_the_relative_rotation_brakes_both_gears_alike() -> None:
+    # as one damper between the bodies: the damping matrix is symmetric, c k / k_mean on the line of action
+    law = spur_law(n_slices=1, damping=1e3)
+    theta = np.linspace(0.0, 2.0 * np.pi / TEETH[0], 50)
+    rotation, closing = (
+        evaluate_mesh(
+            law._replace(damping_acts_on=acts_on), theta, 4e-5, 800.0, 800.0 * BASE_RADIUS_1 / BASE_RADIUS_2
+        )
+        for acts_on in get_args(DampedRate)
+    )
+    by_stiffness = -BASE_RADIUS_2 * law.damping / law.mean_stiffness
+    np.testing.assert_allclose(
+        rotation.torque_1_per_rate / BASE_RADIUS_1, -rotation.torque_2_per_rate / BASE_RADIUS_2, rtol=1e-12
+    )
+    inside = (
+        np.abs(rotation.torque_2_per_approach * by_stiffness + BASE_RADIUS_2 * rotation.torque_2_per_rate)
+        < 1e-9
+    )
+    assert inside.mean() > 0.8  # all contacts deeper than the depth over which damping grows
+    apart = closing.torque_1_per_rate / BASE_RADIUS_1 + closing.torque_2_per_rate / BASE_RADIUS_2
+    assert np.abs(apart).max() > 0.01 * law.damping
