@@ -98,6 +98,7 @@ def mesh_model(
         micro=(microgeometry(gears[0], pair, 0), microgeometry(gears[1], pair, 1, entry.tooth_offset)),
         n_slices=_slices(rig, pair),
         damping=entry.damping,
+        damping_acts_on=entry.damping_acts_on,
         friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
         offset=feedback.tooth_growth[name] * math.tan(pair.base_helix_angle)
         + flank_growth(rig.pairs[name], pair),

@@ -25,6 +25,11 @@ from thermal.housing_geometry import HousingGeometry
 PARTITIONS = 2
 """Walls between the chamber and the cold sections, each with a seal on every shaft."""
 
+DAMPER_SHARE = 0.1
+"""Work of a mesh damper, as a share of the tooth friction, above which it warns."""
+LEAST_DAMPER_WORK = 1.0
+"""Work of a mesh damper [W] that warns at least: nothing of it matters below."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class PlacedLoss:
@@ -35,7 +40,9 @@ class PlacedLoss:
     """Mesh, bearing, seals or gear of that gearbox."""
     loss: Loss
     into_body: float
-    """Power that enters solid bodies [W]; the rest goes into the oil at once."""
+    """Power that enters solid bodies [W]; the rest goes into the oil at once, but for what is no heat."""
+    not_heat: float = 0.0
+    """Power that the motor pays and no part takes up as heat: work of a mesh damper [W]."""
     split: MeshSplit | None = None
     """Of a mesh loss, the way into its two gears."""
     given: bool = False
@@ -50,7 +57,7 @@ class PlacedLoss:
     @property
     def into_oil(self) -> float:
         """Power that goes into the oil at once [W]."""
-        return self.loss.power - self.into_body
+        return self.loss.power - self.into_body - self.not_heat
 
     @property
     def into_bearing_oil(self) -> float:
@@ -115,14 +122,37 @@ def mesh_losses(
         placed = PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=into_body, split=split)
         losses += _taken(rig, point, placed)
         if response is not None:
-            damping = Loss(
-                place=model.name,
-                kind="mesh_damping",
-                power=float(response.damping_power[index]),
-                details={"source": "work of the mesh damper in the periodic response"},
-            )
-            losses.append(PlacedLoss(gearbox=box_name, part=mesh, loss=damping, into_body=0.0))
+            losses.append(_damper_work(rig, model, response, index))
     return losses
+
+
+def _damper_work(rig: Rig, model: MeshModel, response: CurvePoint, index: int) -> PlacedLoss:
+    """Work of a mesh damper in the periodic response; what it is beyond a share of the friction warns."""
+    power, friction = float(response.damping_power[index]), float(response.friction_power[index])
+    warnings: tuple[str, ...] = ()
+    if power > max(DAMPER_SHARE * friction, LEAST_DAMPER_WORK):
+        remedy = (
+            'write damping_acts_on = "relative_rotation" at the mesh, or measure its damping'
+            if model.law.damping_acts_on == "contact_closing_rate"
+            else "the mesh vibrates strongly here: measure its damping, or keep away from the resonance"
+        )
+        warnings = (
+            f"work of the mesh damper = {power:.3g} W, limit {DAMPER_SHARE:.0%} of the tooth friction of "
+            f"{friction:.3g} W: the drive torque depends on a damping that is assumed; {remedy}",
+        )
+    loss = Loss(
+        place=model.name,
+        kind="mesh_damping",
+        power=power,
+        details={
+            "damping_acts_on": model.law.damping_acts_on,
+            "source": "work of the mesh damper in the periodic response",
+        },
+        warnings=warnings,
+    )
+    box_name, mesh = model.name.split(".")
+    outside = 0.0 if rig.case.losses.mesh_damping_heats_oil else power
+    return PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=0.0, not_heat=outside)
 
 
 def static_mesh_loss(rig: Rig, point: OperatingPoint, model: MeshModel) -> Loss:

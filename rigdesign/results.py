@@ -149,7 +149,7 @@ class DynamicsResult:
 
 @dataclass(frozen=True, kw_only=True)
 class LossRow:
-    """Power loss of one place at one stage [W]; into_oil + into_body = power."""
+    """Power loss of one place at one stage [W]; into_oil + into_body + not_heat = power."""
 
     place: str
     kind: str
@@ -158,6 +158,8 @@ class LossRow:
     into_oil_W: float  # noqa: N815
     into_body_W: float  # noqa: N815
     basis: Literal["computed", "input"]
+    not_heat_W: float = 0.0  # noqa: N815
+    """Work of a mesh damper that the motor pays and nothing takes up as heat."""
     details: dict[str, float | str] = field(default_factory=dict)
 
 
@@ -351,8 +353,8 @@ class RunResult:
     losses: list[LossRow]
     oil: list[OilRow]
     cooler: list[dict[str, float | str]]
-    """Per held stage {stage, losses_W, heater_W, cooler_W, room_W, open_W, flow_l_min}: losses and heaters put
-    in what cooler and room take out."""
+    """Per held stage {stage, losses_W, heater_W, cooler_W, room_W, not_heat_W, open_W, flow_l_min}: losses and heaters
+    put in what cooler and room take out; losses that are no heat stand apart."""
     thermal: list[ThermalResult]
     growth: list[GrowthResult]
     coupling: list[CouplingHistory]

@@ -212,7 +212,7 @@ def _all_losses(rig: Rig, points: list[PointResult]) -> list[LossRow]:
 
 
 def _stage_losses(rig: Rig, point: OperatingPoint, test: PointResult) -> list[LossRow]:
-    return heat.loss_rows(point.stage, stage_losses(rig, point, test).losses)
+    return heat.loss_rows(point.stage, stage_losses(rig, point, test, dynamic=True).losses)
 
 
 def _assumptions(case: Case, checks: list[Check]) -> list[AssumptionRecord]:

@@ -1,12 +1,15 @@
-"""Losses at any operating point with the warm rig of a held stage: no coupling, no response."""
+"""Losses at any operating point with the warm rig of a held stage: no coupling."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.journal_bearing import BearingState
+from dynamics.response_curve import CurvePoint
+from dynamics.static_loop import NotConverged
 from rigdesign.bearing_films import solve_bearings
 from rigdesign.coupling import PointResult
-from rigdesign.loads import mesh_models
+from rigdesign.drags import drag_torques
+from rigdesign.loads import MeshModel, Setting, mesh_models, respond
 from rigdesign.losses import PlacedLoss, mesh_losses, rotating_losses
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
@@ -22,10 +25,13 @@ class StageLosses:
     losses: tuple[PlacedLoss, ...]
 
 
-def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult) -> StageLosses:
+def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic: bool) -> StageLosses:
     """Losses at ``point`` with the geometry and temperatures of the held stage ``test``.
 
     Tooth forces follow the torque; the bearing films get no heat from the bodies. Nothing is lost at standstill.
+
+    dynamic : friction and mesh damping of the periodic response at this point, as at a held stage; else, and where no
+        response is found, sliding at the mean load alone
     """
     share = point.torque / test.point.torque if test.point.torque else 0.0
     feedback = replace(
@@ -38,5 +44,17 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult) -> StageLos
         return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=())
     models = mesh_models(rig, point, feedback)
     turning = rotating_losses(rig, point, feedback, models, bearings)
-    losses = (*turning, *mesh_losses(rig, point, models, feedback=feedback))
+    response = _response(rig, point, models, turning) if dynamic and rig.system is not None else None
+    losses = (*turning, *mesh_losses(rig, point, models, response, feedback))
     return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=losses)
+
+
+def _response(
+    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], turning: Sequence[PlacedLoss]
+) -> CurvePoint | None:
+    """Periodic response with the bracing that makes the torque of this point; None where none is found."""
+    drags = drag_torques(turning, rig, point.speed)
+    try:
+        return respond(rig, point, models, drags, Setting(mode="torque_controlled"))
+    except NotConverged:
+        return None

@@ -43,6 +43,7 @@ def loss_rows(stage: str, losses: Sequence[PlacedLoss]) -> list[LossRow]:
             power_W=placed.loss.power,
             into_oil_W=placed.into_oil,
             into_body_W=placed.into_body,
+            not_heat_W=placed.not_heat,
             basis="input" if placed.given else "computed",
             details=dict(placed.loss.details),
         )
@@ -71,7 +72,8 @@ def cooler(rig: Rig, last: PassResult) -> dict[str, float | str]:
     Streams of one oil and inlet temperature are one circuit and mix in its tank. A circuit that comes back
     colder than it went needs a heater: its oil is too warm to cool another one, so nothing is netted.
     """
-    lost = math.fsum(placed.loss.power for placed in last.losses)
+    damped = math.fsum(placed.not_heat for placed in last.losses)
+    lost = math.fsum(placed.loss.power for placed in last.losses) - damped
     circuits: dict[tuple[str, float], float] = {}
     for stream in last.streams:
         box, kind = stream.name.split(".")
@@ -90,6 +92,7 @@ def cooler(rig: Rig, last: PassResult) -> dict[str, float | str]:
         "cooler_W": carried,
         "room_W": room,
         **warming,
+        "not_heat_W": damped,
         "open_W": lost + heater - carried - room - stored,
         "flow_l_min": L_MIN * math.fsum(stream.flow for stream in last.streams),
     }

@@ -155,6 +155,9 @@ class GearMesh(Part):
     """Two opposite helices; face widths are those of the modelled half that carries the torque."""
     damping: LinearDamping
     """Damping along the line of action at the mean mesh stiffness."""
+    damping_acts_on: Literal["relative_rotation", "contact_closing_rate"] = "relative_rotation"
+    """relative_rotation: on the approach rate r_b1 omega_1 - r_b2 omega_2 while teeth touch; contact_closing_rate: on
+    the rate at which each contact closes, so that tip corners that come in under steady load are damped as well."""
     stiffness_factor: float = Field(default=1.0, ge=0.1, le=10.0)
     """Times the stiffness of the tooth pairs, however that is found."""
     friction_factor: float = Field(default=1.0, ge=0.0, le=10.0)

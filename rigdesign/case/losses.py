@@ -88,6 +88,10 @@ class Losses(Part):
     """Density of the oil-air mist round the gears, for windage."""
     squeeze_share: float = Field(default=0.0, ge=0.0, le=0.10)
     """Squeezing of oil out of the mesh, as a share of the mesh loss."""
+    mesh_damping_heats_oil: bool = False
+    """Whether the work of the mesh dampers is heat of the gear oil. Left out, the motor pays it and it stands among the
+    losses, but heats nothing: such a damper stands for all that settles the vibration of a loop, tooth friction and
+    films having their own heat."""
     bearing_drag: Literal["film", "constant"] = "film"
     """film: from the bearing solution; constant: ``torsional_damping`` of each bearing, and
     nothing else brakes the shafts or loses power, teeth aside (P2's simulation)."""

@@ -77,11 +77,13 @@ class Memory:
         model: MeshModel = known[key]
         friction = mesh_friction(rig, name, model.pair, point, feedback)
         box, mesh = rig.mesh(name)
-        damping = box.meshes[mesh].damping
-        if friction == model.friction and damping == model.law.damping:
+        entry, law = box.meshes[mesh], model.law
+        damped = entry.damping, entry.damping_acts_on
+        if friction == model.friction and damped == (law.damping, law.damping_acts_on):
             return model
         along = ToothPath.of_pair(model.pair).transverse_friction(friction.value)
-        return replace(model, friction=friction, law=model.law._replace(friction=along, damping=damping))
+        law = law._replace(friction=along, damping=damped[0], damping_acts_on=damped[1])
+        return replace(model, friction=friction, law=law)
 
     def bracing(self, rig: Rig, point: OperatingPoint) -> Setting | None:
         """As `brace_cold`; None without a drivetrain."""

@@ -39,6 +39,8 @@ def rig_flow_figure(
     into_oil: dict[str, float] = defaultdict(float)
     into_bodies: dict[str, float] = defaultdict(float)
     for row in losses:
+        if not (row.into_oil_W or row.into_body_W):
+            continue  # work of the mesh dampers is no heat
         into_oil[_words(row.kind)] += row.into_oil_W
         into_bodies[_words(row.kind)] += row.into_body_W
     flows = [Flow(kind, OIL, max(power, 0.0)) for kind, power in into_oil.items()]

@@ -57,6 +57,16 @@ def losses_by_place_figure(losses: list[LossRow], stage: str) -> "Figure":
         height=0.65,
         label="into the body",
     )
+    if any(r.not_heat_W > 0.0 for r in rows):
+        heat = [r.into_oil_W + r.into_body_W for r in rows]
+        axes.barh(
+            places,
+            [r.not_heat_W for r in rows],
+            left=heat,
+            color=SERIES[2],
+            height=0.65,
+            label="no heat (mesh damper)",
+        )
     axes.set_yticks(places, [plain(_words(f"{row.place}, {row.kind}")) for row in rows])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)

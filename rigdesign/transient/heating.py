@@ -35,7 +35,8 @@ class Heating:
         key = name, point, oil
         if key not in self._conditions:
             if point not in self._states:
-                self._states[point] = stage_losses(self._rig, point, self._test)
+                heats = self._rig.case.losses.mesh_damping_heats_oil
+                self._states[point] = stage_losses(self._rig, point, self._test, dynamic=heats)
             self._conditions[key] = oil_conditions(self._rig, name, self._states[point], oil=oil)
         return self._conditions[key]
 

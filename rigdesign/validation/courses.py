@@ -112,6 +112,11 @@ def damped(laws: Sequence[MeshLaw], damping: float) -> list[MeshLaw]:
     return [law._replace(damping=damping) for law in laws]
 
 
+def closing(laws: Sequence[MeshLaw]) -> list[MeshLaw]:
+    """The laws with their dampers on the closing rate of the contacts."""
+    return [law._replace(damping_acts_on="contact_closing_rate") for law in laws]
+
+
 def reshaped(
     prototype: Prototype,
     models: Sequence[MeshModel],
@@ -137,6 +142,7 @@ def reshaped(
                 micro=(first, second),
                 n_slices=len(model.law.slice_shift),
                 damping=model.law.damping,
+                damping_acts_on=model.law.damping_acts_on,
                 friction=model.law.friction,
                 engagement=engagement,
             )
