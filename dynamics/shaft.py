@@ -89,6 +89,11 @@ class Shaft:
         return math.fsum(section.length for section in self.sections)
 
     @property
+    def wave_speed(self) -> float:
+        """Speed of torsional waves sqrt(G / rho) [m/s]."""
+        return math.sqrt(self.shear_modulus / self.density)
+
+    @property
     def inertia(self) -> float:
         """Polar inertia of sections and discs [kg m2]."""
         body = math.fsum(self.density * s.polar_moment * s.length for s in self.sections)

@@ -5,7 +5,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.bracing import Mode, ShiftedGear, brace
-from dynamics.flank import Microgeometry, alike_teeth, cumulative_pitch, mesh_law, pitch_waves
+from dynamics.flank import (
+    Microgeometry,
+    alike_teeth,
+    cumulative_pitch,
+    default_slices,
+    mesh_law,
+    pitch_waves,
+)
 from dynamics.gear import GearPair
 from dynamics.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.losses import ToothPath
@@ -92,11 +99,12 @@ def mesh_model(
         shape = shape.scaled(0.8)
     if entry.stiffness_factor != 1.0:
         shape = shape.scaled(entry.stiffness_factor)
+    micro = microgeometry(gears[0], pair, 0), microgeometry(gears[1], pair, 1, entry.tooth_offset)
     law = mesh_law(
         pair,
         stiffness=shape,
-        micro=(microgeometry(gears[0], pair, 0), microgeometry(gears[1], pair, 1, entry.tooth_offset)),
-        n_slices=_slices(rig, pair),
+        micro=micro,
+        n_slices=_slices(rig, pair, micro),
         damping=entry.damping,
         damping_acts_on=entry.damping_acts_on,
         friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
@@ -125,15 +133,11 @@ def mesh_phase(rig: Rig, name: str) -> float:
     return stated - (math.pi * pair.base_radii[0] if sides[0] != sides[1] else 0.0)
 
 
-def _slices(rig: Rig, pair: GearPair) -> int:
-    """Slices over the face width; quick fidelity halves them for spur gears.
-
-    Slices of a helical gear enter the mesh one by one: too few of them excite it by the steps of the sum.
-    """
+def _slices(rig: Rig, pair: GearPair, micro: tuple[Microgeometry, Microgeometry]) -> int:
+    """Slices over the face width: those of the case, or of the rule where it states none."""
     numerics = rig.case.numerics
-    if pair.helix_angle:
-        return numerics.slices_helical
-    return max(1, (numerics.slices_spur + 1) // 2) if rig.fidelity == "quick" else numerics.slices_spur
+    stated = numerics.slices_helical if pair.helix_angle else numerics.slices_spur
+    return math.ceil((stated or default_slices(pair, micro)) / rig.coarsening.slices)
 
 
 def flank_growth(cold: GearPair, warm: GearPair) -> float:
@@ -343,6 +347,7 @@ def respond(
         twist=None if controlled else setting.twist,
         period=rig.case.numerics.response_period,
         drag_torques=drags,
+        cutoff=rig.highest_mode,
     )
     if curve.failed:
         raise NotConverged(f"periodic response at stage {point.stage!r}: {curve.failed[0][1]}")

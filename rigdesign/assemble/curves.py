@@ -154,7 +154,7 @@ def _curve(
     assert rig.system is not None
     solve = partial(
         periodic_response, rig.system, periodic_laws(rig, laws), torque=torque, drag_torques=warm.drags,
-        period=rig.case.numerics.response_period,
+        period=rig.case.numerics.response_period, cutoff=rig.highest_mode,
     )  # fmt: skip
     return refined_response(solve, speeds, rounds=ROUNDS) if refined and resolved(rig) else solve(speeds)
 

@@ -19,9 +19,13 @@ class Numerics(Part):
     sample_rate: Frequency
     internal_steps: Annotated[int, Field(ge=8, le=256)] = 8
     """Integration steps per sample."""
-    slices_spur: Annotated[int, Field(ge=1, le=101)] = 5
-    slices_helical: Annotated[int, Field(ge=3, le=101)] = 12
-    shaft_element_length: Length
+    slices_spur: Annotated[int, Field(ge=1, le=101)] | None = None
+    """Slices over the face of spur gears; by what their faces need when left out: 1 if flat, else 8."""
+    slices_helical: Annotated[int, Field(ge=3, le=101)] | None = None
+    """Slices over the face of helical gears; when left out 8 a base pitch of overlap, at least 8."""
+    shaft_element_length: Length | None = None
+    """Longest element of the shafts; when left out a sixteenth of the torsional wave of the fourth mesh harmonic at
+    the highest speed, at most of 20 kHz."""
     curve_speed_start: Speed
     """First speed of the dynamic factor curve."""
     curve_speed_end: Speed

@@ -119,10 +119,11 @@ def _numerics(case: "Case") -> Iterator[Fault]:
             "write e.g. 500 rpm",
         )  # fmt: skip
     length = sum(s.length for shaft in _shafts(case) for s in shaft.sections)
-    if length > MOST_SHAFT_ELEMENTS * numbers.shaft_element_length:
+    stated = numbers.shaft_element_length
+    if stated is not None and length > MOST_SHAFT_ELEMENTS * stated:
         yield Fault(
-            "numerics.shaft_element_length", show(numbers.shaft_element_length, "length"),
-            f"makes {length / numbers.shaft_element_length:.0f} elements of the shafts, limit "
+            "numerics.shaft_element_length", show(stated, "length"),
+            f"makes {length / stated:.0f} elements of the shafts, limit "
             f"{MOST_SHAFT_ELEMENTS}: the modes of more take minutes",
             f"write at least {show(length / MOST_SHAFT_ELEMENTS, 'length')}",
         )  # fmt: skip

@@ -77,7 +77,7 @@ def exact_motion(
     if not march:
         curve = periodic_response(
             rig.system, laws, [speed], torque, twist=twist, period="hunting_cycle", drag_torques=drags,
-            methods=("harmonic_balance",),
+            methods=("harmonic_balance",), cutoff=rig.highest_mode,
         )  # fmt: skip
         if curve.points:
             found = curve.points[0]
@@ -88,7 +88,7 @@ def exact_motion(
             )  # fmt: skip
     marched = periodic_by_time(
         rig.system, laws, speed=speed, torque=torque, twist=twist, period="hunting_cycle", drag_torques=drags,
-        longest_time=LONGEST_MARCH,
+        longest_time=LONGEST_MARCH, cutoff=rig.highest_mode,
     )  # fmt: skip
     if not marched.steady:
         raise NotConverged(f"march over the hunting cycle at {point.stage!r}: {'; '.join(marched.warnings)}")

@@ -147,7 +147,7 @@ def _shape_key(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback) -
     gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
     return (
         name,
-        rig.fidelity,
+        rig.coarsening,
         rig.pairs[name],
         "" if power is None else power.mesh_stiffness,
         numerics.slices_spur,

@@ -217,6 +217,7 @@ def ideal_response(
         signed_torque(rig, point) if controlled else None,
         twist=None if controlled else setting.twist,
         drag_torques=drags,
+        cutoff=rig.highest_mode,
     )
     if curve.failed:
         raise NotConverged(f"mesh-periodic response at {point.stage!r}: {curve.failed[0][1]}")

@@ -17,7 +17,7 @@ RIGID_SEAT = 1e8
 def build_drivetrain(
     case: Case, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
 ) -> dyn.Drivetrain:
-    """Shafts, gears, couplings, bearings and meshes of the loop.
+    """Shafts, gears, couplings, bearings and meshes of the loop; the shafts divided as `resolution.with_elements` says.
 
     pairs : ``gearbox.mesh`` -> gear pair. Gears are called ``gearbox.gear``, bearings ``gearbox.bearing``,
     seals ``gearbox.seals.name``.
@@ -71,7 +71,6 @@ def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> dyn.Shaf
         ),
         shear_modulus=material.elastic_modulus / (2.0 * (1.0 + material.poisson_ratio)),
         density=material.density,
-        element_length=case.numerics.shaft_element_length,
     )
 
 

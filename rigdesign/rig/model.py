@@ -8,6 +8,7 @@ from functools import cached_property
 from dynamics.drivetrain import Drivetrain, Joint, assemble, joints
 from dynamics.gear import GearPair
 from dynamics.linear_system import LinearSystem
+from dynamics.propagator import DEFAULT_CUTOFF
 from rigdesign.case.gearbox import Gearbox, JournalBearing
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
@@ -18,6 +19,7 @@ from rigdesign.results import Fidelity
 from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
+from rigdesign.rig.resolution import AS_RULED, Coarsening, counted_frequency, highest_mode, with_elements
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
 from rigdesign.rig.user_mesh import user_model
@@ -34,6 +36,7 @@ class Rig:
     """Everything that stays the same over operating points and passes.
 
     pairs : cold gear pair by ``gearbox.mesh``; oils, materials : by the name the case uses
+    coarsening : of the loop, for estimates of its discretisation error
     """
 
     case: Case
@@ -41,6 +44,7 @@ class Rig:
     oils: Mapping[str, Oil]
     materials: Mapping[str, Material]
     pairs: Mapping[str, GearPair]
+    coarsening: Coarsening = AS_RULED
 
     @cached_property
     def speed_ratios(self) -> Mapping[str, float]:
@@ -50,8 +54,18 @@ class Rig:
     @cached_property
     def drivetrain(self) -> Drivetrain | None:
         """The power circuit; None when the losses are given."""
+        if self.case.drivetrain is None:
+            return None
+        whole = build_drivetrain(self.case, self.pairs, self.materials)
+        return with_elements(self.case, whole, self.coarsening.elements)
+
+    @cached_property
+    def highest_mode(self) -> float:
+        """Frequency [Hz] up to which modes of the loop are followed in its periodic response."""
         return (
-            None if self.case.drivetrain is None else build_drivetrain(self.case, self.pairs, self.materials)
+            DEFAULT_CUTOFF
+            if self.drivetrain is None
+            else highest_mode(counted_frequency(self.case, self.drivetrain))
         )
 
     @cached_property

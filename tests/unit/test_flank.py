@@ -73,9 +73,10 @@ def test_law_passes_the_contract_check(pair):
 def test_default_slices():
     stiffness = scaled(TEST_GEAR)
     assert mesh_law(TEST_GEAR, stiffness=stiffness).stiffness.shape[0] == 1
-    assert mesh_law(TEST_GEAR, stiffness=stiffness, micro=PUBLISHED).stiffness.shape[0] == 5
-    assert mesh_law(TEST_GEAR, stiffness=stiffness, misalignment=1e-4).stiffness.shape[0] == 5
-    assert mesh_law(REFERENCE_GEAR, stiffness=scaled(REFERENCE_GEAR)).stiffness.shape[0] == 12
+    assert mesh_law(TEST_GEAR, stiffness=stiffness, micro=PUBLISHED).stiffness.shape[0] == 8
+    assert mesh_law(TEST_GEAR, stiffness=stiffness, misalignment=1e-4).stiffness.shape[0] == 8
+    # a face that lags by 4.14 base pitches from end to end
+    assert mesh_law(REFERENCE_GEAR, stiffness=scaled(REFERENCE_GEAR)).stiffness.shape[0] == 34
 
 
 def test_narrow_face_governs_and_slices_share_it():
@@ -144,10 +145,10 @@ def test_misalignment_opens_the_gap_along_the_face():
 
 def test_slices_of_a_helical_gear_lag_by_the_base_helix():
     law = mesh_law(REFERENCE_GEAR, stiffness=scaled(REFERENCE_GEAR))
-    step = 40e-3 / 12
+    step = 40e-3 / 34
     assert np.diff(law.slice_shift) == pytest.approx(step * tan(REFERENCE_GEAR.base_helix_angle))
     assert law.slice_shift.sum() == pytest.approx(0.0, abs=1e-15)
-    total = 12 / 11 * np.ptp(law.slice_shift) / law.base_pitch
+    total = 34 / 33 * np.ptp(law.slice_shift) / law.base_pitch
     assert total == pytest.approx(REFERENCE_GEAR.overlap_ratio)
 
 

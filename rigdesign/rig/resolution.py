@@ -1,0 +1,73 @@
+"""How finely the loop is divided: slices of the teeth, elements of the shafts, and the modes that are followed.
+
+The rules follow what excites the loop. A shaft element takes a sixteenth of the torsional wave of the highest
+frequency that counts, the fourth mesh harmonic at the highest speed or 20 kHz: lumped inertia makes a mode there low by
+(2 pi / 16)^2 / 24 = 0.6 % (``dynamics.shaft.Shaft``). Modes above 2.5 times that frequency, six elements a wave, are
+not followed. Slices are the rule of ``dynamics.flank.default_slices``. The case may state element length and slices;
+what either leaves open stands with the checks (`rigdesign.load_errors`).
+"""
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+from dynamics.drivetrain import Drivetrain
+from dynamics.propagator import DEFAULT_CUTOFF
+from dynamics.shaft import Shaft
+from rigdesign.case.model import Case
+from rigdesign.case.rules import MOST_SHAFT_ELEMENTS
+from rigdesign.rig.speeds import speed_ratios
+
+COUNTED_HARMONIC = 4
+"""Harmonics of the mesh frequency that the shafts must follow at the highest speed."""
+HIGHEST_COUNTED = 20e3
+"""Frequency [Hz] beyond which the inertia of the gears keeps the excitation out of the shafts."""
+ELEMENTS_PER_WAVE = 16
+FOLLOWED = 2.5
+"""Highest mode that is followed, per counted frequency."""
+
+
+class Coarsening(NamedTuple):
+    """How many times coarser than the rules, or the case, the loop is divided: for estimates of their errors."""
+
+    slices: int = 1
+    elements: int = 1
+
+
+AS_RULED = Coarsening()
+
+
+def counted_frequency(case: Case, drivetrain: Drivetrain) -> float:
+    """Highest frequency [Hz] that counts for the shafts."""
+    fastest = max(case.numerics.curve_speed_end, *(stage.speed_end for stage in case.schedule.resolved()))
+    ratios = speed_ratios(case, drivetrain)
+    mesh = max(
+        mesh.teeth[0] * ratios[drivetrain.gear(mesh.pinion).shaft] * fastest / (2.0 * math.pi)
+        for mesh in drivetrain.meshes
+    )
+    return min(COUNTED_HARMONIC * mesh, HIGHEST_COUNTED)
+
+
+def highest_mode(frequency: float) -> float:
+    """Frequency [Hz] up to which modes are followed."""
+    return min(FOLLOWED * frequency, DEFAULT_CUTOFF)
+
+
+def with_elements(case: Case, drivetrain: Drivetrain, times: int = 1) -> Drivetrain:
+    """The drivetrain with the element length of the case, or of the rule where it states none, ``times`` as long."""
+    stated = case.numerics.shaft_element_length
+    least = math.fsum(shaft.length for shaft in drivetrain.shafts) / MOST_SHAFT_ELEMENTS
+    frequency = counted_frequency(case, drivetrain)
+    return replace(
+        drivetrain,
+        shafts=tuple(
+            replace(shaft, element_length=times * (stated or max(_element_length(shaft, frequency), least)))
+            for shaft in drivetrain.shafts
+        ),
+    )
+
+
+def _element_length(shaft: Shaft, frequency: float) -> float:
+    """Element length [m] of the rule; two digits, so that a small change of a material leaves the elements alone."""
+    length = shaft.wave_speed / frequency / ELEMENTS_PER_WAVE
+    return float(f"{length:.1e}")
