@@ -87,7 +87,7 @@ class GearboxDynamics:
     """The curve of ``dynamic_factor`` under a named variant of the mesh law (``weber_banaschek_0.8``)."""
     stage_loads: list[dict[str, Any]]
     """Time run, per stage that turns under torque: {stage, dynamic_factor, speed_rpm, mean_Nm, peak_Nm, least_Nm,
-    least_share, least_share_at_rpm}."""
+    least_share, least_share_at_rpm, least_share_mean_Nm}."""
     dynamic_torque_peak_Nm: float  # noqa: N815
     """Highest of the time run and the periodic responses of the held stages."""
     iso_factors: dict[str, float | str]

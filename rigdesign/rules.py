@@ -176,7 +176,7 @@ def with_omissions(check: Check, omissions: Sequence[Omission]) -> Check:
 
 
 def with_error(check: Check, error: float | None) -> Check:
-    """A check with the discretisation error of its value: a verdict that hangs on the mesh says so.
+    """A check with the discretisation error of its value: a verdict that depends on the discretisation says so.
 
     A held rule whose margin is smaller than the error is a warning; a broken one stays as it is.
     """
@@ -187,7 +187,7 @@ def with_error(check: Check, error: float | None) -> Check:
     if abs(check.margin) >= error:
         return known
     unit = "K" if check.unit == "degC" else check.unit
-    doubt = f"the mesh leaves {error:.2g} {unit} open, more than the margin: refine it"
+    doubt = f"the discretisation leaves {error:.2g} {unit} open, more than the margin: refine it"
     return replace(
         known,
         verdict="warn" if check.verdict == "pass" else check.verdict,

@@ -24,6 +24,7 @@ from rigdesign.discretisation import discretisation
 from rigdesign.dynamic_work import DynamicWork
 from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError, UsageError
 from rigdesign.finite import require_finite
+from rigdesign.load_errors import load_errors
 from rigdesign.prediction.model import Channel, Prediction, Setting
 from rigdesign.ramp_run import held_points, schedule_of
 from rigdesign.remesh import MeshesBeside, looping_rig, on_mesh
@@ -127,8 +128,7 @@ def solve_case(
             lap("alternatives")
         run = dynamics.result()
         lap("dynamics")
-    say("assembling the result")
-    return Subject(
+    subject = Subject(
         rig=wanted,
         points=points,
         run=run,
@@ -139,6 +139,11 @@ def solve_case(
         discretisation=meshes.rows,
         mesh_shifts=meshes.shifts,
     )
+    say("errors of slices and shaft elements")
+    subject = replace(subject, discretisation=(*meshes.rows, *load_errors(subject)))
+    lap("load_errors")
+    say("assembling the result")
+    return subject
 
 
 def _settled(rig: Rig, say: Progress) -> list[PointResult]:

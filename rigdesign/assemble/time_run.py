@@ -53,6 +53,7 @@ def stage_loads(rig: Rig, ramp: TimeResponse, mesh: int) -> list[dict[str, Any]]
                 "least_Nm": float(low[own].min()),
                 "least_share": float(low[loosest] / mean[loosest]),
                 "least_share_at_rpm": float(speed[loosest]),
+                "least_share_mean_Nm": float(mean[loosest]),
             }
         )
     return rows

@@ -78,7 +78,7 @@ def _ramp_peak(subject: Subject, mesh: int) -> Found | None:
     """Peak of the time run over the mean torque of the governing held stage."""
     response = subject.test.last.response
     assert response is not None
-    row = max(_loaded(subject, mesh), key=lambda row: float(row["peak_Nm"]), default=None)
+    row = max(loaded_stages(subject, mesh), key=lambda row: float(row["peak_Nm"]), default=None)
     if row is None:
         return None
     return (
@@ -143,7 +143,7 @@ def near_crossings(subject: Subject, mesh: int, within: float) -> list[tuple[flo
 
 
 def _lift_off(subject: Subject, mesh: int) -> Found | None:
-    loaded = {row["stage"] for row in _loaded(subject, mesh)}
+    loaded = {row["stage"] for row in loaded_stages(subject, mesh)}
     if not loaded:
         return None
     rows = [row for row in _result(subject, mesh).lift_off if row["stage"] in loaded]
@@ -158,12 +158,12 @@ def _contact_margin(subject: Subject, mesh: int) -> Found | None:
             float(row["least_share"]),
             f"{row['least_Nm']:.1f} N m at least in stage {row['stage']}, near {row['least_share_at_rpm']:.0f} rpm",
         )
-        for row in _loaded(subject, mesh)
+        for row in loaded_stages(subject, mesh)
     ]
     return worst(found, smallest=True) if found else None
 
 
-def _loaded(subject: Subject, mesh: int) -> list[dict[str, Any]]:
+def loaded_stages(subject: Subject, mesh: int) -> list[dict[str, Any]]:
     """Loads of the stages that carry more than the start torque while they turn."""
     light = subject.case.limits.bearing.start_torque_limit or 0.0
     loaded = {

@@ -62,7 +62,10 @@ def test_a_margin_within_the_error_warns_and_says_so() -> None:
     found = with_error(check(0.01, reason="front at 90 deg"), 0.02)
     assert found.verdict == "warn"
     assert found.discretisation_error == 0.02
-    assert found.reason == "front at 90 deg; the mesh leaves 0.02 mm open, more than the margin: refine it"
+    assert (
+        found.reason
+        == "front at 90 deg; the discretisation leaves 0.02 mm open, more than the margin: refine it"
+    )
 
 
 @pytest.mark.parametrize(("margin", "verdict"), [(0.05, "pass"), (0.05, "warn"), (-0.05, "fail")])

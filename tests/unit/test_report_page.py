@@ -249,7 +249,7 @@ def test_mesh_errors_stand_by_their_share_of_the_margin():
     assert [row["check"] for row in rows] == ["temperature.housing", "clearance.seal gap"]
     assert [row["error_over_margin"] for row in rows] == pytest.approx([0.5, 0.1])
     assert rows[0]["shift_on_fine_mesh"] == 0.2
-    assert "What the mesh leaves open" in report_html(result)
+    assert "What the discretisation leaves open" in report_html(result)
 
 
 def test_drivers_name_the_assumptions_a_check_rests_on():
