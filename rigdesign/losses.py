@@ -18,12 +18,9 @@ from rigdesign.given_losses import given_power
 from rigdesign.loads import MeshModel, first_torques
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_oil, injected_flow, jet_velocity
+from rigdesign.rig.shaft_seals import ShaftSeal, shaft_seals
 from rigdesign.state import Feedback, OperatingPoint
 from thermal.air import air
-from thermal.housing_geometry import HousingGeometry
-
-PARTITIONS = 2
-"""Walls between the chamber and the cold sections, each with a seal on every shaft."""
 
 DAMPER_SHARE = 0.1
 """Work of a mesh damper, as a share of the tooth friction, above which it warns."""
@@ -247,61 +244,52 @@ def _oil_jets(
 def _seals(
     rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, feedback: Feedback
 ) -> Iterator[PlacedLoss]:
-    """Seals of each shaft; their lengths are those of the walls, so a gearbox without a housing has rubbing alone."""
-    geometry = rig.geometries.get(box_name)
+    """Seals of each shaft: gaps in the walls of the chamber, and what seals the shaft where it leaves the gearbox."""
     split = body_split(rig, box_name)
     into_body = split.seal_into_shaft + split.seal_into_housing
     for name, seals in box.seals.items():
         omega = rig.shaft_speed(seals.shaft, point.speed)
         place = f"{box_name}.{name}"
-        parts = (
-            [] if geometry is None else _gap_losses(rig, box_name, place, geometry, seals, omega, feedback)
-        )
+        parts = _seal_losses(rig, box_name, place, seals, omega, feedback)
         rubbing = seals.rubbing_torque * omega
         if not parts and not rubbing:
             continue
-        details = dict(parts[0].details) if parts else {"source": "friction torque of the case"}
+        losses = [part for _, part in parts]
+        ends = [part for seal, part in parts if seal.leaves]
+        details = dict(losses[-1].details) if parts else {"source": "friction torque of the case"}
         details |= {"seals": float(len(parts))} if parts else {}
         details |= {"rubbing_torque": seals.rubbing_torque} if rubbing else {}
-        power = math.fsum(part.power for part in parts) + rubbing
+        power = math.fsum(part.power for part in losses) + rubbing
         loss = Loss(
             place=place,
             kind="seal",
             power=power,
             details=details,
-            warnings=tuple(dict.fromkeys(warning for part in parts for warning in part.warnings)),
+            warnings=tuple(dict.fromkeys(warning for part in losses for warning in part.warnings)),
         )
-        ends = math.fsum(part.power for part in parts[PARTITIONS:])
-        if rubbing:
-            ends += rubbing * max(len(parts) - PARTITIONS, 0) / max(len(parts), 1)
-        share = ends / power if power > 0.0 else 0.0
+        outside = math.fsum(part.power for part in ends) + rubbing * len(ends) / max(len(parts), 1)
+        share = outside / power if power > 0.0 else 0.0
         yield PlacedLoss(gearbox=box_name, part=name, loss=loss, into_body=into_body * power, end_share=share)
 
 
-def _gap_losses(
-    rig: Rig,
-    box_name: str,
-    place: str,
-    geometry: HousingGeometry,
-    seals: Seals,
-    omega: float,
-    feedback: Feedback,
-) -> list[Loss]:
-    """Loss of every seal of a shaft, those of the partitions first."""
+def _seal_losses(
+    rig: Rig, box_name: str, place: str, seals: Seals, omega: float, feedback: Feedback
+) -> list[tuple[ShaftSeal, Loss]]:
+    """Every seal of a shaft with its loss, those in the walls of the chamber first.
+
+    The shaft passes the walls of a chamber in a gap; lips sit only where it leaves the gearbox, one a side. A gap
+    without a stated wall has no length and is left out.
+    """
     mist = chamber_mist(rig, box_name, feedback)
-    shaft = next(shaft for shaft in geometry.shafts if shaft.name == seals.shaft)
-    gaps = [(shaft.seal_diameter, geometry.partition_thickness)] * PARTITIONS
-    gaps += [
-        (shaft.overhang_diameter, geometry.bearing_depths(shaft)[0])
-        for overhang in (shaft.overhang_front, shaft.overhang_rear)
-        if overhang > 0.0
-    ]
-    if seals.kind == "radial_lip":
-        return [lip_seal_loss(place, diameter, omega) for diameter, _ in gaps]
-    return [
-        gap_seal_loss(place, 0.5 * diameter, seals.radial_gap, length, omega, mist.density, mist.viscosity)
-        for diameter, length in gaps
-    ]
+    found = []
+    for seal in shaft_seals(rig, box_name, seals.shaft):
+        if seal.leaves and seals.kind == "radial_lip":
+            found.append((seal, lip_seal_loss(place, seal.diameter, omega)))
+        elif seal.length is not None:
+            gap = seals.radial_gap, seal.length
+            loss = gap_seal_loss(place, 0.5 * seal.diameter, *gap, omega, mist.density, mist.viscosity)
+            found.append((seal, loss))
+    return found
 
 
 def body_split(rig: Rig, name: str) -> HeatSplit:

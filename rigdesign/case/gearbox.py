@@ -125,7 +125,12 @@ class JournalBearing(Part):
 
 
 class Seals(Part):
-    """Seals of one shaft: in both partitions, and wherever the shaft leaves the housing."""
+    """Seals of one shaft: where it passes the walls of the chamber, and where it leaves the gearbox.
+
+    A wall of the chamber always is a gap of ``radial_gap``; ``kind`` says what seals the shaft where it leaves, one
+    seal a side. A gearbox without a housing has no walls: its shafts leave it towards couplings, motor and parts of
+    other gearboxes.
+    """
 
     shaft: Name
     kind: Literal["contactless", "radial_lip"] = "contactless"

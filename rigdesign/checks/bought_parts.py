@@ -7,6 +7,7 @@ from rigdesign.case.limits import BoughtPart, ResultQuantity
 from rigdesign.checks.subject import NO_HOUSING, NO_LOADS, Subject, worst
 from rigdesign.kinds import KINDS
 from rigdesign.results import Check
+from rigdesign.rig.shaft_seals import shaft_seals
 from rigdesign.rules import Rule, exact, hold, not_applicable
 from rigdesign.units import display
 
@@ -135,15 +136,14 @@ def _circulating_power(subject: Subject, part: str) -> Found:
 
 
 def _seal_velocity(subject: Subject, part: str) -> Found:
-    box, shafts = part.split(".")[1], shafts_of(subject.case, part)
-    if box not in subject.rig.geometries:
-        return None, NO_HOUSING
-    top = max(stage.speed_end for stage in subject.case.schedule.resolved())
-    return worst(
-        (0.5 * shaft.seal_diameter * subject.rig.shaft_speed(shaft.name, top), shaft.name)
-        for shaft in subject.rig.geometries[box].shafts
-        if shaft.name in shafts
-    )
+    """Surface speed in the largest seal of every shaft."""
+    box, top = part.split(".")[1], max(stage.speed_end for stage in subject.case.schedule.resolved())
+    speeds = [
+        (0.5 * seal.diameter * subject.rig.shaft_speed(shaft, top), shaft)
+        for shaft in shafts_of(subject.case, part)
+        for seal in shaft_seals(subject.rig, box, shaft)
+    ]
+    return worst(speeds) if speeds else (None, NO_HOUSING)
 
 
 def _shaft_growth(subject: Subject, part: str) -> Found:

@@ -103,7 +103,7 @@ class _Context:
         shaft = self.shaft(surface)
         if surface.startswith("gear_") and shaft.gear is not None:
             return shaft.gear.outer_diameter
-        if "_seal_" in surface or "_cold_" in surface:
+        if "_cold_" in surface or ("_seal_" in surface and not surface.endswith("_end")):
             return shaft.seal_diameter
         if surface.endswith("_warm"):
             return shaft.seat_diameter

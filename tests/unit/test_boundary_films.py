@@ -16,6 +16,7 @@ from rigdesign.ramp_run import held_points
 from rigdesign.rig.boundary import boundary_conditions
 from rigdesign.rig.model import build_rig
 from thermal.boundary import Exchange, Film, FilmCoefficient, SurfaceSource
+from thermal.housing_stations import seal_stations
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 BOUNDARY = "gearboxes.test.housing.boundary"
@@ -103,8 +104,12 @@ def test_a_given_film_says_where_the_case_has_it_from(case: Case, tmp_path: Path
     assert printed.warnings == ()
 
 
+LIP = 7.69e-6 * 40.0**2
+"""ISO/TR 14179-2: power of a lip on the 40 mm outside diameter per speed [W/(1/min)]."""
+
+
 def test_seals_heat_their_own_places(case: Case) -> None:
-    """Lip seals: 7.69e-6 d^2 n each; where the shaft leaves, into its own bore and the oil of the bearings."""
+    """Where the shaft leaves, a lip each: into its own bore and the oil of the bearings; gaps in the partitions."""
     lips = case.with_value("gearboxes.test.seals.pinion.kind", "radial_lip")
     conditions, losses = conditions_of(lips)
     (seal,) = (p for p in losses if p.name == "test.pinion" and p.loss.kind == "seal")
@@ -114,11 +119,46 @@ def test_seals_heat_their_own_places(case: Case) -> None:
     assert set(own) == {
         f"{s}_{p}" for s in ("shaft_test_pinion_seal", "seal_bore_test_pinion") for p in places
     }
-    # 25 % of each loss into either body, at 12,000 rpm
-    assert own["seal_bore_test_pinion_front"] == pytest.approx(0.25 * 7.69e-6 * 41.92**2 * 12000, rel=1e-3)
-    assert own["seal_bore_test_pinion_rear_end"] == pytest.approx(0.25 * 7.69e-6 * 40.0**2 * 12000, rel=1e-3)
+    # 25 % of each loss into either body, at 12,000 rpm; a gap loses a hundredth of a lip
+    assert 0.0 < own["seal_bore_test_pinion_front"] < 0.01 * LIP * 12000
+    assert own["seal_bore_test_pinion_rear_end"] == pytest.approx(0.25 * LIP * 12000, rel=1e-3)
     assert sum(own.values()) == pytest.approx(seal.into_body, rel=1e-12)
-    assert seal.into_bearing_oil == pytest.approx(2 * 0.5 * 7.69e-6 * 40.0**2 * 12000, rel=1e-3)
+    assert seal.into_bearing_oil == pytest.approx(2 * 0.5 * LIP * 12000, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("shaft", "exits"),
+    [("test.pinion", 2), ("test.wheel", 1), ("reference.pinion", 1), ("reference.wheel", 2)],
+)
+def test_a_shaft_has_one_lip_where_it_leaves_the_gearbox(case: Case, shaft: str, exits: int) -> None:
+    """With a housing by its overhangs; without one towards couplings and motor (reference gearbox).
+
+    Partitions have gaps: their 0.6 mm lose about a watt together.
+    """
+    box, name = shaft.split(".")
+    lips = case.with_value(f"gearboxes.{box}.seals.{name}.kind", "radial_lip")
+    _, losses = conditions_of(lips)
+    (seal,) = (p for p in losses if p.name == shaft and p.loss.kind == "seal")
+    speed = 12000.0 * (1.0 if name == "pinion" else 99 / 102)
+    gaps = 0.0 if box == "reference" else 12.0
+    assert seal.loss.power == pytest.approx(exits * LIP * speed, rel=1e-3, abs=gaps)
+    assert seal.loss.details["seals"] == exits + (2 if box == "test" else 0)
+    # of a gearbox without walls all of it ends in the oil of the bearings
+    if box == "reference":
+        assert seal.into_bearing_oil == pytest.approx(seal.loss.power, rel=1e-12)
+
+
+def test_a_film_of_an_end_seal_has_the_outside_diameter(case: Case) -> None:
+    """Its bore and its loss have it too: 40 mm for the 57.54 mm of the partition seals."""
+    found = films(case)
+    end, inner = (found[f"shaft_test_wheel_seal_{place}"] for place in ("rear_end", "rear"))
+    stations = {s.name: s.shaft_diameter for s in seal_stations(build_rig(case, "quick").geometries["test"])}
+    assert (
+        2.0 * end.inputs["radius"] == pytest.approx(stations["test_wheel_rear_end"]) == pytest.approx(0.040)
+    )
+    assert (
+        2.0 * inner.inputs["radius"] == pytest.approx(stations["test_wheel_rear"]) == pytest.approx(0.05754)
+    )
 
 
 def test_end_seals_warm_the_oil_of_the_bearings(case: Case) -> None:
