@@ -1,4 +1,9 @@
-"""Power to bring injected oil to the speed of the gear that carries it: momentum, not a correlation."""
+"""Power to bring injected oil to the speed of the gear that carries it: momentum, not a correlation.
+
+Two sources pay: the shaft gives rho Q v (v - v_jet cos(angle)), the pump rho Q v_jet^2 / 2. What they give together
+is lost at the impact and against the walls, rho Q |v - v_jet|^2 / 2 + rho Q v^2 / 2, and so never negative; a jet
+that is faster than the pitch line hands a part of the pump's power to the shaft.
+"""
 
 import math
 
@@ -31,8 +36,8 @@ def oil_acceleration(
     carried_share : share of the oil that reaches the surface speed, 0 to 1 [-]; some programs take 0
         behind the mesh. A marked assumption where it is not 1
 
-    Negative if a fast jet pushes the gear. Half of rho Q v^2 is kinetic energy that walls and sump turn
-    into heat, half is lost at once: all of it ends in oil and walls.
+    Negative if a jet faster than the pitch line pushes the gear: the pump pays, and `jet_power` is its part
+    of the heat. Together with it all ends in oil and walls.
 
     Source: momentum theorem; the same form as the impulse loss of Ariura et al. 1973. Check: 5 l/min at
     62 m/s take about 270 W.
@@ -57,3 +62,12 @@ def oil_acceleration(
             "source": "momentum of the injected oil",
         },
     )
+
+
+def jet_power(flow: float, density: float, jet_speed: float) -> float:
+    """Kinetic energy of a jet, rho Q v_jet^2 / 2 [W]: given by the pump, found again as heat of the oil.
+
+    flow : through the nozzle [m3/s]; density : of the oil [kg/m3]; jet_speed : [m/s]. Source: energy theorem; the
+    pressure before the nozzle is rho v_jet^2 / 2, its losses not counted.
+    """
+    return 0.5 * density * flow * jet_speed**2

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from dynamics.gear import GearPair
 from dynamics.journal_bearing import BearingState
 from dynamics.losses import Loss, ToothPath, mesh_loss, squeeze_loss
-from dynamics.oil_jet import JET_ANGLES, oil_acceleration
+from dynamics.oil_jet import JET_ANGLES, jet_power, oil_acceleration
 from dynamics.response_curve import CurvePoint
 from dynamics.seal_loss import gap_seal_loss, lip_seal_loss
 from dynamics.windage import GearRotor, Mist, gear_windage
@@ -40,6 +40,8 @@ class PlacedLoss:
     """Power that enters solid bodies [W]; the rest goes into the oil at once, but for what is no heat."""
     not_heat: float = 0.0
     """Power that the motor pays and no part takes up as heat: work of a mesh damper [W]."""
+    pumped: float = 0.0
+    """Power that the pump gives at this place, beyond what brakes the shaft [W]: heat into the oil."""
     split: MeshSplit | None = None
     """Of a mesh loss, the way into its two gears."""
     given: bool = False
@@ -54,7 +56,7 @@ class PlacedLoss:
     @property
     def into_oil(self) -> float:
         """Power that goes into the oil at once [W]."""
-        return self.loss.power - self.into_body - self.not_heat
+        return self.loss.power + self.pumped - self.into_body - self.not_heat
 
     @property
     def into_bearing_oil(self) -> float:
@@ -79,15 +81,32 @@ def rotating_losses(
     for name, state in bearings.items():
         box_name, part = name.split(".")
         losses.append(_bearing_loss(rig, box_name, part, point, state))
-    alone = rig.drivetrain is not None and rig.case.losses.bearing_drag == "constant"
-    computed = {} if alone else rig.case.gearboxes
+    computed = {} if _bearings_alone(rig) else rig.case.gearboxes
     for box_name, box in computed.items():
         losses += _windage(rig, box_name, box, point, feedback, pairs)
-        losses += _oil_jets(rig, box_name, box, point, pairs)
         losses += _seals(rig, box_name, box, point, feedback)
     if computed:
         losses += _squeezing(rig, point, models)
+    counted = [taken for loss in losses for taken in _taken(rig, point, _scaled(rig, loss))]
+    return [*counted, *oil_jets(rig, point, pairs)]
+
+
+def oil_jets(rig: Rig, point: OperatingPoint, pairs: Mapping[str, GearPair]) -> list[PlacedLoss]:
+    """What the jets of every mesh take from its pinion shaft, or give to it, and what their pump gives.
+
+    pairs : by ``gearbox.mesh``. At standstill the pump alone pays. None where the bearings have constant drag.
+    """
+    if _bearings_alone(rig):
+        return []
+    losses = [
+        loss for name, box in rig.case.gearboxes.items() for loss in _oil_jets(rig, name, box, point, pairs)
+    ]
     return [taken for loss in losses for taken in _taken(rig, point, _scaled(rig, loss))]
+
+
+def _bearings_alone(rig: Rig) -> bool:
+    """Whether nothing but bearings and teeth brakes the rig."""
+    return rig.drivetrain is not None and rig.case.losses.bearing_drag == "constant"
 
 
 def mesh_losses(
@@ -238,7 +257,8 @@ def _oil_jets(
             jet_velocity(box),
             JET_ANGLES[box.oil.jet_direction],
         )
-        yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0)
+        pumped = jet_power(injected_flow(box), oil.density(box.oil.inlet_temperature), jet_velocity(box))
+        yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0, pumped=pumped)
 
 
 def _seals(

@@ -149,7 +149,7 @@ class DynamicsResult:
 
 @dataclass(frozen=True, kw_only=True)
 class LossRow:
-    """Power loss of one place at one stage [W]; into_oil + into_body + not_heat = power."""
+    """Power loss of one place at one stage [W]; into_oil + into_body + not_heat = power + pump."""
 
     place: str
     kind: str
@@ -157,6 +157,9 @@ class LossRow:
     power_W: float  # noqa: N815
     into_oil_W: float  # noqa: N815
     into_body_W: float  # noqa: N815
+    pump_W: float = 0.0  # noqa: N815
+    """Given by the oil pump, not by the shaft: kinetic energy of the jets. A negative ``power_W`` beside it is what a
+    jet faster than the pitch line gives to the shaft."""
     basis: Literal["computed", "input"]
     not_heat_W: float = 0.0  # noqa: N815
     """Work of a mesh damper that the motor pays and nothing takes up as heat."""
@@ -353,8 +356,9 @@ class RunResult:
     losses: list[LossRow]
     oil: list[OilRow]
     cooler: list[dict[str, float | str]]
-    """Per held stage {stage, losses_W, heater_W, cooler_W, room_W, not_heat_W, open_W, flow_l_min}: losses and heaters
-    put in what cooler and room take out; losses that are no heat stand apart."""
+    """Per held stage {stage, losses_W, pump_W, heater_W, cooler_W, room_W, not_heat_W, open_W, flow_l_min}: losses of
+    the shafts, jets of the pump and heaters put in what cooler and room take out; losses that are no heat stand
+    apart."""
     thermal: list[ThermalResult]
     growth: list[GrowthResult]
     coupling: list[CouplingHistory]

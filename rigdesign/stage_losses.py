@@ -10,7 +10,7 @@ from rigdesign.bearing_films import solve_bearings
 from rigdesign.coupling import PointResult
 from rigdesign.drags import drag_torques
 from rigdesign.loads import MeshModel, Setting, mesh_models, respond
-from rigdesign.losses import PlacedLoss, mesh_losses, rotating_losses
+from rigdesign.losses import PlacedLoss, mesh_losses, oil_jets, rotating_losses
 from rigdesign.rig.model import Rig
 from rigdesign.state import Feedback, OperatingPoint
 
@@ -28,7 +28,8 @@ class StageLosses:
 def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic: bool) -> StageLosses:
     """Losses at ``point`` with the geometry and temperatures of the held stage ``test``.
 
-    Tooth forces follow the torque; the bearing films get no heat from the bodies. Nothing is lost at standstill.
+    Tooth forces follow the torque; the bearing films get no heat from the bodies. At standstill
+    only the jets heat: their pump runs.
 
     dynamic : friction and mesh damping of the periodic response at this point, as at a held stage; else, and where no
         response is found, sliding at the mean load alone
@@ -41,7 +42,8 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic:
     )
     bearings = solve_bearings(rig, point, feedback)
     if point.speed == 0.0:
-        return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=())
+        jets = tuple(oil_jets(rig, point, rig.pairs))
+        return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=jets)
     models = mesh_models(rig, point, feedback)
     turning = rotating_losses(rig, point, feedback, models, bearings)
     response = _response(rig, point, models, turning) if dynamic and rig.system is not None else None

@@ -474,7 +474,8 @@ def make_result(**changes):
         "cooler": [
             {
                 "stage": "dwell",
-                "losses_W": 12279.0,
+                "losses_W": 12265.0,
+                "pump_W": 14.0,
                 "heater_W": 600.0,
                 "cooler_W": 10500.0,
                 "room_W": 2379.0,

@@ -91,10 +91,11 @@ def _losses(subject: Subject) -> list[dict[str, Any]]:
     for row in subject.cooler:
         given, taken = (
             math.fsum(float(row[key]) for key in keys)
-            for keys in (("losses_W", "heater_W"), ("cooler_W", "room_W"))
+            for keys in (("losses_W", "pump_W", "heater_W"), ("cooler_W", "room_W"))
         )
         rows.append(
-            _row(f"heat carried away, stage {row['stage']}", taken, given, "W", "cooler + room = losses + heaters")
+            _row(f"heat carried away, stage {row['stage']}", taken, given, "W",
+                 "cooler + room = losses + jets of the pump + heaters")
         )  # fmt: skip
     return rows
 

@@ -44,6 +44,7 @@ def loss_rows(stage: str, losses: Sequence[PlacedLoss]) -> list[LossRow]:
             into_oil_W=placed.into_oil,
             into_body_W=placed.into_body,
             not_heat_W=placed.not_heat,
+            pump_W=placed.pumped,
             basis="input" if placed.given else "computed",
             details=dict(placed.loss.details),
         )
@@ -67,13 +68,14 @@ def oil_rows(stage: str, streams: Sequence[OilStream]) -> list[OilRow]:
 
 
 def cooler(rig: Rig, last: PassResult) -> dict[str, float | str]:
-    """What cooler and room take out against what losses and heaters put in [W], at one held stage.
+    """What cooler and room take out against what shafts, pump and heaters put in [W], at one held stage.
 
     Streams of one oil and inlet temperature are one circuit and mix in its tank. A circuit that comes back
     colder than it went needs a heater: its oil is too warm to cool another one, so nothing is netted.
     """
     damped = math.fsum(placed.not_heat for placed in last.losses)
     lost = math.fsum(placed.loss.power for placed in last.losses) - damped
+    pumped = math.fsum(placed.pumped for placed in last.losses)
     circuits: dict[tuple[str, float], float] = {}
     for stream in last.streams:
         box, kind = stream.name.split(".")
@@ -88,12 +90,13 @@ def cooler(rig: Rig, last: PassResult) -> dict[str, float | str]:
     return {
         "stage": last.point.stage,
         "losses_W": lost,
+        "pump_W": pumped,
         "heater_W": heater,
         "cooler_W": carried,
         "room_W": room,
         **warming,
         "not_heat_W": damped,
-        "open_W": lost + heater - carried - room - stored,
+        "open_W": lost + pumped + heater - carried - room - stored,
         "flow_l_min": L_MIN * math.fsum(stream.flow for stream in last.streams),
     }
 

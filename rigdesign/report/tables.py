@@ -67,9 +67,29 @@ def _checks(result: RunResult) -> str:
 
 
 def _losses(result: RunResult) -> str:
-    header = ("place", "kind", "stage", "power [W]", "into oil [W]", "into body [W]", "no heat [W]", "basis")
+    header = (
+        "place",
+        "kind",
+        "stage",
+        "power [W]",
+        "into oil [W]",
+        "into body [W]",
+        "no heat [W]",
+        "from the pump [W]",
+        "basis",
+    )
     rows = (
-        (r.place, r.kind, r.stage, r.power_W, r.into_oil_W, r.into_body_W, r.not_heat_W, r.basis)
+        (
+            r.place,
+            r.kind,
+            r.stage,
+            r.power_W,
+            r.into_oil_W,
+            r.into_body_W,
+            r.not_heat_W,
+            r.pump_W,
+            r.basis,
+        )
         for r in result.losses
     )
     return csv_text(header, rows)

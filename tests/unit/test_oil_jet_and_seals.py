@@ -5,7 +5,7 @@ import math
 import pytest
 
 from dynamics.losses import LossError
-from dynamics.oil_jet import JET_ANGLES, oil_acceleration
+from dynamics.oil_jet import JET_ANGLES, jet_power, oil_acceleration
 from dynamics.seal_loss import gap_seal_loss, lip_seal_loss
 
 FLOW = 5.0 / 6e4
@@ -32,6 +32,17 @@ def test_jet_direction_decides() -> None:
 
 def test_fast_jet_pushes_a_slow_gear() -> None:
     assert oil_acceleration("mesh", FLOW, 850.0, 10.0, 20.0, 0.0).power < 0.0
+
+
+@pytest.mark.parametrize("direction", JET_ANGLES)
+@pytest.mark.parametrize("speed", [0.0, 3.9, 20.0, 62.0])
+def test_shaft_and_pump_pay_what_impact_and_walls_turn_into_heat(direction: str, speed: float) -> None:
+    """rho Q |v - v_jet|^2 / 2 at the impact, by the cosine rule, and rho Q v^2 / 2 at the walls: never negative."""
+    angle, jet, mass = JET_ANGLES[direction], 20.0, 850.0 * FLOW
+    shaft = oil_acceleration("mesh", FLOW, 850.0, speed, jet, angle).power
+    heat = 0.5 * mass * (speed**2 + jet**2 - 2.0 * speed * jet * math.cos(angle)) + 0.5 * mass * speed**2
+    assert shaft + jet_power(FLOW, 850.0, jet) == pytest.approx(heat, rel=1e-12)
+    assert heat > 0.0
 
 
 def test_oil_that_misses_costs_nothing() -> None:

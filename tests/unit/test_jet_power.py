@@ -1,0 +1,64 @@
+"""Who pays for the jets: the shaft for the momentum, the pump for their kinetic energy, and the oil gets both."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from rigdesign.assemble.heat import cooler, loss_rows
+from rigdesign.drags import drag_torques
+from rigdesign.losses import PlacedLoss, oil_jets
+from rigdesign.stage_losses import stage_losses
+from tests.warm_prototype import base, drive_power, lost_in_all, settled
+
+
+def jet_at(rpm: float) -> PlacedLoss:
+    """The jet of the test mesh at a speed: 5 l/min at 20 m/s into the mesh."""
+    rig, result = base()
+    point = replace(result.point, speed=rpm * math.pi / 30.0)
+    return next(loss for loss in oil_jets(rig, point, rig.pairs) if loss.gearbox == "test")
+
+
+@pytest.mark.parametrize("rpm", [0.0, 750.0, 12000.0])
+def test_the_oil_gets_what_shaft_and_pump_give(rpm: float) -> None:
+    """Below the speed of the jet the shaft is driven, the oil still warms up: rho Q ((v - v_jet)^2 + v^2)/2."""
+    rig, _ = base()
+    jet = jet_at(rpm)
+    density = rig.oils["MIL-PRF-23699"].density(413.15)
+    speed = rpm * math.pi / 30.0 * rig.pairs["test.main"].working_radii[0]
+    mass = density * 5.0 / 6e4
+    assert jet.loss.power == pytest.approx(mass * speed * (speed - 20.0), rel=1e-9)
+    assert jet.pumped == pytest.approx(0.5 * mass * 400.0, rel=1e-9)
+    assert jet.into_oil == pytest.approx(0.5 * mass * ((speed - 20.0) ** 2 + speed**2), rel=1e-9)
+    if rpm == 750.0:
+        assert jet.loss.power < -4.0
+        assert jet.into_oil > 9.0
+
+
+def test_the_pump_brakes_no_shaft() -> None:
+    rig, result = base()
+    point = replace(result.point, speed=750.0 * math.pi / 30.0)
+    torque = drag_torques([jet_at(750.0)], rig, point.speed)["test.pinion"]
+    assert torque * point.speed == pytest.approx(jet_at(750.0).loss.power, rel=1e-12)
+
+
+def test_heat_and_motor_power_close_with_the_pump_beside_the_motor() -> None:
+    """Motor = losses of the shafts and joints; cooler + room = those losses + pump + heaters."""
+    rig, last = settled()
+    row = cooler(rig, last)
+    assert row["pump_W"] == pytest.approx(2 * jet_at(12000.0).pumped, rel=0.05)
+    assert abs(float(row["open_W"])) < 2e-3 * float(row["losses_W"])
+    assert drive_power(rig, last) == pytest.approx(lost_in_all(last), rel=2e-3)
+    into_oil = sum(r.into_oil_W + r.into_body_W for r in loss_rows("test", last.losses))
+    assert into_oil == pytest.approx(lost_in_all(last) + float(row["pump_W"]), rel=1e-12)
+
+
+def test_at_standstill_only_the_pump_heats() -> None:
+    """During the warm-up the jets run: half rho Q v_jet^2 a mesh and nothing else."""
+    rig, result = base()
+    still = stage_losses(rig, replace(result.point, speed=0.0), result)
+    assert {placed.loss.kind for placed in still.losses} == {"oil_acceleration"}
+    assert sum(placed.into_oil for placed in still.losses if placed.gearbox == "test") == pytest.approx(
+        jet_at(0.0).pumped
+    )
+    assert all(placed.loss.power == 0.0 for placed in still.losses)
