@@ -2,8 +2,9 @@
 
 Margins are in the unit of the value and positive when the rule holds. Utilisation is the used share of the
 limit, 1 at the limit: value/limit below an upper limit, limit/value above a lower one, the larger of both in a
-window; value and limit of an upper limit count from the datum of the rule, a temperature from the ambient. A
-value beyond a lower limit of zero or below zero is counted as 1 plus the shortfall in limits.
+window. A temperature counts from 20 degC, the reference temperature of ISO 1, wherever it is held: the zero of its
+scale means nothing, and from a fixed temperature the utilisation can only rise with the temperature, whatever the
+room does. A value beyond a lower limit of zero or below zero is counted as 1 plus the shortfall in limits.
 """
 
 from collections.abc import Sequence
@@ -15,6 +16,8 @@ from rigdesign.results import Check, Role, Verdict
 
 WARN_UTILISATION = 0.95
 """A rule that holds with more than this share of its limit used is a warning."""
+REFERENCE_TEMPERATURE = 20.0
+"""From which every temperature [degC] is counted as used up (ISO 1)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,10 +33,13 @@ class Rule:
     limit: float | None = None
     upper_limit: float | None = None
     comparison: Literal["<=", ">=", "within"] = "<="
-    datum: float = 0.0
-    """From where the utilisation of an upper limit counts, for a scale whose zero means nothing (degC)."""
     warn_only: bool = False
     """A broken rule warns instead of failing (a rule of good practice, not a limit)."""
+
+    @property
+    def datum(self) -> float:
+        """From where the utilisation of an upper limit counts, in ``unit``."""
+        return REFERENCE_TEMPERATURE if self.unit == "degC" else 0.0
 
 
 def hold(rule: Rule, value: float, reason: str = "", *, doubt: str = "") -> Check:

@@ -41,13 +41,12 @@ def _held(
     *,
     source: str,
     at_least: bool = False,
-    datum: float = 0.0,
     absent: str = NO_HOUSING,
 ) -> Check:
     """Hold the governing one of some values (value, where), or say why there is none; all in ``unit``."""
     rule = Rule(
         id=id, title=title, unit=unit, source=source, group=GROUPS[id.partition(".")[0]], limit=limit,
-        comparison=">=" if at_least else "<=", datum=datum,
+        comparison=">=" if at_least else "<=",
     )  # fmt: skip
     if limit is None:
         return not_applicable(rule, NO_LIMIT)
@@ -67,7 +66,6 @@ def _scaled(limit: float | None, scale: float) -> float | None:
 
 
 def _temperatures(subject: Subject) -> Iterator[Check]:
-    """Temperatures are used up from the ambient on: that is where a rig starts that gets no heat."""
     limits = subject.case.limits.temperatures
     films = ((state.film_temperature - ZERO, where) for where, state in _films(subject))
     outlets = (
@@ -91,7 +89,7 @@ def _temperatures(subject: Subject) -> Iterator[Check]:
     ):
         yield _held(
             f"temperature.{key}", title, "degC", _degrees(limit), values,
-            source=f"limits.temperatures.{key}_maximum{basis}", datum=subject.case.ambient.temperature - ZERO,
+            source=f"limits.temperatures.{key}_maximum{basis}",
         )  # fmt: skip
     yield _held(
         "temperature.gear_bulk", "gear bulk temperature below tempering temperature", "K",

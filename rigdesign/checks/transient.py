@@ -47,7 +47,6 @@ def _worst(case: Case, moment: WorstMoment) -> Check:
         id=f"transient.{moment.quantity}{own}", title=TITLES[moment.quantity] + own.replace(".", " "),
         unit=moment.unit, source=SOURCES[moment.quantity].format(place=moment.place), group="transient",
         limit=moment.limit, comparison=">=" if moment.quantity in LEAST else "<=",
-        datum=case.ambient.temperature - 273.15 if moment.unit == "degC" else 0.0,
     )  # fmt: skip
     if moment.limit is None:
         return not_applicable(rule, "the case states no limit")

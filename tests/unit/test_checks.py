@@ -258,3 +258,16 @@ def test_transition_speed_is_vogelpohls_under_the_load_of_the_start_torque() -> 
     assert by_hand == pytest.approx(66.3, abs=0.05)
     assert value == pytest.approx(by_hand)
     assert where == "test.b1 at the viscosity of stage test"
+
+
+def test_a_hotter_room_uses_no_less_of_a_temperature_limit() -> None:
+    """A bearing film of 100 degC (limit 120 degC) in rooms of 5 to 40 degC: 80/100 of it is used in each."""
+    film = SimpleNamespace(film_temperature=373.15, minimum_film=2e-5, specific_load=1e6)
+    points = [
+        held("test", (1.1, 1.2), streams=[], bearings={"test.pinion_front": film},
+             feedback=SimpleNamespace(gear_temperature={}, bearing_clearance={}))
+    ]  # fmt: skip
+    for room in ("5 degC", "20 degC", "40 degC"):
+        warm = build_rig(rig().case.with_value("ambient.temperature", room), "quick")
+        checks = thermal.checks(replace(subject(points), rig=warm))
+        assert named(checks, "temperature.bearing_film").utilisation == pytest.approx(0.8)

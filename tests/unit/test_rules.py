@@ -45,6 +45,13 @@ def test_window(value: float, margin: float, verdict: str) -> None:
     assert check.verdict == verdict
 
 
+def test_a_temperature_counts_from_20_degc() -> None:
+    """From a fixed temperature: (100 - 20)/(180 - 20), and only a hotter part uses more of its limit."""
+    used = [hold(rule(unit="degC", limit=180.0), value).utilisation for value in (100.0, 101.0, 180.0)]
+    assert used == pytest.approx([80.0 / 160.0, 81.0 / 160.0, 1.0])
+    assert hold(rule(unit="degC", limit=180.0), 5.0).utilisation == 0.0
+
+
 def test_a_lower_limit_of_zero_is_broken_below_zero_only() -> None:
     assert hold(rule(comparison=">=", limit=0.0), 0.1).verdict == "pass"
     assert hold(rule(comparison=">=", limit=0.0), -0.1).utilisation == pytest.approx(1.1)

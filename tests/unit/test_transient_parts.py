@@ -220,6 +220,11 @@ def test_checks_hold_the_worst_planned_moment(case: Case) -> None:
         "transient.soak.other": "not applicable",
     }
     assert checks["transient.housing_temperature"].utilisation == pytest.approx(80.0 / 160.0)
+    warm = {
+        check.id: check
+        for check in transient_checks(case.with_value("ambient.temperature", "40 degC"), record)
+    }
+    assert warm["transient.housing_temperature"].utilisation == pytest.approx(80.0 / 160.0)
     assert checks["transient.soak.test"].utilisation == pytest.approx(0.5)
 
 
