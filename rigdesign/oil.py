@@ -16,6 +16,8 @@ ZERO_CELSIUS = 273.15
 WALTHER_CONSTANT = {"ASTM D341": 0.7, "DIN 51563": 0.8}
 VISCOSITY_RANGE = (2e-6, 2e-2)
 """Kinematic viscosity within which Walther's line is trusted [m2/s]."""
+PUMPED_VISCOSITY = 2e-3
+"""Most kinematic viscosity that a gear pump takes at its start [m2/s]; data sheets say 1000 to 2000 mm2/s."""
 
 
 AIR_CONDUCTIVITY = 0.030
@@ -192,6 +194,12 @@ class Oil:
                 f"oil {self.name}: viscosity at {temperature - ZERO_CELSIUS:.0f} degC = "
                 f"{viscosity * 1e6:.3g} mm2/s: outside {low * 1e6:g} to {high * 1e6:g} mm2/s of the "
                 "viscosity line; measure it there"
+            )
+        if viscosity > PUMPED_VISCOSITY:
+            found.append(
+                f"oil {self.name}: viscosity at {temperature - ZERO_CELSIUS:.0f} degC = {viscosity * 1e6:.3g} mm2/s: "
+                f"above the {PUMPED_VISCOSITY * 1e6:g} mm2/s that pumps and nozzles take; heat it before the start or "
+                "take a thinner oil"
             )
         if temperature > self.highest_temperature:
             found.append(

@@ -15,6 +15,8 @@ from rigdesign.loads import laws_of
 from rigdesign.results import Check, Finding
 from rigdesign.rig.boundary import printed_films
 from rigdesign.rig.films import printed_law
+from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import bearing_oil, gear_oil
 from rigdesign.shaft_torques import torques_left_out
 from rigdesign.temperatures import HousingField
 from rigdesign.units import show
@@ -150,14 +152,23 @@ def _losses(subject: Subject) -> Iterator[str]:
 
 
 def _oils(subject: Subject) -> Iterator[str]:
+    """Every oil at the coldest and at the hottest place of its stream."""
     for point in subject.points:
-        for name, box in subject.case.gearboxes.items():
-            for stream in point.last.streams:
-                box_name, kind = stream.name.split(".")
-                if box_name == name:
-                    entry = box.oil if kind == "gear_oil" else box.bearing_oil
-                    for text in subject.rig.oils[entry.oil].warnings(max(stream.outlet, stream.chamber)):
-                        yield f"{stream.name}, stage {point.point.stage}: {text}"
+        for stream in point.last.streams:
+            name, kind = stream.name.split(".")
+            oil = gear_oil(subject.rig, name) if kind == "gear_oil" else bearing_oil(subject.rig, name)
+            places = stream.inlet, stream.outlet, stream.chamber
+            for temperature in (min(places), max(places)):
+                for text in oil.warnings(temperature):
+                    yield f"{stream.name}, stage {point.point.stage}: {text}"
+
+
+def cold_oil(rig: Rig) -> Iterator[str]:
+    """Every oil as the rig starts: as cold as the room."""
+    room = rig.case.ambient.temperature
+    for name in rig.case.gearboxes:
+        for kind, oil in (("gear_oil", gear_oil(rig, name)), ("bearing_oil", bearing_oil(rig, name))):
+            yield from (f"{name}.{kind}, start in the cold: {text}" for text in oil.warnings(room))
 
 
 def _warming(subject: Subject) -> Iterator[str]:

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.assemble.findings import cold_oil
 from rigdesign.assemble.transient_alignment import UNITS, misalignments, worst_misalignments
 from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.omissions import omissions
@@ -66,7 +67,7 @@ def with_transient(
             *(text for text in result.not_modelled if not text.startswith(STEADY)),
             *simplifications(subject.rig),
         ],
-        warnings=[*result.warnings, *_warnings(run)],
+        warnings=[*result.warnings, *_cold_oil(subject), *_warnings(run)],
     )
 
 
@@ -259,6 +260,11 @@ def _settled(
         end=end,
         unit=unit,
     )
+
+
+def _cold_oil(subject: Subject) -> Iterator[Finding]:
+    """What is too thick to be pumped when the rig is as cold as the room."""
+    yield from (Finding(id="oil", text=text) for text in cold_oil(subject.rig))
 
 
 def _warnings(run: TransientRun) -> Iterator[Finding]:

@@ -1,0 +1,54 @@
+"""Oils are judged where they are coldest and where they are hottest: fed, drained, and at the start in the cold."""
+
+from functools import cache
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from rigdesign.assemble.findings import _oils, cold_oil
+from rigdesign.case import load_case
+from rigdesign.oil import FVA_3, FVA_3A
+from rigdesign.rig.model import Rig, build_rig
+
+ZERO = 273.15
+
+
+@cache
+def rig(room: str = "20 degC") -> Rig:
+    """FVA 3A in all circuits."""
+    return build_rig(load_case("cases/loop_1to1").with_value("ambient.temperature", room), "quick")
+
+
+def found(inlet: float, outlet: float) -> list[str]:
+    """Findings of the gear oil of the test gearbox between two temperatures [degC]."""
+    stream = SimpleNamespace(
+        name="test.gear_oil", inlet=inlet + ZERO, outlet=outlet + ZERO, chamber=outlet + ZERO
+    )
+    point = SimpleNamespace(point=SimpleNamespace(stage="test"), last=SimpleNamespace(streams=[stream]))
+    subject: Any = SimpleNamespace(points=[point], rig=rig(), case=rig().case)
+    return list(_oils(subject))
+
+
+def test_oil_fed_at_minus_60_degc_is_found() -> None:
+    viscosity = FVA_3A.kinematic_viscosity(213.15) * 1e6
+    assert viscosity > 5e5
+    texts = found(-60.0, 60.0)
+    assert len(texts) == 2
+    assert all(f"-60 degC = {viscosity:.3g} mm2/s" in text for text in texts)
+    assert "viscosity line" in texts[0] and "pumps" in texts[1]
+
+
+def test_usual_oil_says_nothing_and_hot_oil_is_still_found() -> None:
+    assert found(60.0, 70.0) == []
+    (text,) = found(60.0, 140.0)
+    assert "above 110 degC" in text
+
+
+@pytest.mark.parametrize(("room", "thick"), [("20 degC", 0), ("-10 degC", 4)])
+def test_a_cold_start_is_judged_at_the_temperature_of_the_room(room: str, thick: int) -> None:
+    """ISO VG 100 at 20 degC has about 300 mm2/s, at -10 degC more than any pump takes: all four circuits."""
+    assert FVA_3.kinematic_viscosity(293.15) * 1e6 == pytest.approx(320.0, rel=0.1)
+    texts = list(cold_oil(rig(room)))
+    assert len(texts) == thick
+    assert all("start in the cold" in text and "-10 degC" in text for text in texts)
