@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from rigdesign.checks.subject import Subject
+from rigdesign.growth import spin_growth
 from rigdesign.loads import MeshModel
 from rigdesign.results import GrowthResult
 from thermal.heat_rows import HeatRow
@@ -16,6 +17,11 @@ PLATE = (
     "narrows the bore further"
 )
 RING = "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)], T_h of the bore; a warmer wall round it widens it further"
+BORE = (
+    "C + D [alpha_h (T_w - T_0) - alpha_s (T_j - T_0)] less the growth by spin, T_w the mean of the end wall, T_j of "
+    "the journal: a wall that is warmer away from its bore widens it more than the temperature of the bore itself; a "
+    "warmer box behind the wall stretches it further, the bore by 2/(1 - nu) times that stretch"
+)
 
 RISE = (
     "alpha_f h_f (T_f - T_0) + alpha h (T_h - T_0), T_f the mean of the field under the housing, T_h of the housing; "
@@ -114,6 +120,15 @@ def _growth(subject: Subject) -> list[dict[str, Any]]:
             plate = partition_gap(subject, result, seal["seal"])
             by_hand, formula = (1e3 * plate, PLATE) if plate is not None else (seal["by_hand_mm"], RING)
             rows.append(_row(f"mean gap of seal {seal['seal']}", seal["hot_mean_mm"], by_hand, "mm", formula))
+        for bearing in result.bearings:
+            clearance = end_wall_clearance(subject, result, bearing["bearing"])
+            if clearance is not None:
+                rows.append(
+                    _row(
+                        f"hot diametral clearance of {bearing['bearing']}", bearing["diametral_clearance_hot_um"],
+                        1e6 * clearance, "um", BORE,
+                    )
+                )  # fmt: skip
         for coupling in result.couplings:
             ends = [coupling[end].endswith("(cold)") for end in ("first", "second")]
             if any(ends):
@@ -172,6 +187,34 @@ def partition_gap(subject: Subject, result: GrowthResult, seal: str) -> float | 
         s.radial_gap for s in subject.case.gearboxes[result.gearbox].seals.values() if s.shaft == shaft
     )
     return gap + 0.5 * entry.seal_diameter * (wide - thick)
+
+
+def end_wall_clearance(subject: Subject, result: GrowthResult, full: str) -> float | None:
+    """Hot diametral clearance [m] of the bearing ``gearbox.bearing``: its end wall widens the bore by its mean strain.
+
+    None for a user's mesh that has no material where the box has its end wall. Source: as `partition_gap`.
+    """
+    rig = subject.rig
+    name, part = full.split(".")
+    box = subject.case.gearboxes[name]
+    assert box.housing is not None
+    entry, geometry = box.bearings[part], rig.geometries[name]
+    point = next(p for p in subject.points if p.point.stage == result.stage)
+    field = point.last.fields[name]
+    elements, cells = rig.conduction[name].elements, rig.models[name].mesh.bodies["housing"]
+    values, volumes = elements.at_points(field.temperature, cells)
+    places, _ = elements.at_points(elements.mesh.points[:, 0], cells)
+    depth = places if entry.side == "front" else geometry.length - places
+    inside = depth < geometry.end_wall_thickness
+    if not inside.any():
+        return None
+    wall = float(np.average(values[inside], weights=volumes[inside]))
+    journal = _mean_temperature(field.solution.balance.rows, (f"shaft_{entry.shaft}_journal_{entry.side}",))
+    cold, materials = subject.case.ambient.reference_temperature, rig.materials
+    wide = materials[box.housing.material].expansion_coefficient * (wall - cold)
+    thick = materials[box.housing.shafts[entry.shaft].material].expansion_coefficient * (journal - cold)
+    spin = spin_growth(rig, entry, point.point.speed)
+    return entry.diametral_clearance + entry.diameter * (wide - thick) - spin
 
 
 def _mean_temperature(rows: Sequence[HeatRow], surfaces: tuple[str, ...]) -> float:

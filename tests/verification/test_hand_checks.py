@@ -4,15 +4,20 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from rigdesign import load_case
-from rigdesign.assemble.hand import mean_gap, partition_gap
+from rigdesign.assemble.hand import end_wall_clearance, mean_gap, partition_gap
 from rigdesign.cold import cold_feedback
 from rigdesign.coupling import solve_point
+from rigdesign.growth import spin_growth
 from rigdesign.loads import brace_cold, mesh_models, respond
 from rigdesign.ramp_run import held_points
 from rigdesign.rig.model import build_rig
+from tests.warm_prototype import base
+from thermal.expansion import expand
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 
@@ -32,6 +37,56 @@ def test_crowning_belongs_to_the_mean_deflection() -> None:
         by_hand = elastic + mean_gap(model)
         assert approach == pytest.approx(by_hand, rel=0.35)
         assert abs(approach - by_hand) < abs(approach - elastic) or index == 0
+
+
+def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
+    """Bore and journal differ by 1 to 2 K, alpha D dT = 1 um, and yet the clearance grows by 10 um.
+
+    The wall is 10 K warmer away from its bore, cooled by the film: a free plate of that mean temperature accounts
+    for half of it, a box that is warmer still for the rest. Shown by two fields: with the whole housing at one
+    temperature the bore grows as its own temperature says, with the rest of the box at the mean of the end wall as
+    the line by hand says.
+    """
+    rig, result = base()
+    subject: Any = SimpleNamespace(case=rig.case, rig=rig, points=(result,))
+    growth: Any = SimpleNamespace(gearbox="test", stage=result.point.stage)
+    field, bores = result.last.fields["test"], result.last.growth["test"].expansion.bearings
+    rows = {row.surface: row.mean_temperature for row in field.solution.balance.rows}
+    mesh, setup, geometry = rig.models["test"].mesh, rig.expansion["test"], rig.geometries["test"]
+    nodes = np.unique(mesh.cells[mesh.bodies["housing"]])
+    strain = rig.materials["structural_steel"].expansion_coefficient
+    elements = rig.conduction["test"].elements
+    values, volumes = elements.at_points(field.temperature, mesh.bodies["housing"])
+    at, _ = elements.at_points(mesh.points[:, 0], mesh.bodies["housing"])
+    for name, entry in rig.case.gearboxes["test"].bearings.items():
+        station = f"{entry.shaft}_{entry.side}"
+        bore, journal = rows[f"bearing_bore_{station}"], rows[f"shaft_{entry.shaft}_journal_{entry.side}"]
+        own = strain * entry.diameter * (bore - journal)
+        computed = bores[station].clearance_change
+        by_hand = end_wall_clearance(subject, growth, f"test.{name}")
+        assert by_hand is not None
+        by_hand += spin_growth(rig, entry, result.point.speed) - entry.diametral_clearance
+        assert own < 1.5e-6
+        assert computed > 8e-6
+        assert own < by_hand < computed
+        assert abs(computed - by_hand) < 0.6 * abs(computed - own)
+
+    def grown(temperature: NDArray[np.float64]) -> dict[str, float]:
+        shape = expand(
+            rig.models["test"], temperature, 293.15, setup.elastic.elastic, reuse=setup, tolerance=1e-6
+        )
+        return {key: bearing.bore_growth for key, bearing in shape.bearings.items()}
+
+    even = field.temperature.copy()
+    even[nodes] = 325.0
+    diameter = 0.04008
+    assert list(grown(even).values()) == pytest.approx([strain * diameter * (325.0 - 293.15)] * 4, rel=0.05)
+    depth = np.minimum(mesh.points[nodes, 0], geometry.length - mesh.points[nodes, 0])
+    ends = [at < geometry.end_wall_thickness, at > geometry.length - geometry.end_wall_thickness]
+    mean = float(np.mean([np.average(values[end], weights=volumes[end]) for end in ends]))
+    plates = field.temperature.copy()
+    plates[nodes[depth > geometry.end_wall_thickness + 1e-9]] = mean
+    assert list(grown(plates).values()) == pytest.approx([strain * diameter * (mean - 293.15)] * 4, rel=0.05)
 
 
 def test_a_plate_warmer_at_its_bore_narrows_the_gap_by_hand_too() -> None:
