@@ -10,7 +10,7 @@ from dynamics.losses import Loss, ToothPath, mesh_loss, squeeze_loss
 from dynamics.oil_jet import JET_ANGLES, jet_power, oil_acceleration
 from dynamics.response_curve import CurvePoint
 from dynamics.seal_loss import gap_seal_loss, lip_seal_loss
-from dynamics.windage import GearRotor, Mist, gear_windage
+from dynamics.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from rigdesign.bearing_films import constant_drag
 from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals
 from rigdesign.flank_heat import MeshSplit, mesh_split
@@ -26,6 +26,8 @@ DAMPER_SHARE = 0.1
 """Work of a mesh damper, as a share of the tooth friction, above which it warns."""
 LEAST_DAMPER_WORK = 1.0
 """Work of a mesh damper [W] that warns at least: nothing of it matters below."""
+ANDERSON_LOEWENTHAL = "anderson_loewenthal_power"
+"""Among the details of a windage loss: what their correlation gives for the gear [W]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -225,21 +227,28 @@ def _windage(
 ) -> Iterator[PlacedLoss]:
     """Windage of every gear, once however many meshes it is in; a double-helical gear has both its halves."""
     mist = chamber_mist(rig, box_name, feedback)
+    oil_viscosity = gear_oil(rig, box_name).dynamic_viscosity(_chamber_temperature(box_name, box, feedback))
     share = body_split(rig, box_name).windage_into_gears
     for gear_name, (mesh_name, index) in box.first_meshes().items():
         rotor = GearRotor.of_pair(pairs[f"{box_name}.{mesh_name}"], index)
         rotor = replace(rotor, face_width=box.body_width(gear_name))
         omega = rig.shaft_speed(box.gears[gear_name].shaft, point.speed)
         loss = gear_windage(f"{box_name}.{gear_name}", rotor, omega, mist)
+        other = anderson_loewenthal(rotor.pitch_radius, rotor.face_width, omega, oil_viscosity)
+        loss = replace(loss, details=loss.details | {ANDERSON_LOEWENTHAL: other})
         yield PlacedLoss(gearbox=box_name, part=gear_name, loss=loss, into_body=share * loss.power)
 
 
 def chamber_mist(rig: Rig, box_name: str, feedback: Feedback) -> Mist:
     """What the gears and seals turn in: density of the case, viscosity of air at the oil temperature."""
-    box = rig.case.gearboxes[box_name]
-    gas = air(0.5 * (box.oil.inlet_temperature + feedback.oil_outlet[f"{box_name}.gear_oil"]))
+    gas = air(_chamber_temperature(box_name, rig.case.gearboxes[box_name], feedback))
     density = rig.case.losses.chamber_density
     return Mist(density=gas.density if density is None else density, viscosity=gas.viscosity)
+
+
+def _chamber_temperature(box_name: str, box: Gearbox, feedback: Feedback) -> float:
+    """Of what fills the chamber: the mean of its oil [K]."""
+    return 0.5 * (box.oil.inlet_temperature + feedback.oil_outlet[f"{box_name}.gear_oil"])
 
 
 def _oil_jets(

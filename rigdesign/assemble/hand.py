@@ -9,6 +9,7 @@ import numpy as np
 from rigdesign.checks.subject import Subject
 from rigdesign.growth import spin_growth
 from rigdesign.loads import MeshModel
+from rigdesign.losses import ANDERSON_LOEWENTHAL
 from rigdesign.results import GrowthResult
 from thermal.heat_rows import HeatRow
 
@@ -21,6 +22,11 @@ BORE = (
     "C + D [alpha_h (T_w - T_0) - alpha_s (T_j - T_0)] less the growth by spin, T_w the mean of the end wall, T_j of "
     "the journal: a wall that is warmer away from its bore widens it more than the temperature of the bore itself; a "
     "warmer box behind the wall stretches it further, the bore by 2/(1 - nu) times that stretch"
+)
+
+WINDAGE = (
+    "2.82e-7 (1 + 2.3 b/R) n^2.8 R^4.6 (0.028 eta + 0.019)^0.2 kW (Anderson and Loewenthal), a mist of about 27 kg/m3 "
+    "built in; the default law has the density of the chamber as its assumption, 1.2 to 20 kg/m3 believable"
 )
 
 RISE = (
@@ -93,7 +99,13 @@ def _losses(subject: Subject) -> list[dict[str, Any]]:
                     "temperature hangs on the difference",
                 )
             )  # fmt: skip
-
+        if placed.loss.kind == "windage" and not placed.given:
+            rows.append(
+                _row(
+                    f"windage, {placed.name}", placed.loss.power, float(details[ANDERSON_LOEWENTHAL]), "W",
+                    f"{WINDAGE}; at losses.chamber_density = {float(details['mist_density']):.3g} kg/m3 here",
+                )
+            )  # fmt: skip
     for row in subject.cooler:
         given, taken = (
             math.fsum(float(row[key]) for key in keys)

@@ -93,6 +93,14 @@ def test_prototype_lies_between_disc_and_oily_mist() -> None:
     assert 15.0 < mist / smooth < 20.0
 
 
+def test_a_gear_wider_than_the_tests_is_said() -> None:
+    """Diab: b/R 0.08 to 0.78; the reference gear of the prototype, both halves, has 1.6."""
+    wide = replace(diab_gear_1(), face_width=0.2)
+    (text,) = gear_windage("gear", wide, 600.0, AIR).warnings
+    assert "face width / pitch radius = 1.39" in text
+    assert "0.78" in text
+
+
 def test_disc_coefficient_is_continuous_and_turns_turbulent() -> None:
     below, above = disc_coefficient(LAMINAR_LIMIT * (1 - 1e-9)), disc_coefficient(LAMINAR_LIMIT * (1 + 1e-9))
     assert below == pytest.approx(above, rel=1e-6)

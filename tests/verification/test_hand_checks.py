@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from dynamics.windage import anderson_loewenthal
 from rigdesign import load_case
-from rigdesign.assemble.hand import end_wall_clearance, mean_gap, partition_gap
+from rigdesign.assemble.hand import _losses, end_wall_clearance, mean_gap, partition_gap
 from rigdesign.cold import cold_feedback
 from rigdesign.coupling import solve_point
 from rigdesign.growth import spin_growth
 from rigdesign.loads import brace_cold, mesh_models, respond
+from rigdesign.losses import rotating_losses
 from rigdesign.ramp_run import held_points
 from rigdesign.rig.model import build_rig
 from tests.warm_prototype import base
@@ -98,3 +100,31 @@ def test_a_plate_warmer_at_its_bore_narrows_the_gap_by_hand_too() -> None:
         by_hand = partition_gap(subject, growth, name)
         if by_hand is not None:
             assert abs(seal.mean - by_hand) < abs(seal.mean - seal.gap_by_hand)
+
+
+def test_both_windage_laws_stand_beside_each_other_and_the_range_of_the_mist_holds_them() -> None:
+    """Every gear of the prototype: Anderson and Loewenthal lie between the default law at 1.2 and at 20 kg/m3."""
+    rig, result = base()
+    subject: Any = SimpleNamespace(rig=rig, test=result, cooler=())
+    rows = {row["quantity"]: row for row in _losses(subject) if row["quantity"].startswith("windage")}
+    assert len(rows) == 4
+    wide = rows["windage, reference.pinion"]
+    fed = rig.case.gearboxes["reference"].oil
+    mean = 0.5 * (fed.inlet_temperature + result.last.feedback.oil_outlet["reference.gear_oil"])
+    oil = rig.oils[fed.oil].dynamic_viscosity(mean)
+    warm = next(model.pair for model in result.last.models if model.name == "reference.main")
+    radius, halves = warm.gears[0].reference_radius, 0.08
+    assert wide["by_hand"] == pytest.approx(
+        anderson_loewenthal(radius, halves, result.point.speed, oil), rel=1e-9
+    )
+    assert 1.2 < wide["computed"] / wide["by_hand"] < 2.0
+    powers = {}
+    for density in ("1.2 kg/m3", "20 kg/m3"):
+        changed = build_rig(rig.case.with_value("losses.chamber_density", density), "quick")
+        losses = rotating_losses(
+            changed, result.point, result.last.feedback, result.last.models, result.last.bearings
+        )
+        powers[density] = {p.name: p.loss.power for p in losses if p.loss.kind == "windage"}
+    for name, row in rows.items():
+        gear = name.removeprefix("windage, ")
+        assert powers["1.2 kg/m3"][gear] < row["by_hand"] < powers["20 kg/m3"][gear]
