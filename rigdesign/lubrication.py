@@ -4,12 +4,18 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.model import Case
 from rigdesign.losses import PlacedLoss
 from rigdesign.oil import oil_outlet
 from rigdesign.oil_mixing import Portion, mixed
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil, wall_flow
+
+FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +56,25 @@ def oil_streams(
         films += wall_heat[f"{name}.bearing_oil"]
         streams += [gear, _bearing_stream(rig, name, box, into_bearings, films, leak)]
     return streams
+
+
+def heater_and_cooler(case: Case, heats: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Power that heaters give and that the cooler carries [W], to feed every oil at its inlet temperature.
+
+    heats : ``gearbox.stream`` -> (n,) heat with which its oil comes back above its inlet temperature [W]
+
+    Streams of one oil and inlet temperature are one circuit and mix in its tank. A circuit that comes back
+    colder than it went needs a heater: its oil is too warm to cool another one, so nothing is netted.
+    """
+    circuits: dict[tuple[str, float], FloatArray] = {}
+    for name, heat in heats.items():
+        box, _, kind = name.partition(".")
+        entry = case.gearboxes[box]
+        feed = entry.oil if kind == "gear_oil" else entry.bearing_oil
+        key = feed.oil, feed.inlet_temperature
+        circuits[key] = circuits.get(key, np.zeros_like(heat)) + heat
+    powers = np.array(list(circuits.values()))
+    return np.maximum(-powers, 0.0).sum(axis=0), np.maximum(powers, 0.0).sum(axis=0)
 
 
 def _gear_stream(

@@ -24,8 +24,24 @@ class TransientCurve:
 
 
 @dataclass(frozen=True, kw_only=True)
+class OilPowerCurve:
+    """What heaters and cooler must give and take over one branch, of all gearboxes together: lists of one length."""
+
+    branch: str
+    time_s: list[float]
+    """Since the start of the schedule, warm-up included."""
+    phase: list[str]
+    heater_W: list[float]  # noqa: N815
+    """Of all circuits whose oil comes back colder than it is fed."""
+    cooler_W: list[float]  # noqa: N815
+    """Of the others."""
+    streams_W: dict[str, list[float]]  # noqa: N815
+    """``gearbox.stream`` -> heat with which its oil comes back above its inlet temperature."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class WorstMoment:
-    """The least clearance, highest temperature or largest misalignment of all courses."""
+    """The least clearance, highest temperature, largest misalignment or largest oil power of all courses."""
 
     quantity: str
     value: float
@@ -81,3 +97,5 @@ class TransientResult:
     """Largest gap of the energy balance of a course, relative to the heat turned over."""
     missed_temperature_K: float  # noqa: N815
     """Largest temperature the shapes of the expansion leave out."""
+    oil_power: list[OilPowerCurve] = field(default_factory=list)
+    """One for every branch."""

@@ -12,7 +12,7 @@ from rigdesign.assemble.heat_split import COMPARED, heat_split_rows
 from rigdesign.coupling import PointResult
 from rigdesign.growth import axes_of, bearing_growth
 from rigdesign.losses import PlacedLoss
-from rigdesign.lubrication import OilStream
+from rigdesign.lubrication import OilStream, heater_and_cooler
 from rigdesign.passes import PassResult
 from rigdesign.results import (
     CouplingHistory,
@@ -68,22 +68,12 @@ def oil_rows(stage: str, streams: Sequence[OilStream]) -> list[OilRow]:
 
 
 def cooler(rig: Rig, last: PassResult) -> dict[str, float | str]:
-    """What cooler and room take out against what shafts, pump and heaters put in [W], at one held stage.
-
-    Streams of one oil and inlet temperature are one circuit and mix in its tank. A circuit that comes back
-    colder than it went needs a heater: its oil is too warm to cool another one, so nothing is netted.
-    """
+    """What cooler and room take out against what shafts, pump and heaters put in [W], at one held stage."""
     damped = math.fsum(placed.not_heat for placed in last.losses)
     lost = math.fsum(placed.loss.power for placed in last.losses) - damped
     pumped = math.fsum(placed.pumped for placed in last.losses)
-    circuits: dict[tuple[str, float], float] = {}
-    for stream in last.streams:
-        box, kind = stream.name.split(".")
-        entry = rig.case.gearboxes[box]
-        oil = (entry.oil if kind == "gear_oil" else entry.bearing_oil).oil
-        circuits[oil, stream.inlet] = circuits.get((oil, stream.inlet), 0.0) + stream.heat
-    carried = math.fsum(max(heat, 0.0) for heat in circuits.values())
-    heater = math.fsum(max(-heat, 0.0) for heat in circuits.values())
+    heats = {stream.name: np.array([stream.heat]) for stream in last.streams}
+    heater, carried = (float(power[0]) for power in heater_and_cooler(rig.case, heats))
     room = math.fsum(heat_to_room(field) for field in last.fields.values())
     stored = math.fsum(heat_stored(field) for field in last.fields.values())
     warming = {} if rig.case.ambient.warming_time is None else {"stored_W": stored}

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from rigdesign.assemble.findings import cold_oil
 from rigdesign.assemble.transient_alignment import UNITS, misalignments, worst_misalignments
+from rigdesign.assemble.transient_oil import oil_power_curve, worst_powers
 from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.subject import Subject
@@ -85,6 +86,7 @@ def transient_result(subject: Subject, run: TransientRun) -> TransientResult:
                 *_least(subject, branches, planned),
                 *_hottest(subject, branches, planned),
                 *worst_misalignments(subject, branches, run.branches, planned),
+                *worst_powers(subject, [p for p in run.power if (p.name != "cold_start") is planned], planned),
             )
         ],
         settling=[row for branch in run.branches if branch.name == SCHEDULE for row in _settling(subject, branch)],
@@ -101,6 +103,7 @@ def transient_result(subject: Subject, run: TransientRun) -> TransientResult:
         },
         energy_closure=max(branch.energy_closure for branch in run.branches),
         missed_temperature_K=max(run.missed.values()),
+        oil_power=[oil_power_curve(power) for power in run.power],
     )  # fmt: skip
 
 
@@ -287,6 +290,8 @@ def simplifications(rig: Rig) -> Sequence[str]:
     return (
         "over time: losses and films are those of the coupled steady run, interpolated over speed and torque; "
         "thicker oil and tighter bearings of a rig still cold are not fed back into them",
+        "over time: every oil is fed at its inlet temperature from the first moment on, whatever heaters and cooler must "
+        "give or take for it; the heat content of tanks and pipes is left out",
         "over time: at standstill gears stand still; jets do not reach them, still air and the shafts warm them",
         "over time: oil has no mass, a bearing without feed keeps its film, tooth friction without oil is that "
         "with oil",

@@ -1,4 +1,4 @@
-"""Checks of the thermal course: the clearances that are left at the worst moment, and the soak."""
+"""Checks of the thermal course: what is left or needed at the worst moment, and the soak."""
 
 from collections.abc import Iterator
 
@@ -20,6 +20,8 @@ TITLES = {
     "axis_skew": "out-of-plane deviation of the axes of a mesh over time",
     "coupling_offset": "radial offset between the shafts over time, coupling",
     "coupling_angle": "angle between the shafts over time, coupling",
+    "heater_power": "power the heaters of the warm circuits give over time",
+    "cooler_power": "power the cooler carries over time",
 }
 SOURCES = {
     **{key: f"limits.clearances.{key}_minimum; thermal course" for key in list(TITLES)[:5]},
@@ -27,6 +29,8 @@ SOURCES = {
     **{key: f"limits.alignment.{key}_maximum; thermal course" for key in list(TITLES)[6:10]},
     "coupling_offset": "drivetrain.couplings.{place}.radial_offset_maximum; thermal course",
     "coupling_angle": "drivetrain.couplings.{place}.angle_maximum; thermal course",
+    "heater_power": "limits.oil.heater_power_maximum; thermal course, every oil fed at its inlet temperature",
+    "cooler_power": "limits.oil.cooler_power_maximum; thermal course, every oil fed at its inlet temperature",
 }
 LEAST = list(TITLES)[:5]
 """Quantities whose smallest value is the worst."""

@@ -4,13 +4,13 @@ import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.report.drawing import INK, MUTED, SERIES, legend_right, new_figure, plain
-from rigdesign.results_transient import TransientCurve, TransientResult, WorstMoment
+from rigdesign.results_transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,6 +36,20 @@ LABEL_ROOM = 1.25
 """Least distance of two time labels in decades."""
 
 
+class Course(Protocol):
+    """What has phases over time: a course of temperatures, a course of oil power."""
+
+    @property
+    def time_s(self) -> list[float]:
+        """Since the start of the schedule."""
+        ...
+
+    @property
+    def phase(self) -> list[str]:
+        """Name of the phase that each time ends."""
+        ...
+
+
 @dataclass(frozen=True)
 class Column:
     """A phase on the common axis: its entries, and where its decades begin and end."""
@@ -45,13 +59,13 @@ class Column:
     start: float
     end: float
 
-    def places(self, curve: TransientCurve) -> FloatArray:
+    def places(self, curve: Course) -> FloatArray:
         """Place of every entry: decades of the time since the start of the phase, from `EARLIEST`."""
         time = np.array([curve.time_s[i] for i in self.at])
         return np.asarray(self.start + np.log10(np.maximum(time - time[0], EARLIEST) / EARLIEST))
 
 
-def columns_of(curve: TransientCurve) -> list[Column]:
+def columns_of(curve: Course) -> list[Column]:
     """Phases side by side, each as wide as its decades of time, so that equal factors are equally long in all."""
     columns: list[Column] = []
     start = 0.0
@@ -81,16 +95,47 @@ def transient_figure(result: TransientResult, curve: TransientCurve) -> "Figure"
         _worst_of(axes, result.worst, curve, columns, quantity)
         axes.set_ylabel(label)
     for axes in grid:
-        for column in columns[1:]:
-            axes.axvspan(column.start - APART, column.start, color="white", linewidth=0, zorder=1.5)
-            axes.axvline(column.start - 0.5 * APART, color=MUTED, linewidth=0.6)
-        axes.yaxis.set_label_coords(-0.075, 0.5)
+        _divide(axes, columns)
     _time_axis(grid[-1], columns)
     _phase_names(grid[0], columns)
     grid[0].set_ylabel("temperature [°C]")
     legend_right(grid[0])
     figure.subplots_adjust(left=0.085, right=0.83, top=1 - 0.62 / height, bottom=0.5 / height, hspace=0.12)
     return figure
+
+
+def oil_power_figure(result: TransientResult, curve: OilPowerCurve) -> "Figure":
+    """Power of heaters and cooler over one course [kW] with their limits; the worst moment is a ring."""
+    columns = columns_of(curve)
+    height = 3.4
+    figure = new_figure(height)
+    axes = figure.subplots()
+    for quantity, values, color in (
+        ("heater_power", curve.heater_W, SERIES[1]),
+        ("cooler_power", curve.cooler_W, SERIES[0]),
+    ):
+        x, y = _joined(curve, columns, [1e-3 * value for value in values])
+        axes.plot(x, y, color=color, label=quantity.replace("_", " "))
+        for moment in (m for m in result.worst if (m.quantity, m.branch) == (quantity, curve.branch)):
+            if moment.limit is not None:
+                axes.axhline(moment.limit, color=color, linewidth=0.8, linestyle=":")
+            _ring(axes, curve, columns, moment)
+    _divide(axes, columns)
+    _time_axis(axes, columns)
+    _phase_names(axes, columns)
+    axes.set_ylim(bottom=0.0)
+    axes.set_ylabel("power [kW]")
+    legend_right(axes)
+    figure.subplots_adjust(left=0.085, right=0.83, top=1 - 0.62 / height, bottom=0.5 / height)
+    return figure
+
+
+def _divide(axes: "Axes", columns: Sequence[Column]) -> None:
+    """White gaps with a line between the columns."""
+    for column in columns[1:]:
+        axes.axvspan(column.start - APART, column.start, color="white", linewidth=0, zorder=1.5)
+        axes.axvline(column.start - 0.5 * APART, color=MUTED, linewidth=0.6)
+    axes.yaxis.set_label_coords(-0.075, 0.5)
 
 
 def _places(curve: TransientCurve) -> list[str]:
@@ -104,7 +149,7 @@ def _places(curve: TransientCurve) -> list[str]:
 
 
 def _joined(
-    curve: TransientCurve, columns: Sequence[Column], values: Sequence[float]
+    curve: Course, columns: Sequence[Column], values: Sequence[float]
 ) -> tuple[FloatArray, FloatArray]:
     """Places and values of all columns in one line that breaks between them."""
     x = [np.append(column.places(curve), np.nan) for column in columns]
@@ -136,14 +181,18 @@ def _worst_of(
     for moment in (m for m in worst if (m.quantity, m.branch) == (quantity, curve.branch)):
         if moment.limit is not None:
             axes.axhline(moment.limit, color=MUTED, linewidth=0.8, linestyle=":")
-        if moment.place not in places:
-            continue
-        for column in columns:
-            least = min(range(len(column.at)), key=lambda i: abs(curve.time_s[column.at[i]] - moment.time_s))
-            exact = abs(curve.time_s[column.at[least]] - moment.time_s) < 1e-6
-            if column.phase == moment.phase and exact:
-                where = float(column.places(curve)[least])
-                axes.plot([where], [moment.value], "o", mfc="none", mec=SERIES[1], ms=8, mew=1.6)
+        if moment.place in places:
+            _ring(axes, curve, columns, moment)
+
+
+def _ring(axes: "Axes", curve: Course, columns: Sequence[Column], moment: WorstMoment) -> None:
+    """Mark the moment in the column of its phase."""
+    for column in columns:
+        least = min(range(len(column.at)), key=lambda i: abs(curve.time_s[column.at[i]] - moment.time_s))
+        exact = abs(curve.time_s[column.at[least]] - moment.time_s) < 1e-6
+        if column.phase == moment.phase and exact:
+            where = float(column.places(curve)[least])
+            axes.plot([where], [moment.value], "o", mfc="none", mec=SERIES[1], ms=8, mew=1.6)
 
 
 def _phase_names(axes: "Axes", columns: Sequence[Column]) -> None:

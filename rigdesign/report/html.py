@@ -10,7 +10,7 @@ from rigdesign import __version__
 from rigdesign.report import numbers, views
 from rigdesign.report.drawing import drawing_style, inline_svg
 from rigdesign.report.ranges_section import ranges_context
-from rigdesign.report.transient_section import transient_figures
+from rigdesign.report.transient_section import oil_power_figures, transient_figures
 from rigdesign.results import GearboxDynamics, RunResult
 
 if TYPE_CHECKING:
@@ -97,6 +97,7 @@ def _context(result: RunResult, draw: _Figures) -> dict[str, Any]:
         **_heat_figures(result, draw),
         **ranges_context(result, draw),
         "transient_figures": transient_figures(result.transient, draw),
+        "oil_power_figures": oil_power_figures(result.transient, draw),
     }
 
 

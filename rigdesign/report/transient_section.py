@@ -28,6 +28,22 @@ def transient_figures(
     }
 
 
+def oil_power_figures(
+    result: TransientResult | None, draw: Callable[["Figure", str], "Markup"]
+) -> dict[str, Any]:
+    """Heaters and cooler of every course by its title; none without a thermal course."""
+    if result is None:
+        return {}
+    from rigdesign.report.figures_transient import oil_power_figure
+
+    return {
+        curve.branch.replace("_", " "): draw(
+            oil_power_figure(result, curve), f"Power of heaters and cooler over the course {curve.branch}"
+        )
+        for curve in result.oil_power
+    }
+
+
 def transient_tables(result: TransientResult | None) -> Iterator[tuple[str, str]]:
     """File name and CSV text of every course."""
     from rigdesign.report.tables import csv_text
@@ -36,6 +52,16 @@ def transient_tables(result: TransientResult | None) -> Iterator[tuple[str, str]
         columns = _columns(curve)
         rows = zip(*columns.values(), strict=True)
         yield f"{file_stem('transient', curve.gearbox, curve.branch)}.csv", csv_text(list(columns), rows)
+    for power in () if result is None else result.oil_power:
+        columns = {
+            "time [s]": power.time_s,
+            "phase": power.phase,
+            "heater [W]": power.heater_W,
+            "cooler [W]": power.cooler_W,
+            **{f"heat into {name} [W]": values for name, values in power.streams_W.items()},
+        }
+        rows = zip(*columns.values(), strict=True)
+        yield f"{file_stem('transient', 'oil_power', power.branch)}.csv", csv_text(list(columns), rows)
 
 
 def _columns(curve: TransientCurve) -> dict[str, list[Any]]:

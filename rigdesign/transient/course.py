@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 from rigdesign.alignment import Alignment, alignment
 from rigdesign.coupling import PointResult
 from rigdesign.results_transient import Soak
+from rigdesign.rig.boundary import BEARING_OIL, GEAR_OIL
 from rigdesign.rig.model import Rig
 from rigdesign.transient.clearances import Clearances, clearances
 from rigdesign.transient.heating import Heating
+from rigdesign.transient.oil_power import HousingCourse, OilPower, oil_power
 from rigdesign.transient.phases import SCHEDULE, Phase, event_phases, schedule_phases
 from rigdesign.transient.places import probes_of
 from thermal.alignment import ShaftAxis
@@ -62,6 +64,8 @@ class TransientRun:
 
     branches: tuple[Branch, ...]
     soak: tuple[Soak, ...]
+    power: tuple[OilPower, ...]
+    """Heaters and cooler over every branch, of all gearboxes together."""
     missed: Mapping[str, float]
     """Gearbox -> temperature that the patterns of its expansion miss at most [K]."""
 
@@ -118,7 +122,22 @@ def run_transient(
 
         soaks.append(soak_of(rig.case, by_name[SCHEDULE], by_name.get("cold_start"), trial))
         branches += own
-    return TransientRun(branches=tuple(branches), soak=tuple(soaks), missed=missed)
+    names = dict.fromkeys(branch.name for branch in branches)
+    power = [oil_power(rig, heating, [_oil_course(b) for b in branches if b.name == name]) for name in names]
+    return TransientRun(branches=tuple(branches), soak=tuple(soaks), power=tuple(power), missed=missed)
+
+
+def _oil_course(branch: Branch) -> HousingCourse:
+    return HousingCourse(
+        gearbox=branch.gearbox,
+        name=branch.name,
+        phases=branch.phases,
+        start=branch.start,
+        times=branch.times,
+        phase=branch.phase,
+        outlets={kind: branch.temperatures[f"{kind}_outlet"] for kind in (GEAR_OIL, BEARING_OIL)},
+        from_rest=branch.start == 0.0,
+    )
 
 
 def _read(rig: Rig, name: str, courses: Sequence[Course]) -> tuple[list[Branch], float]:

@@ -34,11 +34,15 @@ class Heating:
         """Conditions of the housing of gearbox ``name`` at an operating point."""
         key = name, point, oil
         if key not in self._conditions:
-            if point not in self._states:
-                heats = self._rig.case.losses.mesh_damping_heats_oil
-                self._states[point] = stage_losses(self._rig, point, self._test, dynamic=heats)
-            self._conditions[key] = oil_conditions(self._rig, name, self._states[point], oil=oil)
+            self._conditions[key] = oil_conditions(self._rig, name, self.state(point), oil=oil)
         return self._conditions[key]
+
+    def state(self, point: OperatingPoint) -> StageLosses:
+        """What heats the rig at an operating point."""
+        if point not in self._states:
+            heats = self._rig.case.losses.mesh_damping_heats_oil
+            self._states[point] = stage_losses(self._rig, point, self._test, dynamic=heats)
+        return self._states[point]
 
     def stage(self, name: str, phase: Phase) -> ThermalStage:
         """A phase as the heat model of gearbox ``name`` takes it."""

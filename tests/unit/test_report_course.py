@@ -1,16 +1,25 @@
 """Pictures of the thermal course and of the seals: what is drawn lies where the numbers say."""
 
+import csv
+import io
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rigdesign.report.drawing import drawing_style
 from rigdesign.report.figures_seals import seal_gap_figure, seal_round_figure
-from rigdesign.report.figures_transient import APART, LABEL_ROOM, columns_of, transient_figure
+from rigdesign.report.figures_transient import (
+    APART,
+    LABEL_ROOM,
+    columns_of,
+    oil_power_figure,
+    transient_figure,
+)
 from rigdesign.report.numbers import power_text
 from rigdesign.report.transient_section import transient_tables
-from rigdesign.results_transient import TransientCurve, TransientResult, WorstMoment
+from rigdesign.results_transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 from tests.report_example import thermal_and_growth
 
 TIMES = [0.0, 10.0, 1000.0, 1001.0, 1010.0, 4610.0, 90000.0]
@@ -98,6 +107,31 @@ def test_tables_name_quantity_place_and_unit(curve: TransientCurve) -> None:
     assert {"coupling_offset a_side [mm]", "bore_out_of_round test.front [1]", "seal_gap front [mm]"} <= set(
         header
     )
+
+
+def test_oil_power_is_drawn_and_tabled_with_its_worst_moment(curve: TransientCurve) -> None:
+    heater = [0.0, 6700.0, 1500.0, 1500.0, 1450.0, 1400.0, 1380.0]
+    power = OilPowerCurve(
+        branch="schedule", time_s=TIMES, phase=PHASES, heater_W=heater, cooler_W=[500.0] * 7,
+        streams_W={"test.gear_oil": [-value for value in heater]},
+    )  # fmt: skip
+    moment = WorstMoment(
+        quantity="heater_power", value=6.7, unit="kW", time_s=10.0, place="rig", branch="schedule",
+        phase="warm_up", steady=1.38, limit=3.0,
+    )  # fmt: skip
+    whole = replace(result(curve), oil_power=[power], worst=[moment])
+    with drawing_style():
+        (axes,) = oil_power_figure(whole, power).axes
+    ring = next(line for line in axes.get_lines() if line.get_marker() == "o")
+    assert (ring.get_xdata()[0], ring.get_ydata()[0]) == pytest.approx(
+        (columns_of(power)[0].start + 1.0, 6.7)
+    )
+    limits = [line for line in axes.get_lines() if list(line.get_ydata()) == [3.0, 3.0]]
+    assert len(limits) == 1
+    tables = dict(transient_tables(whole))
+    rows = list(csv.DictReader(io.StringIO(tables["transient_oil_power_schedule.csv"])))
+    assert float(rows[1]["heater [W]"]) == 6700.0
+    assert float(rows[1]["heat into test.gear_oil [W]"]) == -6700.0
 
 
 def test_seals_are_closed_round_the_shaft_and_their_least_gap_is_marked() -> None:

@@ -10,6 +10,7 @@ import pytest
 
 from rigdesign import cli
 from rigdesign.case import load_case
+from rigdesign.oil import MIL_PRF_23699
 from rigdesign.report import results_document, write_results
 from rigdesign.results import RunResult
 from rigdesign.results_transient import TransientCurve, TransientResult
@@ -79,6 +80,49 @@ def test_the_dwell_ends_in_the_coupled_steady_state(result: RunResult, planned: 
     for bearing in growth.bearings:
         warm = 1e3 * planned.clearances_mm["bearing_clearance"][bearing["bearing"]][at]
         assert warm == pytest.approx(bearing["diametral_clearance_hot_um"], abs=0.5)
+
+
+def test_the_power_of_heaters_and_cooler_ends_at_the_steady_one(
+    result: RunResult, course: TransientResult
+) -> None:
+    """At the end of the dwell what the coupled run has; no oil runs before the start and during the soak-back."""
+    power = next(curve for curve in course.oil_power if curve.branch == "schedule")
+    at = max(i for i, name in enumerate(power.phase) if name == "test")
+    (steady,) = result.cooler
+    streams = {row.consumer: row.heat_W for row in result.oil}
+    for name, heat in streams.items():
+        assert power.streams_W[name][at] == pytest.approx(heat, rel=0.02, abs=30.0)
+    assert power.heater_W[at] == pytest.approx(float(steady["heater_W"]), rel=0.02)
+    assert power.cooler_W[at] == pytest.approx(float(steady["cooler_W"]), rel=0.02)
+    assert power.heater_W[0] == power.cooler_W[0] == 0.0
+    soaking = [i for i, name in enumerate(power.phase) if name == "soak_back"]
+    assert {power.heater_W[i] for i in soaking} == {power.cooler_W[i] for i in soaking} == {0.0}
+
+
+def test_the_warm_up_asks_more_of_the_heater_than_the_steady_rig(
+    result: RunResult, course: TransientResult, planned: TransientCurve
+) -> None:
+    """Cold walls and journals take rho c Q (T_in - T_out) of both oils: by hand from the outlets at the first step."""
+    worst = next(row for row in course.worst if row.quantity == "heater_power" and row.planned)
+    assert (worst.branch, worst.phase, worst.unit) == ("schedule", "warm_up", "kW")
+    assert worst.steady is not None and worst.value > 2.0 * worst.steady
+    at = planned.time_s.index(worst.time_s)
+    assert at < 5
+    by_hand = {}
+    for stream, inlet, flow in (("gear_oil", 140.0, 5.0), ("bearing_oil", 40.0, 4 * 2.0)):
+        outlet = planned.temperatures_degC[f"{stream}_outlet"][at]
+        mean = MIL_PRF_23699.heat_capacity(273.15 + 0.5 * (inlet + outlet))
+        carried = MIL_PRF_23699.density(273.15 + inlet) * flow / 6e4 * mean
+        by_hand[stream] = 1e-3 * carried * (inlet - outlet)
+    assert by_hand["gear_oil"] == pytest.approx(6.7, abs=0.1)
+    assert worst.value == pytest.approx(sum(by_hand.values()), rel=0.03)
+    assert worst.place == "test.gear_oil"
+    checks = {check.id: check for check in result.checks}
+    found = checks["transient.heater_power"]
+    assert (found.value, found.limit, found.verdict) == (worst.value, 3.0, "fail")
+    assert "warm_up" in found.reason
+    assert checks["oil.heater"].verdict == "pass"
+    assert checks["transient.cooler_power"].verdict == "pass"
 
 
 def test_the_cold_rig_has_its_cold_clearances(result: RunResult, planned: TransientCurve) -> None:

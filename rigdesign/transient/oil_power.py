@@ -1,0 +1,168 @@
+"""Power that holds every oil at its inlet temperature over time: heaters and cooler, of all gearboxes together.
+
+An oil that comes back colder than it is fed needs a heater, one that comes back warmer the cooler. The oil of a
+housing leaves with the temperature of its stream; a gearbox without a housing gives its losses to its oil.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.case.model import Case
+from rigdesign.lubrication import heater_and_cooler, oil_streams
+from rigdesign.rig.boundary import BEARING_OIL, GEAR_OIL
+from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import gear_oil, injected_flow, wall_flow
+from rigdesign.state import OperatingPoint
+from rigdesign.transient.heating import Heating
+from rigdesign.transient.oil import LEAK
+from rigdesign.transient.phases import Phase
+from thermal.streams import StreamNetwork
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class HousingCourse:
+    """Course of one housing as far as its oil is concerned."""
+
+    gearbox: str
+    name: str
+    """``schedule`` or the event."""
+    phases: tuple[Phase, ...]
+    start: float
+    """Time since the start of the schedule at which it begins [s]."""
+    times: FloatArray
+    """(n,) since the start of the schedule [s]."""
+    phase: NDArray[np.int32]
+    """(n,) number of the phase each time ends."""
+    outlets: Mapping[str, FloatArray]
+    """GEAR_OIL and BEARING_OIL -> (n,) temperature with which each oil leaves [K]."""
+    from_rest: bool
+    """Whether it starts with the rig at rest, before the oil runs: nothing is needed at that time."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OilPower:
+    """Heaters and cooler over one branch."""
+
+    name: str
+    """``schedule`` or the event."""
+    phases: tuple[Phase, ...]
+    times: FloatArray
+    """(n,) since the start of the schedule [s], those of all housings."""
+    phase: NDArray[np.int32]
+    """(n,) number of the phase each time ends."""
+    heater: FloatArray
+    """(n,) sum over the circuits whose oil comes back colder than it is fed [W]."""
+    cooler: FloatArray
+    """(n,) sum over the others [W]."""
+    streams: Mapping[str, FloatArray] = field(default_factory=dict)
+    """``gearbox.stream`` -> (n,) heat with which its oil comes back above its inlet temperature [W]."""
+
+
+def oil_power(rig: Rig, heating: Heating, courses: Sequence[HousingCourse]) -> OilPower:
+    """Heaters and cooler over one branch from the courses of all its housings.
+
+    The housings have times of their own: each heat is interpolated to the times of all.
+    """
+    first = courses[0]
+    times = np.unique(np.concatenate([course.times for course in courses]))
+    numbers = first.phase[np.minimum(np.searchsorted(first.times, times), len(first.times) - 1)]
+    heats: dict[str, FloatArray] = {}
+    for course in courses:
+        own = _housing_heats(rig, heating, course)
+        heats |= {name: np.interp(times, course.times, values) for name, values in own.items()}
+    housed = {course.gearbox for course in courses}
+    without = [name for name in rig.case.gearboxes if name not in housed]
+    if without:
+        rows = [
+            _without_housing(rig, heating, first, int(number), float(time))
+            for number, time in zip(numbers, times, strict=True)
+        ]
+        heats |= {
+            key: np.array([row[key] for row in rows]) for key in rows[0] if key.split(".")[0] in without
+        }
+    heater, cooler = heater_and_cooler(rig.case, heats)
+    return OilPower(
+        name=first.name,
+        phases=first.phases,
+        times=times,
+        phase=numbers,
+        heater=heater,
+        cooler=cooler,
+        streams=heats,
+    )
+
+
+def _local_time(course: HousingCourse, number: int, time: float) -> float:
+    """Time since the start of a phase [s]."""
+    before = sum(phase.duration for phase in course.phases[:number])
+    return min(max(time - course.start - before, 0.0), course.phases[number].duration)
+
+
+def _housing_heats(rig: Rig, heating: Heating, course: HousingCourse) -> dict[str, FloatArray]:
+    """Heat of both oils of a housing at its own times [W]; none while no oil runs."""
+    heats = {f"{course.gearbox}.{kind}": np.zeros(len(course.times)) for kind in (GEAR_OIL, BEARING_OIL)}
+    for at, (time, number) in enumerate(zip(course.times, course.phase, strict=True)):
+        phase = course.phases[number]
+        if not phase.oil or (at == 0 and course.from_rest):
+            continue
+        stage = heating.stage(course.gearbox, phase)
+        conditions = stage.conditions
+        if callable(conditions):
+            conditions = conditions(_local_time(course, int(number), float(time)))
+        networks = {c.volumes[0].name: c for c in conditions if isinstance(c, StreamNetwork)}
+        outlets = {kind: float(values[at]) for kind, values in course.outlets.items()}
+        gear, leaked = _gear_heat(rig, course.gearbox, networks[GEAR_OIL], outlets[GEAR_OIL])
+        heats[f"{course.gearbox}.{GEAR_OIL}"][at] = gear - leaked
+        heats[f"{course.gearbox}.{BEARING_OIL}"][at] = _bearing_heat(
+            rig.case, course.gearbox, networks[BEARING_OIL], outlets[BEARING_OIL]
+        )
+    return heats
+
+
+def _gear_heat(rig: Rig, name: str, network: StreamNetwork, outlet: float) -> tuple[float, float]:
+    """Heat of the gear oil above its inlet, and what of it leaks to the bearings [W].
+
+    Oil past the walls takes its part of the losses along, which the stream of the walls does not have.
+    """
+    box = rig.case.gearboxes[name]
+    flow = sum(stream.mass_flow for stream in network.streams if stream.target is None)
+    taken = flow * network.specific_heat * (outlet - box.oil.inlet_temperature)
+    whole = injected_flow(box) * len(box.meshes)
+    past = network.volumes[0].power * (whole / wall_flow(box) - 1.0)
+    oil, inlet = gear_oil(rig, name), box.oil.inlet_temperature
+    leak = box.oil_paths.leak_warm_cold * oil.density(inlet) * box.oil.flow * len(box.meshes)
+    return taken + past, leak * network.specific_heat * (outlet - inlet)
+
+
+def _bearing_heat(case: Case, name: str, network: StreamNetwork, outlet: float) -> float:
+    """Heat of the bearing oil above what it and the gear oil leaked into it were fed with [W]."""
+    box = case.gearboxes[name]
+    flow = sum(stream.mass_flow for stream in network.streams if stream.target is None)
+    leak = sum(stream.mass_flow for stream in network.streams if stream.source == LEAK)
+    fed = (flow - leak) * box.bearing_oil.inlet_temperature + leak * box.oil.inlet_temperature
+    return network.specific_heat * (flow * outlet - fed)
+
+
+def _without_housing(
+    rig: Rig, heating: Heating, course: HousingCourse, number: int, time: float
+) -> dict[str, float]:
+    """Heat of every oil stream by the losses alone [W]; none while no oil runs, or at the start from rest."""
+    phase = course.phases[number]
+    before, after, share = phase.between(_local_time(course, number, time))
+    first, second = (_loss_heats(rig, heating, knot.point) for knot in (before, after))
+    runs = phase.oil and not (course.from_rest and time <= course.start)
+    return {
+        name: (1.0 - share) * heat + share * second[name] if runs else 0.0 for name, heat in first.items()
+    }
+
+
+def _loss_heats(rig: Rig, heating: Heating, point: OperatingPoint) -> dict[str, float]:
+    """Heat of every oil stream at an operating point as if no gearbox had walls [W]."""
+    none = {f"{name}.{kind}": 0.0 for name in rig.case.gearboxes for kind in (GEAR_OIL, BEARING_OIL)}
+    losses = heating.state(point).losses
+    return {stream.name: stream.heat for stream in oil_streams(rig, losses, {}, none)}
