@@ -141,6 +141,13 @@ def gear_flanks(rig: Rig, name: str, gear: str, point: OperatingPoint, condition
     )
 
 
+def film_of_jets(rig: Rig, name: str, gear: str, point: OperatingPoint, wall: float) -> float:
+    """Film on the rim of a gear [W/(m2 K)] that the jets of its meshes make at a wall temperature [K] (fling-off)."""
+    rim = rim_surfaces(rig.case.gearboxes[name])[gear]
+    flanks = gear_flanks(rig, name, gear, point, FlankFilm(surfaces=(rim,), law="flank_film"))
+    return flanks.film(rim, "").law(wall, flanks.oil_temperature).value
+
+
 def tooth_ring(pair: GearPair, index: int, width: float, conductivity: float) -> ToothRing:
     """Teeth of gear ``index`` of a pair on a body ``width`` wide [m], as the film sees them.
 
@@ -197,7 +204,7 @@ def mesh_split(rig: Rig, full_name: str, point: OperatingPoint, feedback: Feedba
         share = pinion_share(rig.pairs[full_name], (first, second))
     if box.housing is None:
         return MeshSplit(pinion=share, kept=(0.0, 0.0))
-    if split.mesh == "assumed":
+    if split.rule == "assumed":
         assert split.mesh_into_gears is not None
         return MeshSplit(pinion=share, kept=(split.mesh_into_gears, split.mesh_into_gears))
     conditions = flank_films(box, rim_surfaces(box))

@@ -11,9 +11,10 @@ from dynamics.propagator import DEFAULT_CUTOFF
 from dynamics.response_curve import CurvePoint
 from rigdesign.assemble.curves import iso_factor, resolved
 from rigdesign.checks.subject import Subject
+from rigdesign.flank_heat import film_of_jets, rim_surfaces
 from rigdesign.loads import laws_of
 from rigdesign.results import Check, Finding
-from rigdesign.rig.boundary import printed_films
+from rigdesign.rig.boundary import GEAR_OIL, printed_films
 from rigdesign.rig.films import printed_law
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
@@ -26,6 +27,8 @@ from thermal.boundary import Film, Radiation
 
 SETTLED = 1e-4
 """Relative residual of a harmonic balance from which the point is named."""
+FILM_FACTOR = 3.0
+"""Between a given film on the rim of a gear and the one its jets make, from which it is named."""
 RPM = 30.0 / math.pi
 
 
@@ -207,6 +210,7 @@ def _audits(subject: Subject) -> Iterator[str]:
             *audit_conditions(field.conditions),
             *_radiation_bound(field),
             *_assumed_differences(subject, field),
+            *_thin_rim_films(subject, field),
         )
         yield from (f"{field.gearbox}: {text}" for text in found)
 
@@ -247,6 +251,27 @@ def _assumed_differences(subject: Subject, field: HousingField) -> Iterator[str]
         )
         if text is not None:
             yield text
+
+
+def _thin_rim_films(subject: Subject, field: HousingField) -> Iterator[str]:
+    """Gears whose friction heat is split by assumption under a given film far from the one their jets make."""
+    name, rig = field.gearbox, subject.rig
+    box = rig.case.gearboxes[name]
+    point = next(p.point for p in subject.points if p.last.fields.get(name) is field)
+    if box.heat_split.rule != "assumed" or point.speed == 0.0:
+        return
+    rows = {row.surface: row for row in field.solution.balance.rows if row.kind == GEAR_OIL}
+    for gear, rim in rim_surfaces(box).items():
+        row = rows.get(rim)
+        if row is None or row.coefficient is None:
+            continue
+        given, made = row.coefficient.value, film_of_jets(rig, name, gear, point, row.mean_temperature)
+        if not given * FILM_FACTOR >= made >= given / FILM_FACTOR:
+            yield (
+                f"{gear}: film on its rim = {given:.0f} W/(m2 K) with mesh_into_gears = "
+                f"{box.heat_split.mesh_into_gears:g}, its jets make {made:.0f} W/(m2 K) (fling-off): its bulk "
+                f'temperature depends on the assumption; write law = "flank_film" and give no share, or ranges'
+            )
 
 
 def _fields(subject: Subject) -> Iterable[HousingField]:

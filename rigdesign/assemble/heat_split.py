@@ -79,7 +79,7 @@ def _films(rig: Rig, name: str) -> dict[str, FlankFilm]:
 def _ends(rig: Rig, name: str, films: Mapping[str, FlankFilm], end: int) -> dict[str, FlankFilm] | None:
     """The films at one end of the ranges of the case; None where it states no range."""
     box = rig.case.gearboxes[name]
-    if box.housing is None or box.heat_split.mesh != "flank_film":
+    if box.housing is None or box.heat_split.rule != "flank_film":
         return None
     ranges = {mark.path: mark.range for mark in rig.case.origin.marks if mark.range is not None}
     rims = rim_surfaces(box)
@@ -144,7 +144,7 @@ def _row(
     share = (heat - reached + film) / heat
     return HeatSplitRow(
         gear=f"{name}.{gear}",
-        rule=box.heat_split.mesh,
+        rule=box.heat_split.rule,
         friction_W=heat,
         at_once_W=heat - reached,
         film_W=film,

@@ -290,8 +290,8 @@ def simplifications(rig: Rig) -> Sequence[str]:
     return (
         "over time: losses and films are those of the coupled steady run, interpolated over speed and torque; "
         "thicker oil and tighter bearings of a rig still cold are not fed back into them",
-        "over time: every oil is fed at its inlet temperature from the first moment on, whatever heaters and cooler must "
-        "give or take for it; the heat content of tanks and pipes is left out",
+        "over time: every oil is fed at its inlet temperature from the first moment on, whatever heaters and cooler "
+        "must give or take for it; the heat content of tanks and pipes is left out",
         "over time: at standstill gears stand still; jets do not reach them, still air and the shafts warm them",
         "over time: oil has no mass, a bearing without feed keeps its film, tooth friction without oil is that "
         "with oil",

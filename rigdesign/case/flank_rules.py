@@ -9,6 +9,9 @@ from rigdesign.case.geometry import conditions_of
 from rigdesign.case.housing import FlankFilm, Housing
 from rigdesign.errors import Fault
 
+GEAR_RIMS = "gear_*_rim"
+"""Surfaces that stand for teeth."""
+
 
 def flank_faults(name: str, gearbox: Gearbox, housing: Housing, names: Sequence[str]) -> Iterator[Fault]:
     """Films on teeth that are no rims, coefficients too many or missing, rims without a film that the split needs.
@@ -20,7 +23,7 @@ def flank_faults(name: str, gearbox: Gearbox, housing: Housing, names: Sequence[
     for entry, surface, _ in conditions_of(housing, names):
         if not isinstance(housing.boundary[entry], FlankFilm):
             continue
-        if fnmatchcase(surface, "gear_*_rim"):
+        if fnmatchcase(surface, GEAR_RIMS):
             filmed.add(surface)
         else:
             yield Fault(
@@ -31,11 +34,11 @@ def flank_faults(name: str, gearbox: Gearbox, housing: Housing, names: Sequence[
         if isinstance(condition, FlankFilm):
             yield from _coefficient(f"{at}.{entry}", condition)
     bare = [gear for gear, part in gearbox.gears.items() if f"gear_{part.shaft}_rim" not in filmed]
-    if gearbox.heat_split.mesh == "flank_film" and bare:
+    if gearbox.heat_split.rule == "flank_film" and bare:
         yield Fault(
             f"gearboxes.{name}.heat_split.mesh", '"flank_film"',
             f"the rim of {' and '.join(bare)} has no flank film that could decide",
-            f'write law = "flank_film" for gear_*_rim under {at}, or mesh = "assumed" and mesh_into_gears',
+            f'write law = "flank_film" for gear_*_rim under {at}, or give mesh_into_gears',
         )  # fmt: skip
 
 

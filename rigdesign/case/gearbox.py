@@ -141,12 +141,16 @@ class Seals(Part):
     """Friction torque of seals that touch, of all seals of the shaft together, beside what ``kind`` loses."""
 
 
+MeshRule = Literal["assumed", "flank_film"]
+
+
 class HeatSplit(Part):
     """Share of each loss that enters solid bodies; the rest goes into the oil at once."""
 
-    mesh: Literal["assumed", "flank_film"] = "assumed"
+    mesh: MeshRule | None = None
     """assumed: ``mesh_into_gears`` of the friction heat enters the gears; flank_film: all of it enters the flanks,
-    and the films on the rims (law ``flank_film``) decide what the oil takes."""
+    and the films on the rims (law ``flank_film``) decide what the oil takes. When left out: flank_film, or assumed
+    where the case gives a share."""
     mesh_into_gears: Share | None = None
     """For ``assumed``."""
     mesh_pinion_share: Share | None = None
@@ -155,12 +159,19 @@ class HeatSplit(Part):
     seal_into_shaft: Share
     seal_into_housing: Share
 
+    @property
+    def rule(self) -> MeshRule:
+        """How the friction heat of the meshes divides: as stated, by a given share, else by the films on the flanks."""
+        if self.mesh is not None:
+            return self.mesh
+        return "flank_film" if self.mesh_into_gears is None else "assumed"
+
     @model_validator(mode="after")
     def _share_given(self) -> "HeatSplit":
         if self.mesh == "assumed" and self.mesh_into_gears is None:
             raise fault(
                 "mesh_into_gears is missing: the split of the mesh heat is assumed",
-                'write a share, or mesh = "flank_film" and law = "flank_film" at the rims of the gears',
+                'write a share, or remove mesh and write law = "flank_film" at the rims of the gears',
             )
         if self.mesh == "flank_film" and self.mesh_into_gears is not None:
             raise fault(

@@ -1,9 +1,10 @@
 """Rules of a housing: its parts fit together and every surface has a boundary condition."""
 
 from collections.abc import Iterator
+from fnmatch import fnmatchcase
 
 from rigdesign.case.faults import written
-from rigdesign.case.flank_rules import flank_faults
+from rigdesign.case.flank_rules import GEAR_RIMS, flank_faults
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry, matched, partner_of
 from rigdesign.case.housing import (
@@ -155,9 +156,11 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
     for surface, conditions in covered.items():
         films = [name for name in conditions if name]
         if not conditions:
+            usual = ("flank_film", "constant_film"), ("constant_film", "insulated")
+            laws = usual[0] if fnmatchcase(surface, GEAR_RIMS) else usual[1]
             yield Fault(
                 at, "", f"surface {surface} has no boundary condition",
-                'add one, e.g. law = "constant_film" or law = "insulated"',
+                f'add one, e.g. law = "{laws[0]}" or law = "{laws[1]}"',
             )  # fmt: skip
         if len(films) > 1:
             yield Fault(
