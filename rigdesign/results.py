@@ -310,7 +310,7 @@ class CouplingHistory:
 
 @dataclass(frozen=True, kw_only=True)
 class AssumptionRecord:
-    """An input marked as assumed in the case file."""
+    """An input marked as assumed in the case file, or left out and replaced by an idealisation."""
 
     path: str
     value: str

@@ -315,7 +315,7 @@ class Housing(Part):
     material: Name
     field: ClampingField
     foot_contact: FootContact | None = None
-    """Joint between foot and field; perfect contact when left out."""
+    """Joint between foot and field; perfect contact when left out, which the report lists as an assumption."""
     mesh: HousingMesh = HousingMesh()
     """Element sizes by zone where the usual ones do not do."""
     mesh_file: Text | None = None

@@ -12,6 +12,7 @@ from pydantic import Field, PrivateAttr
 from rigdesign.case.drivetrain import Drivetrain
 from rigdesign.case.fields import Name, Part, Text
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.implied import implied_assumptions
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
 from rigdesign.case.marks import Mark
@@ -69,12 +70,13 @@ class Case(Part):
 
     @property
     def assumptions(self) -> tuple[AssumptionRecord, ...]:
-        """Inputs marked as assumed, in the order of the file."""
-        return tuple(
+        """Inputs marked as assumed, in the order of the file; then those the case assumes by leaving them out."""
+        marked = (
             AssumptionRecord(path=mark.path, value=mark.shown, reason=mark.assumed, range=mark.range)
             for mark in self._origin.marks
             if mark.assumed is not None
         )
+        return (*marked, *implied_assumptions(self))
 
     @property
     def overrides(self) -> tuple[dict[str, str], ...]:

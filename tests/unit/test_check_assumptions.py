@@ -103,3 +103,26 @@ def test_a_star_stands_for_one_name() -> None:
     assert is_under("gearboxes.test.gears.pinion.flank.tip_relief", "gearboxes.*.gears.*.flank")
     assert not is_under("gearboxes.test.housing.gears", "gearboxes.*.gears")
     assert not is_under("losses", "losses.friction")
+
+
+def test_a_foot_without_a_joint_is_an_assumption(tmp_path: Path) -> None:
+    """What a case leaves out and an idealisation replaces is listed, and the checks name it."""
+    file = tmp_path / "case.toml"
+    file.write_text(
+        f'extends = "{(PROTOTYPE / "case.toml").as_posix()}"\nname = "bare"\n'
+        '[gearboxes.test.housing]\nremove = ["foot_contact"]\n'
+    )
+    bare = load_case(file)
+    foot = bare.assumptions[-1]
+    assert (foot.path, foot.value) == ("gearboxes.test.housing.foot_contact", "perfect")
+    assert "W/(m2 K)" in foot.reason
+    hottest = with_assumptions(bare, check("temperature.housing", "limits.temperatures.housing_maximum"))
+    assert foot.path in hottest.assumptions
+
+
+@pytest.mark.parametrize("name", ["uhcf_prototype", "uhcf_main"])
+def test_the_feet_of_the_shipped_housings_state_their_joint_with_a_range(name: str) -> None:
+    shipped = {record.path: record for record in load_case(PROTOTYPE.parent / name).assumptions}
+    assert "gearboxes.test.housing.foot_contact" not in shipped
+    joint = shipped["gearboxes.test.housing.foot_contact.conductance"]
+    assert joint.range == ("75 W/(m2 K)", "7000 W/(m2 K)")

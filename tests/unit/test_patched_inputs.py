@@ -37,12 +37,13 @@ def test_a_shell_contact_holds_the_heat_of_the_bearings_back() -> None:
 
 def test_a_foot_contact_parts_the_housing_from_its_field() -> None:
     path = f"{BOX}.housing.foot_contact.conductance"
-    assert base()[0].case.gearboxes["test"].housing.foot_contact is None
+    assert base()[0].case.gearboxes["test"].housing.foot_contact.conductance == 2000.0
     joints = [(path, "1000000 W/(m2 K)"), (path, "50 W/(m2 K)")]
-    fields = [mean("field"), *(mean("field", joint, remesh=True) for joint in joints)]
-    assert fields[1] == pytest.approx(fields[0], abs=0.5)
+    fields = [mean("field"), *(mean("field", joint) for joint in joints)]
+    # 300 W over 0.09 m2 of foot: 1.7 K across the joint of the case
+    assert fields[0] < fields[1] < fields[0] + 2.0
     assert fields[2] < fields[0] - 3.0
-    rig, last = settled(joints[1], remesh=True)
+    rig, last = settled(joints[1])
     rows = [r for r in last.fields["test"].solution.balance.rows if r.kind == FOOT_CONTACT]
     assert sum(row.power for row in rows) == pytest.approx(0.0, abs=1e-9)
     assert last.fields["test"].solution.balance.closure <= CLOSURE
