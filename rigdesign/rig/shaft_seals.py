@@ -26,14 +26,16 @@ class ShaftSeal:
 def shaft_seals(rig: Rig, box_name: str, shaft_name: str) -> list[ShaftSeal]:
     """Seals of a shaft in one gearbox, those in the walls of the chamber first.
 
-    With a housing its geometry decides. Without one the chamber has no walls, and a shaft leaves the gearbox on the
+    With a housing its geometry decides; a shaft that is not in it has none. Without one the chamber has no walls, and a shaft leaves the gearbox on the
     side where a coupling, the motor or a part of another gearbox sits beyond its bearings; the seal then has the
     diameter of the shaft at the outer edge of that bearing.
     """
     geometry = rig.geometries.get(box_name)
     if geometry is None:
         return list(_exits(rig.case, box_name, shaft_name))
-    shaft = next(shaft for shaft in geometry.shafts if shaft.name == shaft_name)
+    shaft = next((shaft for shaft in geometry.shafts if shaft.name == shaft_name), None)
+    if shaft is None:
+        return []
     land = geometry.bearing_depths(shaft)[0]
     walls = [ShaftSeal(diameter=shaft.seal_diameter, length=geometry.partition_thickness, leaves=False)] * 2
     exits = [
