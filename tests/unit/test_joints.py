@@ -153,6 +153,7 @@ def test_a_sensor_in_the_shell_reads_beyond_the_joint(tmp_path: Path) -> None:
 
 def test_a_pressed_joint_follows_its_pressure(tmp_path: Path) -> None:
     joint = (
+        '[gearboxes.test.housing.foot_contact]\nremove = ["conductance"]\n'
         "[gearboxes.test.housing.foot_contact.joint]\n"
         'pressure = "1 MPa"\nroughness = "3 um"\nslope = 0.15\nhardness = "2 GPa"\n'
     )
@@ -168,7 +169,10 @@ def test_a_pressed_joint_follows_its_pressure(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("[gearboxes.test.housing.foot_contact]\n", "neither of conductance and joint"),
+        (
+            '[gearboxes.test.housing.foot_contact]\nremove = ["conductance"]\n',
+            "neither of conductance and joint",
+        ),
         (
             '[gearboxes.test.housing.foot_contact]\nconductance = "100 W/(m2 K)"\n'
             '[gearboxes.test.housing.foot_contact.joint]\npressure = "1 MPa"\nroughness = "3 um"\nslope = 0.1\n'
@@ -176,6 +180,7 @@ def test_a_pressed_joint_follows_its_pressure(tmp_path: Path) -> None:
             "both of conductance and joint",
         ),
         (
+            '[gearboxes.test.housing.foot_contact]\nremove = ["conductance"]\n'
             '[gearboxes.test.housing.foot_contact.joint]\npressure = "1 MPa"\nroughness = "0 um"\nslope = 0.1\n'
             'hardness = "2 GPa"\n',
             "roughness is zero",
