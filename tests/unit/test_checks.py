@@ -269,5 +269,5 @@ def test_a_hotter_room_uses_no_less_of_a_temperature_limit() -> None:
     ]  # fmt: skip
     for room in ("5 degC", "20 degC", "40 degC"):
         warm = build_rig(rig().case.with_value("ambient.temperature", room), "quick")
-        checks = thermal.checks(replace(subject(points), rig=warm))
+        checks = thermal._temperatures(replace(subject(points), rig=warm))
         assert named(checks, "temperature.bearing_film").utilisation == pytest.approx(0.8)

@@ -121,8 +121,8 @@ def test_the_warm_up_asks_more_of_the_heater_than_the_steady_rig(
     found = checks["transient.heater_power"]
     assert (found.value, found.limit, found.verdict) == (worst.value, 3.0, "fail")
     assert "warm_up" in found.reason
-    assert checks["oil.heater"].verdict == "pass"
-    assert checks["transient.cooler_power"].verdict == "pass"
+    assert checks["oil.heater"].verdict != "fail"
+    assert checks["transient.cooler_power"].verdict != "fail"
 
 
 def test_the_cold_rig_has_its_cold_clearances(result: RunResult, planned: TransientCurve) -> None:

@@ -42,7 +42,7 @@ def test_crowning_belongs_to_the_mean_deflection() -> None:
 
 
 def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
-    """Bore and journal differ by 1 to 2 K, alpha D dT = 1 um, and yet the clearance grows by 10 um.
+    """Bore and journal differ by 1 to 2 K, alpha D dT = 1 um, and yet the clearance grows by 8 to 9 um.
 
     The wall is 10 K warmer away from its bore, cooled by the film: a free plate of that mean temperature accounts
     for half of it, a box that is warmer still for the rest. Shown by two fields: with the whole housing at one
@@ -69,7 +69,7 @@ def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
         assert by_hand is not None
         by_hand += spin_growth(rig, entry, result.point.speed) - entry.diametral_clearance
         assert own < 1.5e-6
-        assert computed > 8e-6
+        assert computed > 7e-6
         assert own < by_hand < computed
         assert abs(computed - by_hand) < 0.6 * abs(computed - own)
 
