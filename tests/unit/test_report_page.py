@@ -231,6 +231,13 @@ def test_checks_are_ordered_failing_first_then_by_utilisation():
     assert ordered[-1].verdict == "not applicable"
 
 
+def test_a_check_says_in_the_table_what_its_value_leaves_out():
+    result = make_result()
+    first = replace(result.checks[0], verdict="warn", left_out=("walls of gearbox reference: it has no housing",))
+    page = report_html(replace(result, checks=[first, *result.checks[1:]]))
+    assert "leaves out walls of gearbox reference: it has no housing" in page
+
+
 def test_checks_behind_an_assumption_are_counted_by_group():
     ids = ("dynamics.lift_off.test", "dynamics.lift_off.reference", "oil.room", "dynamics.ramp_peak.test")
     assert views.check_families(ids) == "dynamics (3), oil.room"
