@@ -34,7 +34,7 @@ WANTED = {
     ("uhcf_prototype", "set_4"): ("unknown_located", set()),
     ("uhcf_prototype", "set_5"): ("input_error_suspected", {"swapped_points:P05,P08"}),
     ("uhcf_prototype", "set_6"): ("alias_group", {"bearing_loss:test", "oil_viscosity:test"}),
-    ("loop_1to1", "set_0"): ("within_noise", set()),
+    ("loop_1to1", "set_0"): ("too_small", set()),
     ("loop_1to1", "set_1"): ("alias_group", {"run_out:test.pinion", "run_out:test.wheel"}),
     ("loop_1to1", "set_2"): ("named", {"run_out:test.pinion"}),
 }

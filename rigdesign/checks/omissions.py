@@ -47,12 +47,13 @@ def omissions(subject: Subject, check: Check) -> tuple[Omission, ...]:
 
 
 def _of_boxes(text: str, applies: Callable[[Subject, str, Gearbox], bool]) -> Finder:
-    """One omission for every gearbox to which it applies; ``text`` holds ``{box}``."""
+    """One omission for every gearbox to which it applies; ``text`` holds ``{box}``, and ``{why}`` its housing is not
+    expanded."""
 
     def finder(subject: Subject, check: Check) -> Found:
         for name, box in subject.case.gearboxes.items():
             if applies(subject, name, box):
-                yield Omission(text.format(box=name))
+                yield Omission(text.format(box=name, why=subject.why_unexpanded(name)))
 
     return finder
 
@@ -259,7 +260,7 @@ def _saturated(subject: Subject, check: Check) -> Found:
         )
 
 
-GROWTH = "thermal expansion of gearbox {box}: its housing is not expanded"
+GROWTH = "thermal expansion of gearbox {box}: {why}"
 
 OMISSIONS: tuple[tuple[tuple[str, ...], Finder], ...] = (
     (("oil.room",), _of_boxes("heat that gearbox {box} gives to the room: it has no housing", _bare)),

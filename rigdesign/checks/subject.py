@@ -55,6 +55,13 @@ class Subject:
         models = self.rig.models
         return tuple(name for name in self.case.gearboxes if name not in models or models[name].no_expansion)
 
+    def why_unexpanded(self, name: str) -> str:
+        """Why the housing of a gearbox is not expanded."""
+        model = self.rig.models.get(name)
+        return (
+            "its housing is not expanded" if model is None or not model.no_expansion else model.no_expansion
+        )
+
     @property
     def no_clearances(self) -> str:
         """Why there are no hot clearances, where there are none."""

@@ -52,7 +52,9 @@ def user_model(name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Pat
         for body in model.mesh.bodies
         if body not in known
     ]
-    if faults := [*faults, *boundary_faults(name, gearbox, tuple(model.mesh.surfaces))]:
+    joined = (FOOT, SEAT) if geometry.foot_joint else ()
+    open_ones = tuple(surface for surface in model.mesh.surfaces if surface not in joined)
+    if faults := [*faults, *boundary_faults(name, gearbox, open_ones)]:
         raise CaseError(faults, str(case))
     return model
 

@@ -39,7 +39,7 @@ def test_oil_that_must_be_heated_cools_nothing() -> None:
     }
     last: Any = SimpleNamespace(
         point=SimpleNamespace(stage="test"),
-        losses=[SimpleNamespace(loss=SimpleNamespace(power=9300.0), pumped=0.0)],
+        losses=[SimpleNamespace(loss=SimpleNamespace(power=9300.0), pumped=0.0, not_heat=0.0)],
         streams=[
             SimpleNamespace(name=name, inlet=inlet, heat=heat, flow=1e-4)
             for name, (inlet, heat) in heats.items()

@@ -233,7 +233,9 @@ def test_checks_are_ordered_failing_first_then_by_utilisation():
 
 def test_a_check_says_in_the_table_what_its_value_leaves_out():
     result = make_result()
-    first = replace(result.checks[0], verdict="warn", left_out=("walls of gearbox reference: it has no housing",))
+    first = replace(
+        result.checks[0], verdict="warn", left_out=("walls of gearbox reference: it has no housing",)
+    )
     page = report_html(replace(result, checks=[first, *result.checks[1:]]))
     assert "leaves out walls of gearbox reference: it has no housing" in page
 
