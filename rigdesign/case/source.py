@@ -64,7 +64,7 @@ def merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     takes the place of the inherited one.
     """
     dropped = over.get("remove", [])
-    if not isinstance(dropped, list) or not all(key in base for key in dropped):
+    if not isinstance(dropped, list) or not all(isinstance(key, str) and key in base for key in dropped):
         raise CaseError(
             f"remove = {shortened(repr(dropped))}: not a list of inherited keys; inherited here: {', '.join(base)}"
         )
@@ -87,7 +87,11 @@ def _merge_value(base: Any, over: Any) -> Any:
 
 
 def _named(value: object) -> bool:
-    return isinstance(value, list) and bool(value) and all(isinstance(i, dict) and "name" in i for i in value)
+    return (
+        isinstance(value, list)
+        and bool(value)
+        and all(isinstance(item, dict) and isinstance(item.get("name"), str) for item in value)
+    )
 
 
 def _base(extends: object, file: Path) -> Path | None:

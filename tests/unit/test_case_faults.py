@@ -528,6 +528,19 @@ def test_extends_that_leads_nowhere(tmp_path: Path, extends: str) -> None:
         load_case(tmp_path)
 
 
+@pytest.mark.parametrize("text", ["remove = [[[[]]]]", "remove = [{}]", "ambient.remove = [1]"])
+def test_what_is_no_list_of_keys_removes_nothing(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "bad.toml"
+    file.write_text(f'extends = "{PROTOTYPE.as_posix()}"\n{text}\n')
+    with pytest.raises(CaseError, match="not a list of inherited keys"):
+        load_case(file)
+
+
+def test_a_stage_whose_name_is_no_text_is_a_fault(tmp_path: Path) -> None:
+    found = faults(tmp_path, "[[schedule.stages]]\nname = [[]]\nkind = 'dwell'\n")
+    assert any("name" in fault.path for fault in found)
+
+
 def test_losses_need_a_drivetrain_or_to_be_given(tmp_path: Path) -> None:
     found = {fault.path: fault for fault in faults(tmp_path, 'remove = ["drivetrain"]')}
     assert "with a drivetrain" in found["losses.basis"].problem
