@@ -43,10 +43,15 @@ from thermal.housing_solids import (
     housing_size,
     shaft_size,
 )
-from thermal.housing_stations import bearing_stations, gear_stations, seal_stations, shaft_stations
+from thermal.housing_stations import (
+    bearing_stations,
+    foot_joint,
+    gear_stations,
+    seal_stations,
+    shaft_stations,
+)
 from thermal.housing_surfaces import (
     FOOT,
-    SEAT,
     body_names,
     exact_areas,
     exact_volumes,
@@ -55,7 +60,7 @@ from thermal.housing_surfaces import (
     shaft_faces,
     surface_names,
 )
-from thermal.stations import FootJoint, GearboxModel
+from thermal.stations import GearboxModel
 
 __all__ = [
     "ClampingField",
@@ -156,7 +161,5 @@ def _build(geometry: HousingGeometry, sizes: MeshSizes) -> GearboxModel:
         gears=gear_stations(geometry),
         fixed_body="housing" if geometry.field is None else "field",
         foot_surface=FOOT if geometry.field is None else "field_bottom",
-        joint=FootJoint(body="housing", foot_surface=FOOT, seat_surface=SEAT)
-        if geometry.foot_joint
-        else None,
+        joint=foot_joint(geometry),
     )

@@ -10,9 +10,15 @@ import numpy as np
 
 from thermal.fe.mesh import FloatArray, NamedMesh
 from thermal.housing_geometry import HousingGeometry
-from thermal.housing_stations import bearing_stations, gear_stations, seal_stations, shaft_stations
-from thermal.housing_surfaces import FOOT, SEAT
-from thermal.stations import FootJoint, GearboxModel, Point
+from thermal.housing_stations import (
+    bearing_stations,
+    foot_joint,
+    gear_stations,
+    seal_stations,
+    shaft_stations,
+)
+from thermal.housing_surfaces import FOOT, joined_surfaces
+from thermal.stations import GearboxModel, Point
 
 ROUND = 0.02
 """Largest distance of a corner from the fitted circle, relative to its radius, of what is taken for a cylinder."""
@@ -83,7 +89,7 @@ def fitted_model(mesh: NamedMesh, geometry: HousingGeometry) -> GearboxModel:
         ),
         fixed_body="field" if field else "housing",
         foot_surface="field_bottom" if field else FOOT,
-        joint=FootJoint(body="housing", foot_surface=FOOT, seat_surface=SEAT) if geometry.foot_joint else None,
+        joint=foot_joint(geometry),
     )  # fmt: skip
 
 
@@ -102,7 +108,7 @@ def _missing(mesh: NamedMesh, geometry: HousingGeometry) -> str:
     cylinders += [g.rim_surface for g in gears]
     ends = [name for s in shafts for name in (s.start_surface, s.end_surface)]
     ends.append("field_bottom" if "field" in mesh.bodies else FOOT)
-    ends += [FOOT, SEAT] if geometry.foot_joint else []
+    ends += joined_surfaces(geometry)
     lost = [f"body {name}" for name in bodies if name not in mesh.bodies]
     lost += [f"surface {name}" for name in cylinders + ends if name not in mesh.surfaces]
     if lost:

@@ -1,8 +1,8 @@
 """Where an engineer reads the clearances of a parametric gearbox: its stations, from the geometry alone."""
 
 from thermal.housing_geometry import SIDES, HousingGeometry, ShaftGeometry
-from thermal.housing_surfaces import shaft_zones
-from thermal.stations import BearingStation, GearStation, Point, SealStation, ShaftStation
+from thermal.housing_surfaces import FOOT, SEAT, shaft_zones
+from thermal.stations import BearingStation, FootJoint, GearStation, Point, SealStation, ShaftStation
 
 
 def shaft_stations(geometry: HousingGeometry) -> tuple[ShaftStation, ...]:
@@ -18,6 +18,11 @@ def shaft_stations(geometry: HousingGeometry) -> tuple[ShaftStation, ...]:
             )
         )  # fmt: skip
     return tuple(stations)
+
+
+def foot_joint(geometry: HousingGeometry) -> FootJoint | None:
+    """How the housing stands on its field; None where they share their nodes."""
+    return FootJoint(body="housing", foot_surface=FOOT, seat_surface=SEAT) if geometry.foot_joint else None
 
 
 def bearing_stations(geometry: HousingGeometry) -> tuple[BearingStation, ...]:

@@ -105,8 +105,13 @@ def surface_names(geometry: HousingGeometry) -> tuple[str, ...]:
 
     The two sides of a foot joint are left out: they have each other.
     """
-    joined = (FOOT, SEAT) if geometry.foot_joint else ()
+    joined = joined_surfaces(geometry)
     return tuple(name for name in exact_areas(geometry) if name not in joined)
+
+
+def joined_surfaces(geometry: HousingGeometry) -> tuple[str, ...]:
+    """The two sides of a foot joint, which take no boundary condition; none where foot and field share their nodes."""
+    return (FOOT, SEAT) if geometry.foot_joint else ()
 
 
 def body_names(geometry: HousingGeometry) -> tuple[str, ...]:

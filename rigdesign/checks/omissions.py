@@ -86,7 +86,7 @@ def _tempered(subject: Subject, name: str, box: Gearbox) -> bool:
 
 def _teeth_at_bulk(subject: Subject, name: str, box: Gearbox) -> bool:
     """A gearbox with a temperature field whose teeth have no temperature of their own."""
-    return box.housing is not None and box.heat_split.mesh == "assumed"
+    return box.housing is not None and box.heat_split.rule == "assumed"
 
 
 def _thrust(subject: Subject, name: str, box: Gearbox) -> bool:

@@ -7,13 +7,13 @@ from pathlib import Path
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.surfaces import boundary_faults
 from rigdesign.errors import CaseError, Fault
-from rigdesign.files import RefusedFileError, check_regular
+from rigdesign.files import check_regular
 from thermal.fe.mesh import MeshError
 from thermal.housing_file import read_mesh
 from thermal.housing_fitted import fitted_model
 from thermal.housing_geometry import HousingGeometry
 from thermal.housing_stations import seal_stations
-from thermal.housing_surfaces import FOOT, SEAT, body_names
+from thermal.housing_surfaces import body_names, joined_surfaces
 from thermal.stations import GearboxModel
 
 LARGEST_MESH = 2_000_000_000
@@ -36,7 +36,7 @@ def user_model(name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Pat
     try:
         check_regular(file, LARGEST_MESH)
         model = _read(file, file.stat().st_mtime_ns, geometry)
-    except (RefusedFileError, FileNotFoundError, PermissionError) as error:
+    except OSError as error:
         raise CaseError(
             [Fault(at, given, str(error.strerror), "correct the path of the mesh")], str(case)
         ) from error
@@ -52,9 +52,9 @@ def user_model(name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Pat
         for body in model.mesh.bodies
         if body not in known
     ]
-    joined = (FOOT, SEAT) if geometry.foot_joint else ()
-    open_ones = tuple(surface for surface in model.mesh.surfaces if surface not in joined)
-    if faults := [*faults, *boundary_faults(name, gearbox, open_ones)]:
+    joined = joined_surfaces(geometry)
+    surfaces = tuple(surface for surface in model.mesh.surfaces if surface not in joined)
+    if faults := [*faults, *boundary_faults(name, gearbox, surfaces)]:
         raise CaseError(faults, str(case))
     return model
 
@@ -64,9 +64,9 @@ def _needed(gearbox: Gearbox, geometry: HousingGeometry) -> dict[str, str]:
     split = gearbox.heat_split
     needed = {"housing": "every case"}
     if geometry.foot_joint:
-        needed |= dict.fromkeys(("field", FOOT, SEAT), "foot_contact")
+        needed |= dict.fromkeys(("field", *joined_surfaces(geometry)), "foot_contact")
     for gear in gearbox.gears.values():
-        if split.mesh == "flank_film":
+        if split.rule == "flank_film":
             needed[f"gear_{gear.shaft}_rim"] = 'heat_split.mesh = "flank_film"'
         elif split.mesh_into_gears:
             needed[f"gear_{gear.shaft}_rim"] = "heat_split.mesh_into_gears"

@@ -145,6 +145,13 @@ def test_a_gearbox_without_a_housing_is_named_by_what_it_would_add(identity: str
     assert any(named in text for text in check.left_out)
 
 
+def test_a_share_of_friction_heat_leaves_the_teeth_at_the_mean_of_their_gear() -> None:
+    """The prototype gives mesh_into_gears and no rule: the share decides, and the teeth have no temperature."""
+    assert base()[0].case.gearboxes["test"].heat_split.mesh is None
+    text = "teeth of gearbox test above the mean of their gear: heat_split.mesh = assumed"
+    assert text in shipped()["temperature.gear_bulk"].left_out
+
+
 def test_what_leaves_nothing_out_still_passes() -> None:
     for identity in ("oil.flow", "oil.cooler", "temperature.oil_outlet"):
         assert (shipped()[identity].verdict, shipped()[identity].left_out) == ("pass", ())
