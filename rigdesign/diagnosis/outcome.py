@@ -89,7 +89,8 @@ class Outcome:
 def _applied(verdict: str, named: tuple[Sized, ...], picked: Sized | None) -> tuple[Sized, ...]:
     if picked is None:
         return named
-    return (*named, picked) if verdict == "alias_group" else (picked,)
+    others = tuple(one for one in named if one.name != picked.name) if verdict == "alias_group" else ()
+    return (*others, picked)
 
 
 def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Ranked] = ()) -> Outcome:

@@ -218,6 +218,9 @@ def test_what_is_at_work_apart_from_a_group_is_told():
         assert [one.name for one in picked.applied] == ["single_pitch:test.pinion", pick]
         assert picked.gap is not None and picked.gap.shrunk and picked.case_patch is not None
         assert len(picked.case_patch.values) >= 2
+    again = outcome(told.result, pick="single_pitch:test.pinion")
+    assert [one.name for one in again.applied] == ["single_pitch:test.pinion"]
+    assert again.case_patch is not None and again.case_patch.title.count("pitch of one tooth") == 1
 
 
 def traces(columns, *, noise=None, assembly=None):
