@@ -12,7 +12,7 @@ from rigdesign.errors import MeasurementError
 from rigdesign.measurement import comparing, features, load_measurement
 from rigdesign.measurement.compare import Comparison, compare, comparison_document, headline
 from rigdesign.measurement.comparing import compare_measurement
-from rigdesign.measurement.foretold import HealthySet
+from rigdesign.measurement.foretold import HealthySet, foretold
 from rigdesign.measurement.quantities import CHANNELS, to_si
 from rigdesign.prediction import Feature, Prediction, features_of
 from rigdesign.report.measurement_page import write_comparison
@@ -97,6 +97,22 @@ def test_the_scatter_of_both_sets_remains(pair: Path, case, monkeypatch) -> None
     assert again.spread[i] == pytest.approx(
         np.sqrt(noise[0] ** 2 + noise[1] ** 2 + (0.01 * 6.0) ** 2), rel=1e-6
     )
+
+
+def test_a_number_that_is_not_used_leaves_the_scatter_of_the_others_as_it_is(
+    pair: Path, case, monkeypatch
+) -> None:
+    """The sensitivity to the settings is that of the simulation, which has the number all the same."""
+    comparison = compared(pair, case, monkeypatch)
+    healthy, rows = comparison.healthy, comparison.healthy.data.features
+    lost = rows.index(Feature("TC1", "P03"))
+    usable = healthy.data.usable.copy()
+    usable[lost] = False
+    less = foretold(comparison.data, replace(healthy, data=replace(healthy.data, usable=usable)))
+    row = comparison.data.features.index(Feature("TC1", "P03"))
+    others = np.delete(np.arange(len(comparison.data.features)), row)
+    assert not less.known[row] and comparison.foretold.known[row]
+    assert np.array_equal(less.variance[others], comparison.foretold.variance[others], equal_nan=True)
 
 
 def test_points_are_known_by_how_they_were_run(pair: Path, case, monkeypatch) -> None:
