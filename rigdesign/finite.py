@@ -25,10 +25,7 @@ def finite(path: str, value: float) -> float:
     """
     if isfinite(value):
         return value
-    raise NonFiniteResultError(
-        f"{path} = {value}: results hold finite numbers only; a quantity that does not exist is None. An input at the "
-        "edge of its range may cause it: move it inwards; report the case as a defect if it does not"
-    )
+    raise _error(path, value)
 
 
 def require_finite(record: Any, path: str = "") -> None:
@@ -40,18 +37,25 @@ def require_finite(record: Any, path: str = "") -> None:
         The first number that is NaN or infinite; names its path, that of the record in front.
     """
     for place, value in _not_finite(record, path):
-        finite(place, value)
+        raise _error(place, value)
 
 
-def _not_finite(value: Any, path: str) -> Iterator[tuple[str, float]]:
+def _error(path: str, value: complex) -> NonFiniteResultError:
+    return NonFiniteResultError(
+        f"{path} = {value}: results hold finite numbers only; a quantity that does not exist is None. An input at the "
+        "edge of its range may cause it: move it inwards; report the case as a defect if it does not"
+    )
+
+
+def _not_finite(value: Any, path: str) -> Iterator[tuple[str, complex]]:
     """Path and value of every number that is NaN or infinite."""
-    if isinstance(value, float | np.floating):
-        if not isfinite(value):
-            yield path, float(value)
+    if isinstance(value, float | complex | np.inexact):
+        if not np.isfinite(value):
+            yield path, value.item() if isinstance(value, np.inexact) else value
     elif isinstance(value, np.ndarray):
         if value.dtype.kind in "fc" and not np.isfinite(value).all():
             place = np.argwhere(~np.isfinite(value))[0]
-            yield f"{path}[{', '.join(map(str, place))}]", float(np.real(value[tuple(place)]))
+            yield f"{path}[{', '.join(map(str, place))}]", value[tuple(place)].item()
     elif is_dataclass(value) and not isinstance(value, type):
         for item in fields(value):
             yield from _not_finite(getattr(value, item.name), _joined(path, item.name))

@@ -36,6 +36,8 @@ def case_file(tmp_path: Path) -> Path:
         ({"a": [1.0, {"b": (2.0, float("-inf"))}]}, r"a\[1\].b\[1\] = -inf"),
         ({"field": np.array([[1.0, 2.0], [np.inf, 0.0]])}, r"field\[1, 0\] = inf"),
         ({"scalar": np.float32("nan")}, "scalar = nan"),
+        ({"order": [complex(1.0, float("nan"))]}, r"order\[0\] = \(1\+nanj\)"),
+        ({"orders": np.array([1.0 + 0.0j, complex(1.0, float("inf"))])}, r"orders\[1\] = \(1\+infj\)"),
     ],
 )  # fmt: skip
 def test_every_number_of_a_record_is_looked_at(record: Any, place: str) -> None:
