@@ -73,7 +73,12 @@ ARITHMETIC: Mapping[str, tuple[str, ...]] = {
     "bought_part.speed": SPEEDS,
     "bought_part.circulating_power": SPEEDS,
     "bought_part.oil_flow": ("gearboxes.*.oil.flow", "gearboxes.*.bearing_oil.flow"),
-    "bought_part.seal_surface_velocity": (*SPEEDS, "gearboxes.*.housing.shafts"),
+    "bought_part.seal_surface_velocity": (
+        *SPEEDS,
+        "gearboxes.*.housing.shafts",
+        "gearboxes.*.bearings",
+        "drivetrain.shafts",
+    ),
     "bought_part.given": (),
 }
 """Checks that are arithmetic of a few inputs: nothing else moves them."""

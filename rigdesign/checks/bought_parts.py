@@ -135,15 +135,20 @@ def _circulating_power(subject: Subject, part: str) -> Found:
     )
 
 
+NO_SEAL = "no shaft of the part has such a seal: none leaves its gearbox or passes a wall of its chamber"
+
+
 def _seal_velocity(subject: Subject, part: str) -> Found:
-    """Surface speed in the largest seal of every shaft."""
+    """Surface speed in the largest seal of every shaft; the gap in a wall of the chamber is no lip."""
     box, top = part.split(".")[1], max(stage.speed_end for stage in subject.case.schedule.resolved())
+    lips = {one.shaft for one in subject.case.gearboxes[box].seals.values() if one.kind == "radial_lip"}
     speeds = [
         (0.5 * seal.diameter * subject.rig.shaft_speed(shaft, top), shaft)
         for shaft in shafts_of(subject.case, part)
         for seal in shaft_seals(subject.rig, box, shaft)
+        if seal.leaves or shaft not in lips
     ]
-    return worst(speeds) if speeds else (None, NO_HOUSING)
+    return worst(speeds) if speeds else (None, NO_SEAL)
 
 
 def _shaft_growth(subject: Subject, part: str) -> Found:

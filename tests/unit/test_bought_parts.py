@@ -10,6 +10,7 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.case import Case
+from rigdesign.checks.assumptions import depends
 from rigdesign.checks.bought_parts import bought_parts
 from rigdesign.checks.subject import Subject
 from rigdesign.errors import CaseError
@@ -79,6 +80,32 @@ def held(part: str, quantity: str, base: Case | None = None) -> Check:
 )
 def test_a_part_sees_its_own(part: str, quantity: str, value: float) -> None:
     assert held(part, quantity).value == pytest.approx(value, rel=1e-9)
+
+
+def test_the_speed_of_a_lip_is_that_of_the_shaft_where_it_leaves() -> None:
+    """The shaft passes the walls of the chamber in gaps, whatever seals it outside."""
+    lips = load_case(PROTOTYPE).with_value("gearboxes.test.seals.wheel.kind", "radial_lip")
+    shaft = next(s for s in build_rig(lips, "quick").geometries["test"].shafts if s.name == "test_wheel")
+    assert shaft.overhang_diameter < shaft.seal_diameter
+    check = held("gearboxes.test.seals.wheel", "seal_surface_velocity", lips)
+    speed = 12000.0 * RPM * 99 / 102
+    assert check.value == pytest.approx(0.5 * shaft.overhang_diameter * speed, rel=1e-9)
+
+
+def test_without_a_housing_the_seal_sits_at_the_edge_of_the_bearing_on_the_shaft_of_the_drivetrain() -> None:
+    """Its speed depends on the sections of that shaft and on the place of the bearing."""
+    check = held("gearboxes.reference.seals.wheel", "seal_surface_velocity")
+    case = load_case(PROTOTYPE).with_value(
+        "limits.bought_parts",
+        {"x": {"title": "x", "part": "gearboxes.reference.seals.wheel", "quantity": "seal_surface_velocity",
+               "source": "data sheet", "limit": "90 m/s"}},
+    )  # fmt: skip
+    assert check.value is not None
+    for path in (
+        "drivetrain.shafts.reference_wheel.sections",
+        "gearboxes.reference.bearings.wheel_front.width",
+    ):
+        assert depends(case, check, path)
 
 
 def test_load_unit_of_a_loop_braced_by_twist_is_not_asked() -> None:
