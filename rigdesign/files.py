@@ -26,14 +26,15 @@ ODS = b"application/vnd.oasis.opendocument.spreadsheet"
 class RefusedFileError(OSError):
     """A file that is not read: a device, a pipe, a folder, or one above the limit of size.
 
-    ``strerror`` says what it is and the limit.
+    ``strerror`` says what it is and the limit; ``size`` [bytes] of a regular file that is too large, else None.
     """
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, size: int | None = None) -> None:
         super().__init__(0, text)
+        self.size = size
 
 
-def check_regular(path: Path, largest: int) -> None:
+def check_regular(path: Path, largest: float) -> None:
     """Raise RefusedFileError for what is no regular file of at most ``largest`` bytes, OSError for no file at all."""
     _refuse(path.stat(), largest)
 
@@ -57,7 +58,7 @@ def read_regular(path: Path, largest: int) -> bytes:
         return file.read(largest)
 
 
-def _refuse(state: os.stat_result, largest: int) -> None:
+def _refuse(state: os.stat_result, largest: float) -> None:
     if not stat.S_ISREG(state.st_mode):
         kinds = (
             (stat.S_ISDIR, "a folder"), (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"),
@@ -66,7 +67,8 @@ def _refuse(state: os.stat_result, largest: int) -> None:
         what = next((words for holds, words in kinds if holds(state.st_mode)), "no file")
         raise RefusedFileError(f"{what}, not a regular file")
     if state.st_size > largest:
-        raise RefusedFileError(f"{state.st_size / 1e6:.3g} MB, above the limit of {largest / 1e6:.3g} MB")
+        text = f"{state.st_size / 1e6:.3g} MB, above the limit of {largest / 1e6:.3g} MB"
+        raise RefusedFileError(text, state.st_size)
 
 
 def foreign(content: bytes) -> str | None:

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from rigdesign import units
 from rigdesign.errors import Fault, MeasurementError
+from rigdesign.files import RefusedFileError, check_regular, read_regular
 
-LARGEST_DOCUMENT = 16e6
+LARGEST_DOCUMENT = 16_000_000
 """Most bytes of measurement.toml itself."""
 
 
@@ -25,40 +26,36 @@ def set_file(folder: Path, name: str, limit: float) -> Path:
     MeasurementError
         No name of a file, no such file, one outside the folder, no regular file (a folder, device or pipe), too large.
     """
-    if "\0" in name:
-        raise _refused(
-            repr(name), "holds a NUL character", "write the name of a file in the folder of the set"
-        )
     try:
         home, path = folder.resolve(), (folder / name).resolve()
-        size = path.stat().st_size if path.is_file() else 0.0
-    except (OSError, RuntimeError) as error:
-        raise _refused(name, f"cannot be followed: {error}", "correct the name or the link") from None
-    if not path.is_relative_to(home):
-        raise _refused(
-            name, f"leads to {path}, outside the folder of the set", "put the file itself into that folder"
-        )
-    if not path.exists():
-        raise _refused(name, "no such file", "correct the name in [data] or add the file")
-    if not path.is_file():
-        raise _refused(name, "is a folder, device or pipe", "give a regular file")
-    if size > limit:
-        raise _refused(
+        if not path.is_relative_to(home):
+            raise refused(
+                name,
+                f"leads to {path}, outside the folder of the set",
+                "put the file itself into that folder",
+            )
+        check_regular(path, limit)
+    except FileNotFoundError:
+        raise refused(name, "no such file", "correct the name in [data] or add the file") from None
+    except RefusedFileError as error:
+        if error.size is None:
+            raise refused(name, f"is {error.strerror}", "give a regular file") from None
+        raise refused(
             name,
-            f"has {_shown(size)}, data.size_limit is {_shown(limit)}",
-            f'if that is meant, write size_limit = "{_shown(1.2 * size)}" under [data]',
-        )
+            f"has {_shown(error.size)}, data.size_limit is {_shown(limit)}",
+            f'if that is meant, write size_limit = "{_shown(1.2 * error.size)}" under [data]',
+        ) from None
+    except (OSError, RuntimeError) as error:
+        raise refused(name, f"cannot be followed: {error}", "correct the name or the link") from None
     return path
 
 
 def document_text(file: Path) -> str:
     """Text of measurement.toml; MeasurementError where it cannot be read, is too large or no UTF-8."""
     try:
-        if file.stat().st_size > LARGEST_DOCUMENT:
-            raise MeasurementError(
-                f"has more than {_shown(LARGEST_DOCUMENT)}; readings belong into tables", str(file)
-            )
-        return file.read_bytes().decode("utf-8-sig")
+        return read_regular(file, LARGEST_DOCUMENT).decode("utf-8-sig")
+    except RefusedFileError as error:
+        raise MeasurementError(f"is {error.strerror}; readings belong into tables", str(file)) from None
     except OSError as error:
         raise MeasurementError(
             f"cannot be read: {error.strerror}; check the path and its rights", str(file)
@@ -78,8 +75,9 @@ def digest_of(file: Path, others: Iterable[Path]) -> str:
     return digest.hexdigest()
 
 
-def _refused(name: str, problem: str, remedy: str) -> MeasurementError:
-    return MeasurementError([Fault(name, "", problem, remedy)])
+def refused(path: str, problem: str, remedy: str) -> MeasurementError:
+    """The error of a file, or of a place in it, that cannot be used."""
+    return MeasurementError([Fault(path, "", problem, remedy)])
 
 
 def _shown(size: float) -> str:

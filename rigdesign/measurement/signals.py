@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rigdesign.errors import Fault, MeasurementError
 from rigdesign.measurement.document import Data
-from rigdesign.measurement.files import set_file
+from rigdesign.measurement.files import refused, set_file
 from rigdesign.measurement.hdf5_samples import AGAIN, RefusedError, read_datasets
 from rigdesign.measurement.table import MOST_FAULTS, numbers, read_table
 
@@ -54,7 +54,7 @@ def read_signals(folder: Path, name: str, data: Data) -> Signals:
     kind = Path(name.replace("\0", "")).suffix.lower()
     reader = readers.get(kind)
     if reader is None:
-        raise _fault(name, f"unknown kind of file {kind!r}", f"write one of {', '.join(readers)}")
+        raise refused(name, f"unknown kind of file {kind!r}", f"write one of {', '.join(readers)}")
     path = set_file(folder, name, data.size_limit)
     try:
         with np.errstate(all="ignore"):
@@ -63,21 +63,17 @@ def read_signals(folder: Path, name: str, data: Data) -> Signals:
         raise
     except Exception as error:  # readers of binary files raise whatever a damaged byte leads them to
         said = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        raise _fault(name, f"cannot be read or was cut off ({said})", AGAIN) from None
+        raise refused(name, f"cannot be read or was cut off ({said})", AGAIN) from None
     if not signals:
-        raise _fault(name, "holds no signal", "export it again with its channels")
+        raise refused(name, "holds no signal", "export it again with its channels")
     for key, signal in signals.items():
         if len(signal.time) < 2 or not np.all(np.diff(signal.time) > 0.0):
-            raise _fault(
+            raise refused(
                 f"{name}, {key}", "its time does not increase", "export it with a sampling rate or time"
             )
         if not np.abs(signal.time[[0, -1]]).max() <= LONGEST:
-            raise _fault(f"{name}, {key}", f"its time reaches {signal.time[-1]:.3g} s", "correct its time")
+            raise refused(f"{name}, {key}", f"its time reaches {signal.time[-1]:.3g} s", "correct its time")
     return signals
-
-
-def _fault(path: str, problem: str, remedy: str) -> MeasurementError:
-    return MeasurementError([Fault(path, "", problem, remedy)])
 
 
 def _tdms(path: Path, name: str, data: Data) -> Signals:
@@ -91,11 +87,11 @@ def _tdms(path: Path, name: str, data: Data) -> Signals:
         stated = sum(len(channel) for channel in channels)
         size = path.stat().st_size
         if stated > size:
-            raise _fault(name, f"its header states {stated} samples, the file has {size} bytes", AGAIN)
+            raise refused(name, f"its header states {stated} samples, the file has {size} bytes", AGAIN)
         if file.file_status.incomplete_final_segment:
             lengths = (file.file_status.channel_statuses or {}).items()
             short = [f"{path} {one.read_length} of {one.expected_length}" for path, one in lengths]
-            raise _fault(
+            raise refused(
                 name,
                 f"is shorter than its header states, samples of the last segment: {', '.join(short)}",
                 AGAIN,
@@ -120,7 +116,9 @@ def _hdf5(path: Path, name: str, data: Data) -> Signals:
     try:
         datasets = read_datasets(path, data.size_limit)
     except RefusedError as error:
-        raise _fault(f"{name}, {error.place}" if error.place else name, error.problem, error.remedy) from None
+        raise refused(
+            f"{name}, {error.place}" if error.place else name, error.problem, error.remedy
+        ) from None
     arrays = {one.name: np.frombuffer(one.samples, dtype=float) for one in datasets}
     found: dict[str, Signal] = {}
     for one in datasets:
@@ -141,7 +139,7 @@ def _hdf5(path: Path, name: str, data: Data) -> Signals:
 def _step(at: str, rate: float) -> float:
     """Time from sample to sample [s] of a sampling rate [Hz]."""
     if not 1.0 / SLOWEST <= rate <= 1.0 / FASTEST:
-        raise _fault(
+        raise refused(
             at,
             f"sample_rate = {rate:g}, outside {1.0 / SLOWEST:g} to {1.0 / FASTEST:g} Hz",
             "correct the attribute",
@@ -153,7 +151,7 @@ def _mdf(path: Path, name: str, data: Data) -> Signals:
     try:
         from asammdf import MDF
     except ImportError:
-        raise _fault(
+        raise refused(
             name, "MDF4 needs asammdf, which is not installed", "pip install rigdesign[mdf]"
         ) from None
 
@@ -171,10 +169,10 @@ def _mdf(path: Path, name: str, data: Data) -> Signals:
 def _csv(path: Path, name: str, data: Data) -> Signals:
     table = read_table(path.parent, path.name, data, with_units=True)
     if table.cut:
-        raise _fault(f"{name} {table.cut}", "the recording was cut off", AGAIN)
+        raise refused(f"{name} {table.cut}", "the recording was cut off", AGAIN)
     key = next((time for time in TIME_NAMES if time in table.places), None)
     if key is None:
-        raise _fault(name, "no column 'time'", "add the time of each row in seconds")
+        raise refused(name, "no column 'time'", "add the time of each row in seconds")
     columns: dict[str, Array] = {}
     faults: list[Fault] = []
     for column in table.names:
@@ -193,13 +191,13 @@ def _csv(path: Path, name: str, data: Data) -> Signals:
 def _time(at: str, count: int, step: Any, start: float, time: Array | None) -> Array:
     if step is not None and float(step) > 0.0:
         if not FASTEST <= float(step) <= SLOWEST:
-            raise _fault(
+            raise refused(
                 at, f"{float(step):g} s from sample to sample", f"write {FASTEST:g} to {SLOWEST:g} s"
             )
         return np.asarray(start + float(step) * np.arange(count), dtype=float)
     if time is not None and len(time) == count:
         return np.asarray(time, dtype=float)
-    raise _fault(
+    raise refused(
         at, "neither a sampling rate nor a signal 'time' of the same length",
         "export it with wf_increment (TDMS), the attribute sample_rate (HDF5) or a signal 'time'",
     )  # fmt: skip

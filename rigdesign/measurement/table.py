@@ -14,7 +14,7 @@ from rigdesign.case.faults import written
 from rigdesign.errors import Fault, MeasurementError
 from rigdesign.files import foreign
 from rigdesign.measurement.document import Data
-from rigdesign.measurement.files import set_file
+from rigdesign.measurement.files import refused, set_file
 
 MISSING = frozenset(("", "nan", "n/a", "na", "-", "--", "#n/a"))
 """Cells that say that there is no reading."""
@@ -72,7 +72,7 @@ def read_table(folder: Path, name: str, data: Data, *, with_units: bool) -> Tabl
     text = _text(set_file(folder, name, data.size_limit), name, data)
     rows = _cells(text, name, data)
     if len(rows) < 2:
-        raise _refused(name, "holds no readings", "write names, units and at least one row")
+        raise refused(name, "holds no readings", "write names, units and at least one row")
     names = tuple(cell.strip() for cell in rows[0][1])
     faults = _names(name, names, data)
     units, body = ("",) * len(names), rows[1:]
@@ -150,18 +150,16 @@ def _text(path: Path, name: str, data: Data) -> str:
     try:
         content = path.read_bytes()
         if (what := foreign(content)) is not None:
-            raise MeasurementError(
-                [Fault(name, "", f"is {what}, not a table of text", "export the sheet as CSV")]
-            )
+            raise refused(name, f"is {what}, not a table of text", "export the sheet as CSV")
         text = content.decode(encoding)
     except OSError as error:
-        raise _refused(name, f"cannot be read: {error.strerror}", "check its rights") from None
+        raise refused(name, f"cannot be read: {error.strerror}", "check its rights") from None
     except UnicodeError:
-        raise _refused(
+        raise refused(
             name, f"is not {data.encoding} text", 'save it so, or write data.encoding = "cp1252"'
         ) from None
     if "\0" in text:
-        raise _refused(name, "holds bytes that are no text", "save it as CSV text")
+        raise refused(name, "holds bytes that are no text", "save it as CSV text")
     return text
 
 
@@ -176,12 +174,8 @@ def _cells(text: str, name: str, data: Data) -> list[tuple[int, list[str]]]:
                 found.append((line, cells))
             line = rows.line_num + 1
     except csv.Error as error:
-        raise _refused(f"{name} line {line}", f"cannot be read: {error}", "correct it") from None
+        raise refused(f"{name} line {line}", f"cannot be read: {error}", "correct it") from None
     return found
-
-
-def _refused(path: str, problem: str, remedy: str) -> MeasurementError:
-    return MeasurementError([Fault(path, "", problem, remedy)])
 
 
 def _names(file: str, names: Sequence[str], data: Data) -> list[Fault]:

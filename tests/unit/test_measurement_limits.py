@@ -370,7 +370,7 @@ def test_files_outside_the_folder_and_devices_are_refused(folder: Path, case, ke
     else:
         replaced(folder, "measurement.toml", 'orders = "orders.csv"', f'orders = "{name}"')
     words = refused(folder, case)
-    said = ("outside the folder", "device", "control character", "unknown kind of file")
+    said = ("outside the folder", "not a regular file", "control character", "unknown kind of file")
     assert name in words and any(one in words for one in said)
 
 
