@@ -14,7 +14,7 @@ from rigdesign.rig.model import Rig
 from rigdesign.transient.clearances import Clearances, clearances
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.oil_power import HousingCourse, OilPower, oil_power
-from rigdesign.transient.phases import SCHEDULE, Phase, event_phases, schedule_phases
+from rigdesign.transient.phases import SCHEDULE, Phase, Timeline, event_phases, schedule_phases
 from rigdesign.transient.places import probes_of
 from thermal.alignment import ShaftAxis
 from thermal.expansion_course import ExpansionCourse
@@ -28,19 +28,9 @@ UNBOUND = 1e12
 
 
 @dataclass(frozen=True, kw_only=True)
-class Branch:
+class Branch(Timeline):
     """One course of one housing: that of the schedule, or what an event makes of it."""
 
-    gearbox: str
-    name: str
-    """``schedule`` or the event."""
-    phases: tuple[Phase, ...]
-    start: float
-    """Time since the start of the schedule at which it begins [s]."""
-    times: FloatArray
-    """(n,) since the start of the schedule [s]."""
-    phase: NDArray[np.int32]
-    """(n,) number of the phase each time ends."""
     temperatures: Mapping[str, FloatArray]
     """Probe -> (n,) [K]."""
     clearances: tuple[Clearances, ...]

@@ -18,26 +18,16 @@ from rigdesign.rig.oil_supply import gear_oil, injected_flow, wall_flow
 from rigdesign.state import OperatingPoint
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.oil import LEAK
-from rigdesign.transient.phases import Phase
+from rigdesign.transient.phases import Phase, Timeline
 from thermal.streams import StreamNetwork
 
 FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class HousingCourse:
-    """Course of one housing as far as its oil is concerned."""
+class HousingCourse(Timeline):
+    """One housing over time as far as its oil is concerned."""
 
-    gearbox: str
-    name: str
-    """``schedule`` or the event."""
-    phases: tuple[Phase, ...]
-    start: float
-    """Time since the start of the schedule at which it begins [s]."""
-    times: FloatArray
-    """(n,) since the start of the schedule [s]."""
-    phase: NDArray[np.int32]
-    """(n,) number of the phase each time ends."""
     outlets: Mapping[str, FloatArray]
     """GEAR_OIL and BEARING_OIL -> (n,) temperature with which each oil leaves [K]."""
     from_rest: bool

@@ -7,6 +7,9 @@ phase each, dwells are as long as the test is planned.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rigdesign.case.model import Case
 from rigdesign.case.schedule import StageValues
 from rigdesign.case.transient import Event
@@ -49,6 +52,22 @@ class Phase:
             if time <= after.time:
                 return before, after, (time - before.time) / (after.time - before.time)
         return self.knots[-1], self.knots[-1], 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Timeline:
+    """The times of one housing over the schedule, or over what an event makes of it."""
+
+    gearbox: str
+    name: str
+    """``schedule`` or the event."""
+    phases: tuple[Phase, ...]
+    start: float
+    """Time since the start of the schedule at which it begins [s]."""
+    times: NDArray[np.float64]
+    """(n,) since the start of the schedule [s]."""
+    phase: NDArray[np.int32]
+    """(n,) number of the phase each time ends."""
 
 
 def schedule_phases(case: Case) -> tuple[Phase, ...]:
