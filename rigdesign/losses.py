@@ -41,7 +41,7 @@ class PlacedLoss:
     into_body: float
     """Power that enters solid bodies [W]; the rest goes into the oil at once, but for what is no heat."""
     not_heat: float = 0.0
-    """Power that the motor pays and no part takes up as heat: work of a mesh damper [W]."""
+    """Power of the motor that is heat of no part: work of a mesh damper [W]."""
     pumped: float = 0.0
     """Power that the pump gives at this place, beyond what brakes the shaft [W]: heat into the oil."""
     split: MeshSplit | None = None

@@ -158,11 +158,11 @@ class LossRow:
     into_oil_W: float  # noqa: N815
     into_body_W: float  # noqa: N815
     pump_W: float = 0.0  # noqa: N815
-    """Given by the oil pump, not by the shaft: kinetic energy of the jets. A negative ``power_W`` beside it is what a
+    """Given by the oil pump, not by the shaft: kinetic energy of the jets. A negative ``power_W`` with it is what a
     jet faster than the pitch line gives to the shaft."""
     basis: Literal["computed", "input"]
     not_heat_W: float = 0.0  # noqa: N815
-    """Work of a mesh damper that the motor pays and nothing takes up as heat."""
+    """Work of a mesh damper: power of the motor that is heat of no part."""
     details: dict[str, float | str] = field(default_factory=dict)
 
 

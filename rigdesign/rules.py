@@ -172,12 +172,12 @@ def with_omissions(check: Check, omissions: Sequence[Omission]) -> Check:
     sizes = [omission.size for omission in omissions]
     known = [size for size in sizes if size is not None]
     open_ = len(known) < len(sizes) or sum(known) >= check.margin
-    told = "leaves out " + "; leaves out ".join(omission.text for omission in omissions)
+    text = "leaves out " + "; leaves out ".join(omission.text for omission in omissions)
     return replace(
         check,
         left_out=tuple(omission.text for omission in omissions),
         verdict="warn" if open_ and check.verdict == "pass" else check.verdict,
-        reason="; ".join(part for part in (check.reason, told) if part),
+        reason="; ".join(part for part in (check.reason, text) if part),
     )
 
 

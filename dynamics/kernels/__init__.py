@@ -1,10 +1,9 @@
 """Compiled loops of the dynamics, the only numba in this package: plain numbers and arrays in and out.
 
 ``contact`` sums the tooth contacts of a flank, ``reactions`` evaluates meshes at given states, ``linear_step`` takes
-the modes over one step, ``mesh_solve`` the meshes, ``drag`` what brakes the shafts, ``march`` joins them; ``book`` is
-what the last four share. The
-disk cache of a compiled function is keyed by the content of its own file: a mark of all sources in each file that takes
-from another goes with it (``tests/unit/test_kernel_cache.py`` says what to write).
+the modes over one step, ``mesh_solve`` the meshes, ``drag`` the drag torques, ``march`` joins them; ``book`` is what
+the last four share. The disk cache of a compiled function is keyed by the content of its own file: a mark of all
+sources in each file that takes from another goes with it (``tests/unit/test_kernel_cache.py`` says what to write).
 """
 
 from dynamics.kernels.book import port_place

@@ -6,7 +6,7 @@ was just written is still at hand. The book has a last row for the mesh that sta
 
 from dynamics.kernels.contact import N_VALUES
 
-# compiled from sources a93bbc61
+# compiled from sources e7ff7ac8
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]

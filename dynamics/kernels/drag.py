@@ -1,10 +1,10 @@
 """Drag torques of bearings, windage, oil and seals within one step of the march.
 
-Each is a function of the speed of its own place, evaluated at the end of the same step that it acts on, all drags of a
-line together. A torque that is linear between the ends of a step works on a vibration of any frequency without delay:
-the linear interpolation has a real, positive spectrum, so that what the modes answer to it stays positive real, and a
-torque that opposes the motion takes energy from every mode, above the step rate too. Held over a step, the same torque
-lags behind and feeds the modes near the step rate.
+Each is a function of the speed of its own place, evaluated at the end of the same step that it acts on, all drag
+torques of a line together. A torque that is linear between the ends of a step works on a vibration of any frequency
+without delay: the linear interpolation has a real, positive spectrum, so that what the modes answer to it stays
+positive real, and a torque that opposes the motion takes energy from every mode, above the step rate too. Held over a
+step, the same torque lags behind and feeds the modes near the step rate.
 
 Source: passivity of sampled systems under a first-order hold, Desoer and Vidyasagar, Feedback Systems (1975), VI.
 """
@@ -19,7 +19,7 @@ from dynamics.kernels.book import N_BOOK, OLD, PORT, RATE, REACH, SPEED, TAU, TU
 from dynamics.kernels.contact import LOOSE, POSITIVE, R1, R2, inlined, sliding_direction
 from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, N_BANK, STATE_AT, WIDTH, DragModes
 
-# compiled from sources a93bbc61
+# compiled from sources e7ff7ac8
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -205,7 +205,7 @@ def _speeds(
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _settle(laws: DragLaws, through: Array, torque: Array, speed: Array, slope: Array) -> bool:
-    """Bring torques and speeds of all drags in agreement; return whether they came to rest.
+    """Bring all drag torques and their speeds in agreement; return whether they converged.
 
     ``through`` (n_drags, n_drags) speed of each load per torque. The drags are swept in turn; a sweep is the last if
     all that it moved cannot change a torque by more than its tolerance.
@@ -236,7 +236,7 @@ def brake(
     laws: DragLaws, drags: DragModes, blocks: Integers, bank: Array, book: Array, by_slow: Array, first: int,
     torque: Array, work: DragWork,
 ) -> bool:  # fmt: skip
-    """Set the drag torques at the end of a step whose mesh torques are known; return whether they came to rest.
+    """Set the drag torques at the end of a step whose mesh torques are known; return whether they converged.
 
     ``torque`` (n_drags,) goes from the start of the step to its end, by ``work.change``. What that changes of the
     approach within one step is left to the next for the meshes to answer.

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.book import OLD, SPEED, TAU, TURN
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
 
-# compiled from sources a93bbc61
+# compiled from sources e7ff7ac8
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -22,7 +22,7 @@ WIDTH = 16
 """Modes beside each other in the tables: a fixed number, so that the compiler makes vector instructions of a loop
 over them."""
 FOUR = 4
-"""Drags beside each other, for the same reason."""
+"""Drag torques in a group, for the same reason."""
 N_BANK = 16
 """Rows of WIDTH in a group of the bank, real and imaginary by turns: state, decay, push of torque a, of torque b,
 speed of port a, turn of port a, speed and turn of port b."""
@@ -37,7 +37,7 @@ AT_START, AT_END = 0, 8
 class DragModes(NamedTuple):
     """How drag torques act on modes, ports and each other in one step, in the layout of ``DiscreteModes``.
 
-    Drags of one branch stand FOUR by FOUR, the last four of a branch filled up with drags that do nothing.
+    Drag torques of one branch come in groups of FOUR, the last group filled up with zeros.
     """
 
     branches: Integers

@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_solve import (
     react,
 )
 
-# compiled from sources a93bbc61
+# compiled from sources e7ff7ac8
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from rigdesign.diagnosis.effects import Effect
-from rigdesign.diagnosis.heldout import LEAST_POINTS, course
+from rigdesign.diagnosis.heldout import LEAST_POINTS, gap_in_words
 from rigdesign.diagnosis.naming import told
 from rigdesign.diagnosis.next_measurement import Ranked
 from rigdesign.diagnosis.outcome import Outcome
@@ -55,7 +55,7 @@ def headline(outcome: Outcome) -> str:
         case "named":
             return " ".join(_named(outcome))
         case "alias_group":
-            group = f"One of these is at work, the data cannot tell which: {_titles(outcome)}."
+            group = f"One of these effects is present; the data do not identify which: {_titles(outcome)}."
             return " ".join([group, *_named(outcome)])
         case "input_error_suspected":
             return f"The data look wrong rather than the model: {_titles(outcome)}."
@@ -67,7 +67,7 @@ def headline(outcome: Outcome) -> str:
             return "Nothing is missing that these data could show: a healthy rig leaves as much."
         case "too_small":
             first = _titles(outcome)
-            return f"An effect may be present, too small to be told from its rivals; first of them: {first}."
+            return f"An effect may be present, too small to be distinguished from its rivals; first of them: {first}."
     return f"These data cannot name anything: {found.decision.reason}. {_foremost(outcome)}".rstrip()
 
 
@@ -105,13 +105,13 @@ def certainty(outcome: Outcome) -> str:
     if found.strength == "proven" and found.gap is not None:
         return (
             "Proven: the noise is known from repeats, and with what is named in the model, run in full, the gap "
-            f"{course(found.gap)}."
+            f"{gap_in_words(found.gap)}."
         )
     missing = []
     if outcome.verdict == "alias_group":
         missing.append("a group is no name")
     elif not found.found:
-        missing.append("nothing is named that could be put to the proof")
+        missing.append("nothing is named that could be proven")
     elif found.proof.rerun is None:
         missing.append("the case with what is named was not run in full")
     if not outcome.result.problem.repeated:

@@ -53,7 +53,7 @@ def library_of(
 ) -> Library:
     """A stored library that serves these points and channels, or the one ``build`` makes, stored.
 
-    say : is told of every damaged file that is set aside
+    say : called with a sentence for every damaged file that is set aside
     """
     found = stored_library(case, settings, channels, effects, say)
     if found is not None:
@@ -98,7 +98,7 @@ class Parts:
         return cls(_folder(case, effects) / f"{plan}.parts")
 
     def known(self, say: Progress = _silent) -> dict[str, Response | None]:
-        """Effect -> its response, None where the model refused it; ``say`` is told of damaged files."""
+        """Effect -> its response, None where the model refused it; ``say`` is called for damaged files."""
         found: dict[str, Response | None] = {}
         for part in _stored(self.folder, dict, say):
             found |= part
@@ -131,7 +131,7 @@ T = TypeVar("T")
 
 
 def _stored(folder: Path, kind: type[T], say: Progress) -> Iterator[T]:
-    """What the whole files of a folder hold; damaged ones are set aside and told."""
+    """What the whole files of a folder hold; damaged ones are set aside and reported."""
     for file in sorted(folder.glob("*.pickle")) if folder.is_dir() else ():
         found = _unpickled(file)
         if isinstance(found, kind):

@@ -2,7 +2,7 @@
 
 A name is given if its size matters, if it shrinks the gap on the points kept aside by more than the scatter of that
 (`rigdesign.diagnosis.heldout`), and if no other effect leaves the same trace; the case with all names in it, run in
-full, has to shrink the gap as well. What does not hold is told with its reason.
+full, has to shrink the gap as well. What does not hold is reported with its reason.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,7 +18,7 @@ from rigdesign.diagnosis.decision import Decision, Verdict
 from rigdesign.diagnosis.detectability import ALIAS, SEEN
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.evidence import Evidence, Hypothesis
-from rigdesign.diagnosis.heldout import LEAST_POINTS, Gap, course
+from rigdesign.diagnosis.heldout import LEAST_POINTS, Gap, gap_in_words
 from rigdesign.diagnosis.intervals import JointFit
 from rigdesign.diagnosis.naming import Names, display_scale
 from rigdesign.diagnosis.proof import Proof, Sizes
@@ -152,7 +152,7 @@ def _refusal(one: Evidence, sizes: Sizes, verdict: Verdict, reason: str, gap: Ga
 
 def _unproven(one: Evidence, sizes: Sizes, whole: Gap) -> Refusal:
     """Of a name that does not shrink the gap by more than its scatter, or with others does not."""
-    reason = f"with {one.hypothesis.name} in the model the gap {course(whole)}"
+    reason = f"with {one.hypothesis.name} in the model the gap {gap_in_words(whole)}"
     return _refusal(one, sizes, "unknown_located" if whole.grown else "too_small", reason, whole)
 
 
@@ -204,7 +204,7 @@ def _unclaimed(decision: Decision, refused: Sequence[Refusal]) -> Decision:
 def _group(found: Sequence[Evidence], sizes: Sizes, traces: "Traces") -> Decision | None:
     """The verdict where another effect leaves the trace of a name; None where every name stands alone.
 
-    The group is that of the first such name; those of further ones are told in the reason.
+    The group is that of the first such name; the reason names those of further ones.
     """
     rivals = {
         one.hypothesis.parts[0]: traces.like(one.hypothesis.name, sizes[one.hypothesis.name]) for one in found
@@ -212,7 +212,7 @@ def _group(found: Sequence[Evidence], sizes: Sizes, traces: "Traces") -> Decisio
     unclear = [name for name, others in rivals.items() if others]
     if not unclear:
         return None
-    told = [
+    reasons = [
         f"{rivals[name][0][0]} leaves the trace of {name}, correlation {rivals[name][0][1]:.3f}"
         for name in unclear
     ]
@@ -220,7 +220,7 @@ def _group(found: Sequence[Evidence], sizes: Sizes, traces: "Traces") -> Decisio
     return Decision(
         verdict="alias_group",
         named=group,
-        reason="; ".join(told),
+        reason="; ".join(reasons),
         apart=tuple(name for name in rivals if name not in unclear and name not in group),
     )
 
@@ -229,12 +229,12 @@ def _group(found: Sequence[Evidence], sizes: Sizes, traces: "Traces") -> Decisio
 class Traces:
     """What single effects and sensor errors leave in the numbers they were sought in.
 
-    space : of the first look; weighed : its explanations; assembly : (n,) how the rig was put together at the point of
+    space : of the first look; explanations : of that look; assembly : (n,) how the rig was put together at the point of
         each number
     """
 
     space: Whitened
-    weighed: Sequence[Evidence]
+    explanations: Sequence[Evidence]
     assembly: Sequence[object]
 
     def like(self, explanation: str, size: Sequence[float]) -> list[tuple[str, float]]:
@@ -266,7 +266,7 @@ class Traces:
 
     @property
     def _single(self) -> list[Evidence]:
-        return [one for one in self.weighed if one.hypothesis.family in ("physical", "sensor")]
+        return [one for one in self.explanations if one.hypothesis.family in ("physical", "sensor")]
 
     def _by_assembly(self, plane: Array, trace: Array) -> tuple[Array, Array]:
         """Columns (n, k) and a trace (n,), scaled so that no assembly in which the trace is seen outweighs another."""

@@ -79,7 +79,7 @@ class Decision:
     """The verdict with the parts it rests on.
 
     named : effects of a name, or the members of an alias group; reason : in one sentence; apart : names that hold
-        whichever of the group is at work
+        whichever of the group is present
     """
 
     verdict: Verdict
@@ -243,7 +243,9 @@ def _silent(
     if weights.masses["none"] >= 0.5:
         return Decision(verdict="within_noise", named=(), reason="a healthy rig leaves as much")
     return Decision(
-        verdict="too_small", named=(), reason="an effect may be present, too small to be told from its rivals"
+        verdict="too_small",
+        named=(),
+        reason="an effect may be present, too small to be distinguished from its rivals",
     )
 
 

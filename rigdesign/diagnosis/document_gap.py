@@ -16,7 +16,7 @@ def gap_document(outcome: Outcome) -> dict[str, Any] | None:
     if outcome.gap is None:
         return None
     return {
-        **_course(outcome.gap),
+        **_gap_numbers(outcome.gap),
         "floor": 1.0,
         "unit": "standard deviations of a healthy rig",
         "held_out_points": list(outcome.gap.points),
@@ -25,7 +25,7 @@ def gap_document(outcome: Outcome) -> dict[str, Any] | None:
     }
 
 
-def _course(gap: Gap) -> dict[str, Any]:
+def _gap_numbers(gap: Gap) -> dict[str, Any]:
     """``fall`` is that of the whitened square, with its standard deviation."""
     return {
         "before": gap.before, "after": gap.after, "fall": gap.fall, "scatter": gap.scatter, "shrunk": gap.shrunk,
@@ -41,7 +41,7 @@ def refused_rows(outcome: Outcome) -> list[dict[str, Any]]:
             "title": outcome.names.title(one.explanation),
             "explanation": one.explanation,
             "reason": one.reason,
-            "gap": None if one.gap is None else _course(one.gap),
+            "gap": None if one.gap is None else _gap_numbers(one.gap),
         }
         for one in outcome.result.diagnosis.refused
     ]

@@ -98,7 +98,7 @@ def gap(
     )
 
 
-def course(gap: Gap) -> str:
+def gap_in_words(gap: Gap) -> str:
     """``on P03, P08 falls from 4.18 to 1.28``, and whether that is enough."""
     numbers = f"from {gap.before:.3g} to {gap.after:.3g}"
     if gap.grown:

@@ -9,7 +9,7 @@ from rigdesign.diagnosis.columns import Array
 from rigdesign.diagnosis.correction import Correction, of_data, of_sensor
 from rigdesign.diagnosis.effects import Effect
 from rigdesign.diagnosis.evidence import Evidence
-from rigdesign.diagnosis.heldout import Gap, course
+from rigdesign.diagnosis.heldout import Gap, gap_in_words
 from rigdesign.diagnosis.located import located
 from rigdesign.diagnosis.naming import Names, Sized, from_evidence, from_fit, told
 from rigdesign.diagnosis.next_measurement import Ranked
@@ -231,7 +231,7 @@ def _put_to_the_proof(result: Result, applied: Sequence[Sized]) -> tuple[Array, 
         answer = proof.stored(sizes)
         return answer, proof.gap(answer), f"the case with {together} does not run: {error}"
     gap = proof.gap(answer)
-    return answer, gap, f"with {together} in the model the gap {course(gap)}" if gap.grown else ""
+    return answer, gap, f"with {together} in the model the gap {gap_in_words(gap)}" if gap.grown else ""
 
 
 def _case_patch(

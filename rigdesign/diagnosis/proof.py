@@ -41,7 +41,7 @@ class Rerun(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class FullRun:
-    """The full model of a case at the operating points and for the sensors of a set; ``say`` is told before it runs."""
+    """The full model of a case at the operating points and for the sensors of a set; ``say`` is called before a run."""
 
     case: Case
     settings: tuple[Setting, ...]

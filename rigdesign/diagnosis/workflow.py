@@ -132,7 +132,7 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun 
         found,
         Traces(
             space=space,
-            weighed=examinations[0].evidence,
+            explanations=examinations[0].evidence,
             assembly=_assemblies(seen),
         ),
         proof,

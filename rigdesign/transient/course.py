@@ -13,7 +13,7 @@ from rigdesign.rig.boundary import BEARING_OIL, GEAR_OIL
 from rigdesign.rig.model import Rig
 from rigdesign.transient.clearances import Clearances, clearances
 from rigdesign.transient.heating import Heating
-from rigdesign.transient.oil_power import HousingCourse, OilPower, oil_power
+from rigdesign.transient.oil_power import OilHistory, OilPower, oil_power
 from rigdesign.transient.phases import SCHEDULE, Phase, Timeline, event_phases, schedule_phases
 from rigdesign.transient.places import probes_of
 from thermal.alignment import ShaftAxis
@@ -113,12 +113,12 @@ def run_transient(
         soaks.append(soak_of(rig.case, by_name[SCHEDULE], by_name.get("cold_start"), trial))
         branches += own
     names = dict.fromkeys(branch.name for branch in branches)
-    power = [oil_power(rig, heating, [_oil_course(b) for b in branches if b.name == name]) for name in names]
+    power = [oil_power(rig, heating, [_oil_history(b) for b in branches if b.name == name]) for name in names]
     return TransientRun(branches=tuple(branches), soak=tuple(soaks), power=tuple(power), missed=missed)
 
 
-def _oil_course(branch: Branch) -> HousingCourse:
-    return HousingCourse(
+def _oil_history(branch: Branch) -> OilHistory:
+    return OilHistory(
         gearbox=branch.gearbox,
         name=branch.name,
         phases=branch.phases,

@@ -25,7 +25,7 @@ FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class HousingCourse(Timeline):
+class OilHistory(Timeline):
     """One housing over time as far as its oil is concerned."""
 
     outlets: Mapping[str, FloatArray]
@@ -53,19 +53,19 @@ class OilPower:
     """``gearbox.stream`` -> (n,) heat with which its oil comes back above its inlet temperature [W]."""
 
 
-def oil_power(rig: Rig, heating: Heating, courses: Sequence[HousingCourse]) -> OilPower:
-    """Heaters and cooler over one branch from the courses of all its housings.
+def oil_power(rig: Rig, heating: Heating, histories: Sequence[OilHistory]) -> OilPower:
+    """Heaters and cooler over one branch from the histories of all its housings.
 
     The housings have times of their own: each heat is interpolated to the times of all.
     """
-    first = courses[0]
-    times = np.unique(np.concatenate([course.times for course in courses]))
+    first = histories[0]
+    times = np.unique(np.concatenate([history.times for history in histories]))
     numbers = first.phase[np.minimum(np.searchsorted(first.times, times), len(first.times) - 1)]
     heats: dict[str, FloatArray] = {}
-    for course in courses:
-        own = _housing_heats(rig, heating, course)
-        heats |= {name: np.interp(times, course.times, values) for name, values in own.items()}
-    housed = {course.gearbox for course in courses}
+    for history in histories:
+        own = _housing_heats(rig, heating, history)
+        heats |= {name: np.interp(times, history.times, values) for name, values in own.items()}
+    housed = {history.gearbox for history in histories}
     without = [name for name in rig.case.gearboxes if name not in housed]
     if without:
         rows = [
@@ -87,29 +87,29 @@ def oil_power(rig: Rig, heating: Heating, courses: Sequence[HousingCourse]) -> O
     )
 
 
-def _local_time(course: HousingCourse, number: int, time: float) -> float:
+def _local_time(history: OilHistory, number: int, time: float) -> float:
     """Time since the start of a phase [s]."""
-    before = sum(phase.duration for phase in course.phases[:number])
-    return min(max(time - course.start - before, 0.0), course.phases[number].duration)
+    before = sum(phase.duration for phase in history.phases[:number])
+    return min(max(time - history.start - before, 0.0), history.phases[number].duration)
 
 
-def _housing_heats(rig: Rig, heating: Heating, course: HousingCourse) -> dict[str, FloatArray]:
+def _housing_heats(rig: Rig, heating: Heating, history: OilHistory) -> dict[str, FloatArray]:
     """Heat of both oils of a housing at its own times [W]; none while no oil runs."""
-    heats = {f"{course.gearbox}.{kind}": np.zeros(len(course.times)) for kind in (GEAR_OIL, BEARING_OIL)}
-    for at, (time, number) in enumerate(zip(course.times, course.phase, strict=True)):
-        phase = course.phases[number]
-        if not phase.oil or (at == 0 and course.from_rest):
+    heats = {f"{history.gearbox}.{kind}": np.zeros(len(history.times)) for kind in (GEAR_OIL, BEARING_OIL)}
+    for at, (time, number) in enumerate(zip(history.times, history.phase, strict=True)):
+        phase = history.phases[number]
+        if not phase.oil or (at == 0 and history.from_rest):
             continue
-        stage = heating.stage(course.gearbox, phase)
+        stage = heating.stage(history.gearbox, phase)
         conditions = stage.conditions
         if callable(conditions):
-            conditions = conditions(_local_time(course, int(number), float(time)))
+            conditions = conditions(_local_time(history, int(number), float(time)))
         networks = {c.volumes[0].name: c for c in conditions if isinstance(c, StreamNetwork)}
-        outlets = {kind: float(values[at]) for kind, values in course.outlets.items()}
-        gear, leaked = _gear_heat(rig, course.gearbox, networks[GEAR_OIL], outlets[GEAR_OIL])
-        heats[f"{course.gearbox}.{GEAR_OIL}"][at] = gear - leaked
-        heats[f"{course.gearbox}.{BEARING_OIL}"][at] = _bearing_heat(
-            rig.case, course.gearbox, networks[BEARING_OIL], outlets[BEARING_OIL]
+        outlets = {kind: float(values[at]) for kind, values in history.outlets.items()}
+        gear, leaked = _gear_heat(rig, history.gearbox, networks[GEAR_OIL], outlets[GEAR_OIL])
+        heats[f"{history.gearbox}.{GEAR_OIL}"][at] = gear - leaked
+        heats[f"{history.gearbox}.{BEARING_OIL}"][at] = _bearing_heat(
+            rig.case, history.gearbox, networks[BEARING_OIL], outlets[BEARING_OIL]
         )
     return heats
 
@@ -139,13 +139,13 @@ def _bearing_heat(case: Case, name: str, network: StreamNetwork, outlet: float) 
 
 
 def _without_housing(
-    rig: Rig, heating: Heating, course: HousingCourse, number: int, time: float
+    rig: Rig, heating: Heating, history: OilHistory, number: int, time: float
 ) -> dict[str, float]:
     """Heat of every oil stream by the losses alone [W]; none while no oil runs, or at the start from rest."""
-    phase = course.phases[number]
-    before, after, share = phase.between(_local_time(course, number, time))
+    phase = history.phases[number]
+    before, after, share = phase.between(_local_time(history, number, time))
     first, second = (_loss_heats(rig, heating, knot.point) for knot in (before, after))
-    runs = phase.oil and not (course.from_rest and time <= course.start)
+    runs = phase.oil and not (history.from_rest and time <= history.start)
     return {
         name: (1.0 - share) * heat + share * second[name] if runs else 0.0 for name, heat in first.items()
     }
