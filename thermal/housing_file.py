@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 from scipy import sparse
 
-from thermal.fe.mesh import FacetTable, IndexArray, MeshError, NamedMesh, facet_keys, facet_table, named_mesh
+from thermal.fe.mesh import IndexArray, MeshError, NamedMesh, facet_keys, whole_surfaces
 from thermal.fe.shapes import HEXAHEDRON_20, HEXAHEDRON_27, TETRAHEDRON_10, CellShape, FloatArray
 from thermal.housing_mesh import gmsh_session
 
@@ -102,8 +102,10 @@ def _collected(gmsh: ModuleType, name: str) -> NamedMesh:
         for surface, entities in _named_entities(gmsh, name, 2).items()
     }
     _check_pieces(name, cells[:, : shape.n_corners], bodies, len(points))
-    _check_boundary(name, points, facet_table(cells, len(points)), surfaces, shape)
-    return named_mesh(points, cells, bodies, surfaces)
+    mesh = NamedMesh(points, cells, bodies, {})
+    _check_boundary(name, mesh, surfaces)
+    mesh.surfaces.update(whole_surfaces(mesh, surfaces))
+    return mesh
 
 
 def _cell_kind(gmsh: ModuleType, name: str) -> tuple[CellShape, int]:
@@ -188,15 +190,12 @@ def _pieces(corners: IndexArray, n_nodes: int) -> IndexArray:
     return np.asarray(piece, dtype=np.int32)
 
 
-def _check_boundary(
-    name: str,
-    points: FloatArray,
-    table: FacetTable,
-    surfaces: Mapping[str, IndexArray],
-    shape: CellShape,
-) -> None:
-    """Every boundary facet has one name; those that lack one are listed by connected patch."""
-    side = shape.side.n_corners
+def _check_boundary(name: str, mesh: NamedMesh, surfaces: Mapping[str, IndexArray]) -> None:
+    """Every boundary facet has one name; those that lack one are listed by connected patch.
+
+    surfaces : name -> (k, >= n_corners) nodes, corners first
+    """
+    points, table, side = mesh.points, mesh.facets, mesh.shape.side.n_corners
     named = {label: facet_keys(facets[:, :side], len(points)) for label, facets in surfaces.items()}
     rows = {label: table.find(keys) for label, keys in named.items()}
     for label, (at, known) in rows.items():

@@ -35,6 +35,7 @@ __all__ = [
     "from_scikit_fem",
     "named_mesh",
     "second_order",
+    "whole_surfaces",
 ]
 
 CELL_EDGES = TETRAHEDRON_10.edges
@@ -71,6 +72,11 @@ class NamedMesh:
     def shape(self) -> CellShape:
         """The kind of cell. Raises MeshError for a number of nodes that no cell has."""
         return cell_shape(self.cells)
+
+    @cached_property
+    def facets(self) -> "FacetTable":
+        """All sides of all cells."""
+        return facet_table(self.cells, len(self.points))
 
 
 def cell_shape(cells: IndexArray) -> CellShape:
@@ -152,19 +158,25 @@ def named_mesh(
     Facets are found by their corners and take mid-side nodes and orientation from the cell they bound (the
     first one at an interface). Raises MeshError if a facet of a surface is no side of any cell.
     """
-    table = facet_table(cells, len(points))
-    n_corners = cell_shape(cells).side.n_corners
+    as_index = {name: np.asarray(index, dtype=np.int32) for name, index in bodies.items()}
+    mesh = NamedMesh(np.ascontiguousarray(points), cells.astype(np.int32), as_index, {})
+    mesh.surfaces.update(whole_surfaces(mesh, surface_corners))
+    return mesh
+
+
+def whole_surfaces(mesh: NamedMesh, surface_corners: Mapping[str, IndexArray]) -> dict[str, IndexArray]:
+    """Surfaces of a mesh with all their nodes, oriented, from their corner nodes; see `named_mesh`."""
+    n_corners = mesh.shape.side.n_corners
     surfaces = {}
     for name, corners in surface_corners.items():
-        at, found = table.find(facet_keys(corners[:, :n_corners], len(points)))
+        at, found = mesh.facets.find(facet_keys(corners[:, :n_corners], len(mesh.points)))
         if lost := np.count_nonzero(~found):
             raise MeshError(
                 f"surface {name!r}: {lost} of {len(at)} facets are no side of any cell; "
                 "take surfaces and cells from the same mesh"
             )
-        surfaces[name] = table.nodes_at(at).astype(np.int32)
-    as_index = {name: np.asarray(index, dtype=np.int32) for name, index in bodies.items()}
-    return NamedMesh(np.ascontiguousarray(points), cells.astype(np.int32), as_index, surfaces)
+        surfaces[name] = mesh.facets.nodes_at(at).astype(np.int32)
+    return surfaces
 
 
 def second_order(

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from thermal.fe.mesh import FloatArray, IndexArray, MeshError, NamedMesh, facet_keys, facet_table
+from thermal.fe.mesh import FloatArray, IndexArray, MeshError, NamedMesh, facet_keys
 
 MAX_NODES = 2_000_000
 """Facets are recognised by one 64-bit number made of three node numbers."""
@@ -74,7 +74,7 @@ def _check_bodies(mesh: NamedMesh) -> None:
 
 
 def _check_surfaces(mesh: NamedMesh) -> frozenset[str]:
-    table = facet_table(mesh.cells, len(mesh.points))
+    table = mesh.facets
     n_corners = mesh.shape.side.n_corners
     on_boundary = table.on_boundary
     covered = np.zeros(len(table.keys), dtype=np.int64)
