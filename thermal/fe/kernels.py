@@ -59,13 +59,11 @@ def cells_of_nodes(cells: Integers, n_nodes: int) -> tuple[Integers, Integers]:
 
 
 @njit(cache=True)
-def _count_columns(
-    first: int, last: int, cells: Integers, start: Integers, around: Integers, counts: Integers
-) -> None:
-    """Fill counts (n_nodes + 1,) with the number of columns of rows first to last, one place later."""
-    n_local = cells.shape[1]
-    seen = np.full(len(start) - 1, -1, dtype=np.int32)
-    for row in range(first, last):
+def _count_columns(cells: Integers, start: Integers, around: Integers, counts: Integers) -> None:
+    """Fill counts (n_nodes + 1,) with the number of columns of every row, one place later."""
+    n_nodes, n_local = len(start) - 1, cells.shape[1]
+    seen = np.full(n_nodes, -1, dtype=np.int32)
+    for row in range(n_nodes):
         for at in range(start[row], start[row + 1]):
             e = around[at] // n_local
             for b in range(n_local):
@@ -77,36 +75,42 @@ def _count_columns(
 
 @njit(cache=True)
 def _list_columns(
-    first: int,
-    last: int,
-    cells: Integers,
-    start: Integers,
-    around: Integers,
-    indptr: Integers,
-    indices: Integers,
-    offsets: Offsets,
+    cells: Integers, start: Integers, around: Integers, indptr: Integers, indices: Integers
 ) -> None:
-    """Fill the columns of rows first to last, sorted, and the places of the pairs of local nodes."""
-    n_local = cells.shape[1]
-    place = np.full(len(start) - 1, -1, dtype=np.int32)
-    for row in range(first, last):
-        begin, end = indptr[row], indptr[row]
+    """Fill the columns of all rows, sorted.
+
+    A column lists the rows in ascending order, and rows and columns of the pattern are the same.
+    """
+    n_nodes, n_local = len(start) - 1, cells.shape[1]
+    seen = np.full(n_nodes, -1, dtype=np.int32)
+    fill = indptr[:-1].copy()
+    for row in range(n_nodes):
         for at in range(start[row], start[row + 1]):
             e = around[at] // n_local
             for b in range(n_local):
                 column = cells[e, b]
-                if place[column] < begin:
-                    place[column] = end
-                    indices[end] = column
-                    end += 1
-        indices[begin:end].sort()
-        for at in range(begin, end):
-            place[indices[at]] = at
+                if seen[column] != row:
+                    seen[column] = row
+                    indices[fill[column]] = row
+                    fill[column] += 1
+
+
+@njit(cache=True)
+def _place_pairs(
+    cells: Integers, start: Integers, around: Integers, indptr: Integers, indices: Integers, offsets: Offsets
+) -> None:
+    """Fill the places of the pairs of local nodes in their rows."""
+    n_nodes, n_local = len(start) - 1, cells.shape[1]
+    place = np.empty(n_nodes, dtype=np.int32)
+    for row in range(n_nodes):
+        begin = indptr[row]
+        for at in range(begin, indptr[row + 1]):
+            place[indices[at]] = at - begin
         for at in range(start[row], start[row + 1]):
             e = around[at] // n_local
             a = around[at] - e * n_local
             for b in range(n_local):
-                offsets[e, a, b] = place[cells[e, b]] - begin
+                offsets[e, a, b] = place[cells[e, b]]
 
 
 @njit(cache=True)
@@ -118,11 +122,12 @@ def pattern(cells: Integers, start: Integers, around: Integers) -> tuple[Integer
     """
     n_nodes, n_local = len(start) - 1, cells.shape[1]
     counts = np.zeros(n_nodes + 1, dtype=np.int32)
-    _count_columns(0, n_nodes, cells, start, around, counts)
+    _count_columns(cells, start, around, counts)
     indptr = np.cumsum(counts).astype(np.int32)
     indices = np.empty(indptr[-1], dtype=np.int32)
     offsets = np.empty((len(cells), n_local, n_local), dtype=np.uint16)
-    _list_columns(0, n_nodes, cells, start, around, indptr, indices, offsets)
+    _list_columns(cells, start, around, indptr, indices)
+    _place_pairs(cells, start, around, indptr, indices, offsets)
     return indptr, indices, offsets
 
 
