@@ -140,13 +140,14 @@ def prolongation(
     """
     nodes, cell, local = _largest_cell_around(cells, coarse.volumes.sum(axis=1), shape)
     weights = shape.corner_values(shape.nodes)[local]
-    ends = points[corners][coarse.cells[cell]]
-    off = points[nodes] - np.einsum("nc,nci->ni", weights, ends)
-    curved = np.abs(off).max(axis=1) > STRAIGHT * np.abs(ends - ends[:, :1]).max(axis=(1, 2))
+    ends = points[corners].T.copy()[:, coarse.cells[cell].T]  # (3, n_corners of a cell, n)
+    off = points[nodes].T - np.einsum("nc,icn->in", weights, ends)
+    reach = np.max([np.abs(end - ends[:, 0]).max(axis=0) for end in ends.swapaxes(0, 1)[1:]], axis=0)
+    curved = np.abs(off).max(axis=0) > STRAIGHT * reach
     slopes = shape.corner_gradients(shape.nodes)[local[curved]]
-    jacobian = np.einsum("ncj,nci->nij", slopes, ends[curved])
+    jacobian = np.einsum("ncj,icn->nij", slopes, ends[:, :, curved])
     sound = np.linalg.det(jacobian) > 0.0
-    moved = np.linalg.solve(jacobian[sound], off[curved][sound][:, :, None])[:, :, 0]
+    moved = np.linalg.solve(jacobian[sound], off[:, curved][:, sound].T[:, :, None])[:, :, 0]
     weights[np.flatnonzero(curved)[sound]] += np.einsum("ncj,nj->nc", slopes[sound], moved)
     kept = weights != 0.0
     rows = np.concatenate([corners, np.repeat(nodes, kept.sum(axis=1))])
