@@ -12,6 +12,7 @@ import numpy as np
 from scipy import sparse
 
 from thermal.fe.mesh import IndexArray, MeshError, NamedMesh, facet_keys, whole_surfaces
+from thermal.fe.numbering import along_curve, inverse
 from thermal.fe.shapes import HEXAHEDRON_20, HEXAHEDRON_27, TETRAHEDRON_10, CellShape, FloatArray
 from thermal.housing_mesh import gmsh_session
 
@@ -77,7 +78,7 @@ def _collected(gmsh: ModuleType, name: str) -> NamedMesh:
     shape, kind = _cell_kind(gmsh, name)
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     index = np.zeros(int(tags.max()) + 1, dtype=np.int32)
-    index[tags.astype(np.int64)] = np.arange(len(tags), dtype=np.int32)
+    index[tags.view(np.int64)] = np.arange(len(tags), dtype=np.int32)
     points = np.ascontiguousarray(coordinates.reshape(-1, 3))
     volumes = _named_entities(gmsh, name, 3)
     blocks: list[IndexArray] = []
@@ -85,7 +86,7 @@ def _collected(gmsh: ModuleType, name: str) -> NamedMesh:
     start = 0
     for body, entities in volumes.items():
         found = [gmsh.model.mesh.getElementsByType(kind, entity)[1] for entity in entities]
-        block = index[np.concatenate(found).astype(np.int64).reshape(-1, shape.n_nodes)]
+        block = index[np.concatenate(found).view(np.int64).reshape(-1, shape.n_nodes)]
         blocks.append(block[:, list(shape.gmsh_order)])
         bodies[body] = np.arange(start, start + len(block), dtype=np.int32)
         start += len(block)
@@ -97,12 +98,18 @@ def _collected(gmsh: ModuleType, name: str) -> NamedMesh:
     reach = float(np.ptp(points, axis=0).max())
     if reach > LARGEST:
         raise MeshError(f"{name}: the mesh is {reach:.4g} m long, above {LARGEST:g} m; write it in metres")
+    if not np.isfinite(reach):
+        raise MeshError(f"{name}: a node has a coordinate that is no finite number; write the mesh again")
+    numbering = along_curve(points, cells, bodies)
+    renumbered = inverse(numbering.nodes)
+    cells, points = renumbered[cells[numbering.cells]], points[numbering.nodes]
+    packed_index = np.where(in_cells, renumbered[packed_index], -1)
     surfaces = {
         surface: np.concatenate([_facets(gmsh, entity, packed_index[index]) for entity in entities])
         for surface, entities in _named_entities(gmsh, name, 2).items()
     }
     _check_pieces(name, cells[:, : shape.n_corners], bodies, len(points))
-    mesh = NamedMesh(points, cells, bodies, {})
+    mesh = NamedMesh(points, cells, bodies, {}, numbering)
     _check_boundary(name, mesh, surfaces)
     mesh.surfaces.update(whole_surfaces(mesh, surfaces))
     return mesh

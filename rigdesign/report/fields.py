@@ -19,6 +19,8 @@ def file_stem(*names: str) -> str:
 def write_field(field: TemperatureField, path: Path) -> dict[str, Any]:
     """Write temperature [degC], displacement [m], heat flux [W/m2] and body number on the second-order cells.
 
+    Nodes and cells of a mesh file keep the order in which gmsh reads them.
+
     Returns
     -------
     dict
@@ -37,8 +39,17 @@ def write_field(field: TemperatureField, path: Path) -> dict[str, Any]:
     }
     if field.heat_flux is not None:
         point_data["heat_flux_W_m2"] = field.heat_flux
+    points, cells = mesh.points, mesh.cells
+    if mesh.numbering is not None:
+        given = mesh.numbering
+        points, cells, body = (
+            given.given_nodes(points),
+            given.nodes[given.given_cells(cells)],
+            given.given_cells(body),
+        )
+        point_data = {name: given.given_nodes(values) for name, values in point_data.items()}
     document = meshio.Mesh(
-        mesh.points, [(mesh.shape.name, mesh.cells)], point_data=point_data, cell_data={"body": [body]}
+        points, [(mesh.shape.name, cells)], point_data=point_data, cell_data={"body": [body]}
     )
     document.write(path, file_format="vtu")
     return {

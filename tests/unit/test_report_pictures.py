@@ -18,7 +18,8 @@ from rigdesign.report.mesh_views import (
 )
 from rigdesign.results import TemperatureField
 from tests.report_example import gearbox_field, voxel_mesh
-from thermal.fe.mesh import box_mesh
+from thermal.fe.mesh import NamedMesh, box_mesh
+from thermal.fe.numbering import Numbering, inverse
 
 
 @pytest.fixture(scope="module")
@@ -169,3 +170,31 @@ def test_fields_of_hexahedra_are_written_as_such(tmp_path):
     read = meshio.read(tmp_path / "field.vtu")
     assert read.cells[0].type == "hexahedron20"
     np.testing.assert_allclose(read.point_data["heat_flux_W_m2"], flux)
+
+
+def test_fields_of_a_renumbered_mesh_keep_the_order_it_was_given_in(tmp_path):
+    import meshio
+
+    mesh = box_mesh((0.4, 0.3, 0.2), (3, 2, 1), name="housing")
+    half = len(mesh.cells) // 2
+    mesh = replace(mesh, bodies={"housing": np.arange(half), "field": np.arange(half, len(mesh.cells))})
+    order = np.random.default_rng(1)
+    numbering = Numbering(order.permutation(len(mesh.points)), order.permutation(len(mesh.cells)))
+    renumbered = NamedMesh(
+        mesh.points[numbering.nodes],
+        inverse(numbering.nodes)[mesh.cells[numbering.cells]],
+        {name: inverse(numbering.cells)[cells] for name, cells in mesh.bodies.items()},
+        {name: inverse(numbering.nodes)[nodes] for name, nodes in mesh.surfaces.items()},
+        numbering,
+    )
+    found = []
+    for number, shape in enumerate((mesh, renumbered)):
+        field = TemperatureField("test", "dwell", shape, 300.0 + shape.points[:, 0], 1e-3 * shape.points)
+        write_field(field, tmp_path / f"{number}.vtu")
+        found.append(meshio.read(tmp_path / f"{number}.vtu"))
+    given, again = found
+    np.testing.assert_array_equal(again.points, given.points)
+    np.testing.assert_array_equal(again.cells[0].data, given.cells[0].data)
+    np.testing.assert_array_equal(again.cell_data["body"][0], given.cell_data["body"][0])
+    for name, values in given.point_data.items():
+        np.testing.assert_array_equal(again.point_data[name], values)

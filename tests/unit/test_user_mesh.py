@@ -24,12 +24,32 @@ BOX = box_mesh((0.4, 0.3, 0.2), (2, 2, 2), name="housing")
 def test_a_mesh_is_read_as_it_was_written(cell: CellName, tmp_path: Path) -> None:
     mesh = box_mesh((0.4, 0.3, 0.2), (2, 1, 2), cell=cell, name="housing")
     found = read_mesh(write_msh(mesh, tmp_path / "box.msh"))
-    assert_array_equal(found.points[found.cells], mesh.points[mesh.cells])
+    assert found.numbering is not None
+    read = found.numbering.given_cells(found.points[found.cells])
+    assert_array_equal(read, mesh.points[mesh.cells])
     assert found.bodies.keys() == mesh.bodies.keys()
     ours, theirs = FiniteElements(mesh), FiniteElements(found)
     assert ours.volume("housing") == pytest.approx(theirs.volume("housing"))
     areas = {name: face.area for name, face in theirs.surfaces.items()}
     assert areas == pytest.approx({name: face.area for name, face in ours.surfaces.items()})
+
+
+def test_nodes_and_cells_that_are_neighbours_get_near_numbers(tmp_path: Path) -> None:
+    mesh = box_mesh((0.4, 0.4, 0.4), (8, 8, 8), name="housing")
+    chance = np.random.default_rng(1)
+    moved = chance.permutation(len(mesh.points)).astype(np.int32)
+    points = np.empty_like(mesh.points)
+    points[moved] = mesh.points
+    mixed = replace(
+        mesh, points=points, cells=moved[mesh.cells[chance.permutation(len(mesh.cells))]],
+        surfaces={name: moved[nodes] for name, nodes in mesh.surfaces.items()},
+    )  # fmt: skip
+    found = read_mesh(write_msh(mixed, tmp_path / "mixed.msh"))
+    assert np.median(np.ptp(mixed.cells, axis=1)) > 0.5 * len(points)
+    assert np.median(np.ptp(found.cells, axis=1)) < 0.1 * len(points)
+    first = found.cells.min(axis=1)
+    assert (np.diff(first) >= 0).all()
+    assert sorted(map(tuple, found.points)) == sorted(map(tuple, points))
 
 
 def refused(file: Path, *words: str) -> None:

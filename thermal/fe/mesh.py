@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from thermal.fe.numbering import Numbering
 from thermal.fe.shapes import (
     CELLS,
     HEXAHEDRON_20,
@@ -61,12 +62,14 @@ class NamedMesh:
     surfaces : name -> (k, 6, 8 or 9) node indices of second-order triangles or quadrilaterals, corners first,
         normal pointing out of the body they bound; every facet on the boundary of the mesh belongs to exactly
         one surface. An interface between two bodies that share nodes may be named too (it then has one side).
+    numbering : numbers of nodes and cells where the mesh was read from; None where they are its own
     """
 
     points: FloatArray
     cells: IndexArray
     bodies: dict[str, IndexArray]
     surfaces: dict[str, IndexArray]
+    numbering: Numbering | None = None
 
     @property
     def shape(self) -> CellShape:
