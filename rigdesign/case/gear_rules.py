@@ -37,10 +37,15 @@ def gearbox_faults(case: "Case") -> Iterator[Fault]:
         yield from _bearings(at, box)
         yield from _stations(at, box)
         shafts = _shafts_of(case, box)
-        for kind, parts in (("gears", box.gears), ("bearings", box.bearings), ("seals", box.seals)):
+        carried = list(dict.fromkeys(bearing.shaft for bearing in box.bearings.values()))
+        for kind, parts, known in (
+            ("gears", box.gears, shafts),
+            ("bearings", box.bearings, shafts),
+            ("seals", box.seals, carried),
+        ):
             for part_name, part in parts.items():
-                if shafts and part.shaft not in shafts:
-                    yield unknown(f"{at}.{kind}.{part_name}.shaft", part.shaft, shafts, "shaft")
+                if known and part.shaft not in known:
+                    yield unknown(f"{at}.{kind}.{part_name}.shaft", part.shaft, known, "shaft")
 
 
 def _shafts_of(case: "Case", box: "Gearbox") -> list[str]:

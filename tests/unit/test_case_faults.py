@@ -528,6 +528,15 @@ def test_extends_that_leads_nowhere(tmp_path: Path, extends: str) -> None:
         load_case(tmp_path)
 
 
+def test_a_seal_sits_on_a_shaft_with_bearings_in_its_gearbox() -> None:
+    """Without a housing any shaft of the drivetrain once passed, and nothing carried the seal."""
+    loop = load_case(PROTOTYPE.parents[1] / "loop_1to1")
+    with pytest.raises(CaseError) as caught:
+        loop.with_value("gearboxes.test.seals.pinion.shaft", "reference_pinion")
+    assert caught.value.faults[0].path == "gearboxes.test.seals.pinion.shaft"
+    assert "test_pinion" in str(caught.value)
+
+
 @pytest.mark.parametrize("text", ["remove = [[[[]]]]", "remove = [{}]", "ambient.remove = [1]"])
 def test_what_is_no_list_of_keys_removes_nothing(tmp_path: Path, text: str) -> None:
     file = tmp_path / "bad.toml"
