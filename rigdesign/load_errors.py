@@ -63,6 +63,22 @@ def load_errors(subject: Subject) -> tuple[DiscretisationRow, ...]:
     return tuple(rows)
 
 
+def missing_load_errors(subject: Subject) -> tuple[str, ...]:
+    """Ids of the checks on dynamic loads whose error is not known: a coarser rig found no periodic response."""
+    if subject.run is None:
+        return ()
+    known = {row.quantity for row in subject.discretisation}
+    wanted = [
+        f"dynamics.{key}.{subject.label(mesh)}"
+        for mesh in range(len(subject.rig.mesh_names))
+        for key in (
+            "dynamic_factor",
+            *(("ramp_peak", "contact_margin") if loaded_stages(subject, mesh) else ()),
+        )
+    ]
+    return tuple(name for name in wanted if name not in known)
+
+
 def _held(subject: Subject, rigs: Rigs) -> Iterator[DiscretisationRow]:
     """K_V of every mesh at the held stage where it is highest."""
     found: dict[str, tuple[CurvePoint, ...]] = {}

@@ -12,6 +12,7 @@ from dynamics.response_curve import CurvePoint
 from rigdesign.assemble.curves import iso_factor, resolved
 from rigdesign.checks.subject import Subject
 from rigdesign.flank_heat import film_of_jets, rim_surfaces
+from rigdesign.load_errors import missing_load_errors
 from rigdesign.loads import laws_of
 from rigdesign.results import Check, Finding
 from rigdesign.rig.boundary import GEAR_OIL, printed_films
@@ -45,6 +46,7 @@ def warnings_of(subject: Subject) -> list[Finding]:
         *(Finding(id="oil", text=text) for text in _oils(subject)),
         *(Finding(id="damping", text=text) for text in _damping(subject)),
         *(Finding(id="sampling", text=text) for text in _sampling(subject)),
+        *(Finding(id="load_error", text=text) for text in _load_errors(subject)),
         *(Finding(id="film", text=text) for text in _films(subject)),
         *(Finding(id="not_steady", text=text) for text in _warming(subject)),
         *(Finding(id="heat_audit", text=text) for text in _audits(subject)),
@@ -186,6 +188,15 @@ def _warming(subject: Subject) -> Iterator[str]:
 def _damping(subject: Subject) -> Iterator[str]:
     if subject.dynamics is not None:
         yield from (row["warning"] for row in subject.dynamics.damping_audit if row["warning"])
+
+
+def _load_errors(subject: Subject) -> Iterator[str]:
+    missing = missing_load_errors(subject)
+    if missing:
+        yield (
+            f"{', '.join(missing)}: the error of slices and shaft elements is not known, since a rig with half of them "
+            "finds no periodic response there; state more slices or shorter elements and compare"
+        )
 
 
 def _sampling(subject: Subject) -> Iterator[str]:
