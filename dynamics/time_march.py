@@ -409,7 +409,10 @@ def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]
 
 
 def drag_loads(system: LinearSystem, drags: Sequence[str]) -> Array:
-    """Return the loads (n, n) of named drag torques in fours, see ``drag_places``; zeros where no drag stands."""
+    """Return the loads (n, n_places) of named drag torques in fours, see ``drag_places``; zeros where no drag stands.
+
+    Raises ValueError for unknown names.
+    """
     places = drag_places(system, drags)
     loads = np.zeros(
         (len(system.inertia), -(-int(max(places, default=-1) + 1) // kernels.FOUR) * kernels.FOUR)
