@@ -5,7 +5,7 @@ they give and make the last digits of a result depend on the machine's load.
 """
 
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Literal
@@ -25,10 +25,11 @@ from rigdesign.dynamic_work import DynamicWork
 from rigdesign.errors import CaseError, MissingLibraryError, NotConvergedError, RigdesignError, UsageError
 from rigdesign.finite import require_finite
 from rigdesign.load_errors import load_errors
+from rigdesign.losses import PlacedLoss
 from rigdesign.prediction.model import Channel, Prediction, Setting
 from rigdesign.ramp_run import held_points, schedule_of
 from rigdesign.remesh import MeshesBeside, looping_rig, on_mesh
-from rigdesign.results import AssumptionRecord, Check, Fidelity, Finding, LossRow, RunResult
+from rigdesign.results import AssumptionRecord, Check, Fidelity, Finding, RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rules import overall
 from rigdesign.stage_losses import stage_losses
@@ -161,13 +162,14 @@ def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
     case, rig, points = subject.case, subject.rig, list(subject.points)
     checks = all_checks(subject)
     clock.lap("checks")
+    losses = _losses_by_stage(rig, points)
     return RunResult(
         case=_case_record(case),
         fidelity=rig.fidelity,
         verdict=overall(checks),
         checks=checks,
         dynamics=subject.dynamics,
-        losses=_all_losses(rig, points),
+        losses=[row for stage, found in losses.items() for row in heat.loss_rows(stage, found)],
         oil=[row for p in points for row in heat.oil_rows(p.point.stage, p.last.streams)],
         cooler=[dict(row) for row in subject.cooler],
         thermal=list(subject.thermal),
@@ -179,7 +181,7 @@ def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),
         not_modelled=not_modelled(subject),
-        warnings=[*_doubts(case), *warnings_of(subject), *unanswered(checks)],
+        warnings=[*_doubts(case), *warnings_of(subject, losses), *unanswered(checks)],
         timings_s=clock.laps,
         fields=[field for p in points for field in heat.fields_of(rig, p)],
     )
@@ -201,23 +203,18 @@ def _doubts(case: Case) -> list[Finding]:
     return [Finding(id="simulation_only", text=text)]
 
 
-def _all_losses(rig: Rig, points: list[PointResult]) -> list[LossRow]:
-    """Losses by place at the end of every stage: coupled at the held ones, with their warm rig at the others."""
+def _losses_by_stage(rig: Rig, points: list[PointResult]) -> dict[str, Sequence[PlacedLoss]]:
+    """Losses at the end of every turning stage: coupled at the held ones, with their warm rig at the others."""
     held = {point.point.stage: point for point in points}
     test = governing_point(points)
-    rows = []
+    losses: dict[str, Sequence[PlacedLoss]] = {}
     for stage in rig.case.schedule.resolved():
         if stage.name in held:
-            rows += heat.loss_rows(stage.name, held[stage.name].last.losses)
-            continue
-        point = OperatingPoint(stage=stage.name, speed=stage.speed_end, torque=stage.torque_end)
-        if point.speed > 0.0:
-            rows += _stage_losses(rig, point, test)
-    return rows
-
-
-def _stage_losses(rig: Rig, point: OperatingPoint, test: PointResult) -> list[LossRow]:
-    return heat.loss_rows(point.stage, stage_losses(rig, point, test, dynamic=True).losses)
+            losses[stage.name] = held[stage.name].last.losses
+        elif stage.speed_end > 0.0:
+            point = OperatingPoint(stage=stage.name, speed=stage.speed_end, torque=stage.torque_end)
+            losses[stage.name] = stage_losses(rig, point, test, dynamic=True).losses
+    return losses
 
 
 def _assumptions(case: Case, checks: list[Check]) -> list[AssumptionRecord]:

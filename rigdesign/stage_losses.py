@@ -31,8 +31,8 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic:
     Tooth forces follow the torque; the bearing films get no heat from the bodies. At standstill
     only the jets heat: their pump runs.
 
-    dynamic : friction and mesh damping of the periodic response at this point, as at a held stage; else, and where no
-        response is found, sliding at the mean load alone
+    dynamic : friction and mesh damping of the periodic response at this point, as at a held stage; else sliding at
+        the mean load alone. Where no response is found it is the mean load as well, and the mesh losses warn of it
     """
     share = point.torque / test.point.torque if test.point.torque else 0.0
     feedback = replace(
@@ -47,7 +47,10 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic:
     models = mesh_models(rig, point, feedback)
     turning = rotating_losses(rig, point, feedback, models, bearings)
     response = _response(rig, point, models, turning) if dynamic and rig.system is not None else None
-    losses = (*turning, *mesh_losses(rig, point, models, response, feedback))
+    meshes = mesh_losses(rig, point, models, response, feedback)
+    if dynamic and rig.system is not None and response is None:
+        meshes = [_without_response(placed) for placed in meshes]
+    losses = (*turning, *meshes)
     return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=losses)
 
 
@@ -60,3 +63,10 @@ def _response(
         return respond(rig, point, models, drags, Setting(mode="torque_controlled"))
     except NotConverged:
         return None
+
+
+def _without_response(placed: PlacedLoss) -> PlacedLoss:
+    """The sliding loss of a mesh at its mean load, with a warning that the dynamic forces are not in it."""
+    text = "no periodic response is found here: sliding at the mean load, without dynamic tooth forces and mesh damping"
+    loss = replace(placed.loss, warnings=(*placed.loss.warnings, text))
+    return replace(placed, loss=loss)

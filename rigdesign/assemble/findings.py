@@ -1,7 +1,7 @@
 """Warnings of the run: what left its range, what an audit says, each once."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from rigdesign.checks.subject import Subject
 from rigdesign.flank_heat import film_of_jets, rim_surfaces
 from rigdesign.load_errors import missing_load_errors
 from rigdesign.loads import laws_of
+from rigdesign.losses import PlacedLoss
 from rigdesign.results import Check, Finding
 from rigdesign.rig.boundary import GEAR_OIL, printed_films
 from rigdesign.rig.films import printed_law
@@ -33,8 +34,8 @@ FILM_FACTOR = 3.0
 RPM = 30.0 / math.pi
 
 
-def warnings_of(subject: Subject) -> list[Finding]:
-    """All warnings of the run in a fixed order."""
+def warnings_of(subject: Subject, losses: Mapping[str, Sequence[PlacedLoss]]) -> list[Finding]:
+    """All warnings of the run in a fixed order; ``losses`` by stage."""
     found = [
         *(Finding(id="gear", text=text) for text in _gears(subject)),
         *(Finding(id="iso_6336_1", text=text) for text in _iso(subject)),
@@ -42,7 +43,7 @@ def warnings_of(subject: Subject) -> list[Finding]:
         *(Finding(id="response", text=text) for text in _response(subject)),
         *(Finding(id="unlike_teeth", text=text) for text in _unlike(subject)),
         *(Finding(id="time_run", text=text) for text in _time_run(subject)),
-        *(Finding(id="loss", text=text) for text in _losses(subject)),
+        *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
         *(Finding(id="oil", text=text) for text in _oils(subject)),
         *(Finding(id="damping", text=text) for text in _damping(subject)),
         *(Finding(id="sampling", text=text) for text in _sampling(subject)),
@@ -149,11 +150,17 @@ def _time_run(subject: Subject) -> Iterator[str]:
         yield from subject.run.ramp.warnings
 
 
-def _losses(subject: Subject) -> Iterator[str]:
-    for point in subject.points:
-        for placed in point.last.losses:
+def loss_warnings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[str]:
+    """What a loss says of itself at several stages is said once, with their names."""
+    stages: dict[tuple[str, str], list[str]] = {}
+    for stage, found in losses.items():
+        for placed in found:
             for text in placed.loss.warnings:
-                yield f"{placed.name}, stage {point.point.stage}: {text}"
+                stages.setdefault((placed.name, text), []).append(stage)
+    for (place, text), where in stages.items():
+        named = f"stage {where[0]}" if len(where) == 1 else f"stages {', '.join(where)}"
+        everywhere = len(where) == len(losses) > 1
+        yield f"{place}, {'all turning stages' if everywhere else named}: {text}"
 
 
 def _oils(subject: Subject) -> Iterator[str]:

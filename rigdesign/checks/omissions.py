@@ -22,6 +22,7 @@ from rigdesign.checks.subject import Subject
 from rigdesign.loads import laws_of
 from rigdesign.ramp_run import schedule_of
 from rigdesign.results import Check
+from rigdesign.rig.oil_supply import injected_flow
 from rigdesign.rules import Omission
 from rigdesign.shaft_torques import torques_left_out
 from rigdesign.units import show
@@ -151,7 +152,9 @@ def _given_losses(subject: Subject, check: Check) -> Found:
     if subject.case.losses.basis != "input":
         return
     for name, box in subject.case.gearboxes.items():
-        wanted = ("mesh", "bearing", "windage", *(("seal",) if box.seals else ()))
+        wanted = ["mesh", "bearing", "windage"]
+        wanted += ["seal"] if box.seals else []
+        wanted += ["oil_acceleration"] if injected_flow(box) > 0.0 else []
         given = {entry.kind for entry in subject.case.losses.given.values() if entry.gearbox == name}
         missing = [kind for kind in wanted if kind not in given]
         if missing:

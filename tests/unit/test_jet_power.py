@@ -5,11 +5,21 @@ from dataclasses import replace
 
 import pytest
 
+from dynamics.static_loop import NotConverged
+from rigdesign.assemble.findings import loss_warnings
 from rigdesign.assemble.heat import cooler, loss_rows
+from rigdesign.coupling import PointResult
 from rigdesign.drags import drag_torques
 from rigdesign.losses import PlacedLoss, oil_jets
+from rigdesign.rig.model import Rig
 from rigdesign.stage_losses import stage_losses
+from rigdesign.state import OperatingPoint
 from tests.warm_prototype import base, drive_power, lost_in_all, settled
+
+
+def warnings_at(rig: Rig, point: OperatingPoint, result: PointResult) -> list[str]:
+    found = stage_losses(rig, point, result, dynamic=True)
+    return list(loss_warnings({point.stage: found.losses}))
 
 
 def jet_at(rpm: float) -> PlacedLoss:
@@ -62,3 +72,20 @@ def test_at_standstill_only_the_pump_heats() -> None:
         jet_at(0.0).pumped
     )
     assert all(placed.loss.power == 0.0 for placed in still.losses)
+
+
+def test_a_stage_without_a_periodic_response_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its sliding is that of the mean load then: less than that of the dynamic forces, and nobody would know."""
+    rig, result = base()
+    point = replace(result.point, speed=0.9 * result.point.speed)
+    assert not any("no periodic response" in text for text in warnings_at(rig, point, result))
+
+    def unsolved(*_: object) -> None:
+        raise NotConverged("no periodic response at 10,800 rpm")
+
+    monkeypatch.setattr("rigdesign.stage_losses.respond", unsolved)
+    for mesh in ("test.main", "reference.main"):
+        assert any(
+            text.startswith(f"{mesh}, stage test: no periodic response")
+            for text in warnings_at(rig, point, result)
+        )

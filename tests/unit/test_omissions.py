@@ -197,6 +197,18 @@ def bare(folder: Path, limits: str) -> RunResult:
     return run_case(load_case(file), fidelity="quick")
 
 
+def test_given_losses_without_those_of_the_jets_name_them(tmp_path: Path) -> None:
+    """Oil thrown at the pitch line takes 0.3 kW at 12,000 rpm, and the pump gives its kinetic energy."""
+    found = {check.id: check for check in bare(tmp_path, "").checks}
+    assert any("oil_acceleration losses of gearbox test" in text for text in found["oil.cooler"].left_out)
+    given = "".join(
+        f'[losses.given.{box}_jet]\ngearbox = "{box}"\nkind = "oil_acceleration"\npart = "main"\npower = "300 W"\n'
+        for box in ("test", "reference")
+    )
+    found = {check.id: check for check in bare(tmp_path, given).checks}
+    assert not any("oil_acceleration" in text for text in found["oil.cooler"].left_out)
+
+
 def test_backlash_and_tip_clearance_are_known_without_a_housing(tmp_path: Path) -> None:
     """Gears and axes at their oil: the mesh that carries the load has both. By hand the backlash moves by
     2 tan(20 deg) alpha (a dT_axes - (r1 + r2) dT_gears) from the cold one; the least is that of the hotter gears."""
