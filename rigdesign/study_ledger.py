@@ -31,7 +31,7 @@ CREATE TABLE IF NOT EXISTS points (
     checksum TEXT NOT NULL
 )
 """
-COMPANIONS = ("", "-wal", "-shm")
+COMPANIONS = ("", "-journal", "-wal", "-shm")
 """Endings of the files that make up one ledger."""
 LARGEST_RECORD = 100_000_000
 """Bytes of one point; a damaged length may claim more than the machine has."""
@@ -66,7 +66,7 @@ class _Row(NamedTuple):
 
 
 class _DamagedError(Exception):
-    """A file that is no ledger, or one with rows that are not sound."""
+    """A file that is no ledger of this version, or one with rows that are not sound; says what it is."""
 
 
 def point_key(case_hash: str, fidelity: str) -> str:
@@ -75,10 +75,12 @@ def point_key(case_hash: str, fidelity: str) -> str:
 
 
 class Ledger:
-    """SQLite file with write-ahead log; a killed process loses no point it has stored.
+    """SQLite file; a killed process loses no point it has stored.
 
-    Only the process that drives the study writes. A context manager. ``repaired`` says in a sentence what was set
-    aside of a damaged file; it is empty for a sound one.
+    Every point stands in the main file when it is stored, under the check of its pages and rows. (A write-ahead log
+    would hold it first, and SQLite takes a damaged log for one that ends there, without a word.) Only the process
+    that drives the study writes. A context manager. ``repaired`` says in a sentence what was set aside of a damaged
+    file; it is empty for a sound one.
 
     Raises
     ------
@@ -143,25 +145,25 @@ def _opened(path: Path) -> tuple[sqlite3.Connection, dict[str, tuple[bool, Recor
     connection = sqlite3.connect(path, timeout=30.0, isolation_level=None)
     try:
         connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_RECORD)
-        connection.execute("PRAGMA journal_mode=WAL")
-        connection.execute("PRAGMA synchronous=FULL")
+        connection.execute("PRAGMA journal_mode=DELETE")
+        connection.execute("PRAGMA synchronous=EXTRA")
         if connection.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()[0] == 0:
             connection.execute(SCHEMA)
             connection.execute(f"PRAGMA user_version={FORMAT}")
         found = connection.execute("PRAGMA user_version").fetchone()[0]
         if found != FORMAT:
-            raise _DamagedError(f"it has format {found}, this version writes {FORMAT}")
+            raise _DamagedError(f"is of format {found}, this version writes {FORMAT}")
         answer = connection.execute("PRAGMA integrity_check(1)").fetchone()[0]
         if answer != "ok":
-            raise _DamagedError(str(answer).splitlines()[-1])
+            raise _DamagedError(f"is damaged ({str(answer).splitlines()[-1]})")
         rows = [_Row(*row) for row in connection.execute(f"SELECT {', '.join(_Row._fields)} FROM points")]
         if broken := sum(not row.sound for row in rows):
-            raise _DamagedError(f"{broken} of {len(rows)} entries are not as they were written")
+            raise _DamagedError(f"is damaged ({broken} of {len(rows)} entries are not as they were written)")
         return connection, {row.key: (bool(row.failed), json.loads(row.record)) for row in rows}
     except BaseException as error:
         connection.close()
         if isinstance(error, sqlite3.Error | TypeError | UnicodeError) and _is_damage(error, path):
-            raise _DamagedError(str(error)) from error
+            raise _DamagedError(f"is damaged ({error})") from error
         raise
 
 
@@ -189,8 +191,8 @@ def _set_aside(path: Path, damage: str) -> tuple[sqlite3.Connection, dict[str, t
         points[row.key] = (bool(row.failed), json.loads(row.record))
     connection.execute("COMMIT")
     text = (
-        f"ledger {path} is damaged ({damage}): it is kept as {aside.name}, {len(points)} points read from it are "
-        "used, the others are computed again"
+        f"ledger {path} {damage}: it is kept as {aside.name}, {len(points)} points read from it are used, the others "
+        "are computed again"
     )
     return connection, points, text
 

@@ -12,6 +12,8 @@ from rigdesign.study_ledger import Ledger, Record
 
 POINTS = 24
 PAGE = 4096
+JOURNALED = ("", "-journal")
+"""Endings of the files of a ledger whose writer was killed."""
 Entry = tuple[bool, Record]
 Bytes = Callable[[bytes, random.Random], bytes]
 
@@ -35,17 +37,24 @@ def store(ledger: Ledger, key: str, entry: Entry) -> None:
 
 
 def write_ledger(path: Path) -> None:
-    """Half of the points checkpointed, half in the write-ahead log, as after SIGKILL."""
+    """As after SIGKILL within a transaction: its first pages in the file, what they replace in the journal."""
     work = path.with_name("work.sqlite")
-    known = list(entries().items())
     with Ledger(work) as ledger:
-        for key, entry in known[: POINTS // 2]:
+        for key, entry in entries().items():
             store(ledger, key, entry)
-    with Ledger(work) as ledger:
-        for key, entry in known[POINTS // 2 :]:
-            store(ledger, key, entry)
-        for ending in ("", "-wal", "-shm"):
+    with closing(sqlite3.connect(work, isolation_level=None)) as connection:
+        connection.execute("PRAGMA cache_size = 2")
+        connection.execute("BEGIN IMMEDIATE")
+        connection.execute("UPDATE points SET record = 'never finished' WHERE rowid % 2")
+        for ending in JOURNALED:
             shutil.copyfile(work.with_name(work.name + ending), path.with_name(path.name + ending))
+        connection.execute("ROLLBACK")
+
+
+def copy_ledger(source: Path, target: Path) -> None:
+    """A ledger with its journal under another name; what belonged to one of that name before is gone."""
+    for ending in JOURNALED:
+        shutil.copyfile(source.with_name(source.name + ending), target.with_name(target.name + ending))
 
 
 def _flip(content: bytes, choice: random.Random) -> bytes:
@@ -106,11 +115,8 @@ def harm_rows(path: Path, statement: str) -> None:
 
 
 def harm_file(path: Path, kind: str, choice: random.Random) -> str:
-    """Damage the ledger, or its log, in one of the ways of ``DAMAGE``; name of the file damaged.
-
-    SQLite takes a damaged log for one that ends there: its points are computed again without a word.
-    """
-    target = path.with_name(path.name + choice.choice(["", "", "-wal"]))
+    """Damage the ledger, or its journal, in one of the ways of ``DAMAGE``; name of the file damaged."""
+    target = path.with_name(path.name + choice.choice(["", "", "-journal"]))
     target.write_bytes(DAMAGE[kind](target.read_bytes(), choice))
     return target.name
 

@@ -3,7 +3,6 @@
 import json
 import os
 import random
-import shutil
 import signal
 import subprocess
 import sys
@@ -16,7 +15,7 @@ from rigdesign.errors import OutputError
 from rigdesign.report.file_lock import FileLock, HeldError
 from rigdesign.report.output import staged
 from rigdesign.study import LEDGER_NAME, LOCK_NAME, parse_variation, run_study
-from tests.ledger_damage import DAMAGE, POINTS, ROWS, harm_file, harm_rows, resumed, write_ledger
+from tests.ledger_damage import DAMAGE, POINTS, ROWS, copy_ledger, harm_file, harm_rows, resumed, write_ledger
 from tests.study_example import ExampleCase, run_example
 
 ROOT = Path(__file__).parents[2]
@@ -31,8 +30,7 @@ def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def copied(sound: Path, folder: Path) -> Path:
-    for ending in ("", "-wal", "-shm"):
-        shutil.copyfile(sound.with_name(sound.name + ending), folder / f"l.sqlite{ending}")
+    copy_ledger(sound, folder / "l.sqlite")
     return folder / "l.sqlite"
 
 
@@ -49,7 +47,8 @@ def test_rows_that_are_not_as_written_are_set_aside_and_said_once(
     kept, told = resumed(path)
     lost = {"a column less": POINTS, "another table": POINTS, "another schema": 0, "an earlier format": 0}
     assert kept == POINTS - lost.get(kind, 1)
-    assert "is damaged" in told and "l.sqlite.damaged-1" in told and f"{kept} points" in told
+    assert ("is of format 1" if kind == "an earlier format" else "is damaged") in told
+    assert "l.sqlite.damaged-1" in told and f"{kept} points" in told
     assert (tmp_path / "l.sqlite.damaged-1").exists()
 
 
@@ -61,9 +60,9 @@ def test_damaged_files_are_never_believed_and_never_stop_a_study(
         folder = tmp_path / str(seed)
         folder.mkdir()
         path = copied(sound, folder)
-        harmed = harm_file(path, kind, random.Random(f"{kind} {seed}"))
+        harm_file(path, kind, random.Random(f"{kind} {seed}"))
         kept, told = resumed(path)
-        assert kept == POINTS or told or harmed.endswith("-wal")
+        assert kept == POINTS or told
 
 
 def test_a_file_that_is_no_ledger_is_kept_under_another_name(tmp_path: Path) -> None:
