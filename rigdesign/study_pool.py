@@ -97,15 +97,24 @@ def _pool(
 
 @contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """Interrupts wait, and processes started meanwhile never see one: they would print a traceback while they load."""
-    if not hasattr(signal, "pthread_sigmask"):
+    """Interrupts wait, and processes started meanwhile never see one: they would print a traceback while they load.
+
+    The mask is for the processes, which inherit it. Here it holds for one thread only: another one, of a linear
+    algebra library, may take the signal, and Python then runs its handler in the main thread all the same.
+    """
+    if not hasattr(signal, "pthread_sigmask") or threading.current_thread() is not threading.main_thread():
         yield
         return
+    held: list[int] = []
+    handler = signal.signal(signal.SIGINT, lambda number, frame: held.append(number))
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.signal(signal.SIGINT, signal.SIG_DFL if handler is None else handler)
+        if held:
+            signal.raise_signal(signal.SIGINT)
 
 
 @contextmanager
