@@ -77,7 +77,7 @@ def is_kernel(module: str) -> bool:
 
 @cache
 def _users(kernel: str) -> tuple[tuple[str, frozenset[int]], ...]:
-    """(module, lines) outside compiled code that use a name of a kernel module, or of a kernel that uses it."""
+    """(module, lines) outside compiled code that use a kernel module, or a kernel or package that hands it on."""
     found, asked, waiting = [], {kernel}, [kernel]
     while waiting:
         used = waiting.pop()
@@ -85,7 +85,7 @@ def _users(kernel: str) -> tuple[tuple[str, frozenset[int]], ...]:
             names = {name for name, target in _imports(module) if target == used}
             if not names or module in asked:
                 continue
-            if is_kernel(module):
+            if is_kernel(module) or module.endswith("__init__.py"):
                 asked.add(module)
                 waiting.append(module)
             found.append((module, _lines_in_functions(module, names)))
