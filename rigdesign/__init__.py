@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rigdesign.case import load_case
-    from rigdesign.run import run_case
+    from rigdesign.run.main import run_case
 
 __version__ = "0.1.0"
 __all__ = ["__version__", "load_case", "run_case"]
 
-_HOMES = {"load_case": "rigdesign.case", "run_case": "rigdesign.run"}
+_HOMES = {"load_case": "rigdesign.case", "run_case": "rigdesign.run.main"}
 
 
 def __getattr__(name: str) -> object:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermal.boundary import BoundaryCondition, Film, Radiation
+from thermal.conditions.boundary import BoundaryCondition, Film, Radiation
 from thermal.fe.mesh import NamedMesh, facet_keys
 
 ELEMENT = {10: "C3D10", 20: "C3D20"}

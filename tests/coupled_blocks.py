@@ -1,7 +1,7 @@
 """Three blocks that heat each other by contact, radiation and oil: a model for unit tests."""
 
 from tests.two_blocks import law, renamed
-from thermal.boundary import (
+from thermal.conditions.boundary import (
     Adiabatic,
     BodySource,
     Film,
@@ -9,11 +9,11 @@ from thermal.boundary import (
     Radiation,
     SurfaceSource,
 )
-from thermal.condition_checks import Condition
-from thermal.contact import Contact
-from thermal.enclosure import Enclosure
+from thermal.conditions.contact import Contact
+from thermal.conditions.enclosure import Enclosure
+from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm, VolumeLink
+from thermal.conduction.condition_checks import Condition
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union
-from thermal.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm, VolumeLink
 
 CONDUCTIVITY = {"base": 40.0, "lid": 15.0, "wall": 30.0}
 CAPACITY = {"base": 3.6e6, "lid": 2.4e6, "wall": 3.6e6}

@@ -14,14 +14,14 @@ from tempfile import mkdtemp
 import numpy as np
 
 from rigdesign.case import load_case
-from rigdesign.diagnosis.amplitudes import Amplitudes
 from rigdesign.diagnosis.catalogue import effects_of
-from rigdesign.diagnosis.decision import Thresholds
-from rigdesign.diagnosis.defaults import Calibration
-from rigdesign.diagnosis.library import Library, Response
+from rigdesign.diagnosis.decision.decision import Thresholds
+from rigdesign.diagnosis.decision.defaults import Calibration
+from rigdesign.diagnosis.decision.workflow import Problem, diagnose
+from rigdesign.diagnosis.library.library import Library, Response
+from rigdesign.diagnosis.residual.residual_problem import compare
 from rigdesign.diagnosis.run import Result, mesh_orders, stated_settings, teeth_a_turn
-from rigdesign.diagnosis.subject import compare
-from rigdesign.diagnosis.workflow import Problem, diagnose
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.measurement import features, load_measurement
 from rigdesign.prediction.model import Feature, Setting, features_of
 
@@ -274,7 +274,7 @@ def result_of(folder: Path, *, without: Sequence[str] = (), calibration: Calibra
 
 
 def rerun(runs: Sequence[Setting]):
-    """The formulas with effects in them, as `rigdesign.diagnosis.proof.FullRun` runs the model."""
+    """The formulas with effects in them, as `rigdesign.diagnosis.decision.proof.FullRun` runs the model."""
     by_name = {run.name: run for run in runs}
 
     def again(some: Sequence[Feature], sizes: Mapping[str, tuple[float, ...]]) -> np.ndarray:

@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from rigdesign.case import Case, load_case
-from rigdesign.case.marks import take_off
+from rigdesign.case.provenance import take_off
 from tests.mutant_example import QUANTITY, leaves
 
 CASES = Path(__file__).parents[1] / "cases"

@@ -1,8 +1,8 @@
 """Two gearboxes with a pinion between two wheels each; two wheel shafts close the loop, the pinions idle."""
 
-from dynamics.drivetrain import Coupling, Drivetrain, GearBody, MeshConnection, Motor
-from dynamics.mesh_law import MeshLaw
-from dynamics.shaft import Section, Shaft
+from dynamics.drivetrain.graph import Coupling, Drivetrain, GearBody, MeshConnection, Motor
+from dynamics.drivetrain.shaft import Section, Shaft
+from dynamics.mesh.law import MeshLaw
 from tests.rig_example import synthetic_law
 
 TEETH = (40, 40)

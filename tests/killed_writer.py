@@ -12,7 +12,7 @@ import signal
 import sys
 from pathlib import Path
 
-from rigdesign.errors import OutputError
+from rigdesign.base.errors import OutputError
 from rigdesign.report import write_results
 from tests.unit.test_report_files import small_result
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from dynamics.linear_system import LinearSystem
-from dynamics.mesh_law import MeshLaw
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.mesh.law import MeshLaw
 
 BASE_RADIUS_1 = 46.5e-3
 TEETH = (99, 102)

@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from rigdesign.case import Case
-from rigdesign.case.marks import item_name, take_off
+from rigdesign.case.provenance import item_name, take_off
 
 QUANTITY = re.compile(r"([-+]?[\d.]+(?:e[-+]?\d+)?)\s*(.*)")
 

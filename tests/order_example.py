@@ -6,11 +6,11 @@ from math import pi
 
 from rigdesign import load_case
 from rigdesign.case import Case
-from rigdesign.cold import cold_feedback
-from rigdesign.loads import MeshModel, Setting, brace_cold, mesh_models
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import MeshModel, Setting, brace_cold, mesh_models
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.state import OperatingPoint
 
 DRAGS = {"test.pinion": 0.4, "reference.wheel": 0.6}
 

@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from rigdesign import results as r
+from rigdesign.results import result as r
 from thermal.fe.mesh import NamedMesh
 
 KUHN = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0, 4, 6, 7)]

@@ -4,9 +4,17 @@ import math
 
 import numpy as np
 
-from dynamics.drivetrain import Coupling, Disc, Drivetrain, GearBody, JournalBearing, MeshConnection, Motor
-from dynamics.mesh_law import MeshLaw
-from dynamics.shaft import Section, Shaft
+from dynamics.drivetrain.graph import (
+    Coupling,
+    Disc,
+    Drivetrain,
+    GearBody,
+    JournalBearing,
+    MeshConnection,
+    Motor,
+)
+from dynamics.drivetrain.shaft import Section, Shaft
+from dynamics.mesh.law import MeshLaw
 
 TABLE_2 = {
     "test_pinion": (4022.7, 5657.2, 7776.4),

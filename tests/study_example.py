@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
 
-from rigdesign.errors import CaseError, NotConvergedError
+from rigdesign.base.errors import CaseError, NotConvergedError
 from tests.report_example import make_check, make_result
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign.cli import app
+from rigdesign.cli.main import app
 
 CASE = Path(__file__).parents[1] / "cases" / "uhcf_main"
 PRINTED = 345.23

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from rigdesign.system import GMSH_LIBRARIES
+from rigdesign.base.system import GMSH_LIBRARIES
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 

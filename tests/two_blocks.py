@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from thermal.boundary import (
+from thermal.conditions.boundary import (
     Adiabatic,
     BodySource,
     BoundaryCondition,

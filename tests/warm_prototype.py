@@ -3,11 +3,11 @@
 import math
 from functools import cache
 
-from rigdesign.assemble.heat import cooler
 from rigdesign.case import Case, load_case
-from rigdesign.coupling import PointResult, solve_point
-from rigdesign.passes import PassResult
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.loop import PointResult, solve_point
+from rigdesign.coupling.time_run import held_points
+from rigdesign.records.heat import cooler
 from rigdesign.rig.model import Rig, build_rig
 
 Changes = tuple[tuple[str, object], ...]

@@ -12,7 +12,7 @@ from itertools import product, zip_longest
 from pathlib import Path
 
 from rigdesign.case import Case, load_case
-from rigdesign.case.marks import Mark
+from rigdesign.case.provenance import Mark
 
 NAMED = re.compile(r"(?:(?<=gearboxes\.)|(?<=bearings\.)|(?<=gears\.)|(?<=seals\.)|(?<=shafts\.))[a-z0-9_]+")
 """Names of parts in a path."""

@@ -6,11 +6,11 @@ the last four share. The disk cache of a compiled function is keyed by the conte
 sources in each file that takes from another goes with it (``tests/unit/test_kernel_cache.py`` says what to write).
 """
 
-from dynamics.kernels.book import port_place
 from dynamics.kernels.contact import N_COUNTS, N_PHASE, N_VALUES, VECTOR, PackedMeshes
 from dynamics.kernels.drag import DragLaws
 from dynamics.kernels.linear_step import FOUR, WIDTH, DiscreteModes, DragModes
 from dynamics.kernels.march import Carried, Orders, march
+from dynamics.kernels.mesh_workspace import port_place
 from dynamics.kernels.reactions import mesh_reactions, tooth_pair_forces
 
 __all__ = [

@@ -31,7 +31,7 @@ Integers = NDArray[np.int64]
 
 
 class PackedMeshes(NamedTuple):
-    """Tables of all meshes of a drivetrain; packed by ``dynamics.mesh_tables.pack_meshes``."""
+    """Tables of all meshes of a drivetrain; packed by ``dynamics.mesh.tables.pack_meshes``."""
 
     values: Array
     """(n_meshes, N_VALUES) plain numbers."""

@@ -15,11 +15,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.book import N_BOOK, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
 from dynamics.kernels.contact import LOOSE, POSITIVE, R1, R2, inlined, sliding_direction
 from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, N_BANK, STATE_AT, WIDTH, DragModes
+from dynamics.kernels.mesh_workspace import N_BOOK, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
 
-# compiled from sources e7ff7ac8
+# compiled from sources 18c43582
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -1,6 +1,6 @@
 """One step of the modes of a drivetrain between its gear meshes.
 
-Arrays come from ``dynamics.propagator``. The modes are sorted by shaft line (``branch``: lines that damping
+Arrays come from ``dynamics.response.propagator``. The modes are sorted by shaft line (``branch``: lines that damping
 ties together), because a port, the place where a mesh acts on its line, sees the modes of its own branch only.
 One pass over the modes gives the outputs of two ports and takes the modes over the step.
 """
@@ -11,10 +11,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.book import OLD, SPEED, TAU, TURN
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
+from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 
-# compiled from sources e7ff7ac8
+# compiled from sources 18c43582
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -58,7 +58,7 @@ class DragModes(NamedTuple):
 
 
 class DiscreteModes(NamedTuple):
-    """Modes at one step length and number of steps per sample; see ``dynamics.propagator.discretise``.
+    """Modes at one step length and number of steps per sample; see ``dynamics.response.propagator.discretise``.
 
     The modal state ``w`` obeys ``w' = decay w + inputs tau`` in each step, ``tau`` being the torques of the ports
     at its start; what the slow inputs give is added once per sample, and to the outputs in each step. Per branch the

@@ -1,6 +1,6 @@
 """March of the modal propagator with the gear meshes as implicit nonlinear torques.
 
-Arrays come from ``dynamics.propagator`` (discretised modes) and ``dynamics.mesh_force`` (packed mesh laws);
+Arrays come from ``dynamics.response.propagator`` (discretised modes) and ``dynamics.mesh.force`` (packed mesh laws);
 names, units and validation live above.
 
 A step guesses the mesh torques (straight on from the last two), lists the contacts at the angles this guess
@@ -14,24 +14,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.book import (
-    ANGLE,
-    APPROACH,
-    GUARD,
-    MISSING,
-    N_BOOK,
-    NET,
-    OFFSET,
-    OFFSET_RATE,
-    OLD,
-    OLDER,
-    PORT,
-    RATE,
-    REACH,
-    SPEED,
-    TAU,
-    TURN,
-)
 from dynamics.kernels.contact import (
     BACKLASH,
     FLOOR,
@@ -70,8 +52,26 @@ from dynamics.kernels.mesh_solve import (
     look_ahead,
     react,
 )
+from dynamics.kernels.mesh_workspace import (
+    ANGLE,
+    APPROACH,
+    GUARD,
+    MISSING,
+    N_BOOK,
+    NET,
+    OFFSET,
+    OFFSET_RATE,
+    OLD,
+    OLDER,
+    PORT,
+    RATE,
+    REACH,
+    SPEED,
+    TAU,
+    TURN,
+)
 
-# compiled from sources e7ff7ac8
+# compiled from sources 18c43582
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -10,7 +10,26 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.book import (
+from dynamics.kernels.contact import (
+    BACKLASH,
+    DAMP_TIME,
+    INDIVIDUAL,
+    LEAST_GAP,
+    LOOSE,
+    N_PHASE,
+    POSITIVE,
+    R1,
+    R2,
+    Flank,
+    PackedMeshes,
+    Pressed,
+    flank_in_phase,
+    flank_on_path,
+    inlined,
+    list_on_path,
+    press_flank,
+)
+from dynamics.kernels.mesh_workspace import (
     AHEAD,
     ANGLE,
     APPROACH,
@@ -40,27 +59,8 @@ from dynamics.kernels.book import (
     TAU,
     TURN,
 )
-from dynamics.kernels.contact import (
-    BACKLASH,
-    DAMP_TIME,
-    INDIVIDUAL,
-    LEAST_GAP,
-    LOOSE,
-    N_PHASE,
-    POSITIVE,
-    R1,
-    R2,
-    Flank,
-    PackedMeshes,
-    Pressed,
-    flank_in_phase,
-    flank_on_path,
-    inlined,
-    list_on_path,
-    press_flank,
-)
 
-# compiled from sources e7ff7ac8
+# compiled from sources 18c43582
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

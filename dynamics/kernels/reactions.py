@@ -35,7 +35,7 @@ from dynamics.kernels.contact import (
     sliding_direction,
 )
 
-# compiled from sources e7ff7ac8
+# compiled from sources 18c43582
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -5,11 +5,11 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from rigdesign.base.errors import WIDEST, Fault
+from rigdesign.base.units import describe
 from rigdesign.case.fields import FAULT
-from rigdesign.case.marks import KEYS, MARKS, item_name
 from rigdesign.case.paths import Slot, nearest, slot_at
-from rigdesign.errors import WIDEST, Fault
-from rigdesign.units import describe
+from rigdesign.case.provenance import KEYS, MARKS, item_name
 
 IMPOSSIBLE = frozenset(("literal_error", "bool_type", "int_type", "int_from_float", "float_type"))
 """Kinds of error of a value that its place holds in no case."""

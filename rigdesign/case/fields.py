@@ -7,9 +7,9 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, GetCoreSchema
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from rigdesign import units
-from rigdesign.errors import CONTROL
-from rigdesign.kinds import KINDS
+from rigdesign.base import units
+from rigdesign.base.errors import CONTROL
+from rigdesign.base.quantity_kinds import KINDS
 
 FAULT = "rigdesign"
 """Type of a validation error that carries its own problem and remedy."""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from rigdesign.case.gearbox import Gearbox, JournalBearing
 from rigdesign.case.gears import Gear
 from rigdesign.case.housing import GapExchange, Housing, HousingShaft, SeriesExchange
-from thermal.housing_geometry import ClampingField, GearDisc, HousingGeometry, ShaftGeometry
+from thermal.housing.geometry import ClampingField, GearDisc, HousingGeometry, ShaftGeometry
 
 
 def pitch_diameters(gearbox: Gearbox) -> dict[str, float]:

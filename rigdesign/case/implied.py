@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from rigdesign.results import AssumptionRecord
+from rigdesign.results.result import AssumptionRecord
 
 if TYPE_CHECKING:
     from rigdesign.case.model import Case

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from rigdesign import units
+from rigdesign.base import units
 from rigdesign.case.fields import (
     Deviation,
     Flow,

@@ -7,14 +7,14 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from rigdesign import units
+from rigdesign.base import units
+from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case.faults import faults_of, written
-from rigdesign.case.marks import Mark, is_marked, item_name, take_off
 from rigdesign.case.model import Case, Origin
 from rigdesign.case.paths import Slot, known_paths, nearest_paths, slot_at
-from rigdesign.case.rules import broken_rules
+from rigdesign.case.provenance import Mark, is_marked, item_name, take_off
+from rigdesign.case.rules.gathered import broken_rules
 from rigdesign.case.source import case_file, read_tree
-from rigdesign.errors import CaseError, Fault
 
 
 def load_case(path: str | Path) -> Case:

@@ -35,7 +35,7 @@ class HousingMesh(Part):
         return self
 
     def sizes(self) -> dict[str, float]:
-        """Given sizes [m] by the zone's name in thermal.housing_solids.MeshSizes."""
+        """Given sizes [m] by the zone's name in thermal.housing.solids.MeshSizes."""
         zones = {"wall": self.walls, "field": self.field, "seal": self.seals, "bearing": self.bearings}
         zones["gear"] = self.gears
         return {zone: size for zone, size in zones.items() if size is not None}

@@ -15,12 +15,12 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.implied import implied_assumptions
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
-from rigdesign.case.marks import Mark
 from rigdesign.case.numerics import Numerics
+from rigdesign.case.provenance import Mark
 from rigdesign.case.schedule import Schedule, TestPlan
 from rigdesign.case.substances import Ambient, CustomMaterial, CustomOil
 from rigdesign.case.transient import Transient
-from rigdesign.results import AssumptionRecord
+from rigdesign.results.result import AssumptionRecord
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel
 
 from rigdesign.case.fields import Quantity
-from rigdesign.case.marks import item_name
+from rigdesign.case.provenance import item_name
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from rigdesign.case.marks import is_marked
-from rigdesign.errors import CaseError, shortened
-from rigdesign.files import RefusedFileError, check_regular, foreign, read_regular
+from rigdesign.base.errors import CaseError, shortened
+from rigdesign.base.files import RefusedFileError, check_regular, foreign, read_regular
+from rigdesign.case.provenance import is_marked
 
 CASE_FILE = "case.toml"
 LARGEST_CASE = 5_000_000

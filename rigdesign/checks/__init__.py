@@ -3,9 +3,9 @@
 from rigdesign.checks import alignment, dynamics, ramp, strength, thermal
 from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.omissions import omissions
-from rigdesign.checks.subject import Subject
-from rigdesign.results import Check
-from rigdesign.rules import with_error, with_omissions
+from rigdesign.checks.rules import with_error, with_omissions
+from rigdesign.records.solved_rig import Subject
+from rigdesign.results.result import Check
 
 __all__ = ["Subject", "all_checks", "held_checks"]
 

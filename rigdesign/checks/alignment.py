@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from rigdesign.alignment import AlignmentQuantity
 from rigdesign.case.drivetrain import Coupling
-from rigdesign.checks.subject import NO_LIMIT, Subject, worst
-from rigdesign.results import Check
-from rigdesign.rules import Rule, hold, not_applicable
+from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.coupling.alignment import AlignmentQuantity
+from rigdesign.records.solved_rig import NO_LIMIT, Subject, worst
+from rigdesign.results.result import Check
 
 GROUP = "alignment"
 NO_END = "neither of its shafts is in a housing: nothing is known of its alignment"

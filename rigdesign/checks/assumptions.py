@@ -13,7 +13,7 @@ from dataclasses import replace
 from fnmatch import fnmatchcase
 
 from rigdesign.case.model import Case
-from rigdesign.results import Check
+from rigdesign.results.result import Check
 
 Checks = tuple[str, ...]
 

@@ -4,11 +4,11 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from rigdesign.assemble.curves import speed_ranges
-from rigdesign.checks.subject import NO_LIMIT, NO_LOADS, Subject, worst
-from rigdesign.loads import signed_torque
-from rigdesign.results import Check, GearboxDynamics
-from rigdesign.rules import Rule, hold, not_applicable
+from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.coupling.loads import signed_torque
+from rigdesign.records.curves import speed_ranges
+from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, Subject, worst
+from rigdesign.results.result import Check, GearboxDynamics
 
 RPM = 30.0 / math.pi
 Found = tuple[float, str]

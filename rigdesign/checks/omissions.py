@@ -13,20 +13,20 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 
-from rigdesign.assemble.curves import resolved
-from rigdesign.assemble.resonances import NEAR
+from rigdesign.base.units import show
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.assumptions import key_of
 from rigdesign.checks.dynamics import near_crossings
-from rigdesign.checks.subject import Subject
-from rigdesign.loads import laws_of
-from rigdesign.ramp_run import schedule_of
-from rigdesign.results import Check
+from rigdesign.checks.rules import Omission
+from rigdesign.coupling.loads import laws_of
+from rigdesign.coupling.shaft_torques import torques_left_out
+from rigdesign.coupling.time_run import schedule_of
+from rigdesign.coupling.tooth_deviations import averaged_gears
+from rigdesign.records.curves import resolved
+from rigdesign.records.resonances import NEAR
+from rigdesign.records.solved_rig import Subject
+from rigdesign.results.result import Check
 from rigdesign.rig.oil_supply import injected_flow
-from rigdesign.rules import Omission
-from rigdesign.shaft_torques import torques_left_out
-from rigdesign.units import show
-from rigdesign.unlike_teeth import averaged_gears
 
 Found = Iterator[Omission]
 Finder = Callable[[Subject, Check], Found]

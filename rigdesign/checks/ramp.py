@@ -3,13 +3,13 @@
 import math
 from collections.abc import Iterator
 
-from dynamics.ramp import RampLimits, ramp_rules
-from rigdesign.checks.bought_parts import bought_parts
-from rigdesign.checks.subject import NO_LIMIT, Subject
+from dynamics.response.schedule import RampLimits, ramp_rules
+from rigdesign.checks.component_limits import bought_parts
+from rigdesign.checks.rules import Rule, exact, hold, not_applicable
 from rigdesign.checks.thermal import transition_speed_rpm
-from rigdesign.ramp_run import schedule_of
-from rigdesign.results import Check
-from rigdesign.rules import Rule, exact, hold, not_applicable
+from rigdesign.coupling.time_run import schedule_of
+from rigdesign.records.solved_rig import NO_LIMIT, Subject
+from rigdesign.results.result import Check
 
 RPM = 30.0 / math.pi
 SOURCES = {

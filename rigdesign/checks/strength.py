@@ -3,11 +3,11 @@
 import math
 from collections.abc import Iterator
 
-from dynamics.iso_rating import permissible_factors, root_stress, transverse_load_factor
-from rigdesign.assemble.curves import iso_factor
-from rigdesign.checks.subject import NO_LIMIT, NO_LOADS, Subject, worst
-from rigdesign.results import Check
-from rigdesign.rules import Rule, hold, not_applicable
+from dynamics.rating.iso_rating import permissible_factors, root_stress, transverse_load_factor
+from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.records.curves import iso_factor
+from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, Subject, worst
+from rigdesign.results.result import Check
 
 SOURCES = {
     "iso": "ISO 6336-3:2006 method B with the simulated K_V",

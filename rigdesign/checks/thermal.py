@@ -3,11 +3,11 @@
 import math
 from collections.abc import Iterable, Iterator
 
-from dynamics.journal_bearing import BearingState
-from rigdesign.checks.subject import NO_HOUSING, NO_LIMIT, Subject, worst
-from rigdesign.loads import MeshModel
-from rigdesign.results import Check
-from rigdesign.rules import Rule, hold, not_applicable
+from dynamics.bearing.journal import BearingState
+from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.coupling.loads import MeshModel
+from rigdesign.records.solved_rig import NO_HOUSING, NO_LIMIT, Subject, worst
+from rigdesign.results.result import Check
 
 ZERO = 273.15
 MM, UM = 1e3, 1e6

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 
 from rigdesign.case.model import Case
-from rigdesign.results import Check
-from rigdesign.results_transient import Soak, TransientResult, WorstMoment
-from rigdesign.rules import Rule, hold, not_applicable
+from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.results.result import Check
+from rigdesign.results.transient import Soak, TransientResult, WorstMoment
 
 TITLES = {
     "seal_gap": "smallest radial gap of a seal over time",

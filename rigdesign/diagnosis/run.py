@@ -6,25 +6,25 @@ from pathlib import Path
 from typing import Any
 
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.build import build_library
-from rigdesign.diagnosis.cache import library_of, stored_library
-from rigdesign.diagnosis.candidates import spare_channels
 from rigdesign.diagnosis.catalogue import effects_of
-from rigdesign.diagnosis.constants import Constants, constants
-from rigdesign.diagnosis.defaults import DEFAULT, Calibration
-from rigdesign.diagnosis.effects import Effect
-from rigdesign.diagnosis.library import Library
-from rigdesign.diagnosis.next_measurement import Ranked
-from rigdesign.diagnosis.patch import patched_values
-from rigdesign.diagnosis.proof import FullRun
-from rigdesign.diagnosis.proposals import extras_of, proposals
-from rigdesign.diagnosis.sensors import Stated
-from rigdesign.diagnosis.subject import Comparison, compare, plain
-from rigdesign.diagnosis.workflow import Diagnosis, Problem, diagnose
+from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.constants import Constants, constants
+from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
+from rigdesign.diagnosis.decision.patch import patched_values
+from rigdesign.diagnosis.decision.proof import FullRun
+from rigdesign.diagnosis.decision.proposals import extras_of, proposals
+from rigdesign.diagnosis.decision.workflow import Diagnosis, Problem, diagnose
+from rigdesign.diagnosis.library.build import build_library
+from rigdesign.diagnosis.library.cache import library_of, stored_library
+from rigdesign.diagnosis.library.candidates import spare_channels
+from rigdesign.diagnosis.library.library import Library
+from rigdesign.diagnosis.residual.residual_problem import Comparison, compare, plain
+from rigdesign.diagnosis.residual.sensors import Stated
+from rigdesign.diagnosis.statistics.next_measurement import Ranked
 from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
 from rigdesign.measurement.places import Places
 from rigdesign.prediction.model import Channel, Setting
-from rigdesign.run import solver_errors
+from rigdesign.run.main import solver_errors
 
 Progress = Callable[[str], None]
 

@@ -6,9 +6,9 @@
 ``document`` is the table of contents of measurement.toml.
 """
 
-from rigdesign.measurement.features import Data, features
 from rigdesign.measurement.loader import load_measurement
-from rigdesign.measurement.model import (
+from rigdesign.measurement.processing.features import Data, features
+from rigdesign.measurement.reading.measurement_set import (
     Finding,
     MeasuredChannel,
     MeasuredPoint,

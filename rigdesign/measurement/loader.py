@@ -7,18 +7,18 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case import Case
 from rigdesign.case.faults import faults_of, unknown, written
-from rigdesign.errors import Fault, MeasurementError
-from rigdesign.measurement.columns import channels_of, column_faults, sensors_of
-from rigdesign.measurement.document import MeasurementFile
-from rigdesign.measurement.files import digest_of, document_text, set_file
-from rigdesign.measurement.model import Finding, MeasurementSet
-from rigdesign.measurement.order_table import read_orders
 from rigdesign.measurement.places import Places
-from rigdesign.measurement.recorded import read_recordings
-from rigdesign.measurement.rows import Rows, points_of
-from rigdesign.measurement.table import read_table
+from rigdesign.measurement.processing.recorded import read_recordings
+from rigdesign.measurement.reading.columns import channels_of, column_faults, sensors_of
+from rigdesign.measurement.reading.document import MeasurementFile
+from rigdesign.measurement.reading.files import digest_of, document_text, set_file
+from rigdesign.measurement.reading.measurement_set import Finding, MeasurementSet
+from rigdesign.measurement.reading.order_table import read_orders
+from rigdesign.measurement.reading.rows import Rows, points_of
+from rigdesign.measurement.reading.table import read_table
 
 FILE = "measurement.toml"
 

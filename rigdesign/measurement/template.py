@@ -3,13 +3,13 @@
 import math
 from pathlib import Path
 
-from rigdesign import units
+from rigdesign.base import units
+from rigdesign.base.errors import OutputError
+from rigdesign.base.output_folder import staged
 from rigdesign.case import Case
-from rigdesign.errors import OutputError
 from rigdesign.measurement.loader import FILE
 from rigdesign.measurement.places import Places
 from rigdesign.measurement.quantities import CHANNELS, SETTINGS
-from rigdesign.report.output import staged
 
 TABLE = "data.csv"
 SPREADS = {

@@ -15,7 +15,7 @@ _LATE = {"predict": "rigdesign.prediction.full", "Predictor": "rigdesign.predict
 
 
 def __getattr__(name: str) -> Any:
-    """What needs ``rigdesign.run`` when it is first asked for: that module needs the contract here."""
+    """What needs ``rigdesign.run.main`` when it is first asked for: that module needs the contract here."""
     if name in _LATE:
         return getattr(import_module(_LATE[name]), name)
     raise AttributeError(name)

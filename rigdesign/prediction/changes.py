@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping
 
-from rigdesign import units
+from rigdesign.base import units
+from rigdesign.base.quantity_kinds import KINDS, Kind
 from rigdesign.case.loader import changed_together
-from rigdesign.case.marks import take_off
 from rigdesign.case.model import Case
 from rigdesign.case.paths import slot_at
-from rigdesign.kinds import KINDS, Kind
+from rigdesign.case.provenance import take_off
 
 Changes = Mapping[str, object]
 """Dotted path -> value as the file would hold it; a bare number at a place with a unit counts in SI, kelvin."""

@@ -7,16 +7,16 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.deviation_response import OrderLoads
-from dynamics.harmonic_walk import mesh_cells
-from dynamics.mesh_force import evaluate_mesh
-from dynamics.mesh_law import MeshLaw
-from dynamics.periodic_response import periodic_by_time
-from dynamics.response_curve import periodic_response
-from dynamics.static_loop import NotConverged, port_model
-from rigdesign.loads import Setting, signed_torque
+from dynamics.drivetrain.static_loop import NotConverged, port_model
+from dynamics.mesh.force import evaluate_mesh
+from dynamics.mesh.law import MeshLaw
+from dynamics.orders.deviation_response import OrderLoads
+from dynamics.response.harmonic_walk import mesh_cells
+from dynamics.response.periodic_response import periodic_by_time
+from dynamics.response.speed_sweep import periodic_response
+from rigdesign.coupling.loads import Setting, signed_torque
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
-from rigdesign.state import OperatingPoint
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -6,10 +6,10 @@ from typing import Literal
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from rigdesign.base.errors import UsageError
 from rigdesign.case.model import Case
-from rigdesign.coupling import solve_point
-from rigdesign.errors import UsageError
-from rigdesign.passes import PassResult
+from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.loop import solve_point
 from rigdesign.prediction.model import (
     STANDING_QUANTITIES,
     Channel,
@@ -19,10 +19,10 @@ from rigdesign.prediction.model import (
 )
 from rigdesign.prediction.operating import operating_point, rig_at
 from rigdesign.prediction.readings import Settled, readings
-from rigdesign.remesh import looping_rig, on_mesh
-from rigdesign.results import Fidelity
+from rigdesign.results.result import Fidelity
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run import solver_errors
+from rigdesign.run.main import solver_errors
+from rigdesign.run.mesh_refinement import looping_rig, on_mesh
 from thermal.fe.kernels import one_thread
 
 Thermal = Literal["full", "reduced"]
@@ -93,7 +93,7 @@ def standing_values(rig: Rig, channels: Iterable[Channel]) -> list[float]:
     standing = [channel for channel in channels if channel.quantity in STANDING_QUANTITIES]
     if not standing:
         return []
-    from rigdesign.prediction.standstill import standing_modes, standing_value
+    from rigdesign.prediction.static_tests import standing_modes, standing_value
 
     swinging = any(channel.quantity == "natural_frequency" for channel in standing)
     modes = standing_modes(rig) if swinging else ()

@@ -6,21 +6,21 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.journal_bearing import BearingState
-from rigdesign.growth import HousingGrowth
-from rigdesign.losses import PlacedLoss
-from rigdesign.passes import Parts
-from rigdesign.prediction.growth_map import GrowthMap
+from dynamics.bearing.journal import BearingState
+from rigdesign.coupling.boundary import boundary_conditions
+from rigdesign.coupling.expansion import HousingGrowth
+from rigdesign.coupling.iteration import Parts
+from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.temperatures import HousingField
+from rigdesign.prediction.expansion_map import GrowthMap
 from rigdesign.prediction.places import Weights
-from rigdesign.prediction.shapes import Basis, build_basis
-from rigdesign.rig.boundary import boundary_conditions
+from rigdesign.prediction.reduced_basis import Basis, build_basis
 from rigdesign.rig.model import Rig
-from rigdesign.state import Feedback, OperatingPoint
-from rigdesign.temperatures import HousingField
-from thermal.condition_checks import Condition
-from thermal.conduction import TemperatureSolution
+from thermal.conduction.condition_checks import Condition
+from thermal.conduction.reduced import Factor, ReducedConduction
+from thermal.conduction.steady import TemperatureSolution
 from thermal.fe.mesh import FloatArray
-from thermal.reduced import Factor, ReducedConduction
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ class ReducedHousings:
         start: HousingField | None = None,
         **_: Any,
     ) -> ReducedField:
-        """Field of a housing as `rigdesign.temperatures.solve_housing` gives it, projected."""
+        """Field of a housing as `rigdesign.coupling.temperatures.solve_housing` gives it, projected."""
         housing = rig.case.gearboxes[name].housing
         assert housing is not None
         conditions = tuple(

@@ -4,12 +4,12 @@ A case is validated once when it is loaded. A setting replaces numbers of it tha
 a copy of the tree without validating the rest of the case again.
 """
 
+from rigdesign.base.errors import UsageError
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
-from rigdesign.errors import UsageError
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Setting
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.state import OperatingPoint
 
 STREAMS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
 """Name of an oil stream -> key of the gearbox that feeds it."""

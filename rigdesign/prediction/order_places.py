@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.deviation_response import OrderLoads
-from dynamics.drivetrain import Joint
-from dynamics.linear_system import LinearSystem
-from rigdesign.errors import UsageError
+from dynamics.drivetrain.graph import Joint
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.orders.deviation_response import OrderLoads
+from rigdesign.base.errors import UsageError
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig
 
@@ -70,7 +70,7 @@ class OfShaft:
 def motions(system: LinearSystem, loads: Sequence[OrderLoads]) -> Complex:
     """One-sided amplitudes of the angles of all freedoms under the loads of orders above 0 (n_orders, n) [rad].
 
-    As `dynamics.deviation_response.motion_orders`, of all orders at once.
+    As `dynamics.orders.deviation_response.motion_orders`, of all orders at once.
     """
     acting = np.zeros((system.inertia.size, len(loads)), complex)
     for column, one in zip(acting.T, loads):

@@ -16,25 +16,25 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.deviation_response import (
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.static_loop import NotConverged
+from dynamics.mesh.flank import alike_teeth
+from dynamics.orders.deviation_response import (
     CYCLE_STEPS,
     DeviationResponse,
     HarmonicTorque,
     OrderLoads,
     mean_windup,
 )
-from dynamics.flank import alike_teeth
-from dynamics.initial_state import pinion_ratios
-from dynamics.linear_system import LinearSystem
-from dynamics.response_curve import CurvePoint, periodic_response
-from dynamics.static_loop import NotConverged
-from rigdesign.errors import UsageError
-from rigdesign.loads import MeshModel, Setting, shifted_laws, signed_torque
+from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.speed_sweep import CurvePoint, periodic_response
+from rigdesign.base.errors import UsageError
+from rigdesign.coupling.loads import MeshModel, Setting, shifted_laws, signed_torque
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.exact_orders import ExactMotion, exact_motion
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.order_places import Swing, motions, place_of
 from rigdesign.rig.model import Rig
-from rigdesign.state import OperatingPoint
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -90,7 +90,7 @@ class PointOrders:
         Parameters
         ----------
         models : warm meshes with the deviations of their teeth; drags : brake torques by place of the drivetrain
-            [N m]; setting : as in `rigdesign.loads.respond`
+            [N m]; setting : as in `rigdesign.coupling.loads.respond`
         base : response of the same point with all teeth alike and no torque that swings (`ideal_response`), where
             it is known
         exact : follow all contacts over the hunting cycle instead (seconds to a minute, not milliseconds); left out,

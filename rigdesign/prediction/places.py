@@ -10,7 +10,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.spatial import cKDTree
 
-from rigdesign.errors import UsageError
+from rigdesign.base.errors import UsageError
 from rigdesign.rig.model import Rig
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray

@@ -14,31 +14,31 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from dynamics.response_curve import CurvePoint
-from rigdesign.beside import Beside
+from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.base.errors import UsageError
+from rigdesign.base.parallel import Beside
 from rigdesign.case.model import Case
-from rigdesign.cold import cold_feedback
-from rigdesign.errors import UsageError
-from rigdesign.loads import Setting as Bracing
-from rigdesign.loads import brace_cold
-from rigdesign.passes import Parts, feedback_of, one_pass
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.iteration import Parts, feedback_of, one_pass
+from rigdesign.coupling.loads import Setting as Bracing
+from rigdesign.coupling.loads import brace_cold
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.changes import Changes, changed_case
+from rigdesign.prediction.fixed_point import CLOSE, SettledPoint, settle
 from rigdesign.prediction.full import check_names, standing_values
 from rigdesign.prediction.housings import ReducedHousings
-from rigdesign.prediction.memory import Memory
+from rigdesign.prediction.memoisation import Memory
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Setting, features_of
 from rigdesign.prediction.operating import like, operating_point, rig_at
 from rigdesign.prediction.orders import ideal_response, is_ideal, shaft_orders
 from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
-from rigdesign.prediction.settle import CLOSE, SettledPoint, settle
-from rigdesign.prediction.slopes import Directions, Named, PointSlopes, SlopeNumbers, directions_of
-from rigdesign.prediction.standstill import standing_modes
-from rigdesign.results import Fidelity
+from rigdesign.prediction.sensitivities import Directions, Named, PointSlopes, SlopeNumbers, directions_of
+from rigdesign.prediction.static_tests import standing_modes
+from rigdesign.results.result import Fidelity
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run import solver_errors
-from rigdesign.state import OperatingPoint
-from thermal.condition_checks import Condition
+from rigdesign.run.main import solver_errors
+from thermal.conduction.condition_checks import Condition
 from thermal.fe.kernels import one_thread
 from thermal.fe.mesh import FloatArray
 

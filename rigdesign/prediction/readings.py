@@ -6,17 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigdesign.errors import UsageError
-from rigdesign.loads import Setting as Bracing
-from rigdesign.passes import PassResult
+from rigdesign.base.errors import UsageError
+from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.loads import Setting as Bracing
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
 from rigdesign.prediction.orders import is_ideal, shaft_orders
 from rigdesign.prediction.places import place_weights
 from rigdesign.rig.joints import bearing_of_bore, shell_temperature
 from rigdesign.rig.model import Rig
-from rigdesign.state import OperatingPoint
+from thermal.expansion.clearances import SealGrowth
 from thermal.fe.mesh import FloatArray
-from thermal.growth import SealGrowth
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,10 @@ import json
 from pathlib import Path
 from typing import Any
 
-from rigdesign.errors import NonFiniteResultError, OutputError
-from rigdesign.report.output import prepare_output, remove_published, staged, write_whole
+from rigdesign.base.errors import NonFiniteResultError, OutputError
+from rigdesign.base.output_folder import prepare_output, remove_published, staged, write_whole
 from rigdesign.report.results_json import results_document, to_text
-from rigdesign.results import RunResult
+from rigdesign.results.result import RunResult
 
 __all__ = [
     "NonFiniteResultError",
@@ -64,8 +64,8 @@ def _write_curves(result: RunResult, folder: Path) -> None:
 
 
 def _write_report(result: RunResult, folder: Path) -> None:
-    from rigdesign.report.html import report_html
     from rigdesign.report.junit import write_junit
+    from rigdesign.report.pages.report import report_html
 
     write_junit(result, folder / "junit.xml")
     (folder / "report.html").write_text(report_html(result), encoding="utf-8", newline="\n")

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from rigdesign.results import TemperatureField
+from rigdesign.results.result import TemperatureField
 
 ZERO_CELSIUS = 273.15
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from rigdesign import __version__
-from rigdesign.finite import finite
-from rigdesign.results import CouplingHistory, RunResult
+from rigdesign.base.finite import finite
+from rigdesign.results.result import CouplingHistory, RunResult
 
 SCHEMA_VERSION = "1"
 SIGNIFICANT_DIGITS = 10

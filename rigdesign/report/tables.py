@@ -6,9 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from rigdesign.report.fields import file_stem
+from rigdesign.report.pages.transient_section import transient_tables
 from rigdesign.report.results_json import SIGNIFICANT_DIGITS
-from rigdesign.report.transient_section import transient_tables
-from rigdesign.results import (
+from rigdesign.results.result import (
     DynamicFactorPoint,
     DynamicsResult,
     GearboxDynamics,

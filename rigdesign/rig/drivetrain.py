@@ -3,11 +3,11 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from dynamics import drivetrain as dyn
-from dynamics.gear import GearPair
+from dynamics.drivetrain import graph as dyn
+from dynamics.gear.pair import GearPair
 from rigdesign.case.drivetrain import HarmonicTorque
 from rigdesign.case.model import Case
-from rigdesign.materials import Material
+from rigdesign.properties.materials import Material
 
 ENDS: dict[str, dyn.End] = {"start": "left", "end": "right"}
 RIGID_SEAT = 1e8

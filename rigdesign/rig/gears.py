@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping
 
-from dynamics.gear import GearBodies, GearPair, Rack
+from dynamics.gear.pair import GearBodies, GearPair, Rack
+from rigdesign.base.errors import named
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import GearMesh
 from rigdesign.case.model import Case
-from rigdesign.errors import named
-from rigdesign.materials import Material
+from rigdesign.properties.materials import Material
 
 
 def build_pairs(case: Case, materials: Mapping[str, Material]) -> dict[str, GearPair]:
@@ -61,7 +61,7 @@ def _pinion_shift(box: Gearbox, mesh: GearMesh) -> float | None:
     pinion, wheel = box.gears[mesh.pinion], box.gears[mesh.wheel]
     if pinion.profile_shift is not None or wheel.profile_shift is None:
         return pinion.profile_shift
-    from dynamics.line_of_action import shift_sum
+    from dynamics.gear.line_of_action import shift_sum
 
     total = shift_sum(
         mesh.normal_module,

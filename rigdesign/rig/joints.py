@@ -6,13 +6,13 @@ from dataclasses import replace
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.joint import PressedJoint
 from rigdesign.rig.model import Rig
-from thermal import convection
-from thermal.air import air
-from thermal.boundary import ExchangeLaw, Film, FilmCoefficient, FilmLaw
-from thermal.condition_checks import Condition
-from thermal.contact import Contact
-from thermal.housing_surfaces import FOOT, SEAT
-from thermal.joint_conductance import pressed_joint
+from thermal.conditions.boundary import ExchangeLaw, Film, FilmCoefficient, FilmLaw
+from thermal.conditions.contact import Contact
+from thermal.conduction.condition_checks import Condition
+from thermal.films import convection
+from thermal.films.air import air
+from thermal.films.joint_conductance import pressed_joint
+from thermal.housing.surfaces import FOOT, SEAT
 
 FOOT_CONTACT = "foot_contact"
 """Kind of the rows of the foot joint in the heat balance."""

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.gear import GearPair
+from dynamics.gear.pair import GearPair
 from rigdesign.case.model import Case
 
 Array = NDArray[np.float64]

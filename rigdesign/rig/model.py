@@ -5,17 +5,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from dynamics.drivetrain import Drivetrain, Joint, assemble, joints
-from dynamics.gear import GearPair
-from dynamics.linear_system import LinearSystem
-from dynamics.propagator import DEFAULT_CUTOFF
+from dynamics.drivetrain.graph import Drivetrain, Joint, assemble, joints
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.gear.pair import GearPair
+from dynamics.response.propagator import DEFAULT_CUTOFF
 from rigdesign.case.gearbox import Gearbox, JournalBearing
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.model import Case
-from rigdesign.materials import MATERIALS, Material
-from rigdesign.oil import OILS, Oil
-from rigdesign.results import Fidelity
+from rigdesign.properties.materials import MATERIALS, Material
+from rigdesign.properties.oil import OILS, Oil
+from rigdesign.results.result import Fidelity
 from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces
@@ -23,12 +23,12 @@ from rigdesign.rig.resolution import AS_RULED, Coarsening, counted_frequency, hi
 from rigdesign.rig.shaft_torsion import SectionTorsion, refuse_broken_shafts, section_torsions
 from rigdesign.rig.speeds import speed_ratios
 from rigdesign.rig.user_mesh import user_model
-from thermal.conduction import ConductionSetup
-from thermal.expansion import ExpansionSetup
-from thermal.housing import build_gearbox, mesh_sizes
-from thermal.housing_geometry import HousingGeometry
-from thermal.housing_surfaces import surface_names
-from thermal.stations import GearboxModel
+from thermal.conduction.steady import ConductionSetup
+from thermal.expansion.expansion import ExpansionSetup
+from thermal.housing.gearbox import build_gearbox, mesh_sizes
+from thermal.housing.geometry import HousingGeometry
+from thermal.housing.stations import GearboxModel
+from thermal.housing.surfaces import surface_names
 
 
 @dataclass(frozen=True)

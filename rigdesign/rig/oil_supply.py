@@ -1,7 +1,7 @@
 """Oil of a gearbox as it is: its state, and what of it reaches meshes, walls and bearings."""
 
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.oil import Oil
+from rigdesign.properties.oil import Oil
 from rigdesign.rig.model import Rig
 
 

@@ -2,20 +2,20 @@
 
 The rules follow what excites the loop. A shaft element takes a sixteenth of the torsional wave of the highest
 frequency that counts, the fourth mesh harmonic at the highest speed or 20 kHz: lumped inertia makes a mode there low by
-(2 pi / 16)^2 / 24 = 0.6 % (``dynamics.shaft.Shaft``). Modes above 2.5 times that frequency, six elements a wave, are
-not followed. Slices are the rule of ``dynamics.flank.default_slices``. The case may state element length and slices;
-what either leaves open stands with the checks (`rigdesign.load_errors`).
+(2 pi / 16)^2 / 24 = 0.6 % (``dynamics.drivetrain.shaft.Shaft``). Modes above 2.5 times that frequency, six elements a
+wave, are not followed. Slices are the rule of ``dynamics.mesh.flank.default_slices``. The case may state element
+length and slices; what either leaves open stands with the checks (`rigdesign.run.load_convergence`).
 """
 
 import math
 from dataclasses import replace
 from typing import NamedTuple
 
-from dynamics.drivetrain import Drivetrain
-from dynamics.propagator import DEFAULT_CUTOFF
-from dynamics.shaft import Shaft
+from dynamics.drivetrain.graph import Drivetrain
+from dynamics.drivetrain.shaft import Shaft
+from dynamics.response.propagator import DEFAULT_CUTOFF
 from rigdesign.case.model import Case
-from rigdesign.case.rules import MOST_SHAFT_ELEMENTS
+from rigdesign.case.rules.gathered import MOST_SHAFT_ELEMENTS
 from rigdesign.rig.speeds import speed_ratios
 
 COUNTED_HARMONIC = 4

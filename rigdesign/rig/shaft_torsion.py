@@ -7,10 +7,10 @@ gears, and what the motor gives between the motor and the first gear. Static tor
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from dynamics.drivetrain import Drivetrain
-from dynamics.shaft import Shaft
-from rigdesign.errors import CaseError, Fault
-from rigdesign.units import show
+from dynamics.drivetrain.graph import Drivetrain
+from dynamics.drivetrain.shaft import Shaft
+from rigdesign.base.errors import CaseError, Fault
+from rigdesign.base.units import show
 
 LARGEST_STRAIN = 0.015
 """Shear strain at the surface beyond which no steel stays elastic (1200 MPa)."""

@@ -1,7 +1,7 @@
 """Speed of every shaft of the rig, relative to the gear at which test speed and torque are counted."""
 
-from dynamics import power_loop
-from dynamics.drivetrain import Drivetrain
+from dynamics.drivetrain import power_loop
+from dynamics.drivetrain.graph import Drivetrain
 from rigdesign.case.model import Case
 
 

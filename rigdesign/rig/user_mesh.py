@@ -4,17 +4,17 @@ from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 
+from rigdesign.base.errors import CaseError, Fault
+from rigdesign.base.files import check_regular
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.surfaces import boundary_faults
-from rigdesign.errors import CaseError, Fault
-from rigdesign.files import check_regular
+from rigdesign.case.rules.surfaces import boundary_faults
 from thermal.fe.mesh import MeshError
-from thermal.housing_file import read_mesh
-from thermal.housing_fitted import fitted_model
-from thermal.housing_geometry import HousingGeometry
-from thermal.housing_stations import seal_stations
-from thermal.housing_surfaces import body_names, joined_surfaces
-from thermal.stations import GearboxModel
+from thermal.housing.fitted import fitted_model
+from thermal.housing.geometry import HousingGeometry
+from thermal.housing.mesh_file import read_mesh
+from thermal.housing.parametric_stations import seal_stations
+from thermal.housing.stations import GearboxModel
+from thermal.housing.surfaces import body_names, joined_surfaces
 
 LARGEST_MESH = 2_000_000_000
 """Bytes of a mesh file; a gearbox of a million nodes has a tenth."""

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
-from thermal.boundary import BodySource, Exchange, Film, FilmCoefficient, FilmLaw, SurfaceSource
-from thermal.condition_checks import Condition, surfaces_of
-from thermal.streams import Stream, StreamNetwork
+from thermal.conditions.boundary import BodySource, Exchange, Film, FilmCoefficient, FilmLaw, SurfaceSource
+from thermal.conditions.streams import Stream, StreamNetwork
+from thermal.conduction.condition_checks import Condition, surfaces_of
 
 Item = TypeVar("Item")
 

@@ -6,9 +6,9 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.growth import hot_clearances, read_growth
+from rigdesign.coupling.expansion import hot_clearances, read_growth
 from rigdesign.rig.model import Rig
-from thermal.expansion import Expansion
+from thermal.expansion.expansion import Expansion
 
 Quantity = Literal["seal_gap", "axial_play", "bearing_clearance", "backlash", "tip_clearance"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)

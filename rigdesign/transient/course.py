@@ -6,19 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.alignment import Alignment, alignment
-from rigdesign.coupling import PointResult
-from rigdesign.results_transient import Soak
-from rigdesign.rig.boundary import BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.alignment import Alignment, alignment
+from rigdesign.coupling.boundary import BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.loop import PointResult
+from rigdesign.results.transient import Soak
 from rigdesign.rig.model import Rig
 from rigdesign.transient.clearances import Clearances, clearances
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.oil_power import OilHistory, OilPower, oil_power
 from rigdesign.transient.phases import SCHEDULE, Phase, Timeline, event_phases, schedule_phases
 from rigdesign.transient.places import probes_of
-from thermal.alignment import ShaftAxis
-from thermal.expansion_course import ExpansionCourse
-from thermal.transient import TransientSolution, solve_transient
+from thermal.expansion.alignment import ShaftAxis
+from thermal.expansion.many_fields import ExpansionCourse
+from thermal.transient.history import TransientSolution, solve_transient
 
 FloatArray = NDArray[np.float64]
 FIRST_STEP = 0.5

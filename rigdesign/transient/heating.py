@@ -2,15 +2,15 @@
 
 from collections.abc import Sequence
 
-from rigdesign.coupling import PointResult, governing_point
+from rigdesign.coupling.loop import PointResult, governing_point
+from rigdesign.coupling.stage_losses import StageLosses, stage_losses
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
-from rigdesign.stage_losses import StageLosses, stage_losses
-from rigdesign.state import OperatingPoint
 from rigdesign.transient.blend import blended
 from rigdesign.transient.oil import oil_conditions
 from rigdesign.transient.phases import Phase
-from thermal.condition_checks import Condition
-from thermal.transient import ThermalStage
+from thermal.conduction.condition_checks import Condition
+from thermal.transient.history import ThermalStage
 
 
 class Heating:

@@ -15,16 +15,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.losses import PlacedLoss
-from rigdesign.rig.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
+from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
+from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.stage_losses import StageLosses
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil, injected_flow, wall_flow
-from rigdesign.stage_losses import StageLosses
 from rigdesign.transient.still_air import at_least, still
-from thermal.boundary import Film, FilmCoefficient, FilmLaw
-from thermal.capacity import StoredHeat
-from thermal.condition_checks import Condition
-from thermal.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
+from thermal.conditions.boundary import Film, FilmCoefficient, FilmLaw
+from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
+from thermal.conduction.capacity import StoredHeat
+from thermal.conduction.condition_checks import Condition
 
 OIL_ONLY = ("oil_acceleration", "squeeze")
 """Losses that end with the oil."""
@@ -217,7 +217,7 @@ def _bearing_streams(feed: str, flows: dict[str, float], each: float, leak: floa
 
 
 def cooling_flow(box: Gearbox, part: str, state: StageLosses, name: str) -> float:
-    """Oil that passes the film of a bearing [m3/s] (see dynamics.journal_bearing.JournalBearing)."""
+    """Oil that passes the film of a bearing [m3/s] (see dynamics.bearing.journal.JournalBearing)."""
     film = state.bearings[f"{name}.{part}"]
     return min(film.flow, max(box.bearings[part].feed_share * film.flow, film.side_flow))
 

@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.case.model import Case
-from rigdesign.lubrication import heater_and_cooler, oil_streams
-from rigdesign.rig.boundary import BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.boundary import BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.oil import heater_and_cooler, oil_streams
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_oil, injected_flow, wall_flow
-from rigdesign.state import OperatingPoint
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.oil import LEAK
 from rigdesign.transient.phases import Phase, Timeline
-from thermal.streams import StreamNetwork
+from thermal.conditions.streams import StreamNetwork
 
 FloatArray = NDArray[np.float64]
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rigdesign.case.model import Case
 from rigdesign.case.schedule import StageValues
 from rigdesign.case.transient import Event
-from rigdesign.state import OperatingPoint
+from rigdesign.coupling.state import OperatingPoint
 
 PARTS = 4
 """Parts into which a change of speed is cut: losses are no straight line over it."""

@@ -1,8 +1,8 @@
 """Places of a housing whose temperatures are kept over time."""
 
-from rigdesign.rig.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
+from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.rig.model import Rig
-from thermal.probes import Probe
+from thermal.transient.probes import Probe
 
 
 def probes_of(rig: Rig, name: str) -> list[Probe]:

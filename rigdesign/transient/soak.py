@@ -7,7 +7,7 @@ while; a warm-up at standstill with the oil on brings the box along.
 from collections.abc import Callable, Sequence
 
 from rigdesign.case.model import Case
-from rigdesign.results_transient import Soak
+from rigdesign.results.transient import Soak
 from rigdesign.transient.course import Branch
 from rigdesign.transient.limits import broken, clearance_limits
 

@@ -80,7 +80,7 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
 
 def _main_rig(with_run: bool) -> Iterable[ValidationRow]:
     from rigdesign.case import load_case
-    from rigdesign.run import run_case
+    from rigdesign.run.main import run_case
     from rigdesign.validation.main_rig import main_rig_rows, rows_without_run
     from rigdesign.validation.prototype import case_folder
 
@@ -91,7 +91,7 @@ def _main_rig(with_run: bool) -> Iterable[ValidationRow]:
 
 
 def _run(prototype: object, say: Callable[[str], None]) -> Iterable[ValidationRow]:
-    from rigdesign.run import run_case
+    from rigdesign.run.main import run_case
     from rigdesign.validation.prototype import Prototype
     from rigdesign.validation.run_rows import run_rows
 

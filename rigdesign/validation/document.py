@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from rigdesign import __version__
-from rigdesign.report.output import staged
+from rigdesign.base.output_folder import staged
 from rigdesign.validation.rows import Basis, ValidationRow
 
 SCHEMA_VERSION = 1

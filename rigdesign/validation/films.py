@@ -17,10 +17,10 @@ Found by these rows:
 from collections.abc import Iterator
 from math import pi
 
-from rigdesign.oil import OILS
+from rigdesign.properties.oil import OILS
 from rigdesign.validation.rows import ValidationRow, compare, stated
-from thermal import convection
-from thermal.audit import least_radiation
+from thermal.conduction.audit import least_radiation
+from thermal.films import convection
 
 ZERO = 273.15
 AMBIENT = 20.0 + ZERO

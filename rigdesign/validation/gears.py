@@ -14,8 +14,8 @@ Found by these rows:
 from collections.abc import Iterator
 from dataclasses import replace
 
-from dynamics.gear import GearPair
-from dynamics.iso_rating import RatingOptions, dynamic_factor, root_stress
+from dynamics.gear.pair import GearPair
+from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, root_stress
 from rigdesign.validation.prototype import (
     REFERENCE_MESH,
     REFERENCE_OPTIONS,

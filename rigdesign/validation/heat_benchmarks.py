@@ -9,13 +9,13 @@ import math
 import numpy as np
 
 from rigdesign.validation.mapped_mesh import mapped, split
-from thermal.boundary import Adiabatic, Film, PrescribedTemperature, Radiation, SurfaceSource
-from thermal.condition_checks import Condition
-from thermal.conduction import solve_steady
-from thermal.convection import constant
+from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature, Radiation, SurfaceSource
+from thermal.conduction.condition_checks import Condition
+from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, FloatArray, NamedMesh, box_mesh
-from thermal.transient import ThermalStage, solve_transient
+from thermal.films.convection import constant
+from thermal.transient.history import ThermalStage, solve_transient
 
 ZERO = 273.15
 SOURCE = "NAFEMS, The Standard NAFEMS Benchmarks (1990)"

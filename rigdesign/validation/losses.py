@@ -7,8 +7,8 @@ profile shifts, which is not printed, decides the mesh loss of the test gear by 
 
 from collections.abc import Iterator
 
-from dynamics.gear import GearPair
-from dynamics.tooth_sliding import ToothPath, ohlendorf_factor, tooth_loss_factor
+from dynamics.gear.pair import GearPair
+from dynamics.mesh.sliding import ToothPath, ohlendorf_factor, tooth_loss_factor
 from rigdesign.validation.prototype import Prototype
 from rigdesign.validation.rows import ValidationRow, compare, compare_printed, stated
 

@@ -5,15 +5,15 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.mesh_force import PackedMeshes, evaluate_mesh, pack_meshes
-from dynamics.mesh_law import MeshLaw
-from dynamics.periodic_response import periodic_by_time
-from dynamics.static_loop import port_model, solve_static
+from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.periodic_response import periodic_by_time
 from rigdesign.rig.model import Rig
-from rigdesign.validation.courses import simulation_laws, smooth
 from rigdesign.validation.oscillator import oscillator_rows
 from rigdesign.validation.prototype import RPM, TEST_TORQUE, Prototype
 from rigdesign.validation.rows import ValidationRow, compare, not_modelled, stated
+from rigdesign.validation.speed_sweeps import simulation_laws, smooth
 
 Array = NDArray[np.float64]
 

@@ -10,12 +10,12 @@ from contextlib import suppress
 
 import numpy as np
 
-from dynamics.harmonic_balance import HarmonicGrid, HarmonicSolution, Problem, solve_periodic
-from dynamics.linear_system import LinearSystem
-from dynamics.mesh_law import MeshLaw
-from dynamics.modal_form import modal_form
-from dynamics.static_loop import NotConverged, port_model
-from dynamics.waveform import waveform
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.modal_form import modal_form
+from dynamics.drivetrain.static_loop import NotConverged, port_model
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.harmonic_balance import HarmonicGrid, HarmonicSolution, Problem, solve_periodic
+from dynamics.response.waveform import waveform
 from rigdesign.validation.rows import ValidationRow, compare
 
 ZETA, MEAN_FORCE, FORCE = 0.05, 0.1, 0.05

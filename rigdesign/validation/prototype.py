@@ -6,10 +6,10 @@ from math import pi
 from pathlib import Path
 
 import rigdesign
-from dynamics.gear import GearPair
-from dynamics.iso_rating import RatingOptions
+from dynamics.gear.pair import GearPair
+from dynamics.rating.iso_rating import RatingOptions
+from rigdesign.base.errors import UsageError
 from rigdesign.case import Case, load_case
-from rigdesign.errors import UsageError
 from rigdesign.rig.gears import build_pair
 from rigdesign.rig.model import Rig, build_rig
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from dynamics.ramp import RampLimits, ramp_rules
-from rigdesign.ramp_run import schedule_of
+from dynamics.response.schedule import RampLimits, ramp_rules
+from rigdesign.coupling.time_run import schedule_of
 from rigdesign.validation.prototype import RPM, Prototype
 from rigdesign.validation.rows import ValidationRow, compare, stated
 

@@ -25,9 +25,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from dynamics.iso_rating import dynamic_factor
-from dynamics.modes import loop_modes
-from rigdesign.validation.courses import (
+from dynamics.drivetrain.modes import loop_modes
+from dynamics.rating.iso_rating import dynamic_factor
+from rigdesign.validation.gears import REFERENCE_RESONANCE, resonance_speed
+from rigdesign.validation.prototype import REFERENCE_OPTIONS, RPM, TEST_TORQUE, Prototype
+from rigdesign.validation.rows import Bound, Published, ValidationRow, compare, stated
+from rigdesign.validation.shafts import SHAFT_PARAMETERS
+from rigdesign.validation.speed_sweeps import (
     COARSE,
     FINE,
     MAIN,
@@ -43,10 +47,6 @@ from rigdesign.validation.courses import (
     simulation_models,
     smooth,
 )
-from rigdesign.validation.gears import REFERENCE_RESONANCE, resonance_speed
-from rigdesign.validation.prototype import REFERENCE_OPTIONS, RPM, TEST_TORQUE, Prototype
-from rigdesign.validation.rows import Bound, Published, ValidationRow, compare, stated
-from rigdesign.validation.shafts import SHAFT_PARAMETERS
 
 GOAL = 0.15
 FIGURE_7, FIGURE_8 = "P2, Figure 7", "P2, Figure 8"

@@ -7,7 +7,7 @@ size.
 from collections.abc import Iterator
 from math import pi
 
-from rigdesign.results import RunResult
+from rigdesign.results.result import RunResult
 from rigdesign.validation.rows import ValidationRow, compare, stated
 
 CLOSURE = 1e-8

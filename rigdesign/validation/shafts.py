@@ -15,10 +15,16 @@ Found by these rows:
 
 from collections.abc import Iterator, Sequence
 
-from dynamics.modes import Crossing, damping_audit, order_crossings, sampling_audit, shaft_frequencies
-from rigdesign.validation.courses import TOP_SPEED, simulation_laws
+from dynamics.drivetrain.modes import (
+    Crossing,
+    damping_audit,
+    order_crossings,
+    sampling_audit,
+    shaft_frequencies,
+)
 from rigdesign.validation.prototype import RPM, Prototype
 from rigdesign.validation.rows import ValidationRow, compare, stated
+from rigdesign.validation.speed_sweeps import TOP_SPEED, simulation_laws
 
 TABLE_2 = {
     "test_pinion": (4022.7, 5657.2, 7776.4),

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.validation.mapped_mesh import mapped, piecewise
-from thermal.elastic import ElasticSetup
+from thermal.expansion.elastic import ElasticSetup
+from thermal.expansion.stress import stress_at_nodes
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, FloatArray, NamedMesh
-from thermal.stress import stress_at_nodes
 
 HOLE, EDGE, THICKNESS = 0.02, 10.0, 0.05
 """Radius of the hole that stands for the middle of the spot, half edge and thickness of the membrane of T1 [mm]."""

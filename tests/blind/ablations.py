@@ -8,9 +8,9 @@ Each takes one part away from the calibration that is frozen.
 from collections.abc import Callable
 from dataclasses import replace
 
-from rigdesign.diagnosis import workflow
-from rigdesign.diagnosis.amplitudes import Amplitudes
-from rigdesign.diagnosis.defaults import Calibration
+from rigdesign.diagnosis.decision import workflow
+from rigdesign.diagnosis.decision.defaults import Calibration
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 
 OWN = ("point", "series_mesh_point", "series_shaft_point", "frequency")
 """Amplitudes of what each number is off by itself: the hedge for what no simulator spans."""

@@ -29,16 +29,16 @@ import numpy as np
 
 from rigdesign.case import load_case
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.amplitudes import Amplitudes
-from rigdesign.diagnosis.baseline import Drift
-from rigdesign.diagnosis.calibration import calibrate as fit_all
-from rigdesign.diagnosis.calibration import calibrate_drift
 from rigdesign.diagnosis.catalogue import effects_of
-from rigdesign.diagnosis.defaults import DEFAULT, Calibration
-from rigdesign.diagnosis.effects import Effect
+from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
+from rigdesign.diagnosis.residual.baseline import Drift
+from rigdesign.diagnosis.residual.calibration import calibrate as fit_all
+from rigdesign.diagnosis.residual.calibration import calibrate_drift
+from rigdesign.diagnosis.residual.covariance_inflation import widen_drift
+from rigdesign.diagnosis.residual.residual_problem import Comparison, plain
 from rigdesign.diagnosis.run import diagnose_measurement, read_subject
-from rigdesign.diagnosis.subject import Comparison, plain
-from rigdesign.diagnosis.widening import widen_drift
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.measurement import load_measurement
 from tests.blind.ablations import ABLATIONS
 from tests.blind.metrics import SIZES, Row, canonical, table

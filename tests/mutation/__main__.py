@@ -64,7 +64,9 @@ def main() -> None:
     )
     parser.add_argument("--count", type=int, default=180)
     parser.add_argument("--seed", type=int, default=15)
-    parser.add_argument("--only", nargs="*", default=(), help="modules or folders, as rigdesign/losses.py")
+    parser.add_argument(
+        "--only", nargs="*", default=(), help="modules or folders, as rigdesign/coupling/losses.py"
+    )
     parser.add_argument("--files", type=int, default=0, help="test files asked, nearest first; 0 for all")
     parser.add_argument("--seconds", type=float, default=300.0, help="of tests run against one mutant")
     given = parser.parse_args()

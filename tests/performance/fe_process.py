@@ -16,12 +16,19 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from thermal.boundary import Adiabatic, BoundaryCondition, Film, FilmCoefficient, FilmLaw, Radiation
-from thermal.conduction import ConductionSetup, solve_steady
-from thermal.elastic import ElasticSetup
+from thermal.conditions.boundary import (
+    Adiabatic,
+    BoundaryCondition,
+    Film,
+    FilmCoefficient,
+    FilmLaw,
+    Radiation,
+)
+from thermal.conduction.steady import ConductionSetup, solve_steady
+from thermal.expansion.elastic import ElasticSetup
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh
-from thermal.housing_file import read_mesh
+from thermal.housing.mesh_file import read_mesh
 
 
 def constant(value: float) -> FilmLaw:

@@ -11,15 +11,15 @@ from time import process_time
 import numpy as np
 import pytest
 
-from dynamics.drivetrain import assemble
-from dynamics.flank import Microgeometry, mesh_law
-from dynamics.gear import GearPair
-from dynamics.initial_state import wound_state
-from dynamics.iso_rating import mesh_stiffness
-from dynamics.linear_system import LinearSystem
-from dynamics.mesh_law import MeshLaw
-from dynamics.time_march import DriveState, TimeMarch
-from dynamics.tooth_stiffness import pair_stiffness
+from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.gear.pair import GearPair
+from dynamics.mesh.flank import Microgeometry, mesh_law
+from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.stiffness import pair_stiffness
+from dynamics.rating.iso_rating import mesh_stiffness
+from dynamics.response.initial_state import wound_state
+from dynamics.response.time_march import DriveState, TimeMarch
 from tests.mesh_example import wavy_law
 from tests.rig_example import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, prototype
 

@@ -27,12 +27,12 @@ from tests import calculix
 from tests.msh_file import write_msh
 from tests.performance import fe_process
 from tests.performance.ribbed_box import write_ribbed_box
-from thermal.boundary import BoundaryCondition
-from thermal.elastic import three_two_one
+from thermal.conditions.boundary import BoundaryCondition
+from thermal.expansion.elastic import three_two_one
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh, box_mesh, facet_table
 from thermal.fe.numbering import inverse
-from thermal.housing import (
+from thermal.housing.gearbox import (
     ClampingField,
     GearDisc,
     HousingGeometry,
@@ -41,7 +41,7 @@ from thermal.housing import (
     build_gearbox,
     mesh_sizes,
 )
-from thermal.housing_file import read_mesh
+from thermal.housing.mesh_file import read_mesh
 
 STEEL = (210e9, 0.3, 11.5e-6)
 CONDUCTIVITY = 45.0

@@ -17,12 +17,12 @@ from pathlib import Path
 import pytest
 
 from rigdesign import load_case
-from rigdesign.coupling import PointResult, solve_point
-from rigdesign.discretisation import EDGE_ORDER, Numbers, numbers, richardson
-from rigdesign.ramp_run import held_points
-from rigdesign.remesh import on_mesh
+from rigdesign.coupling.loop import PointResult, solve_point
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
-from thermal.housing import MeshSizes, build_gearbox, mesh_sizes
+from rigdesign.run.mesh_convergence import EDGE_ORDER, Numbers, numbers, richardson
+from rigdesign.run.mesh_refinement import on_mesh
+from thermal.housing.gearbox import MeshSizes, build_gearbox, mesh_sizes
 
 CASES = Path(__file__).parents[2] / "cases"
 FACTORS = (2.0, 1.4, 1.0, 0.8)

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from rigdesign.report.html import report_html
+from rigdesign.report.pages.report import report_html
 from tests.report_example import make_result
 
 

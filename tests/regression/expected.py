@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from rigdesign import load_case, run_case
-from rigdesign.results import Check, RunResult
+from rigdesign.results.result import Check, RunResult
 
 CASES = Path(__file__).parents[2] / "cases"
 NAMES = ("uhcf_prototype", "uhcf_main", "loop_1to1", "loop_hunting")

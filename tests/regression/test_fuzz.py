@@ -17,10 +17,10 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign.base.errors import RigdesignError
 from rigdesign.case import load_case
-from rigdesign.errors import RigdesignError
 from rigdesign.report import write_results
-from rigdesign.run import run_case
+from rigdesign.run.main import run_case
 from tests.fuzz_example import broken_texts, shortened
 from tests.mutant_example import mutations
 

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.modes import loop_modes, modes_above_samples
-from dynamics.response import TimeResponse
+from dynamics.drivetrain.modes import loop_modes, modes_above_samples
+from dynamics.response.time_response import TimeResponse
 from rigdesign.case import load_case
-from rigdesign.coupling import PointResult, solve_point
-from rigdesign.loads import laws_of
-from rigdesign.ramp_run import held_points, run_ramp, schedule_of
+from rigdesign.coupling.loads import laws_of
+from rigdesign.coupling.loop import PointResult, solve_point
+from rigdesign.coupling.time_run import held_points, run_ramp, schedule_of
 from rigdesign.rig.model import Rig, build_rig
 
 CASE = Path(__file__).parent / "fzg_20_kHz"

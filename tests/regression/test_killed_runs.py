@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign.errors import OutputError
+from rigdesign.base.errors import OutputError
 from rigdesign.report import write_results
 from tests.unit.test_cli import SMALL
 from tests.unit.test_killed_writers import attempts, held_against, published
@@ -25,7 +25,7 @@ from tests.unit.test_study import DRIVER, POINTS, ROOT, _events, _stored
 
 CHECKS, STUDIES = 20, 25
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(ROOT)}
-CHECK = "from rigdesign.cli import main; main()"
+CHECK = "from rigdesign.cli.main import main; main()"
 
 
 def ended(command: list[str], seconds: float | None) -> int:

@@ -19,10 +19,10 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign.base.errors import CaseError, NotConvergedError, RigdesignError
 from rigdesign.case import Case, load_case
-from rigdesign.errors import CaseError, NotConvergedError, RigdesignError
 from rigdesign.report import results_document
-from rigdesign.run import run_case
+from rigdesign.run.main import run_case
 from tests.mutant_example import mutations
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"

@@ -6,12 +6,19 @@ import numpy as np
 import pytest
 
 from tests.unit.test_expansion import COLD, IRON, STEEL, geometry
-from thermal.alignment import ShaftAxis, axis_tolerances, misalignment, roundness, shaft_axis, shaft_pair
-from thermal.expansion import Expansion, ExpansionSetup, expand
-from thermal.expansion_setup import ROUND
-from thermal.hot_shape import HotShape
-from thermal.housing import build_gearbox
-from thermal.stations import GearboxModel
+from thermal.expansion.alignment import (
+    ShaftAxis,
+    axis_tolerances,
+    misalignment,
+    roundness,
+    shaft_axis,
+    shaft_pair,
+)
+from thermal.expansion.deformed_geometry import HotShape
+from thermal.expansion.expansion import Expansion, ExpansionSetup, expand
+from thermal.expansion.setup import ROUND
+from thermal.housing.gearbox import build_gearbox
+from thermal.housing.stations import GearboxModel
 
 GRADIENT = 300.0
 """Of the temperature through the height [K/m]."""

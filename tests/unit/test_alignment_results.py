@@ -8,7 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigdesign.alignment import (
+from rigdesign.case import load_case
+from rigdesign.case.limits import AlignmentLimits
+from rigdesign.case.model import Case
+from rigdesign.checks.alignment import checks
+from rigdesign.checks.transient import transient_checks
+from rigdesign.coupling.alignment import (
     CouplingEnd,
     CouplingPlace,
     alignment,
@@ -17,19 +22,14 @@ from rigdesign.alignment import (
     coupled_ends,
     coupling_places,
 )
-from rigdesign.assemble import transient_alignment
-from rigdesign.assemble.alignment import axis_rows, bore_rows, coupling_rows
-from rigdesign.assemble.hand import axis_rise
-from rigdesign.assemble.transient_alignment import misalignments, worst_misalignments
-from rigdesign.case import load_case
-from rigdesign.case.limits import AlignmentLimits
-from rigdesign.case.model import Case
-from rigdesign.checks.alignment import checks
-from rigdesign.checks.transient import transient_checks
-from rigdesign.results import Check, GrowthResult
+from rigdesign.records.alignment import axis_rows, bore_rows, coupling_rows
+from rigdesign.records.hand import axis_rise
+from rigdesign.results.result import Check, GrowthResult
 from rigdesign.rig.model import Rig, build_rig
-from thermal.alignment import ShaftAxis
-from thermal.expansion import Expansion, expand
+from rigdesign.run import transient_alignment
+from rigdesign.run.transient_alignment import misalignments, worst_misalignments
+from thermal.expansion.alignment import ShaftAxis
+from thermal.expansion.expansion import Expansion, expand
 
 CASE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 RISE = 60.0

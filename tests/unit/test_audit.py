@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from thermal import convection as films
-from thermal.audit import (
+from thermal.conditions.boundary import STEFAN_BOLTZMANN, Adiabatic, Film, FilmLaw, Radiation
+from thermal.conduction.audit import (
     assumed_difference,
     audit_conditions,
     least_radiation,
     radiation_counted_twice,
     radiation_too_small,
 )
-from thermal.boundary import STEFAN_BOLTZMANN, Adiabatic, Film, FilmLaw, Radiation
+from thermal.films import convection as films
 
 AMBIENT = 293.15
 

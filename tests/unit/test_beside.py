@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rigdesign import beside
-from rigdesign.beside import Beside
+from rigdesign.base import parallel as beside
+from rigdesign.base.parallel import Beside
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 

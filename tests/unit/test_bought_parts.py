@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from rigdesign import load_case
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.checks.assumptions import depends
-from rigdesign.checks.bought_parts import bought_parts
-from rigdesign.checks.subject import Subject
-from rigdesign.errors import CaseError
-from rigdesign.results import Check
+from rigdesign.checks.component_limits import bought_parts
+from rigdesign.records.solved_rig import Subject
+from rigdesign.results.result import Check
 from rigdesign.rig.model import build_rig
 from tests.idler_case import idler_case
 

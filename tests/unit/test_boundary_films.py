@@ -5,18 +5,18 @@ from pathlib import Path
 import pytest
 
 from rigdesign import load_case
-from rigdesign.bearing_films import solve_bearings
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
-from rigdesign.cold import cold_feedback
-from rigdesign.errors import CaseError
-from rigdesign.loads import mesh_models
-from rigdesign.losses import PlacedLoss, rotating_losses
-from rigdesign.lubrication import oil_streams
-from rigdesign.ramp_run import held_points
-from rigdesign.rig.boundary import boundary_conditions
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.boundary import boundary_conditions
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import mesh_models
+from rigdesign.coupling.losses import PlacedLoss, rotating_losses
+from rigdesign.coupling.oil import oil_streams
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
-from thermal.boundary import Exchange, Film, FilmCoefficient, SurfaceSource
-from thermal.housing_stations import seal_stations
+from thermal.conditions.boundary import Exchange, Film, FilmCoefficient, SurfaceSource
+from thermal.housing.parametric_stations import seal_stations
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 BOUNDARY = "gearboxes.test.housing.boundary"

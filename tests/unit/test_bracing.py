@@ -2,10 +2,10 @@ import math
 
 import pytest
 
-from dynamics import bracing
-from dynamics.bracing import ShiftedGear, brace, drift
-from dynamics.drivetrain import assemble
-from dynamics.static_loop import NotConverged
+from dynamics.drivetrain import bracing
+from dynamics.drivetrain.bracing import ShiftedGear, brace, drift
+from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.static_loop import NotConverged
 from tests.rig_example import TRANSVERSE_ANGLE, prototype, prototype_laws
 
 HELIX = math.radians(18.0)

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case, load_case
 from rigdesign.case.paths import known_paths, slot_at
-from rigdesign.errors import CaseError
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 Variant = Callable[[str], Path]

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case import load_case
-from rigdesign.errors import CaseError, Fault
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype" / "case.toml"
 

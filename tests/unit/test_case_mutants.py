@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case, load_case
-from rigdesign.errors import CaseError
 from tests.mutant_example import mutations
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.journal_bearing import JournalBearing, transition_speed
+from dynamics.bearing.journal import JournalBearing, transition_speed
 from rigdesign.case import load_case
 from rigdesign.checks import dynamics, ramp, strength, thermal
 from rigdesign.checks.omissions import omissions
-from rigdesign.checks.subject import Subject
-from rigdesign.results import Check, GearboxDynamics
+from rigdesign.checks.rules import with_omissions
+from rigdesign.records.solved_rig import Subject
+from rigdesign.results.result import Check, GearboxDynamics
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.rules import with_omissions
 from tests.report_example import gearbox
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -19,8 +19,8 @@ from typing import Any
 
 import pytest
 
-from rigdesign import cli
-from rigdesign.system import APT_LINE
+from rigdesign.base.system import APT_LINE
+from rigdesign.cli import main as cli
 from tests.unit.test_case_schema import complaints
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
@@ -131,7 +131,7 @@ def write(tmp_path: Path) -> Write:
 
 
 def help_text(*command: str) -> str:
-    called = "from rigdesign.cli import main; main()"
+    called = "from rigdesign.cli.main import main; main()"
     result = subprocess.run(
         [sys.executable, "-c", called, *command, "--help"],
         capture_output=True, text=True, check=True, env=os.environ | {"COLUMNS": "100", "NO_COLOR": "1"},

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.two_blocks import CONDUCTIVITY, conditions, law, two_blocks
-from thermal.boundary import (
+from thermal.conditions.boundary import (
     Adiabatic,
     BodySource,
     BoundaryCondition,
@@ -19,9 +19,9 @@ from thermal.boundary import (
     Radiation,
     SurfaceSource,
 )
-from thermal.condition_checks import ConditionError
-from thermal.conduction import ConductionSetup, solve_steady
-from thermal.conduction_terms import ConductionProblem
+from thermal.conduction.condition_checks import ConditionError
+from thermal.conduction.steady import ConductionSetup, solve_steady
+from thermal.conduction.terms import ConductionProblem
 from thermal.fe.mesh import NamedMesh
 from thermal.fe.solver import NotConverged
 

@@ -9,19 +9,19 @@ from numpy.testing import assert_allclose
 
 from tests.coupled_blocks import CONDUCTIVITY, conditions, contact, coupled_blocks, enclosure, network
 from tests.two_blocks import law
-from thermal.balance import heat_balance
-from thermal.boundary import Adiabatic, Film, FilmLaw
-from thermal.condition_checks import Condition, ConditionError
-from thermal.conduction import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
-from thermal.conduction_terms import ConductionProblem
-from thermal.conductivity import Conductivity
-from thermal.contact import Contact
-from thermal.contact_terms import ContactTerms
-from thermal.enclosure import Enclosure, EnclosureTerms
+from thermal.conditions.boundary import Adiabatic, Film, FilmLaw
+from thermal.conditions.contact import Contact
+from thermal.conditions.enclosure import Enclosure, EnclosureTerms
+from thermal.conditions.streams import StreamNetwork
+from thermal.conduction.balance import heat_balance
+from thermal.conduction.condition_checks import Condition, ConditionError
+from thermal.conduction.conductivity import Conductivity
+from thermal.conduction.contact_terms import ContactTerms
+from thermal.conduction.newton import newton
+from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
+from thermal.conduction.stream_terms import VolumeTerms
+from thermal.conduction.terms import ConductionProblem
 from thermal.fe.solver import NotConverged
-from thermal.newton import newton
-from thermal.stream_terms import VolumeTerms
-from thermal.streams import StreamNetwork
 
 
 def base_law(temperature: np.ndarray) -> np.ndarray:

@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from rigdesign import coupling
-from rigdesign.errors import NotConvergedError
-from rigdesign.passes import feedback_of
+from rigdesign.base.errors import NotConvergedError
+from rigdesign.coupling import loop as coupling
+from rigdesign.coupling.iteration import feedback_of
+from rigdesign.coupling.state import Feedback, OperatingPoint
 from rigdesign.rig.oil_supply import gear_oil
-from rigdesign.state import Feedback, OperatingPoint
 from tests.warm_prototype import base
 
 POINT = OperatingPoint(stage="x", speed=1.0, torque=1.0)

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import sparse
 
-from thermal.elastic import ElasticSetup, three_two_one
+from thermal.expansion.elastic import ElasticSetup, three_two_one
 from thermal.fe import curved
 from thermal.fe.curved import bent_cells, linear_stiffness
 from thermal.fe.elements import FiniteElements

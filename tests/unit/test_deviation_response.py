@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from dynamics.deviation_response import DeviationResponse, HarmonicTorque
-from dynamics.mesh_force import evaluate_mesh, pack_meshes
-from dynamics.tooth_excitation import Motion, excitation, pair_sensitivity, tooth_pattern
-from rigdesign.errors import UsageError
+from dynamics.mesh.force import evaluate_mesh, pack_meshes
+from dynamics.orders.deviation_response import DeviationResponse, HarmonicTorque
+from dynamics.orders.tooth_excitation import Motion, excitation, pair_sensitivity, tooth_pattern
+from rigdesign.base.errors import UsageError
 from rigdesign.prediction.model import Channel
 from rigdesign.prediction.orders import PointOrders, ideal_response, shaft_orders
-from rigdesign.prediction.standstill import standing_modes, standing_value
+from rigdesign.prediction.static_tests import standing_modes, standing_value
 from tests.order_example import DRAGS, changed, channels, settled
 
 PINION = "gearboxes__test__gears__pinion__flank__"

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.anonymous import anonymous, heats
+from rigdesign.diagnosis.residual.unmodelled_cause import anonymous, heats
 from tests.diagnosis_example import story
 
 STREAM = "test.gear_oil"

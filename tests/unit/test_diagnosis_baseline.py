@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.amplitudes import Amplitudes
-from rigdesign.diagnosis.baseline import Change, Drift, differenced
-from rigdesign.diagnosis.calibration import calibrate_drift
-from rigdesign.diagnosis.library import Library
-from rigdesign.diagnosis.resonance import steepness
-from rigdesign.diagnosis.subject import Comparison
-from rigdesign.diagnosis.widening import widen_drift
+from rigdesign.diagnosis.library.library import Library
+from rigdesign.diagnosis.residual.baseline import Change, Drift, differenced
+from rigdesign.diagnosis.residual.calibration import calibrate_drift
+from rigdesign.diagnosis.residual.covariance_inflation import widen_drift
+from rigdesign.diagnosis.residual.residual_problem import Comparison
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
+from rigdesign.diagnosis.statistics.resonance import steepness
 from rigdesign.prediction.model import Feature, Setting
 from tests.diagnosis_example import story
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.build import _responses, run_places
-from rigdesign.diagnosis.cache import Parts
-from rigdesign.diagnosis.effects import Effect, Parameter
-from rigdesign.errors import NotConvergedError
+from rigdesign.base.errors import NotConvergedError
+from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
+from rigdesign.diagnosis.library.build import _responses, run_places
+from rigdesign.diagnosis.library.cache import Parts
 
 
 def effect(name, family, low, high, **more):
@@ -51,7 +51,7 @@ def test_sizes_of_a_tooth_that_gives_way_and_of_flanks():
 
 
 def test_a_size_that_is_refused_leaves_out_the_larger_ones_on_its_side(tmp_path, monkeypatch):
-    monkeypatch.setattr("rigdesign.beside.cores", lambda: 1)
+    monkeypatch.setattr("rigdesign.base.parallel.cores", lambda: 1)
     model = Model(limit=0.5)
     found = made(
         model,
@@ -65,8 +65,8 @@ def test_a_size_that_is_refused_leaves_out_the_larger_ones_on_its_side(tmp_path,
 
 
 def test_an_interrupted_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
-    monkeypatch.setattr("rigdesign.beside.cores", lambda: 1)
-    monkeypatch.setattr("rigdesign.diagnosis.build.cores", lambda: 1)
+    monkeypatch.setattr("rigdesign.base.parallel.cores", lambda: 1)
+    monkeypatch.setattr("rigdesign.diagnosis.library.build.cores", lambda: 1)
     effects = [effect(f"damping:{number}", "damping", -1.0, 1.0) for number in range(10)]
 
     class Interrupted(Model):
@@ -90,7 +90,7 @@ def test_an_interrupted_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
 
 
 def test_what_the_model_refuses_altogether_is_not_asked_again(tmp_path, monkeypatch):
-    monkeypatch.setattr("rigdesign.beside.cores", lambda: 1)
+    monkeypatch.setattr("rigdesign.base.parallel.cores", lambda: 1)
     one = effect("damping:a", "damping", -1.0, 1.0)
     assert made(Model(limit=0.0), [one], tmp_path / "parts") == {}
     model = Model()

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.cache import Parts, library_of, stored_library
-from rigdesign.diagnosis.library import Library
+from rigdesign.diagnosis.library.cache import Parts, library_of, stored_library
+from rigdesign.diagnosis.library.library import Library
 from tests.corruption_example import damages
 from tests.diagnosis_example import story, the_case
 

@@ -7,22 +7,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import load_case
+from rigdesign.cli.terminal import print_diagnosis
 from rigdesign.diagnosis.catalogue import effects_of
-from rigdesign.diagnosis.claims import Traces, _group
-from rigdesign.diagnosis.covariance import Covariance, Whitened
-from rigdesign.diagnosis.document import diagnosis_document
-from rigdesign.diagnosis.evidence import Hypothesis, weigh
-from rigdesign.diagnosis.heldout import gap, held_out
-from rigdesign.diagnosis.library import Response
-from rigdesign.diagnosis.outcome import outcome
-from rigdesign.diagnosis.proof import FullRun, Proof
-from rigdesign.diagnosis.workflow import Problem, diagnose
-from rigdesign.errors import NotConvergedError
+from rigdesign.diagnosis.decision.claims import Traces, _group
+from rigdesign.diagnosis.decision.proof import FullRun, Proof
+from rigdesign.diagnosis.decision.workflow import Problem, diagnose
+from rigdesign.diagnosis.document.document import diagnosis_document
+from rigdesign.diagnosis.document.outcome import outcome
+from rigdesign.diagnosis.library.library import Response
+from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.diagnosis.statistics.evidence import Hypothesis, weigh
+from rigdesign.diagnosis.statistics.heldout import gap, held_out
 from rigdesign.prediction import Channel, Setting, predict
 from rigdesign.prediction.changes import changed_case
-from rigdesign.report.diagnosis_page import diagnosis_page
-from rigdesign.terminal import print_diagnosis
+from rigdesign.report.pages.diagnosis import diagnosis_page
 from tests.diagnosis_example import DESIGN, Rig, rerun, result_of, story, the_case, write_set
 
 CASES = Path(__file__).parents[2] / "cases"

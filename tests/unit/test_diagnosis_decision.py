@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision import Thresholds, decide, posterior
-from rigdesign.diagnosis.evidence import Evidence, Hypothesis
+from rigdesign.diagnosis.decision.decision import Thresholds, decide, posterior
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 
 COUNTS = {"physical": 50, "anonymous": 100, "pair": 1000, "sensor": 20}
 

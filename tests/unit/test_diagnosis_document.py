@@ -7,18 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rigdesign.base.errors import UsageError
 from rigdesign.case import load_case
-from rigdesign.diagnosis.advice import certainty, headline, steps
 from rigdesign.diagnosis.catalogue import effects_of
-from rigdesign.diagnosis.catalogue.page import effects_page
 from rigdesign.diagnosis.catalogue.waiting import WAITING
-from rigdesign.diagnosis.correction import of_data
-from rigdesign.diagnosis.document import diagnosis_document, measurement_patch
-from rigdesign.diagnosis.naming import Names, told
-from rigdesign.diagnosis.next_measurement import Ranked
-from rigdesign.diagnosis.outcome import check_pick, outcome
+from rigdesign.diagnosis.decision.naming import Names, told
+from rigdesign.diagnosis.document.advice import certainty, headline, steps
+from rigdesign.diagnosis.document.correction import of_data
+from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
+from rigdesign.diagnosis.document.outcome import check_pick, outcome
+from rigdesign.diagnosis.effects_page import effects_page
 from rigdesign.diagnosis.run import Result
-from rigdesign.errors import UsageError
+from rigdesign.diagnosis.statistics.next_measurement import Ranked
 from rigdesign.report.results_json import to_text
 from tests.diagnosis_example import story, the_case
 

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.columns import Column
-from rigdesign.diagnosis.covariance import Covariance, Release, Whitened
-from rigdesign.diagnosis.decision import Thresholds
-from rigdesign.diagnosis.evidence import (
+from rigdesign.diagnosis.decision.decision import Thresholds
+from rigdesign.diagnosis.decision.evaluate import Earlier, Explanations, examine
+from rigdesign.diagnosis.statistics.columns import Column
+from rigdesign.diagnosis.statistics.covariance import Covariance, Release, Whitened
+from rigdesign.diagnosis.statistics.evidence import (
     Curve,
     Hypothesis,
     graded,
@@ -17,7 +18,6 @@ from rigdesign.diagnosis.evidence import (
     weigh,
     weigh_pair,
 )
-from rigdesign.diagnosis.examine import Earlier, Explanations, examine
 
 N = 120
 

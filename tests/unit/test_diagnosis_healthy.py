@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis import subject as subjects
-from rigdesign.diagnosis.covariance import Covariance, Whitened
-from rigdesign.diagnosis.effects import Effect, Parameter
-from rigdesign.diagnosis.evidence import Evidence, Hypothesis, weigh
-from rigdesign.diagnosis.healthy import TREND, answer_error, healthy_columns, relative_speed
-from rigdesign.diagnosis.library import Library, Response
-from rigdesign.diagnosis.subject import plain
-from rigdesign.diagnosis.support import support
-from rigdesign.diagnosis.widening import LARGEST, WIDEN_ABOVE, widen
+from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
+from rigdesign.diagnosis.library.library import Library, Response
+from rigdesign.diagnosis.residual import residual_problem as subjects
+from rigdesign.diagnosis.residual.covariance_inflation import LARGEST, WIDEN_ABOVE, widen
+from rigdesign.diagnosis.residual.healthy import TREND, answer_error, healthy_columns, relative_speed
+from rigdesign.diagnosis.residual.residual_problem import plain
+from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, weigh
+from rigdesign.diagnosis.statistics.support import support
 from rigdesign.prediction.model import Channel, Setting, features_of
 from tests.diagnosis_example import DESIGN, story
 

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign import cli
+from rigdesign.cli import main as cli
+from rigdesign.cli.terminal import print_diagnosis
 from rigdesign.diagnosis import run
-from rigdesign.diagnosis.document import diagnosis_document
-from rigdesign.diagnosis.outcome import outcome
+from rigdesign.diagnosis.document.document import diagnosis_document
+from rigdesign.diagnosis.document.outcome import outcome
 from rigdesign.report.diagnosis_files import diagnosis_texts, write_diagnosis
-from rigdesign.report.diagnosis_page import diagnosis_page, shown_size
-from rigdesign.terminal import print_diagnosis
+from rigdesign.report.pages.diagnosis import diagnosis_page, shown_size
 from tests.diagnosis_example import CASE, Rig, result_of, story, write_set
 
 STORIES = ("mesh loss", "run-out", "alias", "exchanged", "angle", "one point", "healthy")

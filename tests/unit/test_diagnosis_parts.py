@@ -5,20 +5,20 @@ import math
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.amplitudes import Amplitudes
-from rigdesign.diagnosis.calibration import Group, _misfit, fit_amplitudes
-from rigdesign.diagnosis.columns import Column
-from rigdesign.diagnosis.constants import constants
-from rigdesign.diagnosis.covariance import Covariance, Whitened
-from rigdesign.diagnosis.detectability import aliases, detectabilities
-from rigdesign.diagnosis.effects import Effect, Parameter
-from rigdesign.diagnosis.evidence import Curve, Hypothesis, weigh
-from rigdesign.diagnosis.heldout import gap, held_out
-from rigdesign.diagnosis.intervals import fit_together
-from rigdesign.diagnosis.library import Library, Response
-from rigdesign.diagnosis.next_measurement import Proposal, Rival, ranked
-from rigdesign.diagnosis.outliers import reject
-from rigdesign.diagnosis.turning import Turning
+from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
+from rigdesign.diagnosis.decision.constants import constants
+from rigdesign.diagnosis.library.library import Library, Response
+from rigdesign.diagnosis.residual.calibration import Group, _misfit, fit_amplitudes
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
+from rigdesign.diagnosis.statistics.columns import Column
+from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.diagnosis.statistics.detectability import aliases, detectabilities
+from rigdesign.diagnosis.statistics.evidence import Curve, Hypothesis, weigh
+from rigdesign.diagnosis.statistics.heldout import gap, held_out
+from rigdesign.diagnosis.statistics.intervals import fit_together
+from rigdesign.diagnosis.statistics.next_measurement import Proposal, Rival, ranked
+from rigdesign.diagnosis.statistics.outliers import reject
+from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.prediction.model import Channel, Feature, Setting, features_of
 
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 
+from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
 from rigdesign.case.source import read_tree
 from rigdesign.diagnosis.catalogue import effects_of
-from rigdesign.diagnosis.document import diagnosis_document
-from rigdesign.diagnosis.outcome import outcome
-from rigdesign.diagnosis.patch import Fitted, case_patch, patched_title, patched_values, variant_text
-from rigdesign.errors import CaseError
+from rigdesign.diagnosis.decision.patch import Fitted, case_patch, patched_title, patched_values, variant_text
+from rigdesign.diagnosis.document.document import diagnosis_document
+from rigdesign.diagnosis.document.outcome import outcome
 from rigdesign.prediction.changes import changed_case
 from rigdesign.report.diagnosis_files import write_diagnosis
 from tests.diagnosis_example import CASE, story, the_case

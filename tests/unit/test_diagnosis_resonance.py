@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.columns import amplitudes_of
-from rigdesign.diagnosis.resonance import BLURRED, steepness
+from rigdesign.diagnosis.statistics.columns import amplitudes_of
+from rigdesign.diagnosis.statistics.resonance import BLURRED, steepness
 from rigdesign.prediction.model import Feature, Setting
 
 SETTINGS = (Setting(name="slow", speed=100.0, torque=50.0), Setting(name="fast", speed=300.0, torque=50.0))

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.columns import Column
-from rigdesign.diagnosis.covariance import Covariance, Whitened
-from rigdesign.diagnosis.evidence import Hypothesis, weigh, weigh_pair
-from rigdesign.diagnosis.own_error import OwnError
-from rigdesign.diagnosis.signature import Contest, Signature
+from rigdesign.diagnosis.residual.signature import Contest, Signature
+from rigdesign.diagnosis.statistics.columns import Column
+from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.diagnosis.statistics.evidence import Hypothesis, weigh, weigh_pair
+from rigdesign.diagnosis.statistics.model_error import OwnError
 from rigdesign.prediction.model import Feature
 
 POINTS = 8

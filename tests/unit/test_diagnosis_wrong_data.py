@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.covariance import Covariance
-from rigdesign.diagnosis.wrong_data import wrong_data
+from rigdesign.diagnosis.residual.data_error import wrong_data
+from rigdesign.diagnosis.statistics.covariance import Covariance
 from rigdesign.prediction.model import Channel, Feature
 
 CHANNELS = {

@@ -5,11 +5,11 @@ import pytest
 from scipy import sparse
 
 from tests.coupled_blocks import CAPACITY, CONDUCTIVITY, conditions, coupled_blocks
-from thermal import conduction_terms
-from thermal.capacity import HeatCapacity, Storage
-from thermal.conduction import ConductionSetup
-from thermal.conduction_terms import ConductionProblem
-from thermal.direct_factor import DirectFactor
+from thermal.conduction import terms as conduction_terms
+from thermal.conduction.capacity import HeatCapacity, Storage
+from thermal.conduction.steady import ConductionSetup
+from thermal.conduction.terms import ConductionProblem
+from thermal.fe.direct_factor import DirectFactor
 from thermal.fe.solver import LowRank, TwoLevelMultigrid, gmres
 
 

@@ -5,9 +5,9 @@ from typing import cast
 
 import pytest
 
-from rigdesign.discretisation import EDGE_ORDER, richardson
-from rigdesign.results import Check, Verdict
-from rigdesign.rules import with_error
+from rigdesign.checks.rules import with_error
+from rigdesign.results.result import Check, Verdict
+from rigdesign.run.mesh_convergence import EDGE_ORDER, richardson
 
 NODES = (1_000, 3_000, 24_000)
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.drivetrain import (
+from dynamics.drivetrain.graph import (
     Coupling,
     DragPlace,
     Drivetrain,
@@ -14,8 +14,8 @@ from dynamics.drivetrain import (
     assemble,
     joints,
 )
-from dynamics.power_loop import speed_ratios
-from dynamics.shaft import DrivetrainError, Section, Shaft
+from dynamics.drivetrain.power_loop import speed_ratios
+from dynamics.drivetrain.shaft import DrivetrainError, Section, Shaft
 from tests.rig_example import CENTRE_DISTANCE, mesh, prototype
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dynamics.dynamic_factor import dynamic_factor, factor_curve, half_peak_to_peak_factor, resonances
+from dynamics.rating.dynamic_factor import dynamic_factor, factor_curve, half_peak_to_peak_factor, resonances
 
 WAVE = np.sin(np.linspace(0.0, 2.0 * np.pi, 4097)[:-1])
 

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign import errors
-from rigdesign.bearing_films import solve_bearings
+from rigdesign.base import errors
+from rigdesign.base.errors import CaseError, Fault, RigdesignError
 from rigdesign.case import load_case
-from rigdesign.cold import cold_feedback
-from rigdesign.errors import CaseError, Fault, RigdesignError
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"

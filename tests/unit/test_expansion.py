@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from thermal.cylinders import Cylinder, Section
-from thermal.elastic import ElasticError
-from thermal.expansion import Expansion, ExpansionSetup, expand
-from thermal.growth import concentric_gap_change, free_growth, length_mean
-from thermal.housing import ClampingField, GearDisc, HousingGeometry, ShaftGeometry, build_gearbox
-from thermal.stations import GearboxModel
+from thermal.expansion.clearances import concentric_gap_change, free_growth, length_mean
+from thermal.expansion.cylinders import Cylinder, Section
+from thermal.expansion.elastic import ElasticError
+from thermal.expansion.expansion import Expansion, ExpansionSetup, expand
+from thermal.housing.gearbox import ClampingField, GearDisc, HousingGeometry, ShaftGeometry, build_gearbox
+from thermal.housing.stations import GearboxModel
 
 COLD = 293.15
 STEEL, IRON = (210e9, 0.3, 11.5e-6), (120e9, 0.26, 10.5e-6)

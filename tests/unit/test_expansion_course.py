@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from tests.unit.test_housing import PROTOTYPE
-from thermal.elastic import ElasticError
-from thermal.expansion import expand
-from thermal.expansion_course import ExpansionCourse
-from thermal.expansion_setup import ExpansionSetup
-from thermal.housing import build_gearbox
+from thermal.expansion.elastic import ElasticError
+from thermal.expansion.expansion import expand
+from thermal.expansion.many_fields import ExpansionCourse
+from thermal.expansion.setup import ExpansionSetup
+from thermal.housing.gearbox import build_gearbox
 
 STEEL = (210e9, 0.3, 12e-6)
 COLD = 293.15

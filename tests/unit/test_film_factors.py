@@ -4,13 +4,13 @@ from typing import get_args
 
 import pytest
 
+from rigdesign.base.errors import CaseError
 from rigdesign.case import housing as laws
-from rigdesign.errors import CaseError
-from rigdesign.rig.boundary import AIR, BEARING_FILM, boundary_conditions
+from rigdesign.coupling.boundary import AIR, BEARING_FILM, boundary_conditions
 from rigdesign.rig.model import build_rig
 from tests.warm_prototype import base, case_with, heat_by_kind, open_share, outlet, settled
-from thermal.boundary import Exchange, Film
-from thermal.conduction import CLOSURE
+from thermal.conditions.boundary import Exchange, Film
+from thermal.conduction.steady import CLOSURE
 
 FACTOR = 1.7
 

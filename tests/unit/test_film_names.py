@@ -6,17 +6,17 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.journal_bearing import BearingState
+from dynamics.bearing.journal import BearingState
 from rigdesign import load_case
-from rigdesign.bearing_films import solve_bearings
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
-from rigdesign.cold import cold_feedback
-from rigdesign.errors import CaseError
-from rigdesign.ramp_run import held_points
-from rigdesign.rig.boundary import boundary_conditions
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.boundary import boundary_conditions
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
-from thermal import convection
-from thermal.boundary import Exchange, Film, FilmCoefficient, FilmLaw
+from thermal.conditions.boundary import Exchange, Film, FilmCoefficient, FilmLaw
+from thermal.films import convection
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype" / "case.toml"
 BOUNDARY = "gearboxes.test.housing.boundary"

@@ -7,11 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigdesign import cli, load_case, passes, run_case
-from rigdesign import run as run_module
-from rigdesign.errors import NonFiniteResultError
-from rigdesign.finite import require_finite
-from rigdesign.results import RunResult
+from rigdesign import load_case, run_case
+from rigdesign.base.errors import NonFiniteResultError
+from rigdesign.base.finite import require_finite
+from rigdesign.cli import main as cli
+from rigdesign.coupling import iteration as passes
+from rigdesign.results.result import RunResult
+from rigdesign.run import main as run_module
 from tests.report_example import make_result
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"

@@ -4,11 +4,11 @@ from math import cos, pi, radians, tan
 import numpy as np
 import pytest
 
-from dynamics.flank import Microgeometry, cumulative_pitch, flank_modification, mesh_law
-from dynamics.gear import GearPair
-from dynamics.iso_rating import mesh_stiffness
-from dynamics.mesh_law import check_mesh_law
-from dynamics.tooth_stiffness import PairStiffness, pair_stiffness
+from dynamics.gear.pair import GearPair
+from dynamics.mesh.flank import Microgeometry, cumulative_pitch, flank_modification, mesh_law
+from dynamics.mesh.law import check_mesh_law
+from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
+from dynamics.rating.iso_rating import mesh_stiffness
 
 TEST_GEAR = GearPair.from_centre_distance(
     normal_module=1e-3,

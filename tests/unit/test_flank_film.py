@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_banded
 
-from rigdesign.oil import MIL_PRF_23699
-from thermal.film_inputs import FilmError
-from thermal.flank_film import (
+from rigdesign.properties.oil import MIL_PRF_23699
+from thermal.films.flank import (
     FilmOil,
     ToothRing,
     Wetting,
@@ -20,6 +19,7 @@ from thermal.flank_film import (
     on_rim,
     tooth_excess,
 )
+from thermal.films.inputs import FilmError
 
 OIL = FilmOil(
     conductivity=lambda _: 0.14,

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.gear import GearPair
+from dynamics.gear.pair import GearPair
 from rigdesign.case import load_case
-from rigdesign.loads import flank_growth
+from rigdesign.coupling.loads import flank_growth
 from rigdesign.rig.model import build_rig
 
 

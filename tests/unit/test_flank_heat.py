@@ -6,19 +6,19 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.gear import GearPair
+from dynamics.gear.pair import GearPair
 from rigdesign import load_case
-from rigdesign.assemble.heat_split import friction_heat, heat_split_rows
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
-from rigdesign.cold import cold_feedback
-from rigdesign.coupling import PointResult
-from rigdesign.errors import CaseError
-from rigdesign.flank_heat import gear_flanks, mesh_split, pinion_share, tooth_ring
-from rigdesign.loads import mesh_models
-from rigdesign.losses import mesh_losses
-from rigdesign.materials import ALUMINIUM, CASE_HARDENED_STEEL
-from rigdesign.passes import PassResult, one_pass
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.flank_heat import gear_flanks, mesh_split, pinion_share, tooth_ring
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.iteration import PassResult, one_pass
+from rigdesign.coupling.loads import mesh_models
+from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.losses import mesh_losses
+from rigdesign.coupling.time_run import held_points
+from rigdesign.properties.materials import ALUMINIUM, CASE_HARDENED_STEEL
+from rigdesign.records.heat_split import friction_heat, heat_split_rows
 from rigdesign.rig.model import Rig, build_rig
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dynamics import iso_rating
-from dynamics.cylindrical_gear import CylindricalGear, involute
-from dynamics.gear import GearGeometryError, GearPair, Rack
+from dynamics.gear.cylindrical_gear import CylindricalGear, involute
+from dynamics.gear.pair import GearGeometryError, GearPair, Rack
+from dynamics.rating import iso_rating
 
 UHCF = {
     "normal_module": 1e-3,

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign.bearing_films import solve_bearings
 from rigdesign.case import load_case
-from rigdesign.cold import cold_feedback
-from rigdesign.drags import drag_shafts, drag_torques
-from rigdesign.given_losses import given_power
-from rigdesign.loads import brace_cold, mesh_models, respond
-from rigdesign.losses import PlacedLoss, mesh_losses, rotating_losses
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.drag_torques import drag_shafts, drag_torques
+from rigdesign.coupling.given_losses import given_power
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import brace_cold, mesh_models, respond
+from rigdesign.coupling.losses import PlacedLoss, mesh_losses, rotating_losses
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"

@@ -4,16 +4,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics import harmonic_balance
-from dynamics.drivetrain import Motor, assemble
-from dynamics.harmonic_balance import HarmonicGrid, Problem, resample, solve_periodic
-from dynamics.harmonic_walk import HarmonicWalk, highest_mode, mesh_cells, quasi_static_start
-from dynamics.linear_system import LinearSystem
-from dynamics.mesh_law import MeshLaw
-from dynamics.modal_form import modal_form
-from dynamics.response_curve import ResponseCurve, periodic_response
-from dynamics.static_loop import NotConverged, port_model
-from dynamics.waveform import waveform
+from dynamics.drivetrain.graph import Motor, assemble
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.modal_form import modal_form
+from dynamics.drivetrain.static_loop import NotConverged, port_model
+from dynamics.mesh.law import MeshLaw
+from dynamics.response import harmonic_balance
+from dynamics.response.harmonic_balance import HarmonicGrid, Problem, resample, solve_periodic
+from dynamics.response.harmonic_walk import HarmonicWalk, highest_mode, mesh_cells, quasi_static_start
+from dynamics.response.speed_sweep import ResponseCurve, periodic_response
+from dynamics.response.waveform import waveform
 from tests.rig_example import prototype, prototype_laws
 
 RPM = math.pi / 30.0

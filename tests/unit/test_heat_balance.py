@@ -6,11 +6,18 @@ import numpy as np
 import pytest
 
 from tests.two_blocks import CONDUCTIVITY, conditions, two_blocks
-from thermal.balance import heat_balance
-from thermal.boundary import BodySource, BoundaryCondition, Exchange, Film, PrescribedTemperature, Radiation
-from thermal.boundary import SurfaceSource as Source
-from thermal.conduction import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
-from thermal.conduction_terms import ConductionProblem
+from thermal.conditions.boundary import (
+    BodySource,
+    BoundaryCondition,
+    Exchange,
+    Film,
+    PrescribedTemperature,
+    Radiation,
+)
+from thermal.conditions.boundary import SurfaceSource as Source
+from thermal.conduction.balance import heat_balance
+from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
+from thermal.conduction.terms import ConductionProblem
 from thermal.fe.solver import NotConverged
 
 PLACES = [(type(c).__name__, getattr(c, "kind", "")) for c in conditions() if hasattr(c, "kind")]

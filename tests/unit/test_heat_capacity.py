@@ -6,8 +6,8 @@ import skfem
 from numpy.testing import assert_allclose
 
 from tests.curved_blocks import cylinder_sector
-from thermal.boundary import ConditionError
-from thermal.capacity import HeatCapacity
+from thermal.conditions.boundary import ConditionError
+from thermal.conduction.capacity import HeatCapacity
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, box_mesh, from_scikit_fem
 

@@ -9,16 +9,16 @@ from pathlib import Path
 import pytest
 
 from rigdesign import load_case, run_case
-from rigdesign.bearing_films import solve_bearings
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
-from rigdesign.cold import cold_feedback
-from rigdesign.errors import CaseError
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.boundary import boundary_conditions
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.time_run import held_points
 from rigdesign.report import results_document
-from rigdesign.results import RunResult
-from rigdesign.rig.boundary import boundary_conditions
+from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
-from thermal.boundary import Radiation
+from thermal.conditions.boundary import Radiation
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 NIEMANN = 'law = "niemann_winter", height = "400 mm"'

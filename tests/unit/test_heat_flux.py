@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from thermal.conduction import ConductionSetup
+from thermal.conduction.flux import heat_flux
+from thermal.conduction.steady import ConductionSetup
 from thermal.fe.mesh import CellName, box_mesh
-from thermal.flux import heat_flux
 
 SIZE = (0.4, 0.3, 0.2)
 

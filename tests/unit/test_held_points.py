@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from rigdesign.assemble.heat import cooler
-from rigdesign.coupling import governing_point
+from rigdesign.coupling.loop import governing_point
+from rigdesign.records.heat import cooler
 
 
 def held(stage: str, speed: float, torque: float) -> Any:

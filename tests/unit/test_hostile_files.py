@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign import cli
+from rigdesign.base.errors import CaseError, OutputError, UsageError
+from rigdesign.base.files import RefusedFileError, foreign, read_regular
+from rigdesign.base.output_folder import prepare_output
 from rigdesign.case import load_case
 from rigdesign.case.loader import changed_together
-from rigdesign.errors import CaseError, OutputError, UsageError
-from rigdesign.files import RefusedFileError, foreign, read_regular
-from rigdesign.report.output import prepare_output
-from rigdesign.study_grid import parse_variation
+from rigdesign.cli import main as cli
+from rigdesign.study.grid import parse_variation
 from tests.unit.test_cli import PROTOTYPE, SMALL, Rigdesign, Write, rigdesign, write
 
 __all__ = ["rigdesign", "write"]
@@ -230,7 +230,7 @@ def test_a_choice_that_does_not_exist_is_refused_before_the_start(
 
 
 def test_both_profile_shifts_are_accepted_where_they_agree_with_the_centre_distance() -> None:
-    from rigdesign.materials import MATERIALS
+    from rigdesign.properties.materials import MATERIALS
     from rigdesign.rig.gears import build_pairs
 
     case = load_case(PROTOTYPE)
@@ -250,7 +250,7 @@ def test_both_profile_shifts_are_accepted_where_they_agree_with_the_centre_dista
 STOPPED = """
 import sys, signal
 signal.signal(signal.SIGINT, signal.default_int_handler)
-from rigdesign import cli
+from rigdesign.cli import main as cli
 sys.argv = ["rigdesign", *sys.argv[1:]]
 cli.main()
 """

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from thermal.fe.mesh import MeshError, NamedMesh, facet_keys, facet_table
-from thermal.housing import (
+from thermal.housing.curving import bend_round_axes, jacobian_ratio, straighten_inverted
+from thermal.housing.gearbox import (
     ClampingField,
     GearDisc,
     GeometryError,
@@ -24,8 +25,7 @@ from thermal.housing import (
     mesh_sizes,
     surface_names,
 )
-from thermal.housing_curving import bend_round_axes, jacobian_ratio, straighten_inverted
-from thermal.stations import GearboxModel
+from thermal.housing.stations import GearboxModel
 
 PINION = ShaftGeometry(
     name="pinion", y=-0.04975, journal_diameter=0.040, seal_diameter=0.045, seat_diameter=0.050,
@@ -200,7 +200,7 @@ def test_stations() -> None:
 DIGEST = """
 import hashlib
 from tests_housing import PROTOTYPE
-from thermal.housing import build_gearbox
+from thermal.housing.gearbox import build_gearbox
 mesh = build_gearbox(PROTOTYPE, "quick").mesh
 parts = [mesh.points, mesh.cells, *mesh.bodies.values(), *mesh.surfaces.values()]
 print(hashlib.sha256(b"".join(part.tobytes() for part in parts)).hexdigest())

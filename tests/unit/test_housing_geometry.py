@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from thermal.housing_geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
-from thermal.housing_surfaces import body_names, exact_areas, exact_volumes, shaft_zones, surface_names
+from thermal.housing.geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
+from thermal.housing.surfaces import body_names, exact_areas, exact_volumes, shaft_zones, surface_names
 
 
 def shaft(**changes: Any) -> ShaftGeometry:
@@ -80,7 +80,7 @@ def test_surfaces_of_parts_that_are_not_there_do_not_exist() -> None:
 
 def test_surface_names_are_unique_and_need_no_gmsh() -> None:
     code = (
-        "import sys; from thermal.housing import surface_names; "
+        "import sys; from thermal.housing.gearbox import surface_names; "
         "assert 'gmsh' not in sys.modules and 'CoolProp' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)

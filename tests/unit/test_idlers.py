@@ -7,17 +7,17 @@ from pathlib import Path
 import pytest
 
 from rigdesign import load_case
-from rigdesign.bearing_films import bearing_loads, solve_bearings
-from rigdesign.cold import cold_feedback
-from rigdesign.errors import CaseError
-from rigdesign.loads import brace_cold, mesh_models
-from rigdesign.losses import mesh_losses, rotating_losses
-from rigdesign.passes import feedback_of, one_pass
-from rigdesign.ramp_run import held_points
-from rigdesign.rig.boundary import boundary_conditions
+from rigdesign.base.errors import CaseError
+from rigdesign.coupling.bearing_films import bearing_loads, solve_bearings
+from rigdesign.coupling.boundary import boundary_conditions
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.iteration import feedback_of, one_pass
+from rigdesign.coupling.loads import brace_cold, mesh_models
+from rigdesign.coupling.losses import mesh_losses, rotating_losses
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.loop_forces import loop_forces
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.state import Feedback, OperatingPoint
 from tests.idler_case import idler_case
 
 TORQUE, GRAVITY = 180.0, 9.81

@@ -5,15 +5,15 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.static_loop import NotConverged
-from rigdesign.assemble.findings import loss_warnings
-from rigdesign.assemble.heat import cooler, loss_rows
-from rigdesign.coupling import PointResult
-from rigdesign.drags import drag_torques
-from rigdesign.losses import PlacedLoss, oil_jets
+from dynamics.drivetrain.static_loop import NotConverged
+from rigdesign.coupling.drag_torques import drag_torques
+from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.losses import PlacedLoss, oil_jets
+from rigdesign.coupling.stage_losses import stage_losses
+from rigdesign.coupling.state import OperatingPoint
+from rigdesign.records.heat import cooler, loss_rows
 from rigdesign.rig.model import Rig
-from rigdesign.stage_losses import stage_losses
-from rigdesign.state import OperatingPoint
+from rigdesign.run.warnings import loss_warnings
 from tests.warm_prototype import base, drive_power, lost_in_all, settled
 
 
@@ -83,7 +83,7 @@ def test_a_stage_without_a_periodic_response_says_so(monkeypatch: pytest.MonkeyP
     def unsolved(*_: object) -> None:
         raise NotConverged("no periodic response at 10,800 rpm")
 
-    monkeypatch.setattr("rigdesign.stage_losses.respond", unsolved)
+    monkeypatch.setattr("rigdesign.coupling.stage_losses.respond", unsolved)
     for mesh in ("test.main", "reference.main"):
         assert any(
             text.startswith(f"{mesh}, stage test: no periodic response")

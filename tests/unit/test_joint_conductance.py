@@ -2,9 +2,9 @@
 
 import pytest
 
-from thermal.boundary import ExchangeLaw
-from thermal.film_inputs import FilmError
-from thermal.joint_conductance import pressed_joint
+from thermal.conditions.boundary import ExchangeLaw
+from thermal.films.inputs import FilmError
+from thermal.films.joint_conductance import pressed_joint
 
 
 def foot(pressure: float = 5e6, **changes: float) -> ExchangeLaw:

@@ -6,20 +6,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
 from rigdesign.case.model import Case
-from rigdesign.errors import CaseError
 from rigdesign.rig.joints import FOOT_CONTACT, behind_shell, foot_joint, shell_temperature
 from rigdesign.rig.model import build_rig
 from tests.unit.test_housing import PROTOTYPE, area
-from thermal.boundary import Adiabatic, Film
-from thermal.conduction import solve_steady
-from thermal.contact import Contact
-from thermal.convection import constant
-from thermal.expansion import expand
+from thermal.conditions.boundary import Adiabatic, Film
+from thermal.conditions.contact import Contact
+from thermal.conduction.steady import solve_steady
+from thermal.expansion.expansion import expand
 from thermal.fe.elements import FiniteElements
-from thermal.housing import build_gearbox, exact_areas, surface_names
-from thermal.housing_surfaces import FOOT, SEAT
+from thermal.films.convection import constant
+from thermal.housing.gearbox import build_gearbox, exact_areas, surface_names
+from thermal.housing.surfaces import FOOT, SEAT
 
 BASE = (Path(__file__).parents[2] / "cases" / "uhcf_prototype" / "case.toml").as_posix()
 JOINED = replace(PROTOTYPE, foot_joint=True)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dynamics.journal_bearing import (
+from dynamics.bearing.journal import (
     BearingError,
     BearingNotConvergedError,
     JournalBearing,

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign import study
-from rigdesign.errors import OutputError
+from rigdesign.base.errors import OutputError
 from rigdesign.report import write_results
-from rigdesign.study import LEDGER_NAME, run_study
+from rigdesign.study import run as study
+from rigdesign.study.run import LEDGER_NAME, run_study
 from tests.killed_writer import REFUSED, WRITTEN
 from tests.study_example import ExampleCase, run_example
 from tests.unit.test_report_files import small_result

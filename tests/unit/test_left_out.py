@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 
 from rigdesign import load_case
-from rigdesign.assemble.findings import not_modelled
 from rigdesign.checks.thermal import NO_PLAY, _clearances
-from rigdesign.results import Check
+from rigdesign.results.result import Check
 from rigdesign.rig.model import build_rig
+from rigdesign.run.warnings import not_modelled
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from rigdesign import load_case, run_case
-from rigdesign.report.html import report_html
-from rigdesign.results import RunResult
+from rigdesign.report.pages.report import report_html
+from rigdesign.results.result import RunResult
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -2,11 +2,11 @@
 
 import pytest
 
-from dynamics.journal_bearing import BearingError, JournalBearing, solve_bearing
+from dynamics.bearing.journal import BearingError, JournalBearing, solve_bearing
+from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
-from rigdesign.errors import CaseError
-from rigdesign.given_losses import given_power
-from rigdesign.oil import FVA_3
+from rigdesign.coupling.given_losses import given_power
+from rigdesign.properties.oil import FVA_3
 from rigdesign.rig.drivetrain import build_drivetrain
 from tests.warm_prototype import base, case_with, drive_power, lost, lost_in_all, open_share, outlet, settled
 

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from rigdesign.case import load_case
-from rigdesign.cold import cold_feedback
-from rigdesign.loads import mesh_models
-from rigdesign.losses import PlacedLoss, chamber_mist, rotating_losses
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import mesh_models
+from rigdesign.coupling.losses import PlacedLoss, chamber_mist, rotating_losses
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.state import OperatingPoint
 from thermal.fe.mesh import NamedMesh
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from rigdesign.materials import CASE_HARDENED_STEEL, MATERIALS, Material, MaterialError
+from rigdesign.properties.materials import CASE_HARDENED_STEEL, MATERIALS, Material, MaterialError
 
 
 @pytest.mark.parametrize("material", list(MATERIALS.values()), ids=list(MATERIALS))

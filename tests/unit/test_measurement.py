@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
-from rigdesign.errors import MeasurementError
 from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
 from rigdesign.measurement.places import Places
 from rigdesign.prediction import Feature

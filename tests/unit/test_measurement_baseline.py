@@ -7,15 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
-from rigdesign.errors import MeasurementError
-from rigdesign.measurement import comparing, features, load_measurement
-from rigdesign.measurement.compare import Comparison, compare, comparison_document, headline
-from rigdesign.measurement.comparing import compare_measurement
-from rigdesign.measurement.foretold import HealthySet, foretold
+from rigdesign.measurement import features, load_measurement
+from rigdesign.measurement.comparison import comparing
+from rigdesign.measurement.comparison.compare import Comparison, compare, comparison_document, headline
+from rigdesign.measurement.comparison.comparing import compare_measurement
+from rigdesign.measurement.processing.baseline import HealthySet, foretold
 from rigdesign.measurement.quantities import CHANNELS, to_si
 from rigdesign.prediction import Feature, Prediction, features_of
-from rigdesign.report.measurement_page import write_comparison
+from rigdesign.report.pages.measurement import write_comparison
 from tests.measurement_example import changed_column, order_truth, replaced, truth, write_set
 
 CASES = Path(__file__).parents[2] / "cases"

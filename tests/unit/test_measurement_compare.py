@@ -9,9 +9,15 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.measurement import features, load_measurement
-from rigdesign.measurement.compare import Comparison, compare, comparison_document, headline, significant
+from rigdesign.measurement.comparison.compare import (
+    Comparison,
+    compare,
+    comparison_document,
+    headline,
+    significant,
+)
 from rigdesign.prediction import Prediction
-from rigdesign.report.measurement_page import write_comparison
+from rigdesign.report.pages.measurement import write_comparison
 from tests.measurement_example import changed_column, write_set
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
-from rigdesign.errors import MeasurementError
 from rigdesign.measurement import Data, features, load_measurement
 from tests.corruption_example import Damage, damages
 from tests.measurement_example import write_set

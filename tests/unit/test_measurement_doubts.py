@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
-from rigdesign.errors import MeasurementError
 from rigdesign.measurement import features, load_measurement
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -9,10 +9,11 @@ import h5py
 import numpy as np
 import pytest
 
+from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
-from rigdesign.cli import _exit_status
-from rigdesign.errors import MeasurementError
-from rigdesign.measurement import Data, Finding, features, hdf5_samples, load_measurement
+from rigdesign.cli.main import _exit_status
+from rigdesign.measurement import Data, Finding, features, load_measurement
+from rigdesign.measurement.reading import hdf5_samples
 from rigdesign.prediction import Feature
 from tests.measurement_example import changed_column, replaced, truth, write_set
 from tests.recording_example import signals, write_recorded_set, write_recording

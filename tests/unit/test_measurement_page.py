@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from nptdms import ChannelObject, TdmsWriter
 
+from rigdesign.base.errors import MeasurementError, OutputError
 from rigdesign.case import load_case
-from rigdesign.cli import app
-from rigdesign.errors import MeasurementError, OutputError
+from rigdesign.cli.main import app
 from rigdesign.measurement import features, load_measurement
 from rigdesign.measurement.template import write_template
 from rigdesign.prediction import Feature

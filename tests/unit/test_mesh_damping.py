@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from rigdesign.assemble.heat import cooler, loss_rows
 from rigdesign.case import load_case
-from rigdesign.losses import PlacedLoss
-from rigdesign.passes import PassResult
-from rigdesign.prediction.memory import Memory
-from rigdesign.run import _all_losses
-from rigdesign.validation.courses import closing, course, simulation_laws
+from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.prediction.memoisation import Memory
+from rigdesign.records.heat import cooler, loss_rows
+from rigdesign.run.main import losses_by_stage
 from rigdesign.validation.prototype import Prototype, case_folder
+from rigdesign.validation.speed_sweeps import closing, course, simulation_laws
 from tests.warm_prototype import base, drive_power, lost, lost_in_all, open_share, outlet, settled
 
 CLOSING = tuple(
@@ -85,7 +85,8 @@ def test_case_may_give_the_work_of_the_damper_to_the_oil() -> None:
 
 def test_every_stage_that_turns_books_friction_and_damping_alike() -> None:
     rig, test = base()
-    rows = _all_losses(rig, [test])
+    found = losses_by_stage(rig, [test])
+    rows = [row for stage, losses in found.items() for row in loss_rows(stage, losses)]
     turning = {stage.name for stage in rig.case.schedule.resolved() if stage.speed_end > 0.0}
     for kind in ("mesh", "mesh_damping"):
         assert {row.stage for row in rows if row.kind == kind and row.place == "test.main"} == turning

@@ -5,8 +5,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from dynamics.mesh_force import evaluate_mesh, pack_meshes, tooth_forces
-from dynamics.mesh_law import DampedRate, MeshLaw, check_mesh_law
+from dynamics.mesh.force import evaluate_mesh, pack_meshes, tooth_forces
+from dynamics.mesh.law import DampedRate, MeshLaw, check_mesh_law
 from tests.mesh_example import BASE_PITCH, BASE_RADIUS_1, BASE_RADIUS_2, spur_law
 
 HELIX = {"n_slices": 7, "contact_ratio": 1.448, "span": 11.6e-3}

@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.flank import reach_beyond
+from dynamics.mesh.flank import reach_beyond
 from rigdesign import load_case
-from rigdesign.cold import cold_feedback
-from rigdesign.loads import brace_cold, mesh_models, mesh_phase, respond
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import brace_cold, mesh_models, mesh_phase, respond
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from tests.idler_case import idler_case
 from tests.rig_example import prototype_laws

@@ -6,7 +6,7 @@ import pytest
 from rigdesign.case.mesh import HousingMesh
 from tests.unit.test_housing import PROTOTYPE
 from thermal.fe.mesh import NamedMesh
-from thermal.housing import GeometryError, MeshSizes, build_gearbox, mesh_sizes
+from thermal.housing.gearbox import GeometryError, MeshSizes, build_gearbox, mesh_sizes
 
 ZONES = {
     "wall": ("outer_warm", 0.014),

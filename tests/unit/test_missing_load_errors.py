@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from rigdesign import load_errors
-from rigdesign.assemble.findings import _load_errors
+from rigdesign.run import load_convergence as load_errors
+from rigdesign.run.warnings import _load_errors
 
 
 def subject(known: tuple[str, ...], *, run: object = object()) -> Any:

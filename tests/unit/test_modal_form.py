@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from dynamics.drivetrain import assemble
-from dynamics.linear_system import LinearSystem
-from dynamics.modal_form import modal_form
-from dynamics.modes import closed_matrices
+from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.modal_form import modal_form
+from dynamics.drivetrain.modes import closed_matrices
 from tests.rig_example import prototype, prototype_laws
 
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.modes import (
+from dynamics.drivetrain.modes import (
     damping_audit,
     damping_record,
     loop_modes,

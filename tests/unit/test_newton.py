@@ -5,11 +5,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from tests.two_blocks import law
-from thermal import newton
-from thermal.boundary import Adiabatic, BoundaryCondition, Film, Radiation
-from thermal.conduction import TemperatureSolution, solve_steady
-from thermal.conduction_setup import ConductionSetup
-from thermal.conduction_terms import ConductionProblem
+from thermal.conditions.boundary import Adiabatic, BoundaryCondition, Film, Radiation
+from thermal.conduction.setup import ConductionSetup
+from thermal.conduction.steady import TemperatureSolution, newton, solve_steady
+from thermal.conduction.terms import ConductionProblem
 from thermal.fe.mesh import NamedMesh, box_mesh
 
 
@@ -50,7 +49,7 @@ def test_a_start_on_the_linear_space_saves_steps(
     mesh: NamedMesh, power: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     started = solved(mesh, power, initial=400.0)
-    monkeypatch.setattr("thermal.conduction.linear_start", lambda problem, field: field)
+    monkeypatch.setattr("thermal.conduction.steady.linear_start", lambda problem, field: field)
     plain = solved(mesh, power, initial=400.0)
     assert_allclose(started.temperature, plain.temperature, rtol=1e-9)
     assert len(started.linear_iterations) <= len(plain.linear_iterations) - 2
@@ -68,7 +67,7 @@ def test_a_start_solves_the_linear_space(mesh: NamedMesh) -> None:
 
 def test_a_given_field_is_taken_as_it_is(mesh: NamedMesh, monkeypatch: pytest.MonkeyPatch) -> None:
     exact = solved(mesh)
-    monkeypatch.setattr("thermal.conduction.linear_start", unused)
+    monkeypatch.setattr("thermal.conduction.steady.linear_start", unused)
     assert solve_steady(mesh, {"box": 45.0}, glowing(), exact.temperature).linear_iterations == ()
     near = solve_steady(mesh, {"box": 45.0}, glowing(), near=exact)
     assert near.linear_iterations == ()

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from rigdesign.oil import FVA_3, FVA_3A, MIL_PRF_23699, OILS, Oil, OilError, oil_outlet
+from rigdesign.properties.oil import FVA_3, FVA_3A, MIL_PRF_23699, OILS, Oil, OilError, oil_outlet
 
 ZERO = 273.15
 

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from rigdesign.assemble.findings import _oils, cold_oil
 from rigdesign.case import load_case
-from rigdesign.oil import FVA_3, FVA_3A
+from rigdesign.properties.oil import FVA_3, FVA_3A
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.run.warnings import _oils, cold_oil
 
 ZERO = 273.15
 

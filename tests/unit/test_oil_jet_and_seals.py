@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from dynamics.losses import LossError
-from dynamics.oil_jet import JET_ANGLES, jet_power, oil_acceleration
-from dynamics.seal_loss import gap_seal_loss, lip_seal_loss
+from dynamics.losses.mesh_loss import LossError
+from dynamics.losses.oil_jet import JET_ANGLES, jet_power, oil_acceleration
+from dynamics.losses.seal_loss import gap_seal_loss, lip_seal_loss
 
 FLOW = 5.0 / 6e4
 

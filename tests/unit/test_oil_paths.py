@@ -4,20 +4,20 @@ import math
 
 import pytest
 
+from rigdesign.base.errors import CaseError
 from rigdesign.case.housing import FlankFilm
-from rigdesign.errors import CaseError
-from rigdesign.flank_heat import gear_flanks
-from rigdesign.losses import rotating_losses
-from rigdesign.lubrication import OilStream, oil_streams
-from rigdesign.oil import FVA_3, MIL_PRF_23699
-from rigdesign.oil_mixing import Portion, mixed
+from rigdesign.coupling.flank_heat import gear_flanks
+from rigdesign.coupling.losses import rotating_losses
+from rigdesign.coupling.oil import OilStream, oil_streams
+from rigdesign.coupling.stage_losses import StageLosses
+from rigdesign.properties.oil import FVA_3, MIL_PRF_23699
+from rigdesign.properties.oil_mixing import Portion, mixed
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.oil_supply import gear_oil
-from rigdesign.stage_losses import StageLosses
 from rigdesign.transient.oil import BEARING_OIL, GEAR_OIL, oil_conditions
 from tests.warm_prototype import base, case_with, lost, open_share, outlet, settled
-from thermal.conduction import solve_steady
-from thermal.streams import StreamNetwork
+from thermal.conditions.streams import StreamNetwork
+from thermal.conduction.steady import solve_steady
 
 BOX = "gearboxes.test"
 LEAK, BYPASS, SHORT = (f"{BOX}.oil_paths.{key}" for key in ("leak_warm_cold", "bypass", "short_circuit"))

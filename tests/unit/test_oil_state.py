@@ -2,8 +2,8 @@
 
 import pytest
 
-from rigdesign.errors import CaseError
-from rigdesign.oil import FVA_3, OilError
+from rigdesign.base.errors import CaseError
+from rigdesign.properties.oil import FVA_3, OilError
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
 from tests.warm_prototype import base, case_with, lost, open_share, settled
 

@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 from rigdesign import load_case, run_case
-from rigdesign.assemble import heat
 from rigdesign.checks import Subject, held_checks
 from rigdesign.checks.omissions import OMISSIONS, omissions
+from rigdesign.checks.rules import Omission, Rule, hold, with_omissions
 from rigdesign.checks.transient import TITLES
-from rigdesign.coupling import PointResult
-from rigdesign.results import Check, RunResult
+from rigdesign.coupling.loop import PointResult
+from rigdesign.records import heat
+from rigdesign.results.result import Check, RunResult
 from rigdesign.rig.model import Rig
-from rigdesign.rules import Omission, Rule, hold, with_omissions
 from tests.warm_prototype import base, settled
 
 CASES = Path(__file__).parents[2] / "cases"

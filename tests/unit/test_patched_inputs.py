@@ -2,11 +2,11 @@
 
 import pytest
 
-from rigdesign.errors import CaseError
+from rigdesign.base.errors import CaseError
 from rigdesign.rig.joints import FOOT_CONTACT
 from tests.warm_prototype import base, case_with, heat_by_kind, lost, open_share, outlet, settled
-from thermal.boundary import STEFAN_BOLTZMANN
-from thermal.conduction import CLOSURE
+from thermal.conditions.boundary import STEFAN_BOLTZMANN
+from thermal.conduction.steady import CLOSURE
 
 BOX = "gearboxes.test"
 

@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rigdesign.base.errors import UsageError
 from rigdesign.case.loader import load_case
-from rigdesign.errors import UsageError
 from rigdesign.prediction import Channel, Setting, features_of, predict
 from rigdesign.prediction.places import place_weights
 from rigdesign.prediction.readings import readings
 from rigdesign.rig.model import build_rig
-from rigdesign.run import run_case
+from rigdesign.run.main import run_case
 
 CASE = load_case(Path(__file__).parents[2] / "cases" / "uhcf_prototype")
 STAGE = next(stage for stage in CASE.schedule.resolved() if stage.held)

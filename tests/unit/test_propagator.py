@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from dynamics.linear_system import LinearSystem
-from dynamics.propagator import discretise, modal_model
-from dynamics.time_march import DriveState, MarchDiverged, TimeMarch, drag_loads, slow_loads
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.response.propagator import discretise, modal_model
+from dynamics.response.time_march import DriveState, MarchDiverged, TimeMarch, drag_loads, slow_loads
 from tests.mesh_example import chain, spur_law, two_bodies
 
 OPEN = spur_law(backlash=1.0, offset=-0.5)

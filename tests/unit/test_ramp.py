@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.ramp import (
+from dynamics.response.schedule import (
     RampLimits,
     Schedule,
     ScheduleError,

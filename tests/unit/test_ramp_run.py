@@ -8,10 +8,10 @@ from typing import cast
 import numpy as np
 import pytest
 
-from dynamics.response import TimeResponse
+from dynamics.response.time_response import TimeResponse
+from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import load_case
-from rigdesign.errors import NotConvergedError
-from rigdesign.ramp_run import require_speeds, schedule_of, torque_limits
+from rigdesign.coupling.time_run import require_speeds, schedule_of, torque_limits
 from rigdesign.rig.model import Rig, build_rig
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"

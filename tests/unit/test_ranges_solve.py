@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rigdesign import load_case, ranges_point, run_case
+from rigdesign import load_case, run_case
 from rigdesign.case import Case
-from rigdesign.ranges import with_ranges
-from rigdesign.ranges_plan import PARTS, Part, RangeEnd, parts_of, plan
-from rigdesign.ranges_point import Outcome, Reference, settle, solve_end
-from rigdesign.results import Check
+from rigdesign.results.result import Check
+from rigdesign.uncertainty import point as ranges_point
+from rigdesign.uncertainty.plan import PARTS, Part, RangeEnd, parts_of, plan
+from rigdesign.uncertainty.point import Outcome, Reference, settle, solve_end
+from rigdesign.uncertainty.run import with_ranges
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 HEADER = 'name = "small"\ntitle = "small"\n[gearboxes.test]\nremove = ["housing"]\n'

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from rigdesign.ranges import joined
-from rigdesign.ranges_plan import PARTS, RangeEnd, parts_of
-from rigdesign.ranges_point import CheckAtEnd, Outcome
-from rigdesign.report.html import report_html
-from rigdesign.report.ranges_figures import margins_figure
+from rigdesign.report.figures.ranges import margins_figure
+from rigdesign.report.pages.report import report_html
 from rigdesign.report.results_json import results_document
-from rigdesign.results import Check, RunResult
+from rigdesign.results.result import Check, RunResult
+from rigdesign.uncertainty.plan import PARTS, RangeEnd, parts_of
+from rigdesign.uncertainty.point import CheckAtEnd, Outcome
+from rigdesign.uncertainty.run import joined
 from tests.report_example import make_check, make_result
 
 GAP, OIL = "gearboxes.test.seals.gap", "gearboxes.test.oil.flow"

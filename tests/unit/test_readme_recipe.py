@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from nptdms import ChannelObject, TdmsWriter
 
-from rigdesign.cli import app
+from rigdesign.cli.main import app
 from tests.page_files import commands, written_out
 
 ROOT = Path(__file__).parents[2]

@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from rigdesign import load_case
-from rigdesign.cold import cold_feedback
-from rigdesign.growth import uniform_growth
-from rigdesign.loads import warm_pair
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.expansion import uniform_growth
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import warm_pair
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.response_curve import ResponseCurve, refined_response
+from dynamics.response.speed_sweep import ResponseCurve, refined_response
 
 NARROW = 3.0
 """Half width of the resonance below [rad/s], half of the first grid's step."""

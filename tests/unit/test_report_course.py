@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.report.drawing import drawing_style
-from rigdesign.report.figures_seals import seal_gap_figure, seal_round_figure
-from rigdesign.report.figures_transient import (
+from rigdesign.report.figures.drawing import drawing_style
+from rigdesign.report.figures.seals import seal_gap_figure, seal_round_figure
+from rigdesign.report.figures.transient import (
     APART,
     LABEL_ROOM,
     columns_of,
@@ -18,8 +18,8 @@ from rigdesign.report.figures_transient import (
     transient_figure,
 )
 from rigdesign.report.numbers import power_text
-from rigdesign.report.transient_section import transient_tables
-from rigdesign.results_transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
+from rigdesign.report.pages.transient_section import transient_tables
+from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 from tests.report_example import thermal_and_growth
 
 TIMES = [0.0, 10.0, 1000.0, 1001.0, 1010.0, 4610.0, 90000.0]

@@ -8,10 +8,10 @@ import meshio
 import numpy as np
 import pytest
 
-from rigdesign.errors import OutputError
+from rigdesign.base.errors import OutputError
+from rigdesign.base.output_folder import staged
 from rigdesign.report import NonFiniteResultError, prepare_output, results_document, write_results
 from rigdesign.report.fields import file_stem
-from rigdesign.report.output import staged
 from rigdesign.report.results_json import to_plain, to_text
 from rigdesign.report.tables import csv_text
 from tests.report_example import gearbox_field, make_check, make_result
@@ -198,7 +198,7 @@ def test_a_failing_writer_leaves_the_earlier_result(tmp_path, monkeypatch):
     def fail(result):
         raise RuntimeError("no picture")
 
-    monkeypatch.setattr("rigdesign.report.html.report_html", fail)
+    monkeypatch.setattr("rigdesign.report.pages.report.report_html", fail)
     with pytest.raises(RuntimeError, match="no picture"):
         write_results(small_result(verdict="pass"), tmp_path)
     assert before == {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
@@ -221,7 +221,7 @@ def test_a_folder_that_refuses_files_is_refused(tmp_path, monkeypatch):
     def refuse(**options):
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr("rigdesign.report.output.tempfile.TemporaryFile", refuse)
+    monkeypatch.setattr("rigdesign.base.output_folder.tempfile.TemporaryFile", refuse)
     with pytest.raises(OutputError, match="Permission denied"):
         prepare_output(tmp_path)
 

@@ -5,9 +5,9 @@ from itertools import pairwise
 
 import pytest
 
-from rigdesign.report.drawing import drawing_style, inline_svg, new_figure
-from rigdesign.report.figures_flow import body_flow_figure, rig_flow_figure
-from rigdesign.report.sankey import Flow, layout, spread
+from rigdesign.report.figures.drawing import drawing_style, inline_svg, new_figure
+from rigdesign.report.figures.flow import body_flow_figure, rig_flow_figure
+from rigdesign.report.figures.sankey import Flow, layout, spread
 from tests.report_example import make_result, thermal_and_growth
 
 COLUMNS = [["a", "b", "c"], ["oil", "bodies"], ["cooler", "room"]]

@@ -5,18 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rigdesign.report import mesh_views
-from rigdesign.report.drawing import drawing_style
 from rigdesign.report.fields import write_field
-from rigdesign.report.figures_field import DRAWN, MeshViews, field_pictures, magnification
-from rigdesign.report.mesh_views import (
+from rigdesign.report.figures import mesh_views
+from rigdesign.report.figures.drawing import drawing_style
+from rigdesign.report.figures.field import DRAWN, MeshViews, field_pictures, magnification
+from rigdesign.report.figures.mesh_views import (
     SUB_TETRAHEDRA,
     cut_mesh,
     shaft_axis_height,
     surface_triangles,
     view_outside,
 )
-from rigdesign.results import TemperatureField
+from rigdesign.results.result import TemperatureField
 from tests.report_example import gearbox_field, voxel_mesh
 from thermal.fe.mesh import NamedMesh, box_mesh
 from thermal.fe.numbering import Numbering, inverse

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.dynamic_factor import Resonance
-from dynamics.modes import LoopMode
-from dynamics.response_curve import ResponseCurve
-from rigdesign.assemble.resonances import name_of
+from dynamics.drivetrain.modes import LoopMode
+from dynamics.rating.dynamic_factor import Resonance
+from dynamics.response.speed_sweep import ResponseCurve
+from rigdesign.records.resonances import name_of
 
 TEETH = 99
 RPM = math.pi / 30.0

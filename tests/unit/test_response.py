@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.drivetrain import assemble
-from dynamics.response import Command, DragCurve, LowPass, TimeResponse, run_schedule
-from dynamics.slots import SlotStatistics, split_lift_off
+from dynamics.drivetrain.graph import assemble
+from dynamics.response.envelopes import SlotStatistics, split_lift_off
+from dynamics.response.time_response import Command, DragCurve, LowPass, TimeResponse, run_schedule
 from tests.mesh_example import spur_law
 from tests.rig_example import prototype, prototype_laws
 

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.iso_rating import permissible_factors, transverse_load_factor
+from dynamics.rating.iso_rating import permissible_factors, transverse_load_factor
 from dynamics.standards import iso6336_3_2006 as iso
-from rigdesign.assemble.curves import iso_factor
 from rigdesign.case import load_case
 from rigdesign.checks import strength
-from rigdesign.checks.subject import Subject
+from rigdesign.records.curves import iso_factor
+from rigdesign.records.solved_rig import Subject
 from rigdesign.rig.model import Rig, build_rig
 from tests.report_example import gearbox
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from dynamics.gear import GearPair
-from dynamics.root_stress import root_influence, root_stress_history, root_stress_over_face
+from dynamics.gear.pair import GearPair
+from dynamics.rating.root_stress import root_influence, root_stress_history, root_stress_over_face
 
 PAIR = GearPair.from_centre_distance(
     normal_module=1e-3,

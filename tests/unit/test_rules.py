@@ -4,9 +4,9 @@ from typing import Literal
 
 import pytest
 
-from rigdesign.checks.subject import worst
-from rigdesign.errors import NonFiniteResultError
-from rigdesign.rules import Rule, hold, not_applicable, overall, with_error
+from rigdesign.base.errors import NonFiniteResultError
+from rigdesign.checks.rules import Rule, hold, not_applicable, overall, with_error
+from rigdesign.records.solved_rig import worst
 
 
 def rule(**changes: object) -> Rule:

@@ -5,14 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rigdesign import load_case, run, system
-from rigdesign.errors import (
+from rigdesign import load_case
+from rigdesign.base import system
+from rigdesign.base.errors import (
     CaseError,
     MissingLibraryError,
     NotConvergedError,
     RigdesignError,
     UsageError,
 )
+from rigdesign.run import main as run
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 

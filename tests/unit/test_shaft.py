@@ -4,7 +4,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from dynamics.shaft import (
+from dynamics.drivetrain.shaft import (
     STEEL_DENSITY,
     STEEL_SHEAR_MODULUS,
     Disc,

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.shaft_torque import ShaftTorque, ShaftTorques, harmonic_loads, left_out, waves_within
+from dynamics.drivetrain.shaft_torque import ShaftTorque, ShaftTorques, harmonic_loads, left_out, waves_within
 
 TURNS = 4.0
 RATIOS = np.array([1.0, 0.75, 0.5])

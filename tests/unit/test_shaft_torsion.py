@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.drivetrain import Coupling, Drivetrain
-from dynamics.shaft import Section, Shaft
+from dynamics.drivetrain.graph import Coupling, Drivetrain
+from dynamics.drivetrain.shaft import Section, Shaft
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case, load_case
-from rigdesign.errors import CaseError
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.shaft_torsion import LARGEST_STRAIN, section_torsions
 from tests.rig_example import prototype

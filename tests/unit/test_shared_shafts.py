@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dynamics.linear_system import LinearSystem
-from dynamics.mesh_force import evaluate_mesh
-from dynamics.mesh_tables import pack_meshes
-from dynamics.time_march import DriveState, TimeMarch
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.mesh.force import evaluate_mesh
+from dynamics.mesh.tables import pack_meshes
+from dynamics.response.time_march import DriveState, TimeMarch
 from tests.mesh_example import BASE_RADIUS_1, BASE_RADIUS_2, ramped_law
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from tests.two_blocks import law
-from thermal.boundary import BoundaryCondition, Film, Radiation
-from thermal.conduction import solve_steady
-from thermal.elastic import ElasticSetup, three_two_one
+from thermal.conditions.boundary import BoundaryCondition, Film, Radiation
+from thermal.conduction.steady import solve_steady
+from thermal.expansion.elastic import ElasticSetup, three_two_one
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh, box_mesh
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rigdesign.case import load_case
-from rigdesign.growth import hot_clearances
+from rigdesign.coupling.expansion import hot_clearances
 from rigdesign.rig.model import Rig, build_rig
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"

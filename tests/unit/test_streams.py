@@ -8,11 +8,8 @@ import numpy as np
 import pytest
 
 from tests.two_blocks import law
-from thermal.boundary import Adiabatic, PrescribedTemperature
-from thermal.condition_checks import Condition, ConditionError
-from thermal.conduction import TemperatureSolution, solve_steady
-from thermal.fe.mesh import NamedMesh, box_mesh
-from thermal.streams import (
+from thermal.conditions.boundary import Adiabatic, PrescribedTemperature
+from thermal.conditions.streams import (
     SMALL,
     Stream,
     StreamNetwork,
@@ -24,6 +21,9 @@ from thermal.streams import (
     inlet_share,
     inlet_share_slope,
 )
+from thermal.conduction.condition_checks import Condition, ConditionError
+from thermal.conduction.steady import TemperatureSolution, solve_steady
+from thermal.fe.mesh import NamedMesh, box_mesh
 
 RATE = 0.02 * 2000.0
 """Heat capacity rate of the streams here [W/K]."""

@@ -13,11 +13,12 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign import study_ledger, study_pool
-from rigdesign.errors import CaseError, OutputError, UsageError
-from rigdesign.study import parse_variation, run_study
-from rigdesign.study_grid import Variation, grid
-from rigdesign.study_ledger import Ledger, point_key
+from rigdesign.base import worker_pool as study_pool
+from rigdesign.base.errors import CaseError, OutputError, UsageError
+from rigdesign.study import ledger as study_ledger
+from rigdesign.study.grid import Variation, grid
+from rigdesign.study.ledger import Ledger, point_key
+from rigdesign.study.run import parse_variation, run_study
 from tests.study_example import ExampleCase, run_example
 
 ROOT = Path(__file__).parents[2]
@@ -229,7 +230,7 @@ DRIVER = """
 import sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from rigdesign.study import parse_variation, run_study
+from rigdesign.study.run import parse_variation, run_study
 from tests.study_example import ExampleCase, run_example
 
 if __name__ == "__main__":

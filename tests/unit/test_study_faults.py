@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign import study
-from rigdesign.errors import OutputError
-from rigdesign.report.file_lock import FileLock, HeldError
-from rigdesign.report.output import staged
-from rigdesign.study import LEDGER_NAME, LOCK_NAME, parse_variation, run_study
+from rigdesign.base.errors import OutputError
+from rigdesign.base.file_lock import FileLock, HeldError
+from rigdesign.base.output_folder import staged
+from rigdesign.study import run as study
+from rigdesign.study.run import LEDGER_NAME, LOCK_NAME, parse_variation, run_study
 from tests.ledger_damage import DAMAGE, POINTS, ROWS, copy_ledger, harm_file, harm_rows, resumed, write_ledger
 from tests.study_example import ExampleCase, run_example
 
@@ -106,7 +106,7 @@ HOLDER = """
 import sys, time
 sys.path.insert(0, {root!r})
 from pathlib import Path
-from rigdesign.report.file_lock import FileLock
+from rigdesign.base.file_lock import FileLock
 lock = FileLock(Path(sys.argv[1]))
 print("held", flush=True)
 time.sleep(60)
@@ -168,7 +168,7 @@ WRITER = """
 import sys, time
 sys.path.insert(0, {root!r})
 from pathlib import Path
-from rigdesign.report.output import staged
+from rigdesign.base.output_folder import staged
 with staged(Path(sys.argv[1])) as scratch:
     (scratch / "results.json").write_text("half")
     print("writing", flush=True)

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.slots import LiftOff, Slots
-from rigdesign.assemble import time_run
+from dynamics.response.envelopes import LiftOff, Slots
 from rigdesign.case import load_case
-from rigdesign.ramp_run import schedule_of
+from rigdesign.coupling.time_run import schedule_of
+from rigdesign.records import time_run
 from rigdesign.rig.model import Rig, build_rig
 
 CASES = Path(__file__).parents[2] / "cases"

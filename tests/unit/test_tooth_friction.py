@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.tooth_friction import (
+from dynamics.mesh.friction import (
     Doleschel,
     FrictionError,
     GivenFriction,

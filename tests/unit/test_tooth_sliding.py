@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.gear import GearPair
-from dynamics.losses import LossError, mesh_loss, sliding_power, squeeze_loss
-from dynamics.tooth_friction import GivenFriction, Schlenk, friction_coefficient
-from dynamics.tooth_sliding import (
+from dynamics.gear.pair import GearPair
+from dynamics.losses.mesh_loss import LossError, mesh_loss, sliding_power, squeeze_loss
+from dynamics.mesh.friction import GivenFriction, Schlenk, friction_coefficient
+from dynamics.mesh.sliding import (
     ToothPath,
     ToothPathError,
     ohlendorf_factor,

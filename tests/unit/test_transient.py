@@ -9,17 +9,17 @@ from numpy.testing import assert_allclose
 
 from tests.coupled_blocks import CAPACITY, CONDUCTIVITY, conditions, coupled_blocks, network
 from tests.two_blocks import law, renamed
-from thermal.boundary import Adiabatic, BodySource, Film, FilmCoefficient, PrescribedTemperature
-from thermal.capacity import Storage
-from thermal.condition_checks import Condition, ConditionError
-from thermal.conduction import ConductionSetup, solve_steady
-from thermal.conductivity import Conductivity
-from thermal.contact import Contact
+from thermal.conditions.boundary import Adiabatic, BodySource, Film, FilmCoefficient, PrescribedTemperature
+from thermal.conditions.contact import Contact
+from thermal.conditions.streams import Stream, StreamNetwork
+from thermal.conduction.capacity import Storage
+from thermal.conduction.condition_checks import Condition, ConditionError
+from thermal.conduction.conductivity import Conductivity
+from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.fe.mesh import box_mesh, disjoint_union
 from thermal.fe.solver import NotConverged
-from thermal.probes import Probe
-from thermal.streams import Stream, StreamNetwork
-from thermal.transient import ThermalStage, TransientSolution, settling_time, solve_transient
+from thermal.transient.history import ThermalStage, TransientSolution, settling_time, solve_transient
+from thermal.transient.probes import Probe
 
 VARIABLE: dict[str, Conductivity] = {
     **CONDUCTIVITY,

@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.checks.transient import transient_checks
-from rigdesign.errors import CaseError
-from rigdesign.results_transient import Soak, TransientResult, WorstMoment
-from rigdesign.state import OperatingPoint
+from rigdesign.coupling.state import OperatingPoint
+from rigdesign.results.transient import Soak, TransientResult, WorstMoment
 from rigdesign.transient.blend import blended
 from rigdesign.transient.phases import Phase, event_phases, running_phases, schedule_phases
 from rigdesign.transient.soak import first_broken, shortest, soak_of
 from rigdesign.transient.still_air import at_least
 from tests.two_blocks import law
-from thermal.boundary import BodySource, Film, SurfaceSource
-from thermal.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm, check_networks
+from thermal.conditions.boundary import BodySource, Film, SurfaceSource
+from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm, check_networks
 
 BASE = (Path(__file__).parents[2] / "cases" / "uhcf_prototype" / "case.toml").as_posix()
 RPM = np.pi / 30.0

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigdesign import cli
 from rigdesign.case import load_case
-from rigdesign.oil import MIL_PRF_23699
+from rigdesign.cli import main as cli
+from rigdesign.properties.oil import MIL_PRF_23699
 from rigdesign.report import results_document, write_results
-from rigdesign.results import RunResult
-from rigdesign.results_transient import TransientCurve, TransientResult
-from rigdesign.run import run_case
+from rigdesign.results.result import RunResult
+from rigdesign.results.transient import TransientCurve, TransientResult
+from rigdesign.run.main import run_case
 
 BASE = (Path(__file__).parents[2] / "cases" / "uhcf_prototype" / "given_losses.toml").as_posix()
 COURSE = f"""

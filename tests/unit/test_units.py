@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rigdesign import units
-from rigdesign.kinds import KINDS
+from rigdesign.base import units
+from rigdesign.base.quantity_kinds import KINDS
 
 HAND = [
     ("7 mm", "length", 0.007),

@@ -6,17 +6,17 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.flank import Microgeometry, alike_teeth, flank_modification, mesh_law, pitch_waves
-from dynamics.shaft_torque import ShaftTorque
+from dynamics.drivetrain.shaft_torque import ShaftTorque
+from dynamics.mesh.flank import Microgeometry, alike_teeth, flank_modification, mesh_law, pitch_waves
 from rigdesign import load_case
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
-from rigdesign.cold import cold_feedback
-from rigdesign.errors import CaseError
-from rigdesign.loads import MeshModel, laws_of, locked_share, mesh_models, signed_torque
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import MeshModel, laws_of, locked_share, mesh_models, signed_torque
+from rigdesign.coupling.shaft_torques import swinging_torques, torques_left_out
+from rigdesign.coupling.state import OperatingPoint
+from rigdesign.coupling.tooth_deviations import averaged_gears, periodic_laws
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.shaft_torques import swinging_torques, torques_left_out
-from rigdesign.state import OperatingPoint
-from rigdesign.unlike_teeth import averaged_gears, periodic_laws
 
 POINT = OperatingPoint(stage="test", speed=100.0, torque=200.0)
 PINION = "gearboxes.test.gears.pinion"

@@ -4,11 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign import load_case, run
-from rigdesign.assemble.curves import iso_factor
+from rigdesign import load_case
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
-from rigdesign.errors import CaseError
+from rigdesign.records.curves import iso_factor
 from rigdesign.rig.model import build_rig
+from rigdesign.run import main as run
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 SOFT = """

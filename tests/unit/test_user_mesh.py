@@ -13,9 +13,9 @@ from tests.two_blocks import renamed
 from tests.unit.test_housing import PROTOTYPE
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, MeshError, NamedMesh, box_mesh, disjoint_union
-from thermal.housing import build_gearbox
-from thermal.housing_file import read_mesh
-from thermal.housing_fitted import fit_cylinder, fitted_model
+from thermal.housing.fitted import fit_cylinder, fitted_model
+from thermal.housing.gearbox import build_gearbox
+from thermal.housing.mesh_file import read_mesh
 
 BOX = box_mesh((0.4, 0.3, 0.2), (2, 2, 2), name="housing")
 

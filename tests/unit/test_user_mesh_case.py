@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from rigdesign import cli, load_case, run_case
+from rigdesign import load_case, run_case
+from rigdesign.base.errors import CaseError, UsageError
 from rigdesign.case.model import Case
-from rigdesign.errors import CaseError, UsageError
-from rigdesign.mesh_export import export_meshes
-from rigdesign.results import RunResult
+from rigdesign.cli import main as cli
+from rigdesign.cli.mesh_export import export_meshes
+from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
 from tests.msh_file import write_msh
 from thermal.fe.mesh import NamedMesh, named_mesh
-from thermal.housing_file import read_mesh
+from thermal.housing.mesh_file import read_mesh
 
 GIVEN = Path(__file__).parents[2] / "cases" / "uhcf_prototype" / "given_losses.toml"
 END = "shaft_test_pinion_end_front"

@@ -8,10 +8,11 @@ from typing import cast
 import numpy as np
 import pytest
 
-from rigdesign import cli, validation
-from rigdesign.errors import OutputError, UsageError
-from rigdesign.results import HeatRow, RunResult
-from rigdesign.terminal import print_validation
+from rigdesign import validation
+from rigdesign.base.errors import OutputError, UsageError
+from rigdesign.cli import main as cli
+from rigdesign.cli.terminal import print_validation
+from rigdesign.results.result import HeatRow, RunResult
 from rigdesign.validation import (
     benchmarks,
     gears,
@@ -25,10 +26,10 @@ from rigdesign.validation import (
     validation_rows,
     write_validation,
 )
-from rigdesign.validation.courses import Course, course, simulation_laws, smooth
 from rigdesign.validation.prototype import Prototype, case_folder
 from rigdesign.validation.rows import compare, compare_printed, not_modelled, stated
 from rigdesign.validation.run_rows import run_rows
+from rigdesign.validation.speed_sweeps import Course, course, simulation_laws, smooth
 from tests.report_example import make_result
 
 KEYS = {

@@ -6,16 +6,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from rigdesign.assemble.findings import _warming
-from rigdesign.assemble.heat import cooler
-from rigdesign.errors import CaseError
-from rigdesign.rig.boundary import STORED
+from rigdesign.base.errors import CaseError
+from rigdesign.coupling.boundary import STORED
+from rigdesign.records.heat import cooler
+from rigdesign.run.warnings import _warming
 from tests.two_blocks import CONDUCTIVITY, conditions, two_blocks
 from tests.warm_prototype import Settled, case_with, heat_by_kind, open_share, outlet, settled
-from thermal.boundary import ConditionError, Film
-from thermal.capacity import StoredHeat
-from thermal.conduction import CLOSURE, ConductionSetup, solve_steady
-from thermal.convection import constant
+from thermal.conditions.boundary import ConditionError, Film
+from thermal.conduction.capacity import StoredHeat
+from thermal.conduction.steady import CLOSURE, ConductionSetup, solve_steady
+from thermal.films.convection import constant
 
 START, CAPACITY = 293.15, 3.6e6
 TIME = "ambient.warming_time"

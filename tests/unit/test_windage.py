@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.gear import GearPair
-from dynamics.losses import LossError
-from dynamics.windage import (
+from dynamics.gear.pair import GearPair
+from dynamics.losses.mesh_loss import LossError
+from dynamics.losses.windage import (
     LAMINAR_LIMIT,
     GearRotor,
     Mist,

@@ -12,11 +12,11 @@ from math import acos, pi, radians, sin, tan
 import numpy as np
 import pytest
 
-from dynamics.flank import Microgeometry, alike_teeth, mesh_law, pitch_waves
-from dynamics.gear import GearPair
-from dynamics.mesh_force import evaluate_mesh, pack_meshes, tooth_forces
-from dynamics.mesh_law import MeshLaw
-from dynamics.tooth_stiffness import pair_stiffness
+from dynamics.gear.pair import GearPair
+from dynamics.mesh.flank import Microgeometry, alike_teeth, mesh_law, pitch_waves
+from dynamics.mesh.force import evaluate_mesh, pack_meshes, tooth_forces
+from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.stiffness import pair_stiffness
 
 PAIR = GearPair.from_centre_distance(
     normal_module=4.5e-3,

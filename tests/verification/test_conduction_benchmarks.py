@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermal.boundary import (
+from thermal.conditions.boundary import (
     STEFAN_BOLTZMANN,
     Adiabatic,
     BodySource,
@@ -19,7 +19,7 @@ from thermal.boundary import (
     PrescribedTemperature,
     Radiation,
 )
-from thermal.conduction import ConductionSetup, solve_steady
+from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union
 
 ZERO = 273.15

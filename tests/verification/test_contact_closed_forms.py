@@ -8,10 +8,10 @@ from numpy.testing import assert_allclose
 
 from tests.curved_blocks import cylinder_sector
 from tests.two_blocks import law, renamed
-from thermal.boundary import Adiabatic, Film, PrescribedTemperature
-from thermal.condition_checks import Condition
-from thermal.conduction import solve_steady
-from thermal.contact import Contact
+from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature
+from thermal.conditions.contact import Contact
+from thermal.conduction.condition_checks import Condition
+from thermal.conduction.steady import solve_steady
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh, disjoint_union
 
 SIDES = [f"{axis}_{end}" for axis in "yz" for end in ("min", "max")]

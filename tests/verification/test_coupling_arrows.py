@@ -16,16 +16,16 @@ from pathlib import Path
 
 import pytest
 
-from rigdesign.assemble.dynamics import bracing_drift
-from rigdesign.assemble.heat import cooler
+from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import Case, load_case
-from rigdesign.cold import cold_feedback
-from rigdesign.coupling import PointResult, solve_point
-from rigdesign.errors import NotConvergedError
-from rigdesign.loads import ToothPath
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import ToothPath
+from rigdesign.coupling.loop import PointResult, solve_point
+from rigdesign.coupling.state import Feedback
+from rigdesign.coupling.time_run import held_points
+from rigdesign.records.dynamics import bracing_drift
+from rigdesign.records.heat import cooler
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.state import Feedback
 
 CASE = "cases/uhcf_prototype"
 TEMPERATURE, LENGTH, TORQUE = 0.05, 0.5e-6, 1e-3

@@ -11,16 +11,16 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.flank import reach_beyond
-from dynamics.response import Command, run_schedule
-from dynamics.response_curve import periodic_response
-from dynamics.static_loop import port_model, solve_static
+from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.mesh.flank import reach_beyond
+from dynamics.response.speed_sweep import periodic_response
+from dynamics.response.time_response import Command, run_schedule
 from rigdesign import load_case
 from rigdesign.case import Case
-from rigdesign.cold import cold_feedback
-from rigdesign.loads import MeshModel, brace_cold, laws_of, mesh_models
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import MeshModel, brace_cold, laws_of, mesh_models
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.state import OperatingPoint
 
 POINT = OperatingPoint(stage="test", speed=60.0, torque=200.0)
 PINION, WHEEL = (f"gearboxes.test.gears.{gear}.flank" for gear in ("pinion", "wheel"))

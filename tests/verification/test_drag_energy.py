@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from dynamics.linear_system import LinearSystem
-from dynamics.time_march import DriveState, TimeMarch
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.response.time_march import DriveState, TimeMarch
 from tests.mesh_example import spur_law
 
 OPEN = spur_law(backlash=1e9, offset=-5e8)

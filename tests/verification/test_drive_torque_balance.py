@@ -7,10 +7,10 @@ from the momentum gained and lost, the losses from the contacts, the joint rates
 import numpy as np
 import pytest
 
-from dynamics.drivetrain import assemble
-from dynamics.linear_system import LinearSystem
-from dynamics.mesh_law import MeshLaw
-from dynamics.periodic_response import PeriodicResponse, periodic_by_time
+from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.periodic_response import PeriodicResponse, periodic_by_time
 from tests.rig_example import prototype, prototype_laws
 
 RPM = np.pi / 30.0

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from thermal.elastic import ElasticError, ElasticSetup, rigid_motion, three_two_one
+from thermal.expansion.elastic import ElasticError, ElasticSetup, rigid_motion, three_two_one
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union
 from thermal.fe.solver import TwoLevelMultigrid, conjugate_gradient, constrain

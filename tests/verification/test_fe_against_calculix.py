@@ -14,9 +14,9 @@ import pytest
 
 import tests.calculix as calculix
 from tests.two_blocks import law
-from thermal.boundary import Adiabatic, Film, Radiation
-from thermal.conduction import solve_steady
-from thermal.elastic import ElasticSetup, three_two_one
+from thermal.conditions.boundary import Adiabatic, Film, Radiation
+from thermal.conduction.steady import solve_steady
+from thermal.expansion.elastic import ElasticSetup, three_two_one
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh, box_mesh
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from tests.two_blocks import law
-from thermal.boundary import Adiabatic, Film, SurfaceSource
-from thermal.conduction import solve_steady
+from thermal.conditions.boundary import Adiabatic, Film, SurfaceSource
+from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
 from thermal.fe.reference import rules_of

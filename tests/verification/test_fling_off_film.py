@@ -11,8 +11,8 @@ import pytest
 from scipy.linalg import solve_banded
 from scipy.special import erfc
 
-from rigdesign.oil import MIL_PRF_23699
-from thermal.flank_film import FilmOil, ToothRing, Wetting, fling_off, heat_flung_off
+from rigdesign.properties.oil import MIL_PRF_23699
+from thermal.films.flank import FilmOil, ToothRing, Wetting, fling_off, heat_flung_off
 
 
 def _diffusion(edges: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

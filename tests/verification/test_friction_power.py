@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.flank import mesh_law
-from dynamics.gear import GearPair
-from dynamics.losses import mesh_loss, sliding_power
-from dynamics.mesh_force import evaluate_mesh, tooth_forces
-from dynamics.tooth_friction import GivenFriction, friction_coefficient
-from dynamics.tooth_sliding import ToothPath
-from dynamics.tooth_stiffness import pair_stiffness
+from dynamics.gear.pair import GearPair
+from dynamics.losses.mesh_loss import mesh_loss, sliding_power
+from dynamics.mesh.flank import mesh_law
+from dynamics.mesh.force import evaluate_mesh, tooth_forces
+from dynamics.mesh.friction import GivenFriction, friction_coefficient
+from dynamics.mesh.sliding import ToothPath
+from dynamics.mesh.stiffness import pair_stiffness
 
 OMEGA = 12000 * math.pi / 30
 FRICTION = 0.04

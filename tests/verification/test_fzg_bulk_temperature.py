@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from rigdesign.assemble.findings import _thin_rim_films
 from rigdesign.case import load_case
-from rigdesign.coupling import PointResult, solve_point
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.loop import PointResult, solve_point
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.run.warnings import _thin_rim_films
 from tests.fzg_case import RIM_FILM, fzg_case
 
 MICHAELIS = 126.0

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.windage import anderson_loewenthal
+from dynamics.losses.windage import anderson_loewenthal
 from rigdesign import load_case
-from rigdesign.assemble.hand import _losses, end_wall_clearance, mean_gap, partition_gap
-from rigdesign.cold import cold_feedback
-from rigdesign.coupling import solve_point
-from rigdesign.growth import spin_growth
-from rigdesign.loads import brace_cold, mesh_models, respond
-from rigdesign.losses import rotating_losses
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.expansion import spin_growth
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import brace_cold, mesh_models, respond
+from rigdesign.coupling.loop import solve_point
+from rigdesign.coupling.losses import rotating_losses
+from rigdesign.coupling.time_run import held_points
+from rigdesign.records.hand import _losses, end_wall_clearance, mean_gap, partition_gap
 from rigdesign.rig.model import build_rig
 from tests.warm_prototype import base
-from thermal.expansion import expand
+from thermal.expansion.expansion import expand
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
 

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.drivetrain import assemble
-from dynamics.mesh_law import DampedRate
-from dynamics.periodic_response import periodic_by_time
-from dynamics.response_curve import periodic_response
+from dynamics.drivetrain.graph import assemble
+from dynamics.mesh.law import DampedRate
+from dynamics.response.periodic_response import periodic_by_time
+from dynamics.response.speed_sweep import periodic_response
 from tests.rig_example import prototype, prototype_laws
 
 RPM = math.pi / 30.0

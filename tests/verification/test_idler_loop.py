@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.drivetrain import assemble
-from dynamics.harmonic_walk import mesh_cells
-from dynamics.mesh_law import MeshLaw
-from dynamics.modes import loop_modes
-from dynamics.periodic_response import periodic_by_time
-from dynamics.response_curve import periodic_response
-from dynamics.shaft import STEEL_SHEAR_MODULUS
-from dynamics.static_loop import port_model, solve_static
+from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.modes import loop_modes
+from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS
+from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.harmonic_walk import mesh_cells
+from dynamics.response.periodic_response import periodic_by_time
+from dynamics.response.speed_sweep import periodic_response
 from tests.idler_example import COUPLING_STIFFNESS, RADIUS, SPLINE_STIFFNESS, idler_laws, idler_rig
 
 RPM = math.pi / 30.0

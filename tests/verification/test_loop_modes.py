@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from scipy.linalg import eigvals
 
-from dynamics.drivetrain import Drivetrain, assemble
-from dynamics.loop_crossings import loop_crossings
-from dynamics.mesh_law import MeshLaw
-from dynamics.modes import closed_matrices, loop_modes
+from dynamics.drivetrain.graph import Drivetrain, assemble
+from dynamics.drivetrain.loop_crossings import loop_crossings
+from dynamics.drivetrain.modes import closed_matrices, loop_modes
+from dynamics.mesh.law import MeshLaw
 from tests.rig_example import prototype, prototype_laws
 
 HIGHEST = 6e3

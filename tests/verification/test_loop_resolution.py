@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from dynamics.response_curve import periodic_response
-from dynamics.shaft import Section, Shaft, free_frequencies
+from dynamics.drivetrain.shaft import Section, Shaft, free_frequencies
+from dynamics.response.speed_sweep import periodic_response
 from rigdesign.case import load_case
 from rigdesign.checks import all_checks
-from rigdesign.cold import cold_feedback
-from rigdesign.loads import laws_of, mesh_models, respond, signed_torque
-from rigdesign.ramp_run import held_points
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.loads import laws_of, mesh_models, respond, signed_torque
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.resolution import MOST_SHAFT_ELEMENTS, counted_frequency, highest_mode, with_elements
-from rigdesign.run import solve_case
+from rigdesign.run.main import solve_case
 
 Array = NDArray[np.float64]
 RPM = math.pi / 30.0

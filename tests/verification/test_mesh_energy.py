@@ -10,9 +10,9 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from dynamics.mesh_force import evaluate_mesh
-from dynamics.mesh_law import DampedRate, MeshLaw
-from dynamics.time_march import DriveState, TimeMarch
+from dynamics.mesh.force import evaluate_mesh
+from dynamics.mesh.law import DampedRate, MeshLaw
+from dynamics.response.time_march import DriveState, TimeMarch
 from tests.mesh_example import BASE_RADIUS_1, BASE_RADIUS_2, TEETH, ramped_law, spur_law, two_bodies, wavy_law
 
 TORQUE = 180.0

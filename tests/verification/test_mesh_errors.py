@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from rigdesign import load_case
-from rigdesign.coupling import PointResult, solve_point
-from rigdesign.discretisation import Numbers, discretisation, numbers, richardson
-from rigdesign.ramp_run import held_points
-from rigdesign.remesh import on_mesh
+from rigdesign.coupling.loop import PointResult, solve_point
+from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.run.mesh_convergence import Numbers, discretisation, numbers, richardson
+from rigdesign.run.mesh_refinement import on_mesh
 from tests.performance.test_mesh_study import sized
 from tests.verification.test_error_estimate import solved
 from thermal.fe.mesh import FloatArray, NamedMesh, box_mesh, facet_table, named_mesh

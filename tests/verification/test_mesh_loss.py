@@ -4,9 +4,9 @@ import math
 
 import pytest
 
-from dynamics.losses import mesh_loss
-from dynamics.tooth_friction import Schlenk, friction_coefficient
-from dynamics.tooth_sliding import ToothPath, ohlendorf_factor, tooth_loss_factor
+from dynamics.losses.mesh_loss import mesh_loss
+from dynamics.mesh.friction import Schlenk, friction_coefficient
+from dynamics.mesh.sliding import ToothPath, ohlendorf_factor, tooth_loss_factor
 
 TEST_SPEED = 12000 * math.pi / 30
 

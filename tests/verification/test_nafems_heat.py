@@ -9,7 +9,7 @@ from rigdesign.validation.heat_benchmarks import (
     t3_temperature,
     t4_temperature,
 )
-from thermal.boundary import STEFAN_BOLTZMANN
+from thermal.conditions.boundary import STEFAN_BOLTZMANN
 from thermal.fe.mesh import CellName
 
 both = pytest.mark.parametrize("cell", ["tetra10", "hexahedron20"])

@@ -10,11 +10,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from rigdesign.measurement.averaging import signal_orders
-from rigdesign.measurement.document import Tach, Transfer
-from rigdesign.measurement.signals import Signal
-from rigdesign.measurement.tach import TachError, pulse_counts, rising_edges, turn_angle
-from rigdesign.measurement.transfer import gain
+from rigdesign.measurement.processing.averaging import signal_orders
+from rigdesign.measurement.processing.transfer import gain
+from rigdesign.measurement.reading.document import Tach, Transfer
+from rigdesign.measurement.reading.signals import Signal
+from rigdesign.measurement.reading.tach import TachError, pulse_counts, rising_edges, turn_angle
 
 RATE = 20_000.0
 CYCLE = 25

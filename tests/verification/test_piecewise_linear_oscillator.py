@@ -8,8 +8,8 @@ cycles, swept up and down. The damper acts in the gap too, so it stands on the g
 import numpy as np
 import pytest
 
-from dynamics.mesh_law import MeshLaw
-from dynamics.time_march import DriveState, TimeMarch
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.time_march import DriveState, TimeMarch
 from rigdesign.validation.oscillator import DOWN, FORCE, MEAN_FORCE, UP, ZETA
 from tests.mesh_example import two_bodies
 

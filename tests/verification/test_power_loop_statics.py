@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.drivetrain import assemble
-from dynamics.linear_system import LinearSystem
-from dynamics.mesh_force import evaluate_mesh
-from dynamics.mesh_law import MeshLaw
-from dynamics.shaft import STEEL_SHEAR_MODULUS
-from dynamics.static_loop import port_model, solve_static
+from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS
+from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.mesh.force import evaluate_mesh
+from dynamics.mesh.law import MeshLaw
 from tests.rig_example import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, SHAFTS, prototype, prototype_laws
 
 

@@ -16,15 +16,15 @@ from typing import Any
 import pytest
 
 from rigdesign import load_case
+from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.case.loader import changed_together
-from rigdesign.case.marks import item_name, take_off
 from rigdesign.case.paths import Slot, known_paths, slot_at
+from rigdesign.case.provenance import item_name, take_off
 from rigdesign.checks.assumptions import depends, with_assumptions
-from rigdesign.errors import CaseError
-from rigdesign.ranges_plan import ALIKE, PARTS, Part, RangeEnd, parts_of, plan
-from rigdesign.ranges_point import Outcome, Reference, settle, solve_end
-from rigdesign.ranges_verdicts import LEAST_MOVE
+from rigdesign.uncertainty.plan import ALIKE, PARTS, Part, RangeEnd, parts_of, plan
+from rigdesign.uncertainty.point import Outcome, Reference, settle, solve_end
+from rigdesign.uncertainty.verdicts import LEAST_MOVE
 from tests.unit.test_check_assumptions import EXPECTED, check, limit_of
 
 CASES = Path(__file__).parents[2] / "cases"

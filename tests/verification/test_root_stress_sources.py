@@ -8,9 +8,9 @@ from math import cos, radians
 import numpy as np
 import pytest
 
-from dynamics import iso_rating
-from dynamics.gear import GearPair
-from dynamics.root_stress import root_influence, root_stress_history
+from dynamics.gear.pair import GearPair
+from dynamics.rating import iso_rating
+from dynamics.rating.root_stress import root_influence, root_stress_history
 
 FZG_C = GearPair.from_centre_distance(
     normal_module=4.5e-3,

@@ -10,10 +10,10 @@ from scipy.optimize import brentq
 
 from tests.curved_blocks import cylinder_sector
 from tests.two_blocks import law
-from thermal.boundary import STEFAN_BOLTZMANN, Adiabatic, Film, PrescribedTemperature
-from thermal.condition_checks import Condition
-from thermal.conduction import solve_steady
-from thermal.enclosure import Enclosure
+from thermal.conditions.boundary import STEFAN_BOLTZMANN, Adiabatic, Film, PrescribedTemperature
+from thermal.conditions.enclosure import Enclosure
+from thermal.conduction.condition_checks import Condition
+from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, box_mesh, disjoint_union
 

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from dynamics.gear import GearPair
-from dynamics.tip_contact import path_reach, tip_separation
+from dynamics.gear.pair import GearPair
+from dynamics.mesh.tip_contact import path_reach, tip_separation
 
 UHCF = GearPair.from_centre_distance(
     normal_module=1e-3,

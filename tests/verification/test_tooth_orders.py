@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from dynamics.mesh_law import MeshLaw
-from dynamics.periodic_response import PeriodicResponse, period_length, periodic_by_time
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.periodic_response import PeriodicResponse, period_length, periodic_by_time
 from tests.mesh_example import BASE_RADIUS_1, BASE_RADIUS_2, chain, spur_law
 
 TEETH = 20

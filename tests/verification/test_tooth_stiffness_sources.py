@@ -10,9 +10,9 @@ from math import cos, radians
 import numpy as np
 import pytest
 
-from dynamics.gear import GearPair, Rack
-from dynamics.iso_rating import RatingOptions, mesh_stiffness
-from dynamics.tooth_stiffness import pair_stiffness, single_pair_stiffness
+from dynamics.gear.pair import GearPair, Rack
+from dynamics.mesh.stiffness import pair_stiffness, single_pair_stiffness
+from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 
 UHCF = {
     "normal_module": 1e-3,

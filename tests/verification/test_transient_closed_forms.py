@@ -14,16 +14,16 @@ from scipy.optimize import brentq
 from scipy.special import erfc, erfcx
 
 from tests.two_blocks import law
-from thermal.boundary import STEFAN_BOLTZMANN, Adiabatic, BodySource, Film, Radiation
-from thermal.capacity import HeatCapacity
-from thermal.condition_checks import Condition
-from thermal.conduction import ConductionSetup
-from thermal.conduction_terms import ConductionProblem
+from thermal.conditions.boundary import STEFAN_BOLTZMANN, Adiabatic, BodySource, Film, Radiation
+from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
+from thermal.conduction.capacity import HeatCapacity
+from thermal.conduction.condition_checks import Condition
+from thermal.conduction.steady import ConductionSetup
+from thermal.conduction.terms import ConductionProblem
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
-from thermal.probes import Probe
-from thermal.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
-from thermal.time_steps import Stepper
-from thermal.transient import ThermalStage, solve_transient
+from thermal.transient.history import ThermalStage, solve_transient
+from thermal.transient.probes import Probe
+from thermal.transient.time_steps import Stepper
 
 ZERO = 273.15
 SIDES = [f"{axis}_{end}" for axis in "yz" for end in ("min", "max")]

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from tests.two_blocks import law
-from thermal.boundary import (
+from thermal.conditions.boundary import (
     STEFAN_BOLTZMANN,
     Adiabatic,
     BodySource,
@@ -20,7 +20,7 @@ from thermal.boundary import (
     PrescribedTemperature,
     Radiation,
 )
-from thermal.conduction import ConductionSetup, solve_steady
+from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
 
 K0, SLOPE, REFERENCE = 20.0, 8e-4, 500.0

@@ -1,9 +1,9 @@
 """Effects that the model can express: each changes the case and is simulated by it, never by a formula here."""
 
 from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.catalogue.heat import heat_effects
 from rigdesign.diagnosis.catalogue.loop import loop_effects
-from rigdesign.diagnosis.effects import Effect
 
 
 def effects_of(case: Case) -> tuple[Effect, ...]:

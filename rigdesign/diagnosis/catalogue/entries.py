@@ -1,7 +1,7 @@
 """What entries of the catalogue share: parameters of the usual kinds, and the usual changes of a case."""
 
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.effects import Changes, Parameter
+from rigdesign.diagnosis.catalogue.effects import Changes, Parameter
 
 PRACTICE = "rig practice: catalogue of the workflow, section 4"
 """Source of bounds that no standard gives."""

@@ -22,8 +22,8 @@ from rigdesign.case.housing import (
     ThermalRadiation,
 )
 from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Family, Parameter
 from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, Scaled, factor, share
-from rigdesign.diagnosis.effects import Changes, Effect, Family, Parameter
 
 LOSSES: Mapping[str, tuple[str, str, float, float, float]] = {
     "mesh_loss": ("mesh", "friction of the teeth", 0.6, 1.6, 0.12),
@@ -221,12 +221,12 @@ def _split(name: str, box: Gearbox) -> Iterator[Effect]:
 
 IN_MIST = 0.8
 """Healthy spread of the logarithm of a film on turning parts in a chamber: between dry air and mist, whose drops take
-the temperature of the wall, lies a factor of five (`thermal.convection_rotating`)."""
+the temperature of the wall, lies a factor of five (`thermal.films.rotating`)."""
 
 
 IN_BEARING = 0.5
 """The same of the film in a bearing: between heat from its middle (Nu = 2) and heat made evenly in it (Nu = 6) lies a
-factor of three (`thermal.convection.bearing_film`)."""
+factor of three (`thermal.films.convection.bearing_film`)."""
 
 
 def _films(name: str, housing: Housing) -> Iterator[Effect]:
@@ -300,7 +300,7 @@ NOT_IN_AIR = (
 
 
 def _in_air(condition: Condition) -> bool:
-    """Whether a film is one to room air, as `rigdesign.rig.boundary` takes it."""
+    """Whether a film is one to room air, as `rigdesign.coupling.boundary` takes it."""
     return not isinstance(condition, NOT_IN_AIR) and getattr(condition, "fluid", "ambient") == "ambient"
 
 

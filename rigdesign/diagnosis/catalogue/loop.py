@@ -15,8 +15,8 @@ from rigdesign.case.drivetrain import HarmonicTorque
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Family, Parameter
 from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, Scaled, factor
-from rigdesign.diagnosis.effects import Changes, Effect, Family, Parameter
 
 MICROMETRE = 1e-6
 

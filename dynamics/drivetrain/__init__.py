@@ -1,0 +1,1 @@
+"""Shafts, joints and meshes as a graph, assembled to matrices; power loop, bracing, modes."""

@@ -1,0 +1,260 @@
+"""Bracing of the power loop: twist or axial shift that makes the torque, and what becomes of it when warm.
+
+Three modes. *Twist held* (P1): two shafts are turned against each other and bolted. *Shift held*: the helical
+gear of the reference gearbox is moved along its shaft and stays there. *Torque controlled* (P2): the shift
+follows the torque. In a held mode every change of backlash, stiffness or axial position changes the torque.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.static_loop import NotConverged, StaticState, loaded_share, port_model, solve_static
+from dynamics.mesh.law import MeshLaw
+
+Array = NDArray[np.float64]
+Mode = Literal["twist_held", "shift_held", "torque_controlled"]
+
+OPEN_SHARE = 0.02
+"""Share of the asked torque below which a setting counts as lost in the play: crowned flanks touch one by one."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShiftedGear:
+    """Helical gear that is moved along its axis to brace the loop.
+
+    mesh : index of its mesh; helix_angle [rad] at the pitch cylinder; working_radius [m] of the shifted gear
+    base_helix_angle [rad]; a shift s moves the flanks s tan(beta_b) along the transverse line of action
+    halves : 2 for a double helical gear of which one half moves: each half carries half the torque, and
+        a partner that floats axially follows by half the shift
+    floating_partner : True if the mating double helical gear floats
+    spline_friction, spline_radius : of the seat the gear slides on [-], [m]
+    """
+
+    mesh: int
+    helix_angle: float
+    base_helix_angle: float
+    working_radius: float
+    halves: int = 1
+    floating_partner: bool = False
+    spline_friction: float = 0.0
+    spline_radius: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.helix_angle == 0.0:
+            raise ValueError("shifted gear: helix_angle = 0 rad: a spur gear braces nothing; use the twist")
+        if self.halves not in (1, 2):
+            raise ValueError(f"shifted gear: halves = {self.halves}: must be 1 or 2; correct it")
+
+    @property
+    def approach_per_shift(self) -> float:
+        """Approach along the transverse line of action per axial shift of the gear [-]."""
+        share = 0.5 if self.halves == 2 and self.floating_partner else 1.0
+        return share * math.tan(self.base_helix_angle)
+
+    def rotation(self, shift: float) -> float:
+        """Rotation of the loop by a shift [rad]: s tan(beta) / r_w, half of it with a floating partner."""
+        share = 0.5 if self.halves == 2 and self.floating_partner else 1.0
+        return share * shift * math.tan(self.helix_angle) / self.working_radius
+
+    def actuator_force(self, torque: float) -> float:
+        """Axial force on the moved half at a torque of this gear [N m], without friction [N]."""
+        return abs(torque) / self.halves / self.working_radius * math.tan(abs(self.helix_angle))
+
+    def friction_force(self, torque: float) -> float:
+        """Force that the spline of the moved half holds back by friction [N]."""
+        if self.spline_radius == 0.0:
+            return 0.0
+        return self.spline_friction * abs(torque) / self.halves / self.spline_radius
+
+
+@dataclass(frozen=True, kw_only=True)
+class BracingState:
+    """Result of one stage.
+
+    torque : (n_meshes,) mean torque at every pinion [N m]; twist [rad]; shift [m] of the gear, 0 without one
+    rotation : of the loop that stands for the shift [rad]
+    actuator_force, friction_force : on the moved half [N]; 0 where nothing is moved
+    loop_stiffness : torque of the control mesh per twist (or per rotation by the shift) at this state [N
+    m/rad]
+    """
+
+    mode: Mode
+    torque: Array
+    twist: float
+    shift: float
+    rotation: float
+    actuator_force: float
+    friction_force: float
+    loop_stiffness: float
+    static: StaticState
+
+
+@dataclass(frozen=True, kw_only=True)
+class BracingDrift:
+    """The same setting cold and hot; ``torque_change`` of the control mesh [N m], 0 when controlled."""
+
+    cold: BracingState
+    hot: BracingState
+    torque_change: float
+
+
+def brace(
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    torque: float,
+    mode: Mode,
+    *,
+    gear: ShiftedGear | None = None,
+    twist: float = 0.0,
+    control_mesh: int = 0,
+) -> BracingState:
+    """Twist or shift that makes a mean torque at the pinion of the control mesh [N m], without friction.
+
+    twist : of the assembled loop in the two modes with a shift [rad]; there the offset of the shifted
+    mesh's law
+        is the unknown
+
+    gear : the one that is shifted; a controlled torque without one is made by the twist
+
+    Raises ValueError if a held shift has no gear, NotConverged if no setting makes the torque.
+    """
+    if gear is None and mode == "shift_held":
+        raise ValueError(
+            f"bracing mode {mode!r}: needs the shifted helical gear; give it or use 'twist_held'"
+        )
+    if gear is None or mode == "twist_held":
+        state = solve_static(port_model(system, laws), torque=torque, control_mesh=control_mesh)
+        return _state(system, laws, mode, None, state, 0.0, control_mesh)
+    shift, state = _solve_shift(system, laws, torque, gear, twist, control_mesh)
+    return _state(system, _shifted(laws, gear, shift), mode, gear, state, shift, control_mesh)
+
+
+def drift(
+    system: LinearSystem,
+    cold_laws: Sequence[MeshLaw],
+    hot_laws: Sequence[MeshLaw],
+    torque: float,
+    mode: Mode,
+    *,
+    gear: ShiftedGear | None = None,
+    axial_growth: float = 0.0,
+    twist: float = 0.0,
+    control_mesh: int = 0,
+) -> BracingDrift:
+    """Brace cold, then warm up: hot laws and a growth that moves the shifted gear by ``axial_growth`` [m].
+
+    The growth is the uncompensated one, of one half against the other; equal growth of both halves is none.
+    """
+    cold = brace(system, cold_laws, torque, mode, gear=gear, twist=twist, control_mesh=control_mesh)
+    if mode == "torque_controlled":
+        hot = brace(system, hot_laws, torque, mode, gear=gear, twist=twist, control_mesh=control_mesh)
+        hot = replace(hot, shift=hot.shift - axial_growth)
+        return BracingDrift(cold=cold, hot=hot, torque_change=0.0)
+    moved = cold.shift + axial_growth
+    laws = hot_laws if gear is None else _shifted(hot_laws, gear, moved)
+    try:
+        state = solve_static(port_model(system, laws), twist=cold.twist)
+    except NotConverged:
+        if loaded_share(port_model(system, laws), torque, cold.twist, control_mesh) > OPEN_SHARE:
+            raise
+        state = _open_loop(cold.static)
+    hot = _state(system, laws, mode, None if mode == "twist_held" else gear, state, cold.shift, control_mesh)
+    change = float(hot.torque[control_mesh] - cold.torque[control_mesh])
+    return BracingDrift(cold=cold, hot=hot, torque_change=change)
+
+
+def _open_loop(state: StaticState) -> StaticState:
+    """No flank carries: the setting lies within the backlash."""
+    return replace(state, torque=np.zeros_like(state.torque), drive=np.zeros_like(state.drive))
+
+
+def _shifted(laws: Sequence[MeshLaw], gear: ShiftedGear, shift: float) -> tuple[MeshLaw, ...]:
+    law = laws[gear.mesh]
+    moved = law._replace(offset=law.offset + gear.approach_per_shift * shift)
+    return (*laws[: gear.mesh], moved, *laws[gear.mesh + 1 :])
+
+
+def _solve_shift(
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    torque: float,
+    gear: ShiftedGear,
+    twist: float,
+    control_mesh: int,
+) -> tuple[float, StaticState]:
+    """Shift that needs no other twist than the one given.
+
+    Twist and shift both only add to the windup of the loop: secant steps on the twist that the torque still
+    needs.
+    """
+    per_shift = gear.rotation(1.0)
+    shift, known = 0.0, solve_static(port_model(system, laws), torque=torque, control_mesh=control_mesh)
+    excess = known.twist - twist
+    scale = max(abs(excess), 1e-9)
+    trial = excess / per_shift
+    for _ in range(30):
+        state = solve_static(
+            port_model(system, _shifted(laws, gear, trial)), torque=torque, control_mesh=control_mesh
+        )
+        new_excess = state.twist - twist
+        if abs(new_excess) < 1e-10 * scale:
+            return trial, state
+        slope = (new_excess - excess) / (trial - shift)
+        shift, excess = trial, new_excess
+        trial = shift - excess / slope
+    raise NotConverged(
+        f"bracing by shift: twist left over = {excess:.3e} rad after 30 steps, limit {1e-10 * scale:.1e}; "
+        "check the helix angle and the torque"
+    )
+
+
+def _state(
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    mode: Mode,
+    gear: ShiftedGear | None,
+    state: StaticState,
+    shift: float,
+    control_mesh: int,
+) -> BracingState:
+    torque = state.mean_torque
+    at_gear = 0.0
+    if gear is not None:
+        law = laws[gear.mesh]
+        ratio = gear.working_radius * math.cos(_working_angle(law)) / law.base_radius_1
+        at_gear = float(torque[gear.mesh]) * ratio
+    return BracingState(
+        mode=mode,
+        torque=torque,
+        twist=state.twist,
+        shift=shift,
+        rotation=0.0 if gear is None else gear.rotation(shift),
+        actuator_force=0.0 if gear is None else gear.actuator_force(at_gear),
+        friction_force=0.0 if gear is None else gear.friction_force(at_gear),
+        loop_stiffness=_loop_stiffness(system, laws, state, control_mesh),
+        static=state,
+    )
+
+
+def _working_angle(law: MeshLaw) -> float:
+    """Working pressure angle from the base tangent points: tan alpha_wt = T1C / r_b1."""
+    return math.atan2(law.rolling_radius_1, law.base_radius_1)
+
+
+def _loop_stiffness(
+    system: LinearSystem, laws: Sequence[MeshLaw], state: StaticState, control_mesh: int
+) -> float:
+    """Change of the torque per twist round this state, by a step of 1e-4 of the torque; 0 in open flanks."""
+    torque = float(state.mean_torque[control_mesh])
+    if torque == 0.0:
+        return 0.0
+    stepped = solve_static(
+        port_model(system, laws), torque=torque * (1.0 + 1e-4), control_mesh=control_mesh, start=state
+    )
+    return torque * 1e-4 / (stepped.twist - state.twist)

@@ -1,0 +1,384 @@
+"""Drivetrain of a gear test rig: shafts, joints and meshes as a graph, assembled to matrices.
+
+Nodes of the graph are bodies that turn: stations of shafts, gear bodies on their splines, a motor rotor.
+Edges with springs (shaft elements, splines, couplings) join them to *shaft lines*; gear meshes join the
+lines and stay outside the matrices (`dynamics.mesh.law`). Any number of shafts, joints, meshes and loops is
+allowed; whether the loops can close is checked in `dynamics.drivetrain.power_loop`.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Literal, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.power_loop import check_loops
+from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft, ShaftChain, discretise
+from dynamics.drivetrain.shaft_torque import ShaftTorque, ShaftTorques
+
+__all__ = [
+    "Coupling",
+    "Disc",
+    "DragPlace",
+    "Drivetrain",
+    "DrivetrainError",
+    "GearBody",
+    "Joint",
+    "JournalBearing",
+    "MeshConnection",
+    "Motor",
+    "Section",
+    "Shaft",
+    "ShaftTorque",
+    "assemble",
+    "joints",
+]
+
+Array = NDArray[np.float64]
+End = Literal["left", "right"]
+_Part = TypeVar("_Part", "Shaft", "GearBody", "Coupling")
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearBody:
+    """Rigid gear on a shaft, joined by a spline or key.
+
+    position : on the shaft [m]; inertia [kg m2]; stiffness [N m/rad]; damping [N m s/rad].
+    """
+
+    name: str
+    shaft: str
+    position: float
+    inertia: float
+    stiffness: float
+    damping: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coupling:
+    """Massless spring and damper between two shaft ends: stiffness [N m/rad], damping [N m s/rad].
+
+    Flange masses (a torque flange, say) are discs on the shafts. ``excitation`` acts between its ends, positive where
+    it draws the first shaft ahead, and counts the turns of the first shaft.
+    """
+
+    name: str
+    shafts: tuple[str, str]
+    ends: tuple[End, End] = ("right", "left")
+    stiffness: float
+    damping: float = 0.0
+    excitation: tuple[ShaftTorque, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class JournalBearing:
+    """Bearing of a shaft as a place that brakes.
+
+    ``linear_drag`` [N m s/rad] enters the damping matrix (P2, Table 1: 0.0007). Leave it 0 when the drag
+    torque comes from a loss model: it is then applied through the drag load of the same name.
+    """
+
+    name: str
+    shaft: str
+    position: float
+    linear_drag: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class DragPlace:
+    """Any other place of a shaft that brakes (seal, windage of a disc): a named drag load."""
+
+    name: str
+    shaft: str
+    position: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshConnection:
+    """Gear mesh between two gear bodies: base radii [m], tooth numbers, working centre distance [m]."""
+
+    name: str
+    pinion: str
+    wheel: str
+    base_radii: tuple[float, float]
+    teeth: tuple[int, int]
+    centre_distance: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motor:
+    """Drive on a shaft: torque acts at ``position`` [m], on a rotor of its own if ``stiffness`` is given.
+
+    inertia : rotor [kg m2], added to the station when there is no stiffness. ripple : of its torque about the mean.
+    """
+
+    shaft: str
+    position: float
+    inertia: float = 0.0
+    stiffness: float | None = None
+    damping: float = 0.0
+    ripple: tuple[ShaftTorque, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drivetrain:
+    """All parts of a rig that turn. Names are unique within shafts, gears, couplings, meshes and drag places.
+
+    bracing_coupling : coupling in which the bracing twist is made; None if the rig has no twist bracing.
+    """
+
+    shafts: tuple[Shaft, ...]
+    gears: tuple[GearBody, ...]
+    meshes: tuple[MeshConnection, ...]
+    motor: Motor
+    couplings: tuple[Coupling, ...] = ()
+    bearings: tuple[JournalBearing, ...] = ()
+    drag_places: tuple[DragPlace, ...] = ()
+    bracing_coupling: str | None = None
+
+    def __post_init__(self) -> None:
+        _check_names(self)
+        _check_references(self)
+        check_loops(self)
+
+    def shaft(self, name: str) -> Shaft:
+        """Shaft by its name."""
+        return _named(self.shafts, name, "shaft")
+
+    def gear(self, name: str) -> GearBody:
+        """Gear body by its name."""
+        return _named(self.gears, name, "gear body")
+
+    def lines(self) -> dict[str, int]:
+        """Index of the shaft line of every shaft: shafts joined by couplings form one line."""
+        line = {shaft.name: i for i, shaft in enumerate(self.shafts)}
+        for coupling in self.couplings:
+            keep, drop = sorted(line[name] for name in coupling.shafts)
+            line = {name: keep if value == drop else value for name, value in line.items()}
+        order = {value: i for i, value in enumerate(dict.fromkeys(line.values()))}
+        return {name: order[value] for name, value in line.items()}
+
+
+class Joint(NamedTuple):
+    """Spring and damper between two freedoms; all elements of a shaft share its name."""
+
+    name: str
+    kind: Literal["shaft", "spline", "coupling", "motor", "mesh"]
+    dof_a: int
+    dof_b: int
+    stiffness: float
+    damping: float
+
+
+def assemble(drivetrain: Drivetrain) -> LinearSystem:
+    """Matrices of the drivetrain without its meshes.
+
+    Freedoms: stations of every shaft in the order given, then the gear bodies, then a motor rotor. Inertia is
+    lumped, hence diagonal. Every angle is positive in the running direction of its line.
+    """
+    builder = _Builder(drivetrain)
+    gear_dof = {gear.name: builder.stations + i for i, gear in enumerate(drivetrain.gears)}
+    places = {place.name: builder.station(place.shaft, place.position) for place in drivetrain.drag_places}
+    for bearing in drivetrain.bearings:
+        places[bearing.name] = builder.station(bearing.shaft, bearing.position)
+    places.update(gear_dof)
+
+    stiffness, damping = builder.matrices()
+    n = builder.size
+    twist_load = np.zeros(n)
+    if drivetrain.bracing_coupling is not None:
+        braced = next(
+            joint
+            for joint in builder.joints
+            if joint.name == drivetrain.bracing_coupling and joint.kind == "coupling"
+        )
+        twist_load[braced.dof_a], twist_load[braced.dof_b] = braced.stiffness, -braced.stiffness
+    line = drivetrain.lines()
+    return LinearSystem(
+        inertia=np.array(builder.inertia),
+        damping=damping,
+        stiffness=stiffness,
+        dofs=tuple(builder.names),
+        mesh_ports=np.array(
+            [(gear_dof[m.pinion], gear_dof[m.wheel]) for m in drivetrain.meshes], dtype=np.int64
+        ).reshape(-1, 2),
+        lines=np.array([line[shaft] for shaft in builder.shaft_of], dtype=np.int64),
+        drive_dof=builder.drive,
+        twist_load=twist_load,
+        drag_loads={name: -np.eye(1, n, dof)[0] for name, dof in places.items()},
+        shaft_torques=tuple(_shaft_torques(drivetrain, builder)),
+    )
+
+
+def _shaft_torques(drivetrain: Drivetrain, builder: "_Builder") -> Iterator[ShaftTorques]:
+    """Ripple of the motor and excitation of the couplings, each part that has any."""
+    if drivetrain.motor.ripple:
+        load = np.eye(1, builder.size, builder.drive)[0]
+        yield ShaftTorques(name="motor", load=load, dof=builder.drive, parts=drivetrain.motor.ripple)
+    for coupling in drivetrain.couplings:
+        if coupling.excitation:
+            a, b = (builder.end(name, end) for name, end in zip(coupling.shafts, coupling.ends))
+            load = np.zeros(builder.size)
+            load[a], load[b] = 1.0, -1.0
+            yield ShaftTorques(name=coupling.name, load=load, dof=a, parts=coupling.excitation)
+
+
+def joints(drivetrain: Drivetrain) -> tuple[Joint, ...]:
+    """All springs and dampers between the freedoms of ``assemble``, meshes left out."""
+    return tuple(_Builder(drivetrain).joints)
+
+
+@dataclass
+class _Builder:
+    """Collects bodies and joints of one assembly."""
+
+    drivetrain: Drivetrain
+    inertia: list[float] = field(default_factory=list)
+    names: list[str] = field(default_factory=list)
+    shaft_of: list[str] = field(default_factory=list)
+    joints: list[Joint] = field(default_factory=list)
+    chains: dict[str, ShaftChain] = field(default_factory=dict)
+    first: dict[str, int] = field(default_factory=dict)
+    stations: int = 0
+    drive: int = 0
+
+    def __post_init__(self) -> None:
+        self._add_shafts()
+        self.stations = self.size
+        for gear in self.drivetrain.gears:
+            self.add_body(f"{gear.shaft}/{gear.name}", gear.inertia, gear.shaft)
+            seat = self.station(gear.shaft, gear.position)
+            self.joints.append(Joint(gear.name, "spline", self.size - 1, seat, gear.stiffness, gear.damping))
+        for coupling in self.drivetrain.couplings:
+            a, b = (self.end(name, end) for name, end in zip(coupling.shafts, coupling.ends))
+            self.joints.append(Joint(coupling.name, "coupling", a, b, coupling.stiffness, coupling.damping))
+        self._add_motor(self.drivetrain.motor)
+
+    def _add_shafts(self) -> None:
+        for shaft in self.drivetrain.shafts:
+            chain = discretise(shaft, _stations(self.drivetrain, shaft.name))
+            self.chains[shaft.name] = chain
+            self.first[shaft.name] = start = self.size
+            for position, inertia in zip(chain.positions, chain.inertia):
+                self.add_body(f"{shaft.name}/{position * 1e3:.2f} mm", float(inertia), shaft.name)
+            for i, spring in enumerate(chain.springs):
+                self.joints.append(Joint(shaft.name, "shaft", start + i, start + i + 1, float(spring), 0.0))
+
+    @property
+    def size(self) -> int:
+        return len(self.inertia)
+
+    def add_body(self, name: str, inertia: float, shaft: str) -> None:
+        self.inertia.append(inertia)
+        self.names.append(name)
+        self.shaft_of.append(shaft)
+
+    def station(self, shaft: str, position: float) -> int:
+        return self.first[shaft] + self.chains[shaft].node(position)
+
+    def end(self, shaft: str, end: End) -> int:
+        return self.station(shaft, 0.0 if end == "left" else self.drivetrain.shaft(shaft).length)
+
+    def _add_motor(self, motor: Motor) -> None:
+        self.drive = self.station(motor.shaft, motor.position)
+        if motor.stiffness is None:
+            self.inertia[self.drive] += motor.inertia
+            return
+        self.add_body(f"{motor.shaft}/motor", motor.inertia, motor.shaft)
+        self.joints.append(Joint("motor", "motor", self.size - 1, self.drive, motor.stiffness, motor.damping))
+        self.drive = self.size - 1
+
+    def matrices(self) -> tuple[Array, Array]:
+        """Stiffness and damping matrix (n, n)."""
+        stiffness, damping = np.zeros((2, self.size, self.size))
+        for _, _, a, b, k, c in self.joints:
+            for matrix, value in ((stiffness, k), (damping, c)):
+                matrix[a, a] += value
+                matrix[b, b] += value
+                matrix[a, b] -= value
+                matrix[b, a] -= value
+        for bearing in self.drivetrain.bearings:
+            dof = self.station(bearing.shaft, bearing.position)
+            damping[dof, dof] += bearing.linear_drag
+        return stiffness, damping
+
+
+def _stations(drivetrain: Drivetrain, shaft: str) -> tuple[float, ...]:
+    parts: tuple[GearBody | JournalBearing | DragPlace | Motor, ...] = (
+        *drivetrain.gears,
+        *drivetrain.bearings,
+        *drivetrain.drag_places,
+        drivetrain.motor,
+    )
+    return tuple(part.position for part in parts if part.shaft == shaft)
+
+
+def _named(parts: Iterable[_Part], name: str, kind: str) -> _Part:
+    known = []
+    for part in parts:
+        if part.name == name:
+            return part
+        known.append(part.name)
+    raise DrivetrainError(f"{kind} {name!r} does not exist: the drivetrain has {', '.join(known) or 'none'}")
+
+
+def _check_names(drivetrain: Drivetrain) -> None:
+    if not drivetrain.shafts:
+        raise DrivetrainError("the drivetrain has no shaft; give at least one")
+    groups: dict[str, list[str]] = {
+        "shaft": [part.name for part in drivetrain.shafts],
+        "coupling": [part.name for part in drivetrain.couplings],
+        "mesh": [part.name for part in drivetrain.meshes],
+        "gear body, bearing or drag place": [
+            *(part.name for part in drivetrain.gears),
+            *(part.name for part in drivetrain.bearings),
+            *(part.name for part in drivetrain.drag_places),
+        ],
+    }
+    for kind, names in groups.items():
+        for name in names:
+            if names.count(name) > 1:
+                raise DrivetrainError(
+                    f"{kind} {name!r} is given {names.count(name)} times: rename all but one"
+                )
+
+
+def _check_references(drivetrain: Drivetrain) -> None:
+    for gear in drivetrain.gears:
+        drivetrain.shaft(gear.shaft).check_position(gear.position, f"gear body {gear.name!r}")
+        _check_positive(f"gear body {gear.name!r}", inertia=gear.inertia, stiffness=gear.stiffness)
+        _check_not_negative(f"gear body {gear.name!r}", damping=gear.damping)
+    for coupling in drivetrain.couplings:
+        for name in coupling.shafts:
+            drivetrain.shaft(name)
+        _check_positive(f"coupling {coupling.name!r}", stiffness=coupling.stiffness)
+        _check_not_negative(f"coupling {coupling.name!r}", damping=coupling.damping)
+    for bearing in drivetrain.bearings:
+        drivetrain.shaft(bearing.shaft).check_position(bearing.position, f"bearing {bearing.name!r}")
+        _check_not_negative(f"bearing {bearing.name!r}", linear_drag=bearing.linear_drag)
+    for place in drivetrain.drag_places:
+        drivetrain.shaft(place.shaft).check_position(place.position, f"drag place {place.name!r}")
+    motor = drivetrain.motor
+    drivetrain.shaft(motor.shaft).check_position(motor.position, "motor")
+    _check_not_negative("motor", inertia=motor.inertia, damping=motor.damping)
+    if motor.stiffness is not None:
+        _check_positive("motor on a joint of its own", inertia=motor.inertia, stiffness=motor.stiffness)
+    for mesh in drivetrain.meshes:
+        drivetrain.gear(mesh.pinion)
+        drivetrain.gear(mesh.wheel)
+    if drivetrain.bracing_coupling is not None:
+        _named(drivetrain.couplings, drivetrain.bracing_coupling, "bracing coupling")
+
+
+def _check_positive(part: str, **values: float) -> None:
+    for name, value in values.items():
+        if not value > 0.0:
+            raise DrivetrainError(f"{part}: {name} = {value}: must be above 0; correct the value")
+
+
+def _check_not_negative(part: str, **values: float) -> None:
+    for name, value in values.items():
+        if not value >= 0.0:
+            raise DrivetrainError(f"{part}: {name} = {value}: must not be negative; correct the sign")

@@ -1,0 +1,308 @@
+"""Natural frequencies with named shapes, damping of every joint and mesh, order crossings, sampling.
+
+Audits of a rig's input: which joint is so strongly damped that its stiffness plays no part, at which speeds a
+mesh order meets a natural frequency, how many samples a recording has per mesh.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.graph import Drivetrain, Joint, assemble, joints
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.modal_form import modal_form
+from dynamics.drivetrain.power_loop import speed_ratios
+from dynamics.drivetrain.shaft import free_frequencies
+from dynamics.mesh.law import MeshLaw
+
+Array = NDArray[np.float64]
+
+DAMPING_RATIO_LIMIT = 0.3
+"""Above this damping ratio a joint or mesh gets a warning: the resonance of its spring is gone [-]."""
+
+SEEN_GAIN = 1.0
+"""Mesh gain from which a mode above the sampled band is worth a warning: its mesh answers it like a static load [-]."""
+
+LEAST_DAMPING = 1e-9
+"""Damping ratio taken for a mode that no damper reaches, so that its gain stays a number [-]."""
+
+
+def shaft_frequencies(drivetrain: Drivetrain, count: int = 3) -> dict[str, Array]:
+    """First free-free torsional frequencies [Hz] of every shaft with its discs and gear bodies.
+
+    A gear body counts as rigid with its shaft: the damper of a spline usually is far above its corner
+    frequency there (see ``damping_audit``), and a stiff spline without damper hardly differs.
+    """
+    bodies: dict[str, list[tuple[float, float]]] = {shaft.name: [] for shaft in drivetrain.shafts}
+    for gear in drivetrain.gears:
+        bodies[gear.shaft].append((gear.position, gear.inertia))
+    return {
+        shaft.name: free_frequencies(shaft, tuple(bodies[shaft.name]), count) for shaft in drivetrain.shafts
+    }
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoopMode:
+    """Mode of the closed loop with mean mesh stiffness.
+
+    frequency : undamped natural frequency |pole| / 2 pi [Hz]; damping_ratio [-]
+    name : parts that hold the strain energy, largest first
+    energy : part -> share of strain energy [-], shafts, splines, couplings and meshes
+    mesh_gain : (n_meshes,) peak of mean mesh stiffness times approach per mesh force of this mode alone [-];
+        far below 1 the mesh hardly excites it
+    largest : freedom that swings most, ``shaft/station``
+    """
+
+    frequency: float
+    damping_ratio: float
+    name: str
+    energy: dict[str, float]
+    mesh_gain: Array
+    largest: str = ""
+
+
+def loop_modes(
+    drivetrain: Drivetrain, laws: Sequence[MeshLaw], highest_frequency: float = 20e3
+) -> tuple[LoopMode, ...]:
+    """Rigid mode (0 Hz) and all oscillating modes up to a frequency [Hz], meshes at their mean stiffness.
+
+    Overdamped pairs have no frequency and are left out.
+    """
+    system = assemble(drivetrain)
+    inertia, damping, stiffness = closed_matrices(system, laws)
+    form = modal_form(inertia, damping, stiffness, system.lines)
+    approach = np.zeros((len(laws), inertia.size))
+    parts = joints(drivetrain)
+    for m, (law, ports, mesh) in enumerate(zip(laws, system.mesh_ports, drivetrain.meshes)):
+        approach[m, ports] = law.base_radius_1, -law.base_radius_2
+        parts = (*parts, Joint(f"mesh {mesh.name}", "mesh", int(ports[0]), int(ports[1]), 0.0, 0.0))
+    mean = np.array([law.mean_stiffness for law in laws])
+    found = [
+        LoopMode(
+            frequency=0.0, damping_ratio=0.0, name="rigid rotation", energy={}, mesh_gain=np.zeros(len(laws))
+        )
+        for _ in range(form.rigid.shape[1])
+    ]
+    order = np.argsort(np.abs(form.poles), kind="stable")
+    for i in order[form.poles.imag[order] > 1e-6 * np.abs(form.poles[order])]:
+        pole, shape = form.poles[i], form.velocity_shapes[:, i]
+        frequency = abs(pole) / (2.0 * math.pi)
+        if frequency > highest_frequency:
+            break
+        reach = approach @ shape
+        damping = max(abs(pole.real), LEAST_DAMPING * abs(pole))
+        gain = np.abs(reach * (form.loads[i] @ approach.T)) * mean / (damping * abs(pole))
+        energy = _strain_energy(parts, shape, mean * np.abs(reach) ** 2)
+        found.append(
+            LoopMode(
+                frequency=float(frequency),
+                damping_ratio=float(-pole.real / abs(pole)),
+                name=_shape_name(energy),
+                energy=energy,
+                mesh_gain=gain,
+                largest=system.dofs[int(np.argmax(np.abs(shape)))],
+            )
+        )
+    return tuple(found)
+
+
+def closed_matrices(system: LinearSystem, laws: Sequence[MeshLaw]) -> tuple[Array, Array, Array]:
+    """Inertia (n,), damping, stiffness (n, n) of the loop with every mesh as its mean spring and damper."""
+    stiffness, damping = system.stiffness.copy(), system.damping.copy()
+    for law, ports in zip(laws, system.mesh_ports):
+        approach = np.zeros(system.inertia.size)
+        approach[ports] = law.base_radius_1, -law.base_radius_2
+        stiffness += law.mean_stiffness * np.outer(approach, approach)
+        damping += law.damping * np.outer(approach, approach)
+    return system.inertia, damping, stiffness
+
+
+def _strain_energy(
+    parts: Sequence[Joint], shape: NDArray[np.complex128], mesh_energy: Array
+) -> dict[str, float]:
+    share: dict[str, float] = {}
+    meshes = iter(mesh_energy)
+    for joint in parts:
+        if joint.kind == "mesh":
+            value = float(next(meshes))
+        else:
+            value = joint.stiffness * float(np.abs(shape[joint.dof_a] - shape[joint.dof_b]) ** 2)
+        share[joint.name] = share.get(joint.name, 0.0) + value
+    total = math.fsum(share.values()) or 1.0
+    return {name: value / total for name, value in sorted(share.items(), key=lambda item: -item[1])}
+
+
+def _shape_name(energy: Mapping[str, float]) -> str:
+    """Up to three parts that hold most of the strain energy: ``test_pinion 62 %, mesh test 21 %``."""
+    named, held = [], 0.0
+    for part, share in energy.items():
+        named.append(f"{part} {share:.0%}".replace("%", " %"))
+        held += share
+        if held > 0.75 or len(named) == 3:
+            break
+    return ", ".join(named)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DampingRecord:
+    """Damping of one joint or mesh.
+
+    damping_ratio : c / (2 sqrt(k J)) with J the smaller body against the larger held (reduced inertia) [-]
+    corner_frequency : k / (2 pi c) [Hz]; far above it the damper bridges the spring
+    own_frequency : sqrt(k / J) / 2 pi [Hz], what the joint would resonate at without damper
+    warning : empty, or name, value, limit, remedy
+    """
+
+    name: str
+    kind: str
+    damping_ratio: float
+    corner_frequency: float
+    own_frequency: float
+    warning: str
+
+
+def damping_record(name: str, kind: str, stiffness: float, damping: float, inertia: float) -> DampingRecord:
+    """Audit one spring-damper against the inertia (or mass) it holds, in consistent SI units."""
+    ratio = damping / (2.0 * math.sqrt(stiffness * inertia))
+    corner = stiffness / (2.0 * math.pi * damping) if damping > 0.0 else math.inf
+    warning = ""
+    if ratio > DAMPING_RATIO_LIMIT:
+        warning = (
+            f"{kind} {name!r}: damping ratio = {ratio:.3g}, limit {DAMPING_RATIO_LIMIT}: above its corner "
+            f"frequency of {corner:.3g} Hz the damper makes the joint rigid and deletes a resonance; measure "
+            "the damping or run a variant with less"
+        )
+    return DampingRecord(
+        name=name,
+        kind=kind,
+        damping_ratio=ratio,
+        corner_frequency=corner,
+        own_frequency=math.sqrt(stiffness / inertia) / (2.0 * math.pi),
+        warning=warning,
+    )
+
+
+def damping_audit(drivetrain: Drivetrain, laws: Sequence[MeshLaw]) -> tuple[DampingRecord, ...]:
+    """Damping ratio and corner frequency of every spline, coupling, motor joint and mesh.
+
+    Inertia taken: gear body on its spline with the shaft held; for a coupling the reduced inertia of the two
+    shafts with their gear bodies; for a mesh the reduced mass of the two gear bodies on the line of action.
+    """
+    records = []
+    of_shaft = {shaft.name: shaft.inertia for shaft in drivetrain.shafts}
+    for gear in drivetrain.gears:
+        of_shaft[gear.shaft] += gear.inertia
+        records.append(damping_record(gear.name, "spline", gear.stiffness, gear.damping, gear.inertia))
+    for coupling in drivetrain.couplings:
+        a, b = (of_shaft[name] for name in coupling.shafts)
+        records.append(
+            damping_record(coupling.name, "coupling", coupling.stiffness, coupling.damping, a * b / (a + b))
+        )
+    motor = drivetrain.motor
+    if motor.stiffness is not None:
+        records.append(damping_record("motor", "motor joint", motor.stiffness, motor.damping, motor.inertia))
+    for mesh, law in zip(drivetrain.meshes, laws):
+        pinion, wheel = drivetrain.gear(mesh.pinion), drivetrain.gear(mesh.wheel)
+        mobility = law.base_radius_1**2 / pinion.inertia + law.base_radius_2**2 / wheel.inertia
+        records.append(damping_record(mesh.name, "mesh", law.mean_stiffness, law.damping, 1.0 / mobility))
+    return tuple(records)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crossing:
+    """Speed at which a mesh order meets a natural frequency of a shaft.
+
+    mesh, shaft : names; mode : 1, 2, 3 ...; frequency [Hz]; harmonic of the mesh frequency
+    speed : of the pinion of that mesh [rad/s]
+    """
+
+    mesh: str
+    shaft: str
+    mode: int
+    frequency: float
+    harmonic: int
+    speed: float
+
+
+def order_crossings(
+    drivetrain: Drivetrain,
+    frequencies: Mapping[str, Array],
+    highest_speed: float,
+    harmonics: int = 3,
+) -> tuple[Crossing, ...]:
+    """All crossings up to a pinion speed [rad/s], by mesh, then by speed: 2 pi f / (z1 h).
+
+    A shaft is crossed by the meshes whose pinion or wheel sits on it.
+    """
+    found = []
+    for mesh in drivetrain.meshes:
+        for shaft in (drivetrain.gear(mesh.pinion).shaft, drivetrain.gear(mesh.wheel).shaft):
+            for mode, frequency in enumerate(frequencies[shaft], start=1):
+                for harmonic in range(1, harmonics + 1):
+                    speed = 2.0 * math.pi * float(frequency) / (mesh.teeth[0] * harmonic)
+                    if speed <= highest_speed:
+                        found.append(
+                            Crossing(
+                                mesh=mesh.name, shaft=shaft, mode=mode, frequency=float(frequency),
+                                harmonic=harmonic, speed=speed,
+                            )
+                        )  # fmt: skip
+    order = {mesh.name: i for i, mesh in enumerate(drivetrain.meshes)}
+    return tuple(sorted(found, key=lambda c: (order[c.mesh], c.speed, c.shaft)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class SamplingAudit:
+    """Samples of a recording per mesh period at top speed.
+
+    harmonics : whole mesh harmonics below half the sample rate; warning : empty, or name, value, limit,
+    remedy
+    """
+
+    mesh: str
+    mesh_frequency: float
+    samples_per_mesh: float
+    harmonics: int
+    warning: str
+
+
+def sampling_audit(
+    drivetrain: Drivetrain, speed: float, sample_rate: float, samples_wanted: float = 10.0
+) -> tuple[SamplingAudit, ...]:
+    """Audit every mesh at a speed of the motor's shaft [rad/s] and a sample rate [Hz]."""
+    ratios = speed_ratios(drivetrain)
+    found = []
+    for mesh in drivetrain.meshes:
+        pinion_speed = speed * ratios[drivetrain.gear(mesh.pinion).shaft]
+        frequency = pinion_speed * mesh.teeth[0] / (2.0 * math.pi)
+        samples = sample_rate / frequency
+        warning = ""
+        if samples < samples_wanted:
+            warning = (
+                f"mesh {mesh.name!r}: samples per mesh = {samples:.2f}, limit {samples_wanted:g}: the "
+                f"waveform and harmonics above {int(samples / 2)} are lost; sample at "
+                f"{samples_wanted * frequency:.3g} Hz or use the envelopes taken at the internal rate"
+            )
+        found.append(
+            SamplingAudit(
+                mesh=mesh.name, mesh_frequency=frequency, samples_per_mesh=samples,
+                harmonics=int(samples / 2.0), warning=warning,
+            )
+        )  # fmt: skip
+    return tuple(found)
+
+
+def modes_above_samples(modes: Sequence[LoopMode], sample_rate: float) -> tuple[str, ...]:
+    """Warnings of modes that the meshes excite above half of a sample rate [Hz], with name, frequency and remedy."""
+    band = 0.5 * sample_rate
+    return tuple(
+        f"mode of {mode.frequency / 1e3:.2f} kHz ({mode.name}): above half the sample rate of "
+        f"{sample_rate / 1e3:g} kHz: sampled speeds and torques show it at "
+        f"{abs(mode.frequency - sample_rate * round(mode.frequency / sample_rate)) / 1e3:.2f} kHz; sample at "
+        f"{2.5 * mode.frequency / 1e3:.0f} kHz, or use means and envelopes, which come from the internal steps"
+        for mode in modes
+        if mode.frequency > band and float(mode.mesh_gain.max(initial=0.0)) >= SEEN_GAIN
+    )

@@ -1,0 +1,1 @@
+"""Cylindrical gears and gear pairs: geometry, limits, tooth outline."""

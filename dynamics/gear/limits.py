@@ -1,0 +1,129 @@
+"""What a gear pair must respect to be makeable and to mesh, and what is worth a warning."""
+
+from typing import TYPE_CHECKING
+
+from dynamics.gear.cylindrical_gear import GearGeometryError
+
+if TYPE_CHECKING:
+    from dynamics.gear.pair import GearPair
+
+NAMES = ("pinion", "wheel")
+FILLET_OVERLAP_LIMIT = 0.02
+"""Overlap of a mating flank with the fillet, in normal modules, above which the pair is refused."""
+FILLET_OVERLAP_NOTED = 1e-4
+"""Overlap in normal modules that is worth a warning."""
+THIN_RIM, NO_RIM = 1.2, 0.5
+"""Rim under the root, in tooth heights: below the first it adds to the root stress, at the second it carries no
+tooth (ISO 6336-3:2006, clause 9)."""
+THIN_TIP = 0.2
+"""Tip thickness in normal modules below which a hardened tip is likely to break."""
+
+
+def require_sizes(pair: "GearPair") -> None:
+    """Raise GearGeometryError for numbers that describe no gear."""
+    positive = {
+        "normal_module": (pair.normal_module, "m"),
+        "centre_distance": (pair.centre_distance, "m"),
+        "face_widths[0]": (pair.face_widths[0], "m"),
+        "face_widths[1]": (pair.face_widths[1], "m"),
+        "teeth[0]": (pair.teeth[0], ""),
+        "teeth[1]": (pair.teeth[1], ""),
+    }
+    for name, (value, unit) in positive.items():
+        if not value > 0.0:
+            raise GearGeometryError(f"{name} = {value} {unit} must be positive; correct the gear data")
+    for i in (0, 1):
+        if not 0.0 <= pair.bore_diameters[i] < 2.0 * pair.root_radii[i]:
+            raise GearGeometryError(
+                f"bore_diameters[{i}] = {1e3 * pair.bore_diameters[i]:.3f} mm must lie between 0 and the "
+                f"root diameter {2e3 * pair.root_radii[i]:.3f} mm; reduce the bore"
+            )
+        if not pair.tip_radii[i] > pair.gears[i].form_radius:
+            raise GearGeometryError(
+                f"tip_diameters[{i}] = {1e3 * pair.tip_diameters[i]:.3f} mm must exceed the form diameter "
+                f"{2e3 * pair.gears[i].form_radius:.3f} mm; no involute is left: "
+                "increase tip diameter or shift"
+            )
+        if pair.bore_diameters[i] and rim_in_tooth_heights(pair, i) <= NO_RIM:
+            raise GearGeometryError(
+                f"bore_diameters[{i}] = {1e3 * pair.bore_diameters[i]:.3f} mm leaves a rim of "
+                f"{rim_in_tooth_heights(pair, i):.3f} tooth heights under the root, must exceed {NO_RIM}; reduce "
+                "the bore"
+            )
+    if not sum(pair.base_radii) < pair.centre_distance:
+        raise GearGeometryError(
+            f"centre_distance = {1e3 * pair.centre_distance:.4f} mm gives no working pressure angle: it must "
+            f"exceed the sum of the base radii, {1e3 * sum(pair.base_radii):.4f} mm; "
+            "increase it or reduce module, teeth or helix angle"
+        )
+
+
+def require_meshing(pair: "GearPair") -> None:
+    """Raise GearGeometryError for a cold pair that cannot run."""
+    for name, gear in zip(NAMES, pair.gears, strict=True):
+        if not gear.tip_thickness > 0.0:
+            raise GearGeometryError(
+                f"{name}: tip thickness {1e3 * gear.tip_thickness:.4f} mm must be positive (pointed tooth); "
+                "reduce profile shift or tip diameter"
+            )
+    for name, clearance in zip(NAMES, pair.tip_clearances, strict=True):
+        if not clearance > 0.0:
+            raise GearGeometryError(
+                f"{name}: tip clearance {1e3 * clearance:.4f} mm must be positive; "
+                "shorten the tip, deepen the mating root or increase the centre distance"
+            )
+    limit = FILLET_OVERLAP_LIMIT * pair.normal_module
+    for name, overlap in zip(NAMES, pair.fillet_overlaps, strict=True):
+        if overlap > limit:
+            raise GearGeometryError(
+                f"{name}: interference, its fillet overlaps the path of the mating tip by "
+                f"{1e6 * overlap:.1f} um (limit {1e6 * limit:.1f} um); "
+                "shorten the mating tip or shift the profile"
+            )
+    ratio = pair.total_contact_ratio
+    if not (ratio >= 1.0 and pair.path.length > 0.0):
+        raise GearGeometryError(
+            f"total contact ratio {ratio:.4f} must be at least 1 "
+            f"(transverse {pair.transverse_contact_ratio:.4f}); "
+            "lengthen the tips or reduce the centre distance"
+        )
+
+
+def rim_in_tooth_heights(pair: "GearPair", index: int) -> float:
+    """Rim between bore and root circle of a gear, per height of its teeth [-]."""
+    rim = pair.root_radii[index] - 0.5 * pair.bore_diameters[index]
+    return rim / (pair.tip_radii[index] - pair.root_radii[index])
+
+
+def unusual(pair: "GearPair") -> tuple[str, ...]:
+    """Warnings about a pair that can run: name, value, limit, remedy."""
+    found: list[str] = []
+    for name, gear, overlap in zip(NAMES, pair.gears, pair.fillet_overlaps, strict=True):
+        if gear.undercut:
+            found.append(
+                f"{name}: undercut, its involute starts at d = {2e3 * gear.form_radius:.3f} mm; "
+                "raise its profile shift"
+            )
+        if overlap > FILLET_OVERLAP_NOTED * gear.normal_module:
+            found.append(
+                f"{name}: fillet reaches {1e6 * overlap:.2f} um into the path of the mating tip "
+                "(limit 1e-4 m_n); use a smaller tool tip radius, a deeper tool or a shorter mating tip"
+            )
+        if gear.tip_thickness < THIN_TIP * gear.normal_module:
+            found.append(
+                f"{name}: tip thickness {1e3 * gear.tip_thickness:.3f} mm below 0.2 m_n; "
+                "reduce shift or addendum"
+            )
+    for i, name in enumerate(NAMES):
+        rim = rim_in_tooth_heights(pair, i)
+        if pair.bore_diameters[i] and rim < THIN_RIM:
+            found.append(
+                f"{name}: rim under the root {rim:.2f} tooth heights (limit {THIN_RIM}): it adds to the root stress; "
+                "reduce the bore"
+            )
+    if pair.transverse_backlash < -1e-9:
+        found.append(
+            f"backlash {1e6 * pair.transverse_backlash:.1f} um on the working pitch circles is negative: "
+            "the teeth jam; thin them (thickness_allowances) or increase the centre distance"
+        )
+    return tuple(found)

@@ -1,0 +1,1 @@
+"""Power losses of meshes, gears in mist, oil jets and seals."""

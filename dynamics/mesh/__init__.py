@@ -1,0 +1,1 @@
+"""The law of a gear mesh: flanks, stiffness, forces, friction, sliding."""

@@ -1,0 +1,1 @@
+"""Orders of torque and angle from deviations of single teeth."""

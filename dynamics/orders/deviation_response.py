@@ -1,0 +1,196 @@
+"""Orders of the loop from deviations of single teeth and from harmonic torques.
+
+With all teeth of a gear alike the loop settles to a motion that repeats from mesh to mesh. Teeth that differ a little
+from each other, and torques of any order, move it by ``dx``, which obeys in first order
+
+    d tau = T_x(t) dx + T_v(t) dx' + T_theta(t) d theta + sum over the contacts of what their teeth deviate,
+
+with tangents ``T`` of the mesh period (``dynamics.orders.hill_system``). A wave over the teeth of one gear excites
+one class of orders, wave + multiples of the tooth number. What the first order leaves out, contacts that open, close
+or carry another share, is added as forces over the cycle of the gear (``dynamics.orders.tooth_cycle``).
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.mesh.flank import alike_teeth
+from dynamics.mesh.law import MeshLaw
+from dynamics.orders.hill_system import SAME_CLASS, HillSystem, MeshPeriodic
+from dynamics.orders.tooth_cycle import CycleForces, cycle_forces
+from dynamics.orders.tooth_forcing import ToothForcing
+from dynamics.response.speed_sweep import CurvePoint
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Integers = NDArray[np.int64]
+
+LEAST_HARMONICS, MARGIN = 12, 8
+"""Mesh harmonics on both sides at least, and beyond the highest order asked for."""
+CYCLE_STEPS = 30
+"""Steps at most that correct for what the contacts do beyond first order."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HarmonicTorque:
+    """Torque Re(amplitude exp(i order phi)) on one freedom [N m]; order per turn of the pinion of the first mesh."""
+
+    dof: int
+    order: float
+    amplitude: complex
+
+
+@dataclass(frozen=True, kw_only=True)
+class OrderLoads:
+    """Loads of one order on the linear drivetrain, one-sided amplitudes [N m].
+
+    order : per turn of the pinion of the first mesh; omega [rad/s]
+    dofs : (n,) freedoms that are loaded; torque : (n,)
+    """
+
+    order: float
+    omega: float
+    dofs: Integers
+    torque: Complex
+
+
+class DeviationResponse:
+    """Response of one operating point to its deviations, about the motion with all teeth alike.
+
+    phi is the mean angle of the pinion of the first mesh, zero where its pair 0 stands at the path position ``phase``
+    of its law.
+    """
+
+    def __init__(
+        self,
+        system: LinearSystem,
+        laws: Sequence[MeshLaw],
+        base: CurvePoint,
+        *,
+        twist_held: bool = False,
+        steps: int = CYCLE_STEPS,
+    ) -> None:
+        """Linearise about ``base``, found for the laws with all teeth alike (``alike_teeth``), over one mesh period.
+
+        laws : with their deviations; twist_held : the twist is held and not the mean torque of the first mesh
+        steps : corrections beyond first order; 0 is the linear response
+        """
+        self.laws, self.steps = tuple(laws), steps
+        self.loop = MeshPeriodic(system, [alike_teeth(law) for law in laws], base, twist_held=twist_held)
+        self.forcing = ToothForcing(self.laws, self.loop)
+
+    @cached_property
+    def cycles(self) -> tuple[CycleForces, ...]:
+        """Forces of each group of gears that comes round in the same cycle; empty in the linear response."""
+        return cycle_forces(self.loop, self.forcing, self.steps) if self.steps else ()
+
+    @property
+    def change(self) -> float:
+        """By how much the approach still moved in the last correction, relative to its whole deviation [-]."""
+        return max((cycle.change for cycle in self.cycles), default=0.0)
+
+    def loads(self, orders: Iterable[float], torques: Sequence[HarmonicTorque] = ()) -> list[OrderLoads]:
+        """Loads on the drivetrain at each order (per turn of the pinion of the first mesh, >= 0).
+
+        torques : further torques on any freedoms, in first order
+
+        Raises ValueError for a negative order, a torque without a positive one, or an order above the samples.
+        """
+        loop = self.loop
+        wanted = [float(order) for order in orders]
+        if min(wanted, default=0.0) < 0.0 or any(not torque.order > 0.0 for torque in torques):
+            raise ValueError("orders must not be negative, those of torques above 0; turn the phase instead")
+        highest = max((round(order / loop.cell_order) for order in wanted), default=0)
+        reach = max(LEAST_HARMONICS, ceil(highest) + MARGIN)
+        most = (loop.samples - 1) // 4
+        if highest > most:
+            raise ValueError(
+                f"order {max(wanted):g}: above {most} mesh orders of {loop.cell_order:g}, the most that "
+                f"{loop.samples} samples of a mesh hold; ask for less"
+            )
+        reach = min(reach, most)
+        outer = sorted({torque.dof for torque in torques} - set(loop.bodies.tolist()))
+        dofs = np.concatenate([loop.bodies, np.array(outer, np.int64)])
+        tangent = loop.tangent(reach)
+        changes: dict[float, Complex] = {}
+        found = []
+        for order in wanted:
+            residue = loop.residue(order)
+            if residue not in changes:
+                changes[residue] = self._class(residue, reach, dofs, torques, tangent)
+            h = round(order / loop.cell_order - residue)
+            torque = changes[residue][:, reach + h].copy()
+            if residue == 0.0:
+                torque[: loop.bodies.size] += loop.torque[:, h]
+            found.append(
+                OrderLoads(
+                    order=order, omega=order * loop.speed, dofs=dofs, torque=torque * (2.0 if order else 1.0)
+                )
+            )
+        return found
+
+    def _class(
+        self, residue: float, reach: int, dofs: Integers, torques: Sequence[HarmonicTorque], tangent: Complex
+    ) -> Complex:
+        """Changes of the torques on ``dofs`` (n_dofs, 2 reach + 1), two-sided, of one class."""
+        number = np.arange(-reach, reach + 1)
+        given = self._given(residue, number, dofs, torques)
+        if self.steps:
+            forces = sum(
+                (cycle.of_class(residue, number) for cycle in self.cycles), start=self.forcing.none(reach)
+            )
+        else:
+            forces = self.forcing.of_class(residue, number)
+        if not (np.any(given) or np.any(forces)):
+            return given
+        receptance = self.loop.receptance(self.loop.omega(residue, reach), dofs)
+        return HillSystem(self.loop, residue, tangent, receptance).solve(forces, given).torque
+
+    def _given(
+        self, residue: float, number: Integers, dofs: Integers, torques: Sequence[HarmonicTorque]
+    ) -> Complex:
+        """Two-sided given torques of a class (n_dofs, n)."""
+        given = np.zeros((dofs.size, number.size), complex)
+        for torque in torques:
+            for sign in (1.0, -1.0):
+                share = sign * torque.order / self.loop.cell_order - residue
+                h = round(share)
+                if abs(share - h) < SAME_CLASS and abs(h) <= number[-1]:
+                    amplitude = torque.amplitude if sign > 0.0 else torque.amplitude.conjugate()
+                    given[int(np.flatnonzero(dofs == torque.dof)[0]), h - number[0]] += 0.5 * amplitude
+        return given
+
+
+def motion_orders(system: LinearSystem, loads: OrderLoads, dofs: Sequence[int]) -> Complex:
+    """One-sided amplitudes of the angles of some freedoms under the loads of an order above 0 (n_dofs,) [rad]."""
+    asked = np.asarray(dofs, np.int64)
+    together = np.concatenate([asked, loads.dofs])
+    receptance = system.form.receptance(np.array([loads.omega]), together)[0]
+    return np.asarray(receptance[: asked.size, asked.size :] @ loads.torque)
+
+
+def mean_windup(
+    system: LinearSystem, torque: Mapping[int, float], *, twist: float, drive: float, speed: Array,
+    drags: Mapping[str, float],
+) -> Array:  # fmt: skip
+    """Mean windup of all freedoms (n,) [rad] under mean torques; each line against its own first freedom.
+
+    torque : mean of mesh torque by freedom [N m]; twist : bracing [rad]; drive : motor torque [N m]; speed : (n,)
+    mean speed of every freedom [rad/s]; drags : torque by name of ``drag_loads`` [N m]
+    """
+    load = system.twist_load * twist - system.damping @ speed
+    for dof, value in torque.items():
+        load[dof] += value
+    load[system.drive_dof] += drive
+    for name, value in drags.items():
+        load = load + system.drag_loads[name] * value
+    windup = np.zeros(system.inertia.size)
+    for line in np.unique(system.lines):
+        own = np.flatnonzero(system.lines == line)[1:]
+        windup[own] = np.linalg.solve(system.stiffness[np.ix_(own, own)], load[own])
+    return windup

@@ -1,0 +1,1 @@
+"""ISO ratings, dynamic factor, root stress."""

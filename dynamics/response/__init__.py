@@ -1,0 +1,1 @@
+"""Motion of the drivetrain: over a schedule in time, periodic over speed."""

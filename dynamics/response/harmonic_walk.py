@@ -1,0 +1,167 @@
+"""Choice of harmonics, start states and continuation of the harmonic balance from speed to speed."""
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from fractions import Fraction
+from functools import partial
+
+import numpy as np
+
+from dynamics.drivetrain.modal_form import ModalForm
+from dynamics.drivetrain.static_loop import NotConverged, PortModel, solve_static
+from dynamics.response.harmonic_balance import (
+    HarmonicGrid,
+    HarmonicSolution,
+    Problem,
+    resample,
+    solve_periodic,
+)
+from dynamics.response.periodic_response import Period
+
+LEAST_HARMONICS, MOST_HARMONICS = 24, 136
+"""Harmonics of the mesh frequency that are used at least and at most."""
+LEAST_SAMPLES = 256
+"""Samples per mesh that are used at least."""
+
+
+def highest_mode(form: ModalForm, cutoff: float) -> float:
+    """Frequency [Hz] of the highest oscillating mode below the cutoff [Hz]; 0 if there is none."""
+    frequency = np.abs(form.poles[form.poles.imag > 1e-3 * np.abs(form.poles)]) / (2.0 * math.pi)
+    return float(np.max(frequency[frequency <= cutoff], initial=0.0))
+
+
+class HarmonicWalk:
+    """Harmonic balance from speed to speed with its retries."""
+
+    def __init__(self, problem: Problem, period: Period, cutoff: float, tolerance: float) -> None:
+        """Choose the cell and the highest mode that the harmonics must reach, see ``periodic_response``."""
+        self.problem, self.tolerance = problem, tolerance
+        self.cells, self.cell_angle = mesh_cells(problem.model, period, problem.control_mesh)
+        self.highest = highest_mode(problem.form, cutoff)
+
+    def grid(self, speed: float) -> HarmonicGrid:
+        """Grid whose harmonics reach 1.5 times the highest mode; NotConverged if that takes too many."""
+        cell_frequency = speed / self.cell_angle
+        needed = math.ceil(1.5 * self.highest / cell_frequency)
+        if needed > MOST_HARMONICS:
+            raise NotConverged(
+                f"harmonic balance at {speed:.6g} rad/s: {needed} harmonics needed to reach 1.5 times "
+                f"the highest mode of {self.highest:.4g} Hz, limit {MOST_HARMONICS}; integrate in time"
+            )
+        harmonics = max(needed, LEAST_HARMONICS)
+        samples = max(LEAST_SAMPLES, 1 << (4 * harmonics - 1).bit_length())
+        return HarmonicGrid(
+            cells=self.cells, harmonics=harmonics, samples=samples, cell_angle=self.cell_angle
+        )
+
+    def solve(
+        self, speed: float, drags: Mapping[str, float] | None, last: HarmonicSolution | None
+    ) -> HarmonicSolution:
+        """State at a speed of the drive freedom [rad/s], by continuation from ``last``; else NotConverged."""
+        grid = self.grid(speed)
+        reason = NotConverged("")
+        for start in self._starts(grid, speed, drags, last):
+            try:
+                return self._solve(start, speed, drags)
+            except NotConverged as error:
+                reason = error
+        raise reason
+
+    def _solve(
+        self, start: HarmonicSolution, speed: float, drags: Mapping[str, float] | None
+    ) -> HarmonicSolution:
+        return solve_periodic(
+            self.problem, start.grid, speed, start, drag_torques=drags, tolerance=self.tolerance
+        )
+
+    def _starts(
+        self,
+        grid: HarmonicGrid,
+        speed: float,
+        drags: Mapping[str, float] | None,
+        last: HarmonicSolution | None,
+    ) -> Iterator[HarmonicSolution]:
+        """State of the speed before, with more samples, by small steps, then the quasi-static state."""
+        finer = replace(grid, samples=4 * grid.samples)
+        if last is not None:
+            yield resample(last, grid)
+            yield resample(last, finer)
+            with suppress(NotConverged):
+                yield self._approach(resample(last, grid), speed, drags)
+        yield quasi_static_start(self.problem, grid, speed, drags)
+        yield quasi_static_start(self.problem, finer, speed, drags)
+
+    def _approach(
+        self, state: HarmonicSolution, speed: float, drags: Mapping[str, float] | None
+    ) -> HarmonicSolution:
+        """Walk to the speed in steps that halve on failure and double on success, down to 1/64 of the way."""
+        step = 0.5 * (speed - state.speed)
+        least = abs(speed - state.speed) / 64.0
+        while abs(step) >= least:
+            left = speed - state.speed
+            if abs(left) < 1e-12 * speed:
+                return state
+            step = math.copysign(min(abs(step), abs(left)), left)
+            try:
+                state = self._solve(state, state.speed + step, drags)
+                step *= 2.0
+            except NotConverged:
+                step *= 0.5
+        raise NotConverged(f"continuation stopped at {state.speed:.6g} rad/s on the way to {speed:.6g} rad/s")
+
+
+def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int, float]:
+    """Number of common mesh periods in the period and rotation of the drive freedom over one of them [rad].
+
+    All meshes share the cell: the shortest rotation that is a whole number of mesh periods of each.
+    """
+    law = model.laws[control_mesh]
+    own = model.ratios[model.pinions[control_mesh]]
+    pitch = [
+        Fraction(float(m.teeth_1 * model.ratios[model.pinions[i]] / (law.teeth_1 * own)))
+        .limit_denominator(10_000)
+        for i, m in enumerate(model.laws)
+    ]  # fmt: skip
+    for value, m in zip(pitch, model.laws):
+        if value.denominator > 200:
+            raise ValueError(
+                f"mesh frequencies have no common period: {m.teeth_1} teeth give {float(value):.6g} of "
+                "the frequency of the control mesh; integrate in time"
+            )
+    common = math.lcm(*(value.denominator for value in pitch))
+    cell_angle = common * 2.0 * math.pi / (law.teeth_1 * float(own))
+    if period == "mesh":
+        return 1, cell_angle
+    meshes = math.lcm(law.teeth_1, common)
+    if period == "hunting_cycle":
+        for m, value in zip(model.laws, pitch):
+            turns = math.lcm(m.teeth_1, m.teeth_2)
+            meshes = math.lcm(meshes, turns * value.denominator // math.gcd(turns, value.numerator))
+    return meshes // common, cell_angle
+
+
+def quasi_static_start(
+    problem: Problem, grid: HarmonicGrid, speed: float, drags: Mapping[str, float] | None
+) -> HarmonicSolution:
+    """Start state: the windup of the slowly rotating loop over one mesh period.
+
+    Behind a motor shaft too soft to lead the loop from angle to angle the pinion of the control mesh leads it.
+    """
+    angles = np.arange(grid.samples) * (grid.cell_angle / grid.samples)
+    find = partial(
+        solve_static, problem.model, torque=problem.torque, twist=problem.twist, control_mesh=problem.control_mesh,
+        angles=np.asarray(angles, float), speed=speed, drag_torques=drags,
+    )  # fmt: skip
+    try:
+        state = find()
+    except NotConverged:
+        state = find(held=int(problem.model.pinions[problem.control_mesh]))
+    coefficients = np.fft.rfft(state.ports[:, :-1].T, axis=1)[:, : grid.harmonics + 1] / grid.samples
+    ports = np.zeros((coefficients.shape[0], grid.top + 1), complex)
+    ports[:, :: grid.cells] = coefficients
+    return HarmonicSolution(
+        grid=grid, speed=speed, ports=ports, twist=state.twist, drive=float(state.drive.mean()),
+        residual=math.inf, iterations=0,
+    )  # fmt: skip

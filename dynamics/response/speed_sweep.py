@@ -1,0 +1,342 @@
+"""Periodic response of the loop over speed, by harmonic balance where it may be trusted, else in time.
+
+Harmonic balance is used where its harmonics reach 1.5 times the highest oscillating mode that the propagator
+keeps; it walks over the speeds in the order given, each start taken from the speed before, so that a rising
+and a falling list may settle on different branches of a jump. Where it fails or may not be used,
+``dynamics.response.periodic_response`` runs to a tested steady state in time.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.static_loop import NotConverged, PortModel, port_model
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.harmonic_balance import HarmonicSolution, Problem
+from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk
+from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.periodic_response import Period, PeriodicResponse, periodic_by_time
+from dynamics.response.propagator import DEFAULT_CUTOFF, ModalModel, modal_model
+from dynamics.response.time_march import drag_loads, slow_loads
+from dynamics.response.waveform import Waveform, waveform
+
+Array = NDArray[np.float64]
+Method = Literal["harmonic_balance", "time_integration"]
+Drags = Mapping[str, float] | Callable[[float], Mapping[str, float]] | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurvePoint:
+    """Steady periodic state at one mean speed.
+
+    speed : of the pinion of the first mesh [rad/s]; method : how it was found; residual : relative, of that
+    method flank : (n_meshes,) +1 where the front flank carries the mean torque, -1 the back flank
+    mean, maximum, minimum : (n_meshes,) torque transmitted at the pinion, positive in load direction [N m]
+    harmonics : (n_meshes, n + 1) mean and amplitudes of that torque over the orders of the mesh frequency
+    [N m] lift_off_share : (n_meshes,) share of the period without contact [-]
+    twist : bracing twist [rad]; drive_torque : mean motor torque that balances all losses [N m]
+    friction_power, damping_power : (n_meshes,) mean losses in the mesh [W]
+    wave : the motion over one period, for root stress and plots
+    """
+
+    speed: float
+    method: Method
+    residual: float
+    iterations: int
+    flank: Array
+    mean: Array
+    maximum: Array
+    minimum: Array
+    harmonics: Array
+    lift_off_share: Array
+    twist: float
+    drive_torque: float
+    friction_power: Array
+    damping_power: Array
+    wave: Waveform = field(repr=False)
+
+    @property
+    def dynamic_factor(self) -> Array:
+        """K_V = max / mean of every mesh (n_meshes,) [-] (P2, Formula 1).
+
+        Raises ValueError for a mesh that carries no mean torque.
+        """
+        return np.asarray(self.maximum / self._loaded_mean())
+
+    @property
+    def dynamic_factor_half_peak_to_peak(self) -> Array:
+        """K_V from half the peak-to-peak value, 1 + (max - min) / (2 mean) (n_meshes,) [-]."""
+        return np.asarray(1.0 + 0.5 * (self.maximum - self.minimum) / self._loaded_mean())
+
+    def _loaded_mean(self) -> Array:
+        if not np.all(self.mean > 0.0):
+            raise ValueError(
+                f"mesh {int(np.argmin(self.mean))} carries no mean torque ({self.mean.min():.3g} N m) at "
+                f"{self.speed:.4g} rad/s: K_V does not exist; brace the loop with more torque"
+            )
+        return self.mean
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResponseCurve:
+    """Points in the order of the speeds asked for; ``failed`` holds (speed [rad/s], reason) of the others."""
+
+    points: tuple[CurvePoint, ...]
+    failed: tuple[tuple[float, str], ...]
+
+    @property
+    def speeds(self) -> Array:
+        """Speeds of the points [rad/s]."""
+        return np.array([point.speed for point in self.points])
+
+    def dynamic_factor(self, mesh: int) -> Array:
+        """K_V of one mesh over the points [-]."""
+        return np.array([point.dynamic_factor[mesh] for point in self.points])
+
+
+def periodic_response(
+    system: LinearSystem,
+    laws: Sequence[MeshLaw],
+    speeds: Sequence[float] | Array,
+    torque: float | None,
+    *,
+    twist: float | None = None,
+    control_mesh: int = 0,
+    period: Period = "mesh",
+    drag_torques: Drags = None,
+    cutoff: float = DEFAULT_CUTOFF,
+    tolerance: float = 1e-5,
+    methods: Sequence[Method] = ("harmonic_balance", "time_integration"),
+) -> ResponseCurve:
+    """Steady state over speed with contact loss, both meshes coupled.
+
+    Parameters
+    ----------
+    speeds : mean speeds of the pinion of the first mesh [rad/s], > 0, in the order in which they are walked
+    torque : mean torque at the pinion of ``control_mesh`` [N m] (negative: back flank); the bracing twist
+    that
+        makes it is solved along. None: ``twist`` [rad] is held and the torque follows
+    period : one mesh, one turn of the pinion of ``control_mesh``, or until the same teeth meet in all meshes
+    drag_torques : torque by name of ``system.drag_loads`` [N m], or a function of the speed that gives it
+    cutoff : highest mode that counts [Hz]; harmonics must reach 1.5 times the highest mode below it
+    methods : what may be used, tried in this order at every speed
+
+    Raises
+    ------
+    ValueError
+        If a speed is not positive, not exactly one of torque and twist is given, or the mesh frequencies of
+        the meshes have no common period.
+    """
+    if any(not speed > 0.0 for speed in speeds):
+        raise ValueError(
+            f"speeds: {min(speeds)} rad/s: must be above 0; leave standstill to the static state"
+        )
+    if (torque is None) == (twist is None):
+        raise ValueError("give either the torque or the twist of the loop, not both and not neither")
+    if "time_integration" in methods and control_mesh != 0:
+        raise ValueError(
+            f"control_mesh = {control_mesh}: time integration controls mesh 0; use harmonic balance alone"
+        )
+    ratios = pinion_ratios(system, laws)
+    problem = Problem(
+        model=port_model(system, laws),
+        form=system.form,
+        torque=torque,
+        twist=twist,
+        control_mesh=control_mesh,
+        shaft_torques=system.shaft_torques,
+        ratios=ratios / ratios[system.drive_dof] if system.shaft_torques else None,
+    )
+    walk = HarmonicWalk(problem, period, cutoff, tolerance)
+    given = [float(speed) for speed in speeds]
+    drags = [drag_torques(speed) if callable(drag_torques) else drag_torques for speed in given]
+    found: dict[int, CurvePoint] = {}
+    reasons: dict[int, str] = dict.fromkeys(range(len(given)), "")
+    if "harmonic_balance" in methods:
+        found, reasons = _by_harmonics(walk, given, drags)
+    if "time_integration" in methods:
+        models: dict[tuple[str, ...], ModalModel] = {}
+        for i, reason in reasons.items():
+            names = tuple(drags[i] or {})
+            try:
+                if names not in models:
+                    models[names] = modal_model(
+                        system, laws, slow_loads(system), drag_loads(system, names), cutoff=cutoff
+                    )
+                found[i] = _in_time(walk, system, given[i], drags[i], period, cutoff, models[names])
+            except NotConverged as also:
+                reasons[i] = "; ".join(filter(None, (reason, str(also))))
+    return ResponseCurve(
+        points=tuple(found[i] for i in sorted(found)),
+        failed=tuple((given[i], reasons[i]) for i in range(len(given)) if i not in found),
+    )
+
+
+def refined_response(
+    solve: Callable[[Sequence[float]], ResponseCurve],
+    speeds: Sequence[float] | Array,
+    *,
+    bend: float = 0.02,
+    rounds: int = 3,
+) -> ResponseCurve:
+    """Response over rising speeds with points put in wherever the curve bends, so that no peak is cut off.
+
+    Beside every speed at which the half peak-to-peak over the mean torque of a mesh leaves the straight line
+    between its neighbours by more than ``bend`` [-], both intervals are halved, and again up to ``rounds`` times.
+
+    Parameters
+    ----------
+    solve : response at given rising speeds [rad/s], e.g. `periodic_response` with all else fixed
+    speeds : first grid [rad/s], rising
+    """
+    curve = solve([float(speed) for speed in speeds])
+    points = {point.speed: point for point in curve.points}
+    failed = dict(curve.failed)
+    for _ in range(rounds):
+        wanted = sorted(_between(sorted(points.values(), key=lambda point: point.speed), bend) - set(failed))
+        if not wanted:
+            break
+        more = solve(wanted)
+        points |= {point.speed: point for point in more.points}
+        failed |= dict(more.failed)
+    return ResponseCurve(
+        points=tuple(points[speed] for speed in sorted(points)),
+        failed=tuple(sorted(failed.items())),
+    )
+
+
+def _between(points: Sequence[CurvePoint], bend: float) -> set[float]:
+    """Middles of the intervals on both sides of every bend."""
+    if len(points) < 3:
+        return set()
+    speed = np.array([point.speed for point in points])
+    share = np.array([point.dynamic_factor_half_peak_to_peak for point in points]).T
+    ahead = (speed[1:-1] - speed[:-2]) / (speed[2:] - speed[:-2])
+    straight = share[:, :-2] * (1.0 - ahead) + share[:, 2:] * ahead
+    bends = np.flatnonzero((np.abs(share[:, 1:-1] - straight) > bend).any(axis=0)) + 1
+    return {float(0.5 * (speed[i] + speed[i + 1])) for b in bends for i in (b - 1, b)}
+
+
+def _by_harmonics(
+    walk: HarmonicWalk, speeds: Sequence[float], drags: Sequence[Mapping[str, float] | None]
+) -> tuple[dict[int, CurvePoint], dict[int, str]]:
+    """Points by index, and the reason for each that is missing.
+
+    First in the given order; then backwards through the gaps from their far side, where another branch lives.
+    """
+    ratio = float(walk.problem.model.ratios[0])
+    states: dict[int, HarmonicSolution] = {}
+    reasons: dict[int, str] = {}
+    last: HarmonicSolution | None = None
+    for order in (range(len(speeds)), range(len(speeds) - 1, -1, -1)):
+        for i in order:
+            if i not in states and (i in reasons or order.step > 0):
+                try:
+                    states[i] = walk.solve(speeds[i] / ratio, drags[i], last)
+                    reasons.pop(i, None)
+                except NotConverged as reason:
+                    reasons[i] = str(reason)
+            last = states.get(i, last)
+    model = walk.problem.model
+    return {i: point_of(model, state) for i, state in states.items()}, reasons
+
+
+def _in_time(
+    walk: HarmonicWalk,
+    system: LinearSystem,
+    speed: float,
+    drags: Mapping[str, float] | None,
+    period: Period,
+    cutoff: float,
+    model: ModalModel,
+) -> CurvePoint:
+    problem = walk.problem
+    result = periodic_by_time(
+        system, problem.model.laws, speed=speed, torque=problem.torque, twist=problem.twist,
+        period=period, drag_torques=drags, cutoff=cutoff, model=model,
+    )  # fmt: skip
+    if not result.steady:
+        raise NotConverged("; ".join(result.warnings))
+    return point_in_time(problem.model, result, walk.cells)
+
+
+def point_of(model: PortModel, solution: HarmonicSolution) -> CurvePoint:
+    """Torques, factors and losses of a harmonic solution."""
+    return _point(
+        waveform(model, solution),
+        cells=solution.grid.cells,
+        orders=solution.grid.harmonics,
+        speed=solution.speed * float(model.ratios[0]),
+        method="harmonic_balance",
+        residual=solution.residual,
+        iterations=solution.iterations,
+        twist=solution.twist,
+        drive_torque=solution.drive,
+    )
+
+
+def point_in_time(model: PortModel, result: PeriodicResponse, cells: int) -> CurvePoint:
+    """The same from one period of the time integration."""
+    radius_1, radius_2 = model.base_radii.T
+    wave = Waveform(
+        time=result.time,
+        angle=result.angle_1,
+        approach=result.approach,
+        omega_1=result.omega_1,
+        omega_2=(radius_1[:, None] * result.omega_1 - result.approach_rate) / radius_2[:, None],
+        torque=result.torque,
+        touching=result.force != 0.0,
+        friction_power=result.friction_loss,
+        damping_power=result.mesh_damping_loss,
+    )
+    return _point(
+        wave,
+        cells=cells,
+        orders=min(LEAST_HARMONICS, result.time.size // cells // 2),
+        speed=result.speed,
+        method="time_integration",
+        residual=result.residual,
+        iterations=result.periods,
+        twist=result.twist,
+        drive_torque=result.drive_torque,
+    )
+
+
+def _point(
+    wave: Waveform,
+    *,
+    cells: int,
+    orders: int,
+    speed: float,
+    method: Method,
+    residual: float,
+    iterations: int,
+    twist: float,
+    drive_torque: float,
+) -> CurvePoint:
+    mean = wave.torque.mean(axis=1)
+    flank = np.where(mean < 0.0, -1.0, 1.0)
+    loaded = flank[:, None] * wave.torque
+    amplitudes = np.abs(np.fft.rfft(loaded, axis=1)[:, ::cells][:, : orders + 1]) / loaded.shape[1]
+    amplitudes[:, 1:] *= 2.0
+    return CurvePoint(
+        speed=speed,
+        method=method,
+        residual=residual,
+        iterations=iterations,
+        flank=flank,
+        mean=loaded.mean(axis=1),
+        maximum=loaded.max(axis=1),
+        minimum=loaded.min(axis=1),
+        harmonics=amplitudes,
+        lift_off_share=1.0 - wave.touching.mean(axis=1),
+        twist=twist,
+        drive_torque=drive_torque,
+        friction_power=wave.friction_power,
+        damping_power=wave.damping_power,
+        wave=wave,
+    )

@@ -1,0 +1,422 @@
+"""A drivetrain in motion: modal state, gear contacts and accounts that are carried from call to call.
+
+``DriveState`` is where a run starts and ends; ``TimeMarch`` advances it in blocks and keeps the work done by
+each slow input and the losses of meshes and joints, so that drive torque and losses are known from two sides.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics import kernels
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.mesh.force import evaluate_mesh, pack_meshes
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.propagator import (
+    DEFAULT_CUTOFF,
+    ModalModel,
+    discretise,
+    modal_model,
+    modal_state,
+    scaled_state,
+)
+
+Array = NDArray[np.float64]
+
+CREEP_SHARE = 1e-3
+"""Share of the highest speed of a drag table below which its torque goes smoothly through zero [-]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveState:
+    """Angles [rad] and speeds [rad/s] of all freedoms, shape (n,), and the bracing twist [rad]."""
+
+    angles: Array
+    speeds: Array
+    twist: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpeedControl:
+    """Speed controller of the motor: torque = proportional * error + integral * integrated error, limited.
+
+    proportional : [N m s/rad]; integral : [N m/rad]; torque_limit : largest motor torque [N m]
+    time_constant : of the average over the measured speed, which keeps the torsional vibration out [s]
+    """
+
+    proportional: float
+    integral: float
+    torque_limit: float
+    time_constant: float = 0.01
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueControl:
+    """Torque-controlled bracing: the twist follows the averaged torque of the first mesh.
+
+    stiffness : torque of the first mesh per twist of the bracing [N m/rad]
+    time_constant : of the control loop and of the average it acts on [s]
+    """
+
+    stiffness: float
+    time_constant: float = 0.02
+
+
+class MarchDiverged(RuntimeError):  # noqa: N818
+    """A march left the finite numbers; the message names mesh, time, speed and the slowest mode."""
+
+
+class Block(NamedTuple):
+    """One advance: internal steps and sample values."""
+
+    force: Array
+    """(n_meshes, n_steps) front minus back normal force in the transverse line of action [N]."""
+    approach: Array
+    """(n_meshes, n_steps) approach including offsets [m]; no columns unless everything is recorded."""
+    angle_1: Array
+    """(n_meshes, n_steps) pinion angle [rad]."""
+    rate: Array
+    """(n_meshes, n_steps) approach rate [m/s]."""
+    omega_1: Array
+    """(n_meshes, n_steps) pinion speed [rad/s]."""
+    torque_1: Array
+    """(n_meshes, n_steps) generalized torque on the pinion body, friction included [N m]."""
+    slow: Array
+    """(n_samples, n_slow) motor torque [N m], twist [rad] and swinging torques [N m] at the end of each sample."""
+    slow_speed: Array
+    """(n_samples, n_slow) speed that each slow input works on: its power is input times this."""
+    drags: Array
+    """(n_samples, n_drags) drag torques [N m] at the end of each sample."""
+    turned: Array
+    """(n_samples,) angle of the pinion of the first mesh at the end of each sample [rad]."""
+
+
+class Accounts(NamedTuple):
+    """Work since the start of a march [J]; losses are positive."""
+
+    friction: Array
+    """(n_meshes,) sliding friction of the teeth."""
+    mesh_damping: Array
+    """(n_meshes,)"""
+    slow_work: Array
+    """(n_slow,) work done on the drivetrain by motor, bracing and swinging torques."""
+    drag: Array
+    """(n_drags,)"""
+    joint_damping: float
+
+
+class TimeMarch:
+    """A drivetrain that is advanced in time; the only object of the dynamics that changes.
+
+    Slow inputs, linear over a sample, are the motor torque (on ``system.drive_dof``), the bracing twist (on
+    ``system.twist_load``) and a torque for each entry of ``system.shaft_torques``. For each name in ``drags`` a torque
+    brakes through ``system.drag_loads``: a function of the speed there at the end of every internal step.
+    """
+
+    def __init__(
+        self,
+        system: LinearSystem,
+        laws: Sequence[MeshLaw],
+        start: DriveState,
+        *,
+        step: float,
+        substeps: int = 1,
+        drags: Sequence[str] = (),
+        drive_torque: float = 0.0,
+        drag_torques: Sequence[float] = (),
+        cutoff: float = DEFAULT_CUTOFF,
+        accounts: bool = True,
+        record_all: bool = True,
+        derivative_torques: bool = True,
+        model: ModalModel | None = None,
+    ) -> None:
+        """Prepare the march; ``step`` is the internal step [s], a sample has ``substeps`` of them.
+
+        ``model`` is a modal model of the same system, laws and drags, to be shared between runs.
+        Raises ValueError for disagreeing shapes or unknown drags, DefectiveModes as ``modal_model``.
+        """
+        self.laws = tuple(laws)
+        self.step = step
+        self.substeps = substeps
+        self.drags = tuple(drags)
+        self.model = model or modal_model(
+            system, laws, slow_loads(system), drag_loads(system, drags), cutoff=cutoff
+        )
+        self.propagator = discretise(self.model, step, substeps=substeps, with_losses=accounts)
+        self.packed = pack_meshes(laws, derivative_torques=derivative_torques)
+        self.unsettled = 0
+        self._marched = 0
+        self._names = system.dofs
+        self._record_all = record_all
+        self._laws_packed = [pack_meshes([law]) for law in self.laws]
+        self._places = drag_places(system, drags)
+        braked = drag_loads(system, drags)
+        loads = np.column_stack((slow_loads(system), braked))
+        n_meshes, n_slow, n_drags = len(self.laws), 2 + len(system.shaft_torques), braked.shape[1]
+        self._n_slow = n_slow
+        n_power = 2 * n_meshes + n_slow + n_drags + 1 if accounts else 0
+        ports = np.zeros((n_meshes, 6))
+        damping = np.zeros((n_meshes, 2))
+        powers = np.zeros(n_power)
+        for mesh, (law, (pinion, wheel)) in enumerate(zip(self.laws, system.mesh_ports)):
+            x = law.base_radius_1 * start.angles[pinion] - law.base_radius_2 * start.angles[wheel]
+            rate = law.base_radius_1 * start.speeds[pinion] - law.base_radius_2 * start.speeds[wheel]
+            reaction = evaluate_mesh(
+                self._laws_packed[mesh], start.angles[pinion], x + law.offset, start.speeds[pinion], start.speeds[wheel]
+            )  # fmt: skip
+            torques = float(reaction.torque_1[0]), float(reaction.torque_2[0])
+            ports[mesh] = (*torques, *torques, x, start.angles[pinion])
+            damping[mesh, 1] = rate
+            powers[2 * mesh : 2 * mesh + 2] = (reaction.friction_power[0], reaction.damping_power[0])[
+                :n_power
+            ]
+        slow = np.zeros(n_slow)
+        slow[:2] = drive_torque, start.twist
+        braking = np.zeros(n_drags)
+        braking[self._places[: len(drag_torques)]] = drag_torques
+        speeds = loads.T @ start.speeds
+        if accounts:
+            powers[2 * n_meshes : -1] = np.concatenate((slow, braking)) * speeds
+            powers[-1] = start.speeds @ system.damping @ start.speeds
+        self._carried = kernels.Carried(
+            state=np.zeros(self.propagator.modes.rows.shape[1]),
+            ports=ports,
+            slow=slow,
+            drags=braking,
+            offset=self.packed.offsets.copy(),
+            memory=np.zeros(5),
+            speeds=speeds,
+            powers=powers,
+            work=np.zeros(n_power),
+            damping=damping,
+        )
+        with np.errstate(invalid="ignore"):  # an infinite torque shows in the march, which says where
+            self._carried.state[:] = modal_state(
+                self.model, self.propagator, start.angles, start.speeds, self._inputs()
+            )
+        torque = self.mean_torque_of_first_mesh()
+        self._carried.memory[2:] = torque, speeds[0], torque
+
+    def advance(
+        self,
+        given: Array,
+        *,
+        offsets: Array | None = None,
+        speed_control: SpeedControl | None = None,
+        torque_control: TorqueControl | None = None,
+        drag_tables: Array | None = None,
+        drag_speeds: Array | None = None,
+    ) -> Block:
+        """March over ``len(given)`` samples.
+
+        Parameters
+        ----------
+        given : (n_samples, 4 + n_shaft_torques) commands at the end of each sample: motor torque (feed-forward)
+            [N m], twist [rad], speed of the drive freedom [rad/s], torque of the first mesh [N m], then the value of
+            each entry of ``system.shaft_torques`` [N m]
+        offsets : (n_samples, n_meshes) approach imposed on each mesh [m], in place of the offsets of the laws
+        drag_tables : (n_drags, n_table) drag torque over speed, from 0 to ``drag_speeds`` [N m]
+        drag_speeds : (n_drags,) last speed of each table [rad/s]
+
+        Raises MarchDiverged if the motion leaves the finite numbers.
+        """
+        n_meshes, n_slow = len(self.laws), self._n_slow
+        n_samples = len(given)
+        sample_time = self.step * self.substeps
+        control = np.zeros(6)
+        if speed_control is not None:
+            control[:4] = (
+                speed_control.proportional, speed_control.integral * sample_time, speed_control.torque_limit,
+                min(1.0, sample_time / speed_control.time_constant),
+            )  # fmt: skip
+        if torque_control is not None:
+            share = min(1.0, sample_time / torque_control.time_constant)
+            control[4:] = 0.25 * share / torque_control.stiffness, share
+        n_drags = len(self._carried.drags)
+        tables = np.zeros((n_drags, 2 if drag_tables is None else drag_tables.shape[1]))
+        ends = np.ones(n_drags)
+        if drag_tables is not None:
+            tables[self._places] = drag_tables
+        if drag_speeds is not None:
+            ends[self._places] = drag_speeds
+        held = (
+            np.tile(self._carried.offset, (n_samples, 1))
+            if offsets is None
+            else np.ascontiguousarray(offsets)
+        )
+        history = np.empty((n_meshes, 6 if self._record_all else 1, n_samples * self.substeps))
+        samples = np.empty((n_samples, 2 * n_slow + n_drags + 1))
+        orders = kernels.Orders(
+            given=np.ascontiguousarray(given, float),
+            offsets=held,
+            control=control,
+            drags=kernels.DragLaws(
+                torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
+            ),
+        )
+        self.unsettled += kernels.march(
+            self.packed,
+            self.propagator.modes,
+            orders,
+            self._carried,
+            self.step,
+            self.substeps,
+            history,
+            samples,
+        )
+        if not np.all(np.isfinite(self._carried.ports)):
+            raise MarchDiverged(self._diverged(history[:, 0], samples[:, : 2 * n_slow]))
+        self._marched += n_samples
+        none = np.empty((n_meshes, 0))
+        force, approach, angle, rate, omega, torque = (
+            (history[:, i] for i in range(6)) if self._record_all else (history[:, 0], *[none] * 5)
+        )
+        slow, speed, drags, turned = np.split(samples, (n_slow, 2 * n_slow, 2 * n_slow + n_drags), axis=1)
+        drags = drags[:, self._places]
+        return Block(force, approach, angle, rate, omega, torque, slow, speed, drags, turned[:, 0])
+
+    def _diverged(self, force: Array, samples: Array) -> str:
+        """What is known of a march that left the finite numbers in its last block.
+
+        force : (n_meshes, n_steps) [N]; samples : (n_samples, 2 n_slow) slow inputs and their speeds
+        """
+        broken = ~np.isfinite(force)
+        step = int(np.argmax(broken.any(axis=0)))
+        mesh = int(np.argmax(broken[:, step]))
+        pinion, wheel = (self._names[port] for port in self.model.mesh_ports[mesh])
+        good = np.flatnonzero(np.isfinite(samples).all(axis=1))
+        speed = samples[good[-1], samples.shape[1] // 2] * 30.0 / np.pi if good.size else np.nan
+        elastic = self.model.n_lines
+        frequency = self.model.frequencies[elastic] / (2.0 * np.pi) if elastic < len(self._names) else np.inf
+        where = self._names[int(np.argmax(np.abs(self.model.shapes[:, min(elastic, len(self._names) - 1)])))]
+        return (
+            f"the march left the finite numbers: mesh of {pinion} and {wheel}, "
+            f"{(self._marched * self.substeps + step) * self.step:.6g} s after its start, last drive speed "
+            f"{speed:.6g} rpm; slowest elastic mode {frequency:.4g} Hz, largest at {where}, step {self.step:.3g} s. "
+            "Correct inertia, stiffness or torque that is orders of magnitude off there, or take more internal "
+            "steps"
+        )
+
+    def mean_torque_of_first_mesh(self) -> float:
+        """Torque of the first mesh at its pinion at this instant, friction left out [N m]."""
+        law, ports = self.laws[0], self._carried.ports[0]
+        force = evaluate_mesh(self._laws_packed[0], ports[5], ports[4] + self._carried.offset[0], 0.0, 0.0)
+        return float(law.base_radius_1 * (force.force_front[0] - force.force_back[0]))
+
+    def accounts(self) -> Accounts:
+        """Return work and losses since the start; zeros if the march keeps no accounts."""
+        n = len(self.laws)
+        if len(self._carried.work) == 0:
+            return Accounts(np.zeros(n), np.zeros(n), np.zeros(self._n_slow), np.zeros(len(self.drags)), 0.0)
+        work = self._carried.work
+        slow, drag = np.split(work[2 * n : -1], (self._n_slow,))
+        return Accounts(
+            work[0 : 2 * n : 2].copy(),
+            work[1 : 2 * n : 2].copy(),
+            slow.copy(),
+            -drag[self._places],
+            float(work[-1]),
+        )
+
+    def energy(self) -> float:
+        """Kinetic energy plus elastic energy of joints and tooth contacts at this instant [J]."""
+        scaled = scaled_state(self.model, self.propagator, self._carried.state, self._inputs())
+        stored = 0.5 * float(scaled @ scaled)
+        for packed, ports, offset in zip(self._laws_packed, self._carried.ports, self._carried.offset):
+            stored += float(evaluate_mesh(packed, ports[5], ports[4] + offset, 0.0, 0.0).energy[0])
+        return stored
+
+    def state(self) -> DriveState:
+        """Return angles, speeds and twist at this instant; each line is placed by one of its mesh ports."""
+        model = self.model
+        scaled = scaled_state(model, self.propagator, self._carried.state, self._inputs())
+        n, rigid = len(model.inertia), model.n_lines
+        elastic = scaled[n:] / model.frequencies[rigid:]
+        angles = model.shapes[:, rigid:] @ elastic
+        placed: set[int] = set()
+        for mesh in range(len(self.laws)):
+            law = self.laws[mesh]
+            turned = self._carried.ports[mesh, 5], 0.0
+            turned = (
+                turned[0],
+                (law.base_radius_1 * turned[0] - self._carried.ports[mesh, 4]) / law.base_radius_2,
+            )
+            for port, angle in zip(model.mesh_ports[mesh], turned):
+                line = int(np.argmax(np.abs(model.shapes[port, :rigid])))
+                if line not in placed:
+                    members = model.shapes[:, line] != 0.0
+                    angles[members] += angle - angles[port]
+                    placed.add(line)
+        return DriveState(angles=angles, speeds=model.shapes @ scaled[:n], twist=float(self._carried.slow[1]))
+
+    def preset_speed_integral(self, torque: float) -> None:
+        """Let the speed controller start from a motor torque [N m]."""
+        self._carried.memory[0] = torque
+
+    def pinion_angle(self) -> float:
+        """Angle of the pinion of the first mesh at this instant [rad]."""
+        return float(self._carried.ports[0, 5])
+
+    def kick(self, speeds: Array) -> None:
+        """Add ``speeds`` (n,) [rad/s] to the motion at once."""
+        nothing = np.zeros(self.model.inputs.shape[1])
+        self._carried.state[:] += modal_state(
+            self.model, self.propagator, np.zeros_like(speeds), speeds, nothing
+        )
+
+    def set_slow(self, drive_torque: float, twist: float) -> None:
+        """Change motor torque and twist at once, without a ramp over the next sample."""
+        before = self._inputs()
+        self._carried.slow[:2] = drive_torque, twist
+        still = np.zeros(len(self.model.inertia))
+        self._carried.state[:] += modal_state(
+            self.model, self.propagator, still, still, self._inputs() - before
+        )
+
+    def _inputs(self) -> Array:
+        carried = self._carried
+        return np.concatenate((carried.ports[:, :2].ravel(), carried.slow, carried.drags))
+
+
+def slow_loads(system: LinearSystem) -> Array:
+    """Return the loads (n, 2 + n_shaft_torques) of motor, twist and swinging torques."""
+    drive = np.zeros(len(system.inertia))
+    drive[system.drive_dof] = 1.0
+    return np.column_stack((drive, system.twist_load, *(torques.load for torques in system.shaft_torques)))
+
+
+def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]:
+    """Return (n_drags,) the columns of named drags in ``drag_loads``: every line begins a new four of them.
+
+    Raises ValueError for unknown names.
+    """
+    unknown = [name for name in drags if name not in system.drag_loads]
+    if unknown:
+        raise ValueError(
+            f"no drag load named {', '.join(unknown)}; known: {', '.join(system.drag_loads) or 'none'}"
+        )
+    lines = [system.lines[np.argmax(np.abs(system.drag_loads[name]))] for name in drags]
+    places = np.empty(len(drags), np.int64)
+    first = 0
+    for line in np.unique(lines):
+        own = np.flatnonzero(lines == line)
+        places[own] = first + np.arange(len(own))
+        first += -(-len(own) // kernels.FOUR) * kernels.FOUR
+    return places
+
+
+def drag_loads(system: LinearSystem, drags: Sequence[str]) -> Array:
+    """Return the loads (n, n_places) of named drag torques in fours, see ``drag_places``; zeros where no drag stands.
+
+    Raises ValueError for unknown names.
+    """
+    places = drag_places(system, drags)
+    loads = np.zeros(
+        (len(system.inertia), -(-int(max(places, default=-1) + 1) // kernels.FOUR) * kernels.FOUR)
+    )
+    for place, name in zip(places, drags):
+        loads[:, place] = system.drag_loads[name]
+    return loads

@@ -1,1 +1,0 @@
-"""From solver results to the records of `rigdesign.results`, one module per section of the report."""

@@ -1,0 +1,1 @@
+"""What every part uses: units, errors, files, work in parallel. Knows nothing of rigs."""

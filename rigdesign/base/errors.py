@@ -1,0 +1,140 @@
+"""Errors a user can meet, with the exit status of the command that raised them.
+
+    RigdesignError              1
+    ├── FaultyInputError            a file of the user is wrong; carries every fault found
+    │   ├── CaseError           2   the case file or a study path
+    │   └── MeasurementError    5   measured data cannot be used
+    ├── UsageError              2   a wrong call
+    │   └── OutputError         2   an output folder that cannot be written
+    ├── NotConvergedError       3   an iteration did not settle, a speed was not reached
+    │   └── NonFiniteResultError 3  a result is NaN or infinite
+    └── MissingLibraryError     4   a system library is missing
+
+A message states name, value, limit and remedy. The solvers raise ValueError and RuntimeError of their own;
+``rigdesign.run.main`` turns them into this tree.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+WIDEST = 120
+"""Characters of a text of the user that a message repeats."""
+WIDEST_SENTENCE = 2000
+"""Characters of a problem or remedy, which may list the names that are known."""
+
+
+WIDEST_PLACE = 400
+"""Characters of the path of a file."""
+CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\ufffe\uffff]")
+"""What a terminal obeys and XML cannot hold; tabs and new lines are text."""
+
+
+def shortened(text: str, width: int = WIDEST) -> str:
+    """``text`` cut to ``width`` characters, with its length where it is longer; control characters are spelled out."""
+    cut = CONTROL.sub(lambda found: f"\\u{ord(found[0]):04x}", text[:width])
+    return cut if len(text) <= width else f"{cut}… ({len(text)} characters)"
+
+
+class RigdesignError(Exception):
+    """Base of every error that is the user's or the machine's to mend."""
+
+    exit_code: int = 1
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing wrong with a case or a measurement: where, what was given, what is accepted, what to do.
+
+    path : dotted path of the key or place in a table, empty for the case as a whole
+    given : the value as written, empty where a key is missing
+    problem : what is wrong, with the limit
+    remedy : what to write instead
+    impossible : the place can never hold such a value, whatever else the case says: a choice that does not exist
+    """
+
+    path: str
+    given: str
+    problem: str
+    remedy: str
+    impossible: bool = False
+
+    def __str__(self) -> str:
+        place = shortened(self.path or "case")
+        given = f" = {shortened(self.given)}" if self.given else ""
+        problem, remedy = (shortened(text, WIDEST_SENTENCE) for text in (self.problem, self.remedy))
+        return f"{place}{given}: {problem}; {remedy}"
+
+
+class FaultyInputError(RigdesignError):
+    """What is wrong with a file or operation: all its faults at once, or one sentence.
+
+    Parameters
+    ----------
+    faults : what is wrong, or one sentence
+    source : file or operation the faults belong to
+    """
+
+    def __init__(self, faults: str | Sequence[Fault], source: str = "") -> None:
+        super().__init__(faults, source)
+        self.faults: tuple[Fault, ...] = () if isinstance(faults, str) else tuple(faults)
+        self.source = source
+        self._sentence = faults if isinstance(faults, str) else ""
+
+    def __str__(self) -> str:
+        head = f"{shortened(self.source, WIDEST_PLACE)}: " if self.source else ""
+        if self._sentence:
+            return head + shortened(self._sentence, WIDEST_SENTENCE)
+        if len(self.faults) == 1:
+            return head + str(self.faults[0])
+        return "\n".join([f"{head}{len(self.faults)} faults", *(f"  {fault}" for fault in self.faults)])
+
+
+class CaseError(FaultyInputError):
+    """A case that cannot be computed; lists all its faults at once."""
+
+    exit_code = 2
+
+
+class UsageError(RigdesignError):
+    """A command or function called with something it cannot take."""
+
+    exit_code = 2
+
+
+class OutputError(UsageError):
+    """An output folder that cannot be written."""
+
+
+class NotConvergedError(RigdesignError):
+    """An iteration that did not settle within its limit; the message carries the residuals."""
+
+    exit_code = 3
+
+
+class NonFiniteResultError(NotConvergedError):
+    """A result that is NaN or infinite: no number was reached, so that no check may depend on it."""
+
+
+class MissingLibraryError(RigdesignError):
+    """A system library that is not installed; the message carries the command that installs it."""
+
+    exit_code = 4
+
+
+class MeasurementError(FaultyInputError):
+    """Measured data that cannot be used; lists all faults at once."""
+
+    exit_code = 5
+
+
+@contextmanager
+def named(path: str) -> Iterator[None]:
+    """Put the case path of a part before what a solver says of it; the kind of the error stays."""
+    try:
+        yield
+    except RigdesignError:
+        raise
+    except (ValueError, RuntimeError) as error:
+        raise type(error)(f"{path}: {error}") from error

@@ -1,0 +1,137 @@
+"""The output folder: proved writable before the computation, filled file by file with whole files only."""
+
+import errno
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from rigdesign.base.errors import WIDEST_PLACE, OutputError, shortened
+from rigdesign.base.file_lock import FileLock, HeldError
+
+STAGING_PREFIX = ".rigdesign-writing-"
+OWNER_NAME, CONTENT_NAME = "owner", "content"
+"""In a staging folder: its lock file, which can be locked once its process is dead, and the files in the making."""
+NO_LOCKS = frozenset((errno.ENOLCK, errno.ENOSYS, errno.ENOTSUP, errno.EINVAL))
+"""What a file system answers that knows no locks."""
+
+
+def prepare_output(out: Path) -> None:
+    """Show that files can be written to ``out`` without creating anything that stays.
+
+    Writes and removes a file in ``out``, or in its nearest existing parent when ``out`` does not exist yet.
+
+    Raises
+    ------
+    OutputError
+        If the path is a file, lies below a file, or the folder refuses a new file.
+    """
+    try:
+        with suppress(FileNotFoundError, NotADirectoryError):
+            out.lstat()
+        folder = _nearest_existing(out.absolute())
+    except (OSError, ValueError) as error:
+        raise OutputError(_message(out, getattr(error, "strerror", None) or str(error))) from error
+    if not folder.is_dir():
+        raise OutputError(_message(out, f"{folder} is a file, a folder is needed"))
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise OutputError(_message(out, f"{folder} refuses a new file ({error.strerror})")) from error
+
+
+@contextmanager
+def staged(out: Path) -> Iterator[Path]:
+    """Give a scratch folder inside ``out``; on success move each of its files to its place in ``out``.
+
+    A file of the result appears whole or not at all: it is complete before the rename, and the rename stays
+    in one file system. Nothing moves when the body raises. The file ``results.json`` moves last, so its
+    presence says that everything else is there. What killed processes left in ``out`` is removed first.
+
+    Raises
+    ------
+    OutputError
+        If the folder cannot be made or written.
+    """
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        _remove_abandoned(out)
+        with _scratch(out) as scratch:
+            yield scratch
+            _publish(scratch, out)
+    except OSError as error:
+        raise OutputError(_message(out, error.strerror or str(error))) from error
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write one text file (UTF-8, newline ``\\n``) whole or not at all."""
+    with staged(path.parent) as scratch:
+        (scratch / path.name).write_text(text, encoding="utf-8", newline="\n")
+
+
+def remove_published(out: Path, names: list[str]) -> None:
+    """Remove files of an earlier run by paths relative to ``out``; paths that lead elsewhere are left."""
+    root = out.resolve()
+    for name in names:
+        path = (root / name).resolve()
+        if path.is_relative_to(root) and path.is_file():
+            path.unlink()
+
+
+def _nearest_existing(path: Path) -> Path:
+    while not path.exists() and path != path.parent:
+        path = path.parent
+    return path
+
+
+@contextmanager
+def _scratch(out: Path) -> Iterator[Path]:
+    """An empty folder of this process alone; the lock file above it stands as long as the process works there."""
+    folder, lock = _new_staging(out)
+    try:
+        (folder / CONTENT_NAME).mkdir()
+        yield folder / CONTENT_NAME
+    finally:
+        if lock is not None:
+            lock.release()
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _new_staging(out: Path) -> tuple[Path, FileLock | None]:
+    """A staging folder with its lock; without one where the file system knows none."""
+    while True:
+        folder = Path(tempfile.mkdtemp(prefix=STAGING_PREFIX, dir=out))
+        try:
+            return folder, FileLock(folder / OWNER_NAME)
+        except (HeldError, FileNotFoundError):
+            continue  # another process took it for abandoned before the lock was there, and removes it
+        except OSError as error:
+            if error.errno in NO_LOCKS:
+                return folder, None
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+
+
+def _remove_abandoned(out: Path) -> None:
+    """Remove staging folders whose process is dead; one that cannot be locked or removed stays."""
+    for folder in out.glob(f"{STAGING_PREFIX}*"):
+        if folder.is_symlink() or not folder.is_dir():
+            continue
+        with suppress(HeldError, OSError), FileLock(folder / OWNER_NAME):
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def _publish(scratch: Path, out: Path) -> None:
+    files = [path for path in scratch.rglob("*") if path.is_file()]
+    files.sort(key=lambda path: (path.name == "results.json", path.relative_to(scratch).as_posix()))
+    for path in files:
+        target = out / path.relative_to(scratch)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        os.replace(path, target)  # noqa: PTH105 - atomic on every platform
+
+
+def _message(out: Path, what: str) -> str:
+    return f"output folder {shortened(str(out), WIDEST_PLACE)}: {what}; give another folder with --out"

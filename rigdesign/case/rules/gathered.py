@@ -1,0 +1,136 @@
+"""Rules that span several keys, gathered: each yields the faults it finds."""
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from rigdesign.base.errors import Fault
+from rigdesign.base.units import show
+from rigdesign.case.component_limits import PLACES, has_result
+from rigdesign.case.faults import unknown, written
+from rigdesign.case.paths import known_paths, nearest_paths
+from rigdesign.case.rules.drivetrain import drivetrain_faults
+from rigdesign.case.rules.gears import gearbox_faults
+from rigdesign.case.rules.losses import loss_faults
+from rigdesign.case.rules.schedule import schedule_faults
+from rigdesign.case.rules.surfaces import housing_faults
+from rigdesign.case.rules.transient import transient_faults
+from rigdesign.properties.materials import MATERIALS
+from rigdesign.properties.oil import OILS
+
+if TYPE_CHECKING:
+    from rigdesign.case.drivetrain import Shaft
+    from rigdesign.case.model import Case
+
+MOST_SHAFT_ELEMENTS = 500
+"""Elements of all shafts together: their modes come from a dense eigenvalue problem."""
+
+
+def broken_rules(case: "Case") -> list[Fault]:
+    """Every rule the case breaks; empty for one that can be computed.
+
+    The surfaces of a housing are looked at once everything else fits together.
+    """
+    rules: tuple[Callable[[Case], Iterator[Fault]], ...] = (
+        _substances,
+        gearbox_faults,
+        drivetrain_faults,
+        loss_faults,
+        schedule_faults,
+        _limits,
+        _numerics,
+    )
+    faults = [fault for rule in rules for fault in rule(case)]
+    if faults:
+        return faults
+    faults = [fault for name, box in case.gearboxes.items() for fault in housing_faults(name, box)]
+    return faults or list(transient_faults(case))
+
+
+def _substances(case: "Case") -> Iterator[Fault]:
+    oils = [*case.oils, *OILS]
+    materials = [*case.materials, *MATERIALS]
+    for name, box in case.gearboxes.items():
+        at = f"gearboxes.{name}"
+        used = {f"{at}.oil.oil": box.oil.oil, f"{at}.bearing_oil.oil": box.bearing_oil.oil}
+        for path, oil in used.items():
+            if oil not in oils:
+                yield unknown(path, oil, oils, "oil")
+        used = {f"{at}.gears.{gear}.material": part.material for gear, part in box.gears.items()}
+        if box.housing is not None:
+            used |= {f"{at}.housing.material": box.housing.material}
+            used |= {f"{at}.housing.field.material": box.housing.field.material}
+            used |= {
+                f"{at}.housing.shafts.{s}.material": part.material for s, part in box.housing.shafts.items()
+            }
+        for path, material in used.items():
+            if material not in materials:
+                yield unknown(path, material, materials, "material")
+    if case.drivetrain is not None:
+        for shaft, part in case.drivetrain.shafts.items():
+            if part.material not in materials:
+                yield unknown(f"drivetrain.shafts.{shaft}.material", part.material, materials, "material")
+
+
+def _limits(case: "Case") -> Iterator[Fault]:
+    plain = case.model_dump(mode="python")
+    paths: list[str] = []
+    for name, bought in case.limits.bought_parts.items():
+        paths = paths or known_paths(type(case), plain)
+        if bought.part not in paths or _missing(plain, bought.part):
+            present = [path for path in paths if not _missing(plain, path)]
+            meant = nearest_paths(bought.part, present, 2)
+            yield Fault(
+                f"limits.bought_parts.{name}.part", written(bought.part), "no such part in this case",
+                "did you mean " + " or ".join(meant) + "?" if meant else "write the case path of the part",
+            )  # fmt: skip
+        elif bought.given is None and not has_result(bought.part, bought.quantity):
+            yield Fault(
+                f"limits.bought_parts.{name}.quantity", written(bought.quantity),
+                f"the run finds none at {bought.part}",
+                f"name a part that has one ({', '.join(PLACES[bought.quantity])}) or write the value as given",
+            )  # fmt: skip
+
+
+def _missing(plain: object, path: str) -> bool:
+    node = plain
+    for key in path.split("."):
+        if not isinstance(node, dict) or node.get(key) is None:
+            return True
+        node = node[key]
+    return False
+
+
+def _shafts(case: "Case") -> "Iterable[Shaft]":
+    return [] if case.drivetrain is None else case.drivetrain.shafts.values()
+
+
+def _numerics(case: "Case") -> Iterator[Fault]:
+    numbers = case.numerics
+    if numbers.curve_speed_start >= numbers.curve_speed_end:
+        yield Fault(
+            "numerics.curve_speed_start", show(numbers.curve_speed_start, "speed"),
+            f"is not below curve_speed_end = {show(numbers.curve_speed_end, 'speed')}",
+            "exchange or correct them",
+        )  # fmt: skip
+    if numbers.curve_speed_start <= 0.0:
+        yield Fault(
+            "numerics.curve_speed_start", show(numbers.curve_speed_start, "speed"),
+            "is not above 0 rpm: a rig at rest has no periodic response",
+            "write e.g. 500 rpm",
+        )  # fmt: skip
+    length = sum(s.length for shaft in _shafts(case) for s in shaft.sections)
+    stated = numbers.shaft_element_length
+    if stated is not None and length > MOST_SHAFT_ELEMENTS * stated:
+        yield Fault(
+            "numerics.shaft_element_length", show(stated, "length"),
+            f"makes {length / stated:.0f} elements of the shafts, limit "
+            f"{MOST_SHAFT_ELEMENTS}: the modes of more take minutes",
+            f"write at least {show(length / MOST_SHAFT_ELEMENTS, 'length')}",
+        )  # fmt: skip
+    if not 0.0 < numbers.torque_tolerance <= 0.1:
+        yield Fault(
+            "numerics.torque_tolerance",
+            str(numbers.torque_tolerance),
+            "is not within 0 and 0.1",
+            "write e.g. 0.001",
+        )

@@ -1,0 +1,185 @@
+"""Rules of gears, meshes and bearings that span several keys."""
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from rigdesign.base.errors import Fault
+from rigdesign.base.units import show
+from rigdesign.case.faults import unknown
+
+if TYPE_CHECKING:
+    from rigdesign.case.gearbox import Gearbox
+    from rigdesign.case.gears import Gear, GearMesh
+    from rigdesign.case.model import Case
+
+SHIFT_TOLERANCE = 0.002
+"""Most difference between the sum of two stated profile shifts and that of the centre distance: both are printed with
+three or four digits. The pinion keeps its own, the wheel takes the rest."""
+
+
+def gearbox_faults(case: "Case") -> Iterator[Fault]:
+    """References, tooth numbers, profile shifts, tips, bearings of every gearbox."""
+    for name, box in case.gearboxes.items():
+        at = f"gearboxes.{name}"
+        meshed = [gear for mesh in box.meshes.values() for gear in (mesh.pinion, mesh.wheel)]
+        for mesh_name, mesh in box.meshes.items():
+            yield from _mesh(f"{at}.meshes.{mesh_name}", mesh, box)
+        for gear_name, gear in box.gears.items():
+            if gear_name not in meshed:
+                yield Fault(
+                    f"{at}.gears.{gear_name}",
+                    "",
+                    "meshes with no other gear",
+                    "name it in a mesh or remove it",
+                )
+            yield from _gear(f"{at}.gears.{gear_name}", gear)
+        yield from _bearings(at, box)
+        yield from _stations(at, box)
+        shafts = _shafts_of(case, box)
+        carried = list(dict.fromkeys(bearing.shaft for bearing in box.bearings.values()))
+        for kind, parts, known in (
+            ("gears", box.gears, shafts),
+            ("bearings", box.bearings, shafts),
+            ("seals", box.seals, carried),
+        ):
+            for part_name, part in parts.items():
+                if known and part.shaft not in known:
+                    yield unknown(f"{at}.{kind}.{part_name}.shaft", part.shaft, known, "shaft")
+
+
+def _shafts_of(case: "Case", box: "Gearbox") -> list[str]:
+    """Shafts a part of this gearbox may sit on; empty when nothing names any."""
+    if box.housing is not None:
+        return list(box.housing.shafts)
+    return list(case.drivetrain.shafts) if case.drivetrain is not None else []
+
+
+def _gear(at: str, gear: "Gear") -> Iterator[Fault]:
+    flank = gear.flank
+    for key in ("single_pitch", "profile_slope_scatter", "tooth_stiffness"):
+        entries = getattr(flank, key)
+        if entries and len(entries) != gear.teeth:
+            yield Fault(
+                f"{at}.flank.{key}", f"{len(entries)} entries", f"the gear has {gear.teeth} teeth",
+                "write one entry per tooth, or none",
+            )  # fmt: skip
+    scales = flank.tooth_stiffness
+    if scales and not (min(scales) >= 0.0 and 0.0 < max(scales) <= 10.0):
+        yield Fault(
+            f"{at}.flank.tooth_stiffness", f"{min(scales):g} to {max(scales):g}",
+            "are no shares of the stiffness of a sound tooth, limits 0 and 10, not all of them 0",
+            "write 1 for a sound tooth, less for a weak one, 0 for a missing one",
+        )  # fmt: skip
+    if flank.weak_tooth.tooth >= gear.teeth:
+        yield Fault(
+            f"{at}.flank.weak_tooth.tooth", str(flank.weak_tooth.tooth),
+            f"the gear has {gear.teeth} teeth, counted from 0", f"write 0 to {gear.teeth - 1}",
+        )  # fmt: skip
+    for index, wave in enumerate(flank.pitch_waves):
+        if 2 * wave.order > gear.teeth:
+            yield Fault(
+                f"{at}.flank.pitch_waves.{index}.order", str(wave.order),
+                f"{gear.teeth} teeth show no wave above order {gear.teeth // 2}",
+                f"write 1 to {gear.teeth // 2}, or single_pitch",
+            )  # fmt: skip
+
+
+def _mesh(at: str, mesh: "GearMesh", box: "Gearbox") -> Iterator[Fault]:
+    unknown_gears = [key for key in ("pinion", "wheel") if getattr(mesh, key) not in box.gears]
+    for key in unknown_gears:
+        yield unknown(f"{at}.{key}", getattr(mesh, key), list(box.gears), "gear in this gearbox")
+    if unknown_gears:
+        return
+    pinion, wheel = box.gears[mesh.pinion], box.gears[mesh.wheel]
+    if pinion.teeth > wheel.teeth:
+        yield Fault(
+            f"{at}.pinion", f'"{mesh.pinion}"',
+            f"has {pinion.teeth} teeth, more than the wheel's {wheel.teeth}",
+            "call the gear with fewer teeth the pinion",
+        )  # fmt: skip
+    yield from _profile_shifts(at, mesh, pinion, wheel)
+    if mesh.contact_ratio is not None and (pinion.tip_shortening or wheel.tip_shortening):
+        yield Fault(
+            f"{at}.contact_ratio", str(mesh.contact_ratio),
+            "the tips are also cut by tip_shortening of a gear",
+            "keep contact_ratio or tip_shortening",
+        )  # fmt: skip
+    yield from _too_close(at, mesh, pinion.teeth + wheel.teeth)
+
+
+def _profile_shifts(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") -> Iterator[Fault]:
+    """The centre distance fixes the sum; one shift or a split divides it, two shifts have to agree with it."""
+    given = [gear.profile_shift for gear in (pinion, wheel) if gear.profile_shift is not None]
+    if (mesh.profile_shift_split is not None) == bool(given):
+        yield Fault(
+            at, "", "the centre distance fixes the sum of the profile shifts, one more statement their split",
+            'write profile_shift for one of the two gears or for both, or profile_shift_split = "equal"',
+        )  # fmt: skip
+    if len(given) < 2 or mesh.profile_shift_split is not None:
+        return
+    from dynamics.gear.line_of_action import shift_sum
+
+    try:
+        total = shift_sum(
+            mesh.normal_module, mesh.pressure_angle, mesh.helix_angle, (pinion.teeth, wheel.teeth), mesh.centre_distance
+        )  # fmt: skip
+    except ValueError:
+        return  # gears that cannot mesh are another fault
+    if abs(sum(given) - total) > SHIFT_TOLERANCE:
+        yield Fault(
+            f"{at}.centre_distance", show(mesh.centre_distance, "length"),
+            f"fixes the sum of the profile shifts at {total:.4f}, the gears state {given[0]:g} + {given[1]:g} = "
+            f"{sum(given):.4f}, limit of the difference {SHIFT_TOLERANCE:g}",
+            f"correct the centre distance or a profile shift, or leave {mesh.wheel}.profile_shift out",
+        )  # fmt: skip
+
+
+def _too_close(at: str, mesh: "GearMesh", teeth: int) -> Iterator[Fault]:
+    """Two gears mesh only where cos(alpha_wt) = a_d cos(alpha_t) / a is below 1 (ISO 21771, section 5)."""
+    alpha_t = math.atan(math.tan(mesh.pressure_angle) / math.cos(mesh.helix_angle))
+    reference = 0.5 * mesh.normal_module * teeth / math.cos(mesh.helix_angle)
+    least = reference * math.cos(alpha_t)
+    if mesh.centre_distance <= least:
+        yield Fault(
+            f"{at}.centre_distance", show(mesh.centre_distance, "length"),
+            f"these gears cannot mesh at or below {show(least, 'length')}, where their base circles touch",
+            f"write a centre distance near {show(reference, 'length')}, or change module or tooth numbers",
+        )  # fmt: skip
+
+
+def _stations(at: str, box: "Gearbox") -> Iterator[Fault]:
+    """Two bearings on one spot hold no shaft: the lever rule has no lever."""
+    seen: dict[tuple[str, float], str] = {}
+    for name, bearing in box.bearings.items():
+        if bearing.position is None:
+            continue
+        other = seen.setdefault((bearing.shaft, bearing.position), name)
+        if other != name:
+            yield Fault(
+                f"{at}.bearings.{name}.position", show(bearing.position, "length"),
+                f"is also where {other} holds the shaft {bearing.shaft}",
+                "write the distance of the middle of each bearing from the start of the shaft",
+            )  # fmt: skip
+
+
+def _bearings(at: str, box: "Gearbox") -> Iterator[Fault]:
+    locating = [bearing.shaft for bearing in box.bearings.values() if bearing.locating]
+    for name, bearing in box.bearings.items():
+        here = f"{at}.bearings.{name}"
+        if bearing.locating and locating.count(bearing.shaft) > 1:
+            yield Fault(
+                f"{here}.locating", "true", f"shaft {bearing.shaft} is fixed axially more than once",
+                "let one bearing per shaft be locating",
+            )  # fmt: skip
+        if bearing.diametral_clearance >= 0.05 * bearing.diameter:
+            yield Fault(
+                f"{here}.diametral_clearance", show(bearing.diametral_clearance, "length"),
+                f"is above a twentieth of the diameter {show(bearing.diameter, 'length')}",
+                "write bore minus journal, usually 0.001 to 0.003 of the diameter",
+            )  # fmt: skip
+        if bearing.axial_play and not bearing.locating:
+            yield Fault(
+                f"{here}.axial_play", show(bearing.axial_play, "length"), "the bearing is not locating",
+                "give the play to the locating bearing of this shaft",
+            )  # fmt: skip

@@ -1,0 +1,224 @@
+"""Rules of a housing: its parts fit together and every surface has a boundary condition."""
+
+from collections.abc import Iterator
+from fnmatch import fnmatchcase
+
+from rigdesign.base.errors import Fault
+from rigdesign.base.units import show
+from rigdesign.case.faults import written
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry, matched, partner_of
+from rigdesign.case.housing import (
+    ConstantFilm,
+    GapExchange,
+    Housing,
+    IsoTr14179,
+    NiemannWinter,
+    SeriesExchange,
+    ShaftFilm,
+    ThermalRadiation,
+    VerticalPlate,
+)
+from rigdesign.case.paths import nearest
+from rigdesign.case.rules.flanks import GEAR_RIMS, flank_faults
+from thermal.housing.surfaces import surface_names
+
+POSITION_TOLERANCE = 1e-4
+"""Most difference [m] between the distance of two axes and the centre distance of their mesh."""
+
+
+def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
+    """Everything wrong with the housing of a gearbox; empty for one without a housing."""
+    housing = gearbox.housing
+    if housing is None:
+        return []
+    at = f"gearboxes.{name}"
+    faults = [*_shafts(at, gearbox, housing), *_centre_distances(at, gearbox, housing)]
+    if faults:
+        return faults
+    try:
+        names = tuple(surface_names(housing_geometry(gearbox)))
+    except ValueError as error:
+        return [Fault(f"{at}.housing", "", str(error), "correct the measures of the housing")]
+    if housing.mesh_file is None:
+        return boundary_faults(name, gearbox, names)
+    if housing.mesh.sizes():
+        return [
+            Fault(
+                f"{at}.housing.mesh", "", "element sizes do nothing to a mesh that is read from a file",
+                "remove them or mesh_file",
+            )
+        ]  # fmt: skip
+    return []
+
+
+def boundary_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> list[Fault]:
+    """What is wrong with the boundary conditions of a housing whose surfaces have ``names``."""
+    housing = gearbox.housing
+    assert housing is not None
+    at = f"gearboxes.{name}.housing.boundary"
+    return [
+        *_boundary(at, housing, names),
+        *_printed_films(at, housing),
+        *_off_shafts(at, housing, names),
+        *_said_twice(at, gearbox, housing, names),
+        *flank_faults(name, gearbox, housing, names),
+    ]
+
+
+def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
+    for shaft in housing.shafts:
+        sides = [bearing.side for bearing in gearbox.bearings.values() if bearing.shaft == shaft]
+        if sorted(sides) != ["front", "rear"]:
+            found = ", ".join(sides) or "none"
+            yield Fault(
+                f"{at}.bearings", "",
+                f"shaft {shaft} needs a bearing at the front and one at the rear, has {found}",
+                "add or remove bearings",
+            )  # fmt: skip
+            continue
+        front, rear = (bearing_on(gearbox, shaft, side) for side in ("front", "rear"))
+        for key in ("diameter", "width", "diametral_clearance"):
+            if getattr(front, key) != getattr(rear, key):
+                yield Fault(
+                    f"{at}.bearings", "",
+                    f"the two bearings of shaft {shaft} differ in {key}, one value per shaft is modelled",
+                    "give both the same value",
+                )  # fmt: skip
+        if not (front.locating or rear.locating):
+            yield Fault(
+                f"{at}.bearings",
+                "",
+                f"no bearing locates shaft {shaft}",
+                "write locating = true at one of them",
+            )
+        if [seals.shaft for seals in gearbox.seals.values()].count(shaft) != 1:
+            yield Fault(f"{at}.seals", "", f"shaft {shaft} needs one table of seals", "add or remove seals")
+        gears = [gear_name for gear_name, gear in gearbox.gears.items() if gear.shaft == shaft]
+        if len(gears) > 1:
+            yield Fault(
+                f"{at}.gears", "",
+                f"{' and '.join(gears)} sit on one shaft, the housing model has one gear per shaft",
+                "put them on shafts of their own",
+            )  # fmt: skip
+        yield from _bores(at, gearbox, shaft)
+
+
+def _bores(at: str, gearbox: Gearbox, shaft: str) -> Iterator[Fault]:
+    for name, gear in gearbox.gears.items():
+        if gear.shaft == shaft and gear.bore_diameter == 0.0:
+            yield Fault(
+                f"{at}.gears.{name}.bore_diameter", "", "a gear on a shaft of the housing needs its bore",
+                "add the diameter of the gear seat",
+            )  # fmt: skip
+
+
+def _centre_distances(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
+    for name, mesh in gearbox.meshes.items():
+        shafts = [gearbox.gears[gear].shaft for gear in (mesh.pinion, mesh.wheel)]
+        apart = abs(housing.shafts[shafts[0]].lateral_position - housing.shafts[shafts[1]].lateral_position)
+        if abs(apart - mesh.centre_distance) > POSITION_TOLERANCE:
+            yield Fault(
+                f"{at}.meshes.{name}.centre_distance", show(mesh.centre_distance, "length"),
+                f"the axes of {shafts[0]} and {shafts[1]} are {show(apart, 'length')} apart",
+                "correct lateral_position of the shafts or the centre distance",
+            )  # fmt: skip
+
+
+def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
+    covered: dict[str, list[str]] = {name: [] for name in names}
+    for name, condition in housing.boundary.items():
+        for pattern in condition.surfaces:
+            if not matched([pattern], names):
+                meant = nearest(pattern, names)
+                hint = "did you mean " + " or ".join(meant) + "? " if meant else ""
+                yield Fault(
+                    f"{at}.{name}.surfaces",
+                    written(pattern),
+                    "no such surface",
+                    f"{hint}known: {', '.join(names)}",
+                )
+    for name, surface, stood_for in conditions_of(housing, names):
+        condition = housing.boundary[name]
+        if isinstance(condition, GapExchange | SeriesExchange):
+            partner = partner_of(condition, stood_for)
+            covered[surface].append("")
+            if partner in covered:
+                covered[partner].append("")
+            else:
+                meant = nearest(partner, names)
+                hint = "did you mean " + " or ".join(meant) + "?" if meant else "write a surface name"
+                yield Fault(
+                    f"{at}.{name}.partner", written(partner), f"no such surface, partner of {surface}", hint
+                )
+        else:
+            covered[surface].append("" if isinstance(condition, ThermalRadiation) else name)
+    for surface, conditions in covered.items():
+        films = [name for name in conditions if name]
+        if not conditions:
+            usual = ("flank_film", "constant_film"), ("constant_film", "insulated")
+            laws = usual[0] if fnmatchcase(surface, GEAR_RIMS) else usual[1]
+            yield Fault(
+                at, "", f"surface {surface} has no boundary condition",
+                f'add one, e.g. law = "{laws[0]}" or law = "{laws[1]}"',
+            )  # fmt: skip
+        if len(films) > 1:
+            yield Fault(
+                f"{at}.{films[1]}.surfaces", written(surface), f"already has {films[0]}", "name it once"
+            )
+
+
+def _said_twice(at: str, gearbox: Gearbox, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
+    """Heights and gaps that a film repeats must be those of the housing and its seals."""
+    for name, film in housing.boundary.items():
+        if isinstance(film, NiemannWinter | IsoTr14179 | VerticalPlate) and film.height not in (
+            None,
+            housing.height,
+        ):
+            yield Fault(
+                f"{at}.{name}.height", show(film.height or 0.0, "length"),
+                f"is not the height of the housing, {show(housing.height, 'length')}",
+                "leave it out: the film takes the height of the housing",
+            )  # fmt: skip
+    for name, surface, _ in conditions_of(housing, names):
+        film = housing.boundary[name]
+        if not isinstance(film, GapExchange):
+            continue
+        own = next((s for s in gearbox.seals.values() if f"shaft_{s.shaft}_seal_" in surface), None)
+        if own is None and film.gap is None:
+            yield Fault(f"{at}.{name}.gap", "", f"{surface} is no seal, its gap is not known", "add the gap")
+        elif own is not None and film.gap not in (None, own.radial_gap):
+            yield Fault(
+                f"{at}.{name}.gap", show(film.gap or 0.0, "length"),
+                f"is not the radial gap of the seals of {own.shaft}, {show(own.radial_gap, 'length')}",
+                "leave it out: the film takes the gap of the seals",
+            )  # fmt: skip
+
+
+def _off_shafts(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
+    """Films that take diameter and speed from a shaft need a surface of one."""
+    for name, surface, _ in conditions_of(housing, names):
+        film = housing.boundary[name]
+        if isinstance(film, ShaftFilm) and not any(f"_{shaft}_" in f"{surface}_" for shaft in housing.shafts):
+            yield Fault(
+                f"{at}.{name}.surfaces", written(surface),
+                f"is no surface of a shaft or gear: {film.law} takes its diameter from there",
+                "take it out, or choose a film for still walls",
+            )  # fmt: skip
+
+
+def _printed_films(at: str, housing: Housing) -> Iterator[Fault]:
+    for name, film in housing.boundary.items():
+        if not isinstance(film, ConstantFilm) or film.taken_from is None:
+            continue
+        taken = film.taken_from
+        if film.fluid != "ambient":
+            yield Fault(
+                f"{at}.{name}.taken_from", "", f"stands for films to room air, the fluid is {film.fluid}",
+                'remove it or write fluid = "ambient"',
+            )  # fmt: skip
+        if taken.law in ("niemann_winter", "iso_tr_14179_2") and taken.height is None:
+            yield Fault(
+                f"{at}.{name}.taken_from.height", "", f"{taken.law} needs the height of the housing",
+                'add it, e.g. height = "400 mm"',
+            )  # fmt: skip

@@ -1,0 +1,1 @@
+"""The coupling loop at one operating point: loads, losses, oil, temperatures, expansion."""

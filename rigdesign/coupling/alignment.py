@@ -1,0 +1,176 @@
+"""Alignment of the hot rig by the names of the case: bearings, bores, gear axes, couplings. SI units."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from dynamics.standards.iso1328_1_2013 import tolerances
+from rigdesign.case.drivetrain import Coupling
+from rigdesign.coupling.expansion import axes_of, bearing_growth
+from rigdesign.rig.model import Rig
+from thermal.expansion.alignment import Across, ShaftAxis, ShaftPair, axis_tolerances, shaft_pair
+from thermal.expansion.expansion import Expansion
+
+AlignmentQuantity = Literal["bearing_tilt", "bore_out_of_round", "axis_inclination", "axis_skew"]
+ALIGNMENT: tuple[AlignmentQuantity, ...] = get_args(AlignmentQuantity)
+Alignment = Mapping[AlignmentQuantity, Mapping[str, float]]
+"""Quantity -> place -> size: tilt of a shaft in its bore [rad], out of round of a bore as a share of the radial
+clearance, deviation of the axes of a mesh over the face width [m]."""
+COLD: tuple[Across, Across] = ((0.0, 0.0), (0.0, 0.0))
+"""Shift and slope of an axis at its cold place."""
+
+
+def alignment(rig: Rig, name: str, shape: Expansion, clearances: Mapping[str, float]) -> Alignment:
+    """Sizes of all misalignments in the housing of gearbox ``name``.
+
+    clearances : hot diametral clearance by ``gearbox.bearing`` [m]
+    """
+    box = rig.case.gearboxes[name]
+    tilts, rounds = {}, {}
+    for part, entry in box.bearings.items():
+        full = f"{name}.{part}"
+        growth = bearing_growth(rig, name, shape, entry)
+        tilts[full] = growth.tilt
+        rounds[full] = clearance_share(growth.bore_roundness.peak_to_valley, clearances[full])
+    deviations = {mesh: axis_deviation(rig, name, mesh, shape) for mesh in box.meshes}
+    return {
+        "bearing_tilt": tilts,
+        "bore_out_of_round": rounds,
+        "axis_inclination": {f"{name}.{mesh}": abs(found.inclination) for mesh, found in deviations.items()},
+        "axis_skew": {f"{name}.{mesh}": abs(found.skew) for mesh, found in deviations.items()},
+    }
+
+
+def clearance_share(peak_to_valley: float, clearance: float) -> float:
+    """Out of round of a bore as a share of its hot radial clearance, at most 10: there no clearance is left."""
+    return min(2.0 * peak_to_valley / clearance, 10.0) if clearance > 0.0 else 10.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxisDeviation:
+    """Hot axes of a mesh over its face width, with what is recommended for its gears [m]."""
+
+    face_width: float
+    inclination: float
+    """In the plane of the axes; positive when they open towards the rear."""
+    skew: float
+    """Across that plane."""
+    recommended_inclination: float
+    """From the coarser quality grade of the two gears."""
+    recommended_skew: float
+
+
+def axis_deviation(rig: Rig, name: str, mesh: str, shape: Expansion) -> AxisDeviation:
+    """Deviation of the axes of a mesh over the narrower of its faces, one half of a double-helical one.
+
+    Source: ISO/TR 10064-3:1996 for the recommended values, with F_beta of ISO 1328-1:2013.
+    """
+    box = rig.case.gearboxes[name]
+    entry = box.meshes[mesh]
+    gears = box.gears[entry.pinion], box.gears[entry.wheel]
+    axes = axes_of(rig, name, shape, (gears[0].shaft, gears[1].shaft))
+    width = min(gear.face_width for gear in gears)
+    recommended = axis_tolerances(_helix_tolerance(rig, name, mesh))
+    return AxisDeviation(
+        face_width=width,
+        inclination=axes.inclination * width,
+        skew=axes.skew * width,
+        recommended_inclination=recommended[0],
+        recommended_skew=recommended[1],
+    )
+
+
+def _helix_tolerance(rig: Rig, name: str, mesh: str) -> float:
+    """Total helix tolerance F_beta [m] of the coarser gear of a mesh."""
+    box, pair = rig.case.gearboxes[name], rig.pairs[f"{name}.{mesh}"]
+    entry = box.meshes[mesh]
+    found = []
+    for key, member in zip((entry.pinion, entry.wheel), pair.gears, strict=True):
+        gear = box.gears[key]
+        allowed = tolerances(
+            member.teeth, 2e3 * member.reference_radius, 1e3 * entry.normal_module, 1e3 * gear.face_width,
+            gear.quality_grade,
+        )  # fmt: skip
+        found.append(1e-6 * float(np.hypot(allowed.f_HbetaT, allowed.f_fbetaT)))
+    return max(found)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CouplingEnd:
+    """End of a shaft at a coupling."""
+
+    shaft: str
+    gearbox: str | None
+    """Whose housing carries it; None where nothing is known of it: it stays at its cold place."""
+    x: float = 0.0
+    """Of its end face in the model of that housing [m]."""
+    outward: float = 1.0
+    """Direction along x in which the shaft leaves its machine there."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CouplingPlace:
+    """A coupling between two shaft ends, at least one of them in a housing."""
+
+    name: str
+    first: CouplingEnd
+    second: CouplingEnd
+    cold: Across
+    """Offset in y and z at which the first is set against the second when cold [m]."""
+
+    @property
+    def gearbox(self) -> str:
+        """The gearbox that tells of it: the housing of the first shaft, else that of the second."""
+        found = self.first.gearbox or self.second.gearbox
+        assert found is not None
+        return found
+
+
+def coupling_places(rig: Rig) -> Iterator[CouplingPlace]:
+    """Every coupling that a housing moves."""
+    train = rig.case.drivetrain
+    for name, coupling in () if train is None else train.couplings.items():
+        first, second = (_end(rig, coupling, side) for side in (0, 1))
+        if first.gearbox or second.gearbox:
+            cold = coupling.cold_offset_lateral, coupling.cold_offset_vertical
+            yield CouplingPlace(name=name, first=first, second=second, cold=cold)
+
+
+def _end(rig: Rig, coupling: Coupling, side: int) -> CouplingEnd:
+    shaft, end = coupling.shafts[side], coupling.ends[side]
+    for name, model in rig.models.items():
+        for station in model.shafts:
+            if station.name == shaft:
+                x, outward = (station.start, -1.0) if end == "start" else (station.end, 1.0)
+                return CouplingEnd(shaft=shaft, gearbox=name, x=x, outward=outward)
+    return CouplingEnd(shaft=shaft, gearbox=None)
+
+
+def end_motion(end: CouplingEnd, axes: Mapping[str, Mapping[str, ShaftAxis]]) -> tuple[Across, Across]:
+    """Shift [m] and slope [rad] of a shaft end; axes : gearbox -> shaft -> hot axis."""
+    if end.gearbox is None or end.gearbox not in axes:
+        return COLD
+    axis = axes[end.gearbox][end.shaft]
+    return axis.shift(end.x), axis.slope
+
+
+def coupled_ends(place: CouplingPlace, axes: Mapping[str, Mapping[str, ShaftAxis]]) -> ShaftPair:
+    """Alignment at a coupling, the cold offset included; axes : gearbox -> shaft -> hot axis."""
+    return shaft_pair(end_motion(place.first, axes), end_motion(place.second, axes), place.cold)
+
+
+def axial_closing(place: CouplingPlace, shapes: Mapping[str, Expansion]) -> float:
+    """How much the two shaft ends come nearer along x [m]; shapes : by gearbox."""
+    total = 0.0
+    for end in (place.first, place.second):
+        if end.gearbox is not None and end.gearbox in shapes:
+            total += _outward_travel(end, shapes[end.gearbox])
+    return total
+
+
+def _outward_travel(end: CouplingEnd, shape: Expansion) -> float:
+    """Travel of an end face out of its machine [m]: growth from the locating bearing and travel of that bearing."""
+    shaft = shape.shafts[end.shaft]
+    return (shaft.end if end.outward > 0.0 else shaft.start) + end.outward * shaft.datum

@@ -1,0 +1,317 @@
+"""Boundary conditions of a housing: the case's laws with this pass's fluids, films, speeds and losses."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from dynamics.bearing.journal import BearingState
+from rigdesign.case import housing as laws
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.geometry import bearing_on, conditions_of, partner_of
+from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
+from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.rig.films import plate_film, shaft_film
+from rigdesign.rig.joints import behind_shell, foot_joint
+from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import bearing_oil, conducting_share, wetted_width
+from thermal.conditions.boundary import (
+    Adiabatic,
+    BodySource,
+    BoundaryCondition,
+    Exchange,
+    Film,
+    FilmLaw,
+    PrescribedTemperature,
+    Radiation,
+    SurfaceSource,
+)
+from thermal.conduction.capacity import StoredHeat
+from thermal.conduction.condition_checks import Condition
+from thermal.films import convection
+from thermal.housing.geometry import SIDES, HousingGeometry, ShaftGeometry
+
+GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"
+"""Kinds of films: what takes the heat up, as the heat balance names it."""
+
+STORED = "stored"
+"""Kind of the rows of the bodies that still warm up."""
+
+
+@dataclass(frozen=True)
+class _Context:
+    """One housing at one pass."""
+
+    rig: Rig
+    name: str
+    point: OperatingPoint
+    feedback: Feedback
+    bearings: Mapping[str, BearingState]
+
+    @property
+    def box(self) -> Gearbox:
+        return self.rig.case.gearboxes[self.name]
+
+    @property
+    def housing(self) -> laws.Housing:
+        housing = self.box.housing
+        assert housing is not None
+        return housing
+
+    def source(self, condition: laws.ConstantFilm) -> str:
+        """Where the case has the coefficient of a given film from."""
+        entry = next(name for name, own in self.housing.boundary.items() if own is condition)
+        path = f"gearboxes.{self.name}.housing.boundary.{entry}.heat_transfer_coefficient"
+        return self.rig.case.provenance(path)
+
+    def density(self, medium: laws.Medium) -> float | None:
+        """Density of the mist a surface turns in [kg/m3]; None for dry air."""
+        return self.rig.case.losses.chamber_density if medium == "mist" else None
+
+    @property
+    def geometry(self) -> HousingGeometry:
+        return self.rig.geometries[self.name]
+
+    def fluid(self, name: laws.Fluid) -> tuple[str, float]:
+        """Kind and temperature [K] of a fluid of the case."""
+        if name == "ambient":
+            return AIR, self.rig.case.ambient.temperature
+        kind, _, which = name.rpartition("_")
+        entry = self.box.oil if kind == GEAR_OIL else self.box.bearing_oil
+        inlet, outlet = entry.inlet_temperature, self.feedback.oil_outlet[f"{self.name}.{kind}"]
+        return kind, {"inlet": inlet, "outlet": outlet, "mean": 0.5 * (inlet + outlet)}[which]
+
+    def wetting(self, fluid: laws.Fluid, surface: str) -> float:
+        """Share of a given oil film that is left: bubbles conduct less than oil, blocked jets leave flanks dry."""
+        kind, _ = self.fluid(fluid)
+        if kind == AIR:
+            return 1.0
+        share = conducting_share(self.rig, self.name, kind)
+        on_flanks = kind == GEAR_OIL and surface in rim_surfaces(self.box).values()
+        return share * wetted_width(self.box) if on_flanks else share
+
+    def shaft(self, surface: str) -> ShaftGeometry:
+        """The shaft a surface belongs to, from its name."""
+        candidates = [shaft for shaft in self.geometry.shafts if f"_{shaft.name}_" in f"{surface}_"]
+        return max(candidates, key=lambda shaft: len(shaft.name))
+
+    def speed(self, surface: str) -> float:
+        """Speed of the shaft of a surface [rad/s]."""
+        return self.rig.shaft_speed(self.shaft(surface).name, self.point.speed)
+
+    def diameter(self, surface: str) -> float:
+        """Diameter of a shaft or gear surface [m]."""
+        shaft = self.shaft(surface)
+        if surface.startswith("gear_") and shaft.gear is not None:
+            return shaft.gear.outer_diameter
+        if "_cold_" in surface or ("_seal_" in surface and not surface.endswith("_end")):
+            return shaft.seal_diameter
+        if surface.endswith("_warm"):
+            return shaft.seat_diameter
+        if "_journal_" in surface:
+            return shaft.journal_diameter
+        return shaft.overhang_diameter
+
+
+def boundary_conditions(
+    rig: Rig,
+    name: str,
+    point: OperatingPoint,
+    feedback: Feedback,
+    bearings: Mapping[str, BearingState],
+    losses: Sequence[PlacedLoss],
+    *,
+    radiation_included: bool,
+) -> list[Condition]:
+    """Every condition of the housing of gearbox ``name``: films, radiation, exchanges, joints and sources.
+
+    radiation_included : leave out explicit radiation where the film to room air contains it already
+    """
+    context = _Context(rig, name, point, feedback, bearings)
+    housing = context.box.housing
+    assert housing is not None
+    rows = conditions_of(housing, rig.surface_names(name))
+    covered = {surface for entry, surface, _ in rows if laws.holds_radiation(housing.boundary[entry])}
+    conditions: list[Condition] = [*foot_joint(rig, name)]
+    for entry, surface, stood_for in rows:
+        condition = housing.boundary[entry]
+        if radiation_included and isinstance(condition, laws.ThermalRadiation) and surface in covered:
+            conditions += _radiation_beside(context, condition, surface)
+            continue
+        found = _condition(context, condition, surface, stood_for)
+        if isinstance(found, Film):
+            found = replace(found, law=behind_shell(rig, name, surface, found.law))
+        conditions.append(found)
+    return [*conditions, *_sources(context, losses), *_stored(rig, name)]
+
+
+def _stored(rig: Rig, name: str) -> Iterator[StoredHeat]:
+    """What the bodies still take up where the case says that its points were not steady."""
+    room = rig.case.ambient
+    if room.warming_time is not None:
+        capacity = {body: m.density * m.heat_capacity for body, m in rig.body_materials(name).items()}
+        yield StoredHeat(capacity=capacity, start=room.temperature, time=room.warming_time, kind=STORED)
+
+
+def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, laws.TakenFrom]]:
+    """(surface, what its coefficient was read from) of every film of a housing that assumes a difference."""
+    housing = rig.case.gearboxes[name].housing
+    assert housing is not None
+    for entry, surface, _ in conditions_of(housing, rig.surface_names(name)):
+        condition = housing.boundary[entry]
+        if isinstance(condition, laws.ConstantFilm) and condition.taken_from is not None:
+            yield surface, condition.taken_from
+
+
+def _condition(
+    context: _Context, condition: laws.Condition, surface: str, stood_for: tuple[str, ...]
+) -> BoundaryCondition:
+    if isinstance(condition, laws.ThermalRadiation):
+        return _radiation(context, condition, surface, condition.emissivity + condition.emissivity_excess)
+    if isinstance(condition, laws.FixedTemperature):
+        return PrescribedTemperature(surface=surface, temperature=condition.temperature)
+    if isinstance(condition, laws.Insulated):
+        return Adiabatic(surface=surface)
+    if isinstance(condition, laws.GapExchange | laws.SeriesExchange):
+        return Exchange(
+            surface_a=surface,
+            surface_b=partner_of(condition, stood_for),
+            kind="exchange",
+            law=_exchange_law(context, condition, surface),
+        )
+    if isinstance(condition, laws.BearingFilm):
+        return _bearing_film(context, condition, surface)
+    if isinstance(condition, laws.FlankFilm):
+        gear = next(gear for gear, rim in rim_surfaces(context.box).items() if rim == surface)
+        return gear_flanks(context.rig, context.name, gear, context.point, condition).film(surface, GEAR_OIL)
+    kind, temperature = _fluid_of(context, condition)
+    law = _film_law(context, condition, surface)
+    if kind == AIR:
+        law = convection.scaled(law, context.housing.ambient_film_factor)
+    return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
+
+
+def _radiation(
+    context: _Context, condition: laws.ThermalRadiation, surface: str, emissivity: float
+) -> Radiation:
+    ambient = context.rig.case.ambient
+    walls = condition.surroundings_temperature or ambient.surroundings_temperature or ambient.temperature
+    return Radiation(surface=surface, emissivity=emissivity, surroundings_temperature=walls)
+
+
+def _radiation_beside(
+    context: _Context, condition: laws.ThermalRadiation, surface: str
+) -> list[BoundaryCondition]:
+    """What a surface radiates beyond the radiation that its film to room air holds already."""
+    if condition.emissivity_excess == 0.0:
+        return []
+    return [_radiation(context, condition, surface, condition.emissivity_excess)]
+
+
+def _fluid_of(context: _Context, condition: laws.Condition) -> tuple[str, float]:
+    if isinstance(condition, laws.ConstantFilm):
+        kind, temperature = context.fluid(condition.fluid)
+        return kind, condition.fluid_temperature or temperature
+    if isinstance(condition, laws.RotatingCylinder | laws.RotatingDisc):
+        return context.fluid(condition.fluid)
+    return AIR, context.rig.case.ambient.temperature
+
+
+def _film_law(context: _Context, condition: laws.Condition, surface: str) -> FilmLaw:
+    if isinstance(condition, laws.PlateFilm):
+        return plate_film(condition, context.housing.height)
+    if isinstance(condition, laws.ShaftFilm):
+        density = None
+        if not isinstance(condition, laws.HorizontalCylinder):
+            density = context.density(condition.medium)
+        return shaft_film(condition, context.speed(surface), context.diameter(surface), density)
+    if isinstance(condition, laws.ConstantFilm):
+        taken = condition.taken_from
+        formula = "constant" if taken is None or taken.law is None else taken.law
+        usual = None if condition.fluid == "ambient" else convection.OIL_RANGE
+        value, source = condition.heat_transfer_coefficient, context.source(condition)
+        factor = condition.film_factor * context.wetting(condition.fluid, surface)
+        return convection.scaled(convection.constant(value, source, formula, usual), factor)
+    raise TypeError(f"no film law for {type(condition).__name__}")
+
+
+def _exchange_law(
+    context: _Context, condition: laws.GapExchange | laws.SeriesExchange, surface: str
+) -> FilmLaw:
+    if isinstance(condition, laws.GapExchange):
+        gap = condition.gap or context.shaft(surface).seal_gap
+        turning = context.speed(surface), 0.5 * context.diameter(surface)
+        jungnickel = condition.correlation == "jungnickel"
+        across = convection.narrow_gap_jungnickel if jungnickel else convection.narrow_gap_taylor
+        return convection.scaled(across(*turning, gap), condition.film_factor)
+    first, second = condition.coefficients
+    source = "input of the case"
+    films = convection.series(convection.constant(first, source), convection.constant(second, source))
+    return convection.scaled(films, condition.film_factor)
+
+
+def _bearing_film(context: _Context, condition: laws.BearingFilm, surface: str) -> Film:
+    """Conductance of the film from its mean temperature; the sink is that temperature, no source beside it."""
+    shaft = context.shaft(surface).name
+    side = "front" if surface.endswith("front") else "rear"
+    entry = bearing_on(context.box, shaft, side)
+    part = next(name for name, bearing in context.box.bearings.items() if bearing is entry)
+    state = context.bearings[f"{context.name}.{part}"]
+    oil = bearing_oil(context.rig, context.name)
+    return Film(
+        surface=surface,
+        kind=f"{BEARING_FILM}:{part}",
+        fluid_temperature=state.film_temperature,
+        law=convection.scaled(
+            convection.bearing_film(oil.conductivity(state.film_temperature), 1.0 / state.mean_inverse_gap),
+            context.housing.bearing_film_factor * condition.film_factor,
+        ),
+    )
+
+
+def _sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
+    """Losses that enter solids: meshes into the rims, windage into the gears, seals into shaft and bore."""
+    sources: list[BoundaryCondition] = [*_mesh_sources(context, losses)]
+    for placed in losses:
+        if placed.gearbox != context.name or placed.into_body == 0.0:
+            continue
+        if placed.loss.kind == "windage":
+            shaft = context.box.gears[placed.part].shaft
+            sources.append(BodySource(body=f"gear_{shaft}", power=placed.into_body, kind="windage"))
+        elif placed.loss.kind == "seal":
+            sources += _seal_sources(context, placed)
+    return sources
+
+
+def _mesh_sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
+    """Into the rim of every gear its share of the heat of all meshes it is in."""
+    into_rim: dict[str, float] = {}
+    for placed in losses:
+        if placed.gearbox == context.name and placed.split is not None and placed.into_body:
+            mesh = context.box.meshes[placed.part]
+            for gear, share in zip((mesh.pinion, mesh.wheel), placed.split.into_rims):
+                into_rim[gear] = into_rim.get(gear, 0.0) + share * placed.loss.power
+    rims = rim_surfaces(context.box)
+    return [
+        SurfaceSource(surface=rims[gear], power=power, kind="mesh_loss") for gear, power in into_rim.items()
+    ]
+
+
+def _seal_sources(context: _Context, placed: PlacedLoss) -> list[BoundaryCondition]:
+    """Shaft and bore of every seal: evenly on the two in the partitions, evenly on those where the shaft leaves."""
+    name = context.box.seals[placed.part].shaft
+    shaft = next(shaft for shaft in context.geometry.shafts if shaft.name == name)
+    ends = [f"{side}_end" for side in SIDES if shaft.overhang(side) > 0.0]
+    split = context.box.heat_split
+    total = split.seal_into_shaft + split.seal_into_housing
+    bodies = ((f"shaft_{name}_seal", split.seal_into_shaft), (f"seal_bore_{name}", split.seal_into_housing))
+    return [
+        SurfaceSource(
+            surface=f"{stem}_{place}",
+            power=part / len(places) * placed.into_body * share / total,
+            kind="seal_loss",
+        )
+        for places, part in ((list(SIDES), 1.0 - placed.end_share), (ends, placed.end_share))
+        for place in places
+        for stem, share in bodies
+        if part > 0.0
+    ]

@@ -1,0 +1,216 @@
+"""Friction heat at the teeth: how the two gears share it, and what their oil films let through to the rims.
+
+Friction heats both flanks where they touch. What the oil carries through the contact is left out: a film of half a
+micrometre takes less than a hundredth of it. Each gear then is a fin with heated and cooled flanks: the share eta
+of its heat reaches the rim, the rest leaves with the film (`thermal.films.flank`).
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.gear.pair import GearPair
+from dynamics.losses.mesh_loss import ToothPath
+from dynamics.losses.oil_jet import JET_ANGLES
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.geometry import conditions_of
+from rigdesign.case.housing import FlankFilm
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.properties.materials import Material
+from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import gear_oil, jet_velocity, wetted_width, wetting_flow
+from thermal.conditions.boundary import Film, FilmLaw
+from thermal.films.convection import constant
+from thermal.films.flank import (
+    FilmOil,
+    ToothRing,
+    Wetting,
+    fin_efficiency,
+    fling_off,
+    jet_renewal,
+    on_rim,
+)
+
+JET_HALVES = 0.5
+"""Of the oil injected at a mesh, the part that wets each of its two gears."""
+PATH_POINTS = 201
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshSplit:
+    """Way of the friction heat of a mesh into its gears.
+
+    pinion : share of the heat that enters the flanks of the pinion; the rest enters those of the wheel
+    kept : of the heat of pinion and wheel, the shares that reach their rims; the rest goes into the oil at once
+    """
+
+    pinion: float
+    kept: tuple[float, float]
+
+    @property
+    def into_rims(self) -> tuple[float, float]:
+        """Shares of the whole that reach the rims of pinion and wheel."""
+        return self.pinion * self.kept[0], (1.0 - self.pinion) * self.kept[1]
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearFlanks:
+    """Teeth of one gear with the film on them."""
+
+    ring: ToothRing
+    law: FilmLaw
+    """On the flanks."""
+    oil_temperature: float
+    """Of the oil as it lies on the flanks [K]."""
+    rim_area: float
+
+    def kept(self, wall: float) -> float:
+        """Share of the heat of the flanks that reaches the rim, at a wall temperature [K]."""
+        return fin_efficiency(self.ring, self.law(wall, self.oil_temperature).value)
+
+    def film(self, surface: str, kind: str) -> Film:
+        """The condition of the rim that stands for the teeth."""
+        law = on_rim(self.law, self.ring, self.rim_area)
+        return Film(surface=surface, kind=kind, fluid_temperature=self.oil_temperature, law=law)
+
+
+def flank_films(box: Gearbox, rims: Mapping[str, str]) -> dict[str, FlankFilm]:
+    """Gear -> condition of its teeth, for every gear whose rim has one; ``rims`` names the rim of each gear."""
+    if box.housing is None:
+        return {}
+    gears = {surface: gear for gear, surface in rims.items()}
+    return {
+        gears[surface]: condition
+        for entry, surface, _ in conditions_of(box.housing, rims.values())
+        if isinstance(condition := box.housing.boundary[entry], FlankFilm)
+    }
+
+
+def rim_surfaces(box: Gearbox) -> dict[str, str]:
+    """Gear -> its rim in the mesh of the housing."""
+    return {name: f"gear_{gear.shaft}_rim" for name, gear in box.gears.items()}
+
+
+def gear_flanks(rig: Rig, name: str, gear: str, point: OperatingPoint, condition: FlankFilm) -> GearFlanks:
+    """Teeth and film of one gear of the housing ``name`` at an operating point.
+
+    Every mesh has its jet, so a gear in two meshes is wetted twice a turn. The oil is laid on as it comes, warmed
+    by its impact: (v - v_jet)^2/(2 c), vectors.
+    """
+    box = rig.case.gearboxes[name]
+    meshes = [mesh for mesh in box.meshes.values() if gear in (mesh.pinion, mesh.wheel)]
+    mesh_name, index = box.first_meshes()[gear]
+    pair = rig.pairs[f"{name}.{mesh_name}"]
+    material = rig.materials[box.gears[gear].material]
+    ring = tooth_ring(pair, index, box.body_width(gear), material.conductivity)
+    speed = rig.shaft_speed(box.gears[gear].shaft, point.speed)
+    wetting = Wetting(
+        speed=speed,
+        per_turn=len(meshes),
+        flow=len(meshes) * JET_HALVES * wetting_flow(box),
+        wetted_share=condition.wetted_share,
+    )
+    oil = gear_oil(rig, name)
+    inlet = box.oil.inlet_temperature
+    properties = FilmOil(
+        conductivity=oil.conductivity,
+        density=oil.density,
+        heat_capacity=oil.heat_capacity,
+        kinematic_viscosity=oil.kinematic_viscosity,
+        highest_temperature=oil.highest_temperature,
+    )
+    factor = wetted_width(box) * condition.film_factor
+    if condition.correlation == "constant":
+        assert condition.heat_transfer_coefficient is not None
+        law = constant(factor * condition.heat_transfer_coefficient, "input of the case")
+    else:
+        make = fling_off if condition.correlation == "fling_off" else jet_renewal
+        law = make(ring, wetting, properties, factor)
+    angle = JET_ANGLES[box.oil.jet_direction]
+    rim_speed, jet = speed * pair.working_radii[index], jet_velocity(box)
+    impact = rim_speed**2 + jet**2 - 2.0 * rim_speed * jet * math.cos(angle) if speed > 0.0 else 0.0
+    disc = next(s.gear for s in rig.geometries[name].shafts if s.name == box.gears[gear].shaft)
+    assert disc is not None
+    return GearFlanks(
+        ring=ring,
+        law=law,
+        oil_temperature=inlet + 0.5 * impact / oil.heat_capacity(inlet),
+        rim_area=math.pi * disc.outer_diameter * disc.width,
+    )
+
+
+def film_of_jets(rig: Rig, name: str, gear: str, point: OperatingPoint, wall: float) -> float:
+    """Film on the rim of a gear [W/(m2 K)] that the jets of its meshes make at a wall temperature [K] (fling-off)."""
+    rim = rim_surfaces(rig.case.gearboxes[name])[gear]
+    flanks = gear_flanks(rig, name, gear, point, FlankFilm(surfaces=(rim,), law="flank_film"))
+    return flanks.film(rim, "").law(wall, flanks.oil_temperature).value
+
+
+def tooth_ring(pair: GearPair, index: int, width: float, conductivity: float) -> ToothRing:
+    """Teeth of gear ``index`` of a pair on a body ``width`` wide [m], as the film sees them.
+
+    The flank is the involute from form to tip circle, r_b (xi_a^2 - xi_f^2)/2, and the height of the fillet below;
+    tip lands and the bottom of the spaces are left out.
+    """
+    gear = pair.gears[index]
+    rolls = [gear.roll_length(radius) for radius in (gear.form_radius, gear.tip_radius)]
+    involute = 0.5 * (rolls[1] ** 2 - rolls[0] ** 2) / gear.base_radius
+    profile = involute + max(gear.form_radius - gear.root_radius, 0.0)
+    middle = max(gear.mean_radius, gear.form_radius)
+    return ToothRing(
+        root_radius=gear.root_radius,
+        tip_radius=gear.tip_radius,
+        flank_area=2.0 * gear.teeth * profile * width / math.cos(gear.helix_angle),
+        tooth_thickness=2.0 * middle * gear.half_angle(middle) * math.cos(gear.helix_angle),
+        conductivity=conductivity,
+    )
+
+
+def pinion_share(pair: GearPair, materials: tuple[Material, Material]) -> float:
+    """Share of the friction heat of a mesh that enters the pinion, by the thermal contact coefficients.
+
+    In each contact B_1 sqrt(v_1) / (B_1 sqrt(v_1) + B_2 sqrt(v_2)) with B = sqrt(k rho c) and the speeds v of the
+    contact over both flanks (Blok: both surfaces equally hot); weighted over the path with the sliding speed,
+    pairs in contact sharing the load evenly. Half for equal gears of one material.
+    """
+    path = ToothPath.of_pair(pair)
+    place = np.linspace(path.start, path.end, PATH_POINTS)
+    rolling = pair.rolling_radii
+    speeds = (rolling[0] + place, (rolling[1] - place) / pair.gear_ratio)
+    first, second = (
+        math.sqrt(m.conductivity * m.density * m.heat_capacity) * np.sqrt(np.maximum(v, 0.0))
+        for m, v in zip(materials, speeds)
+    )
+    offsets = np.arange(-3, 4)[:, None] * path.base_pitch
+    touching = ((place + offsets >= path.start) & (place + offsets <= path.end)).sum(axis=0)
+    weight = np.abs(place) / touching
+    return float(np.sum(weight * first / (first + second)) / np.sum(weight))
+
+
+def mesh_split(rig: Rig, full_name: str, point: OperatingPoint, feedback: Feedback | None) -> MeshSplit:
+    """How the friction heat of the mesh ``gearbox.mesh`` divides, by the rule of the case.
+
+    feedback : bulk temperatures of the gears, for the viscosity of the film; oil temperature when left out
+    """
+    name, own = full_name.split(".")
+    box = rig.case.gearboxes[name]
+    mesh, split = box.meshes[own], box.heat_split
+    gears = mesh.pinion, mesh.wheel
+    share = split.mesh_pinion_share
+    if share is None:
+        first, second = (rig.materials[box.gears[gear].material] for gear in gears)
+        share = pinion_share(rig.pairs[full_name], (first, second))
+    if box.housing is None:
+        return MeshSplit(pinion=share, kept=(0.0, 0.0))
+    if split.rule == "assumed":
+        assert split.mesh_into_gears is not None
+        return MeshSplit(pinion=share, kept=(split.mesh_into_gears, split.mesh_into_gears))
+    conditions = flank_films(box, rim_surfaces(box))
+    kept = []
+    for gear in gears:
+        flanks = gear_flanks(rig, name, gear, point, conditions[gear])
+        walls = {} if feedback is None else feedback.gear_temperature
+        kept.append(flanks.kept(walls.get(f"{name}.{gear}", flanks.oil_temperature)))
+    return MeshSplit(pinion=share, kept=(kept[0], kept[1]))

@@ -1,0 +1,30 @@
+"""Where the coupling loop starts: the cold rig at its oil inlet temperatures."""
+
+from rigdesign.coupling.expansion import uniform_growth
+from rigdesign.coupling.loads import first_torques
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.rig.model import Rig
+
+
+def cold_feedback(rig: Rig, point: OperatingPoint) -> Feedback:
+    """All of the rig at room temperature, no heat from bodies, oil as fed; mesh torques without losses."""
+    case = rig.case
+    gears = (f"{box}.{gear}" for box, entry in case.gearboxes.items() for gear in entry.gears)
+    streams = {}
+    for name, box in case.gearboxes.items():
+        streams[f"{name}.gear_oil"] = box.oil.inlet_temperature
+        streams[f"{name}.bearing_oil"] = box.bearing_oil.inlet_temperature
+    return Feedback(
+        gear_temperature=dict.fromkeys(gears, case.ambient.temperature),
+        centre_distance={
+            mesh: distance
+            for box in case.gearboxes
+            for mesh, distance in uniform_growth(rig, box, case.ambient.temperature).items()
+        },
+        bearing_clearance={name: entry.diametral_clearance for name, _, entry in rig.bearings()},
+        bearing_heat={name: 0.0 for name, _, _ in rig.bearings()},
+        wall_heat=dict.fromkeys(streams, 0.0),
+        oil_outlet=streams,
+        mesh_torque=first_torques(rig, point),
+        tooth_growth=dict.fromkeys(rig.pairs, 0.0),
+    )

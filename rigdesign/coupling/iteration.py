@@ -1,0 +1,243 @@
+"""One pass round the loop at an operating point: warm gears, loads, losses, oil, temperatures, growth."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from dynamics.bearing.journal import BearingState
+from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.base.finite import finite
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.drag_torques import drag_torques
+from rigdesign.coupling.expansion import HousingGrowth, expand_housing, hot_clearances, uniform_growth
+from rigdesign.coupling.loads import MeshModel, Setting, mesh_models, respond
+from rigdesign.coupling.losses import PlacedLoss, mesh_losses, rotating_losses
+from rigdesign.coupling.oil import OilStream, oil_streams
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.temperatures import (
+    TOLERANCE,
+    HousingField,
+    body_mean,
+    heat_into_films,
+    heat_into_oil,
+    solve_housing,
+)
+from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import bearing_oil, gear_oil, wall_flow
+
+ROUGH = 1e-5
+"""Heat left over in the fields of a pass that cannot be the last: some millikelvin."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PassResult:
+    """Everything one pass computed from one feedback."""
+
+    point: OperatingPoint
+    feedback: Feedback
+    """What the pass started from."""
+    models: tuple[MeshModel, ...]
+    bearings: Mapping[str, BearingState]
+    drags: Mapping[str, float]
+    response: CurvePoint | None
+    losses: tuple[PlacedLoss, ...]
+    streams: tuple[OilStream, ...]
+    fields: Mapping[str, HousingField]
+    growth: Mapping[str, HousingGrowth]
+    bearing_heat: Mapping[str, float]
+    """Heat the solids gave to each film in this pass [W], before relaxation."""
+    wall_heat: Mapping[str, float]
+    """Heat the solids gave to each oil stream [W], before relaxation."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parts:
+    """The dear parts of a pass, each as the function that computes it.
+
+    `rigdesign.prediction` puts others in their place: what is known already, fields and growth projected on few
+    shapes.
+    """
+
+    models: Callable[..., tuple[MeshModel, ...]] = mesh_models
+    bearings: Callable[..., dict[str, BearingState]] = solve_bearings
+    response: Callable[..., CurvePoint] = respond
+    field: Callable[..., HousingField] = solve_housing
+    growth: Callable[..., HousingGrowth] = expand_housing
+    bulk: Callable[[Rig, HousingField, str], float] = body_mean
+
+
+SOLVED = Parts()
+"""Every part solved in full."""
+
+
+def one_pass(
+    rig: Rig,
+    point: OperatingPoint,
+    feedback: Feedback,
+    setting: Setting | None,
+    before: PassResult | None = None,
+    *,
+    fine: bool = True,
+    parts: Parts = SOLVED,
+) -> PassResult:
+    """Compute one pass; ``before`` gives the fields to start from.
+
+    parts : what computes its dear parts
+    fine : expand the housings and solve the fields to the last digit; else the growth of ``before`` is carried on
+        and the heat of the fields closes to 1e-4, which saves time while the temperatures still move a lot. A pass
+        that ends the loop must be fine.
+
+    Raises
+    ------
+    NonFiniteResultError
+        A loss that is NaN or infinite.
+    """
+    models = parts.models(rig, point, feedback)
+    bearings = parts.bearings(rig, point, feedback)
+    turning = rotating_losses(rig, point, feedback, models, bearings)
+    drags = drag_torques(turning, rig, point.speed)
+    response = None if setting is None else parts.response(rig, point, models, drags, setting)
+    losses = (*turning, *mesh_losses(rig, point, models, response, feedback))
+    for placed in losses:
+        finite(f"stage {point.stage}: {placed.loss.kind} loss of {placed.name}", placed.loss.power)
+    starts: Mapping[str, HousingField] = {} if before is None else before.fields
+    tolerance = TOLERANCE if fine else ROUGH
+    fields = {
+        name: parts.field(rig, name, point, feedback, bearings, losses, starts.get(name), tolerance=tolerance)
+        for name in rig.models
+    }
+    bearing_heat = dict.fromkeys(bearings, 0.0)
+    wall_heat = dict.fromkeys(feedback.wall_heat, 0.0)
+    for field in fields.values():
+        bearing_heat |= heat_into_films(field)
+        wall_heat |= heat_into_oil(field)
+    return PassResult(
+        point=point,
+        feedback=feedback,
+        models=models,
+        bearings=bearings,
+        drags=drags,
+        response=response,
+        losses=losses,
+        streams=tuple(oil_streams(rig, losses, feedback.bearing_heat, feedback.wall_heat)),
+        fields=fields,
+        growth=_growth(rig, fields, before, fine, parts),
+        bearing_heat=bearing_heat,
+        wall_heat=wall_heat,
+    )
+
+
+def _growth(
+    rig: Rig, fields: Mapping[str, HousingField], before: PassResult | None, fine: bool, parts: Parts
+) -> dict[str, HousingGrowth]:
+    if before is not None and not fine:
+        return dict(before.growth)
+    return {
+        name: parts.growth(rig, field, None if before is None else before.growth[name])
+        for name, field in fields.items()
+        if not rig.models[name].no_expansion
+    }
+
+
+def feedback_of(rig: Rig, done: PassResult, parts: Parts = SOLVED) -> Feedback:
+    """What a pass hands to the next; heats are relaxed by what the oil can take up (`relaxed_heat`)."""
+    old = done.feedback
+    gear_temperature: dict[str, float] = {}
+    centre_distance: dict[str, float] = {}
+    clearance: dict[str, float] = {}
+    tooth_growth = dict.fromkeys(rig.pairs, 0.0)
+    for name, box in rig.case.gearboxes.items():
+        streams = {stream.name: stream for stream in done.streams}
+        bulk = streams[f"{name}.gear_oil"].chamber
+        gear_temperature |= {f"{name}.{gear}": bulk for gear in box.gears}
+        if name in done.fields:
+            gear_temperature |= {
+                f"{name}.{gear}": parts.bulk(rig, done.fields[name], f"gear_{entry.shaft}")
+                for gear, entry in box.gears.items()
+                if f"gear_{entry.shaft}" in rig.models[name].mesh.bodies
+            }
+        if name in done.growth:
+            centre_distance |= done.growth[name].centre_distance
+            tooth_growth |= done.growth[name].tooth_growth
+        else:
+            centre_distance |= uniform_growth(rig, name, streams[f"{name}.bearing_oil"].chamber)
+    clearance |= hot_clearances(rig, done.point.speed, done.growth)
+    torque = old.mesh_torque
+    if done.response is not None:
+        signed = done.response.flank * done.response.mean
+        torque = dict(zip(rig.mesh_names, map(float, signed)))
+    return Feedback(
+        gear_temperature=gear_temperature,
+        centre_distance=centre_distance,
+        bearing_clearance=clearance,
+        bearing_heat={
+            name: relaxed(old.bearing_heat[name], heat, 0.5 * _film_slope(rig, done, name))
+            for name, heat in done.bearing_heat.items()
+        },
+        wall_heat={
+            name: relaxed(old.wall_heat[name], heat, _stream_slope(rig, done, name))
+            for name, heat in done.wall_heat.items()
+        },
+        oil_outlet={stream.name: stream.chamber for stream in done.streams},
+        mesh_torque=torque,
+        tooth_growth=tooth_growth,
+    )
+
+
+def relaxed(old: float, new: float, slope: float) -> float:
+    """Heat after a step that stays stable however little oil flows.
+
+    slope : film conductance over heat capacity flow, h A / (rho c Q): how strongly the heat of one pass
+        answers the oil temperature it caused. The step 1 / (1 + slope) damps at most that answer.
+    """
+    return old + (new - old) / (1.0 + slope)
+
+
+def heat_residual(rig: Rig, done: PassResult) -> float:
+    """Largest temperature error [K] that the heats of the last pass would still make in an oil stream or film."""
+    old = done.feedback
+    films = (
+        0.5 * abs(heat - old.bearing_heat[name]) / _bearing_capacity(rig, name)
+        for name, heat in done.bearing_heat.items()
+    )
+    walls = (
+        abs(heat - old.wall_heat[name]) / _stream_capacity(rig, name) for name, heat in done.wall_heat.items()
+    )
+    return max((*films, *walls), default=0.0)
+
+
+def _bearing_capacity(rig: Rig, name: str) -> float:
+    """Heat capacity flow rho c Q of the oil of one bearing [W/K]."""
+    box = rig.case.gearboxes[name.split(".")[0]]
+    entry = box.bearing_oil
+    oil = bearing_oil(rig, name.split(".")[0])
+    return oil.density(entry.inlet_temperature) * oil.heat_capacity(entry.inlet_temperature) * entry.flow
+
+
+def _stream_capacity(rig: Rig, name: str) -> float:
+    """Heat capacity flow of an oil stream of a gearbox along its walls [W/K]."""
+    box_name, kind = name.split(".")
+    box = rig.case.gearboxes[box_name]
+    if kind == "gear_oil":
+        oil, inlet, flow = gear_oil(rig, box_name), box.oil.inlet_temperature, wall_flow(box)
+    else:
+        oil, inlet = bearing_oil(rig, box_name), box.bearing_oil.inlet_temperature
+        flow = box.bearing_oil.flow * len(box.bearings)
+    return oil.density(inlet) * oil.heat_capacity(inlet) * flow
+
+
+def _film_slope(rig: Rig, done: PassResult, name: str) -> float:
+    box, part = name.split(".")
+    return _conductance(done, box, f"bearing_film:{part}") / _bearing_capacity(rig, name)
+
+
+def _stream_slope(rig: Rig, done: PassResult, name: str) -> float:
+    box, kind = name.split(".")
+    return _conductance(done, box, kind) / _stream_capacity(rig, name)
+
+
+def _conductance(done: PassResult, box: str, kind: str) -> float:
+    """Sum of h A over the films of one kind [W/K]."""
+    if box not in done.fields:
+        return 0.0
+    rows = done.fields[box].solution.balance.rows
+    return sum(row.coefficient.value * row.area for row in rows if row.kind == kind and row.coefficient)

@@ -1,0 +1,119 @@
+"""The coupling loop: passes at one operating point until nothing moves any more."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rigdesign.base.errors import NotConvergedError
+from rigdesign.base.finite import require_finite
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.iteration import PassResult, feedback_of, heat_residual, one_pass
+from rigdesign.coupling.loads import Setting, brace_cold
+from rigdesign.coupling.state import (
+    Feedback,
+    OperatingPoint,
+    growth_change,
+    temperature_change,
+    torque_change,
+)
+from rigdesign.rig.model import Rig
+
+GROWTH_FROM = 8.0
+"""Change of temperature in a pass [K] below which the next one is fine: it expands the housings afresh."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Residual:
+    """Largest changes of one pass: temperature [K], length [m], mean torque relative [-]."""
+
+    temperature: float
+    growth: float
+    torque: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointResult:
+    """The settled state of one operating point."""
+
+    point: OperatingPoint
+    last: PassResult
+    setting: Setting | None
+    residuals: tuple[Residual, ...]
+
+
+def governing_point(points: Sequence[PointResult]) -> PointResult:
+    """The held point that speaks for the rig where only one can: most torque, of equals the fastest, then the last.
+
+    Checks do not ask it: they take the worst over all held points.
+    """
+    return max(reversed(points), key=lambda result: (abs(result.point.torque), result.point.speed))
+
+
+def solve_point(
+    rig: Rig,
+    point: OperatingPoint,
+    *,
+    start: Feedback | None = None,
+    before: PassResult | None = None,
+    hold: frozenset[str] = frozenset(),
+) -> PointResult:
+    """Repeat the pass until temperatures, lengths and torques stay within the tolerances of the case.
+
+    Parameters
+    ----------
+    start : feedback of a neighbouring point; the cold rig when left out
+    before : last pass of a neighbouring point on the same meshes: first guess of fields and growth
+    hold : arrows of the loop that are cut, by field of `Feedback`: they keep their cold values
+
+    Raises
+    ------
+    NotConvergedError
+        The passes of the case are used up; the message shows the residuals of the last ones.
+    NonFiniteResultError
+        A loss, temperature, length or torque of a pass is NaN or infinite.
+    """
+    numerics = rig.case.numerics
+    cold = cold_feedback(rig, point)
+    setting = None if rig.case.drivetrain is None else brace_cold(rig, point, cold)
+    feedback = cold if start is None else start.hold(hold, cold)
+    residuals: list[Residual] = []
+    done = before
+    for _ in range(numerics.coupling_passes):
+        fine = not residuals or residuals[-1].temperature < GROWTH_FROM
+        done = one_pass(rig, point, feedback, setting, done, fine=fine)
+        after = feedback_of(rig, done).hold(hold, cold)
+        require_finite(after, f"stage {point.stage}")
+        heat = 0.0 if {"bearing_heat", "wall_heat"} & hold else heat_residual(rig, done)
+        residuals.append(
+            Residual(
+                temperature=max(temperature_change(feedback, after), heat),
+                growth=growth_change(feedback, after),
+                torque=torque_change(feedback, after),
+            )
+        )
+        feedback = after
+        if fine and _settled(residuals[-1], rig):
+            return PointResult(point=point, last=done, setting=setting, residuals=tuple(residuals))
+    raise NotConvergedError(_history(point, residuals, rig))
+
+
+def _settled(residual: Residual, rig: Rig) -> bool:
+    numerics = rig.case.numerics
+    return (
+        residual.temperature <= numerics.temperature_tolerance
+        and residual.growth <= numerics.growth_tolerance
+        and residual.torque <= numerics.torque_tolerance
+    )
+
+
+def _history(point: OperatingPoint, residuals: list[Residual], rig: Rig) -> str:
+    numerics = rig.case.numerics
+    lines = "; ".join(
+        f"pass {len(residuals) - i}: {r.temperature:.3g} K, {1e6 * r.growth:.3g} um, {r.torque:.2g} of the torque"
+        for i, r in enumerate(reversed(residuals[-4:]))
+    )
+    return (
+        f"coupling at stage {point.stage!r} did not settle in {len(residuals)} passes (limits "
+        f"{numerics.temperature_tolerance:g} K, {1e6 * numerics.growth_tolerance:g} um, "
+        f"{numerics.torque_tolerance:g}): {lines}; raise numerics.coupling_passes, or feed more oil if a film or "
+        "stream swings"
+    )

@@ -1,0 +1,127 @@
+"""Oil circuits of the gearboxes at one operating point: what each stream takes up on its way."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.model import Case
+from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.properties.oil import oil_outlet
+from rigdesign.properties.oil_mixing import Portion, mixed
+from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import bearing_oil, gear_oil, wall_flow
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OilStream:
+    """One oil stream of a gearbox: what it takes up between inlet and outlet."""
+
+    name: str
+    inlet: float
+    """[K]"""
+    outlet: float
+    """All that comes back by its drain, mixed: what a thermometer there reads [K]."""
+    chamber: float
+    """As it leaves the walls it wets; the outlet, but for oil that went past them [K]."""
+    flow: float
+    """Fed [m3/s]."""
+    heat: float
+    """With which the oil of its drain leaves, above the temperatures it was fed with [W]."""
+
+
+def oil_streams(
+    rig: Rig, losses: Sequence[PlacedLoss], bearing_heat: Mapping[str, float], wall_heat: Mapping[str, float]
+) -> list[OilStream]:
+    """The two oil streams of every gearbox: outlet = inlet + (loss + heat of bodies)/(rho c Q).
+
+    bearing_heat : heat conducted into each bearing film [W]; wall_heat : heat taken from walls, shafts and
+    gears by each stream [W]
+
+    Oil that goes past meshes or walls leaves less for them, which then warms up more; at the drain all mix again.
+    Gear oil that leaks to the bearings takes its heat there.
+    """
+    streams = []
+    for name, box in rig.case.gearboxes.items():
+        own = [placed for placed in losses if placed.gearbox == name]
+        into_bearings = math.fsum(placed.into_bearing_oil for placed in own)
+        into_gears = math.fsum(placed.into_oil - placed.into_bearing_oil for placed in own)
+        films = math.fsum(heat for part, heat in bearing_heat.items() if part.split(".")[0] == name)
+        gear, leak = _gear_stream(rig, name, box, into_gears, wall_heat[f"{name}.gear_oil"])
+        films += wall_heat[f"{name}.bearing_oil"]
+        streams += [gear, _bearing_stream(rig, name, box, into_bearings, films, leak)]
+    return streams
+
+
+def heater_and_cooler(case: Case, heats: Mapping[str, FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Power that heaters give and that the cooler carries [W], to feed every oil at its inlet temperature.
+
+    heats : ``gearbox.stream`` -> (n,) heat with which its oil comes back above its inlet temperature [W]
+
+    Streams of one oil and inlet temperature are one circuit and mix in its tank. A circuit that comes back
+    colder than it went needs a heater: its oil is too warm to cool another one, so nothing is netted.
+    """
+    circuits: dict[tuple[str, float], FloatArray] = {}
+    for name, heat in heats.items():
+        box, _, kind = name.partition(".")
+        entry = case.gearboxes[box]
+        feed = entry.oil if kind == "gear_oil" else entry.bearing_oil
+        key = feed.oil, feed.inlet_temperature
+        circuits[key] = circuits.get(key, np.zeros_like(heat)) + heat
+    powers = np.array(list(circuits.values()))
+    return np.maximum(-powers, 0.0).sum(axis=0), np.maximum(powers, 0.0).sum(axis=0)
+
+
+def _gear_stream(
+    rig: Rig, name: str, box: Gearbox, loss: float, heat: float
+) -> tuple[OilStream, Portion | None]:
+    """The stream of the gears, and what of it leaks to the bearings."""
+    oil, inlet, paths = gear_oil(rig, name), box.oil.inlet_temperature, box.oil_paths
+    flow = box.oil.flow * len(box.meshes)
+    along = wall_flow(box)
+    to_walls = 1.0 - paths.short_circuit / (1.0 - paths.bypass)
+    outlet = box.oil.outlet_temperature
+    if outlet is None:
+        chamber = oil_outlet(oil, inlet, along, to_walls * loss, heat)
+    elif along == flow:
+        chamber = outlet
+    else:
+        carried = Portion(oil=oil, inlet=inlet, flow=flow).heat_at(outlet)
+        chamber = oil_outlet(oil, inlet, along, carried - (1.0 - to_walls) * loss)
+    leak = None
+    leaving = loss + heat
+    if paths.leak_warm_cold:
+        leak = Portion(oil=oil, inlet=inlet, flow=paths.leak_warm_cold * flow).warmed(chamber)
+        leaving -= leak.heat
+    if outlet is None:
+        back = (1.0 - paths.leak_warm_cold) * flow
+        outlet = chamber if along == flow else oil_outlet(oil, inlet, back, leaving)
+    stream = OilStream(
+        name=f"{name}.gear_oil", inlet=inlet, outlet=outlet, chamber=chamber, flow=flow, heat=leaving
+    )
+    return stream, leak
+
+
+def _bearing_stream(
+    rig: Rig, name: str, box: Gearbox, loss: float, heat: float, leak: Portion | None
+) -> OilStream:
+    """The stream of the bearings, with what leaks into it from the gears."""
+    oil, inlet = bearing_oil(rig, name), box.bearing_oil.inlet_temperature
+    flow = box.bearing_oil.flow * len(box.bearings)
+    taken = loss + heat
+    outlet = box.bearing_oil.outlet_temperature
+    if leak is None:
+        outlet = oil_outlet(oil, inlet, flow, loss, heat) if outlet is None else outlet
+    else:
+        taken += leak.heat
+        outlet = (
+            mixed((Portion(oil=oil, inlet=inlet, flow=flow), leak), loss + heat) if outlet is None else outlet
+        )
+    return OilStream(
+        name=f"{name}.bearing_oil", inlet=inlet, outlet=outlet, chamber=outlet, flow=flow, heat=taken
+    )

@@ -1,0 +1,72 @@
+"""Losses at any operating point with the warm rig of a held stage: no coupling."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from dynamics.bearing.journal import BearingState
+from dynamics.drivetrain.static_loop import NotConverged
+from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.drag_torques import drag_torques
+from rigdesign.coupling.loads import MeshModel, Setting, mesh_models, respond
+from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.losses import PlacedLoss, mesh_losses, oil_jets, rotating_losses
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.rig.model import Rig
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageLosses:
+    """What heats a rig at an operating point, and the state it follows from."""
+
+    point: OperatingPoint
+    feedback: Feedback
+    bearings: Mapping[str, BearingState]
+    losses: tuple[PlacedLoss, ...]
+
+
+def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic: bool) -> StageLosses:
+    """Losses at ``point`` with the geometry and temperatures of the held stage ``test``.
+
+    Tooth forces follow the torque; the bearing films get no heat from the bodies. At standstill
+    only the jets heat: their pump runs.
+
+    dynamic : friction and mesh damping of the periodic response at this point, as at a held stage; else sliding at
+        the mean load alone. Where no response is found it is the mean load as well, and the mesh losses warn of it
+    """
+    share = point.torque / test.point.torque if test.point.torque else 0.0
+    feedback = replace(
+        test.last.feedback,
+        mesh_torque={name: share * torque for name, torque in test.last.feedback.mesh_torque.items()},
+        bearing_heat=dict.fromkeys(test.last.feedback.bearing_heat, 0.0),
+    )
+    bearings = solve_bearings(rig, point, feedback)
+    if point.speed == 0.0:
+        jets = tuple(oil_jets(rig, point, rig.pairs))
+        return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=jets)
+    models = mesh_models(rig, point, feedback)
+    turning = rotating_losses(rig, point, feedback, models, bearings)
+    response = _response(rig, point, models, turning) if dynamic and rig.system is not None else None
+    meshes = mesh_losses(rig, point, models, response, feedback)
+    if dynamic and rig.system is not None and response is None:
+        meshes = [_without_response(placed) for placed in meshes]
+    losses = (*turning, *meshes)
+    return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=losses)
+
+
+def _response(
+    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], turning: Sequence[PlacedLoss]
+) -> CurvePoint | None:
+    """Periodic response with the bracing that makes the torque of this point; None where none is found."""
+    drags = drag_torques(turning, rig, point.speed)
+    try:
+        return respond(rig, point, models, drags, Setting(mode="torque_controlled"))
+    except NotConverged:
+        return None
+
+
+def _without_response(placed: PlacedLoss) -> PlacedLoss:
+    """The sliding loss of a mesh at its mean load, with a warning that the dynamic forces are not in it."""
+    text = "no periodic response is found here: sliding at the mean load, without dynamic tooth forces and mesh damping"
+    loss = replace(placed.loss, warnings=(*placed.loss.warnings, text))
+    return replace(placed, loss=loss)

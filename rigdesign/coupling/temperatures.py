@@ -1,0 +1,112 @@
+"""Steady temperature fields of the housings at one operating point, and the heat they give to the oil."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.bearing.journal import BearingState
+from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, STORED, boundary_conditions
+from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.rig.model import Rig
+from thermal.conduction.condition_checks import Condition
+from thermal.conduction.steady import TemperatureSolution, solve_steady
+
+TOLERANCE = 1e-9
+"""Heat left over at the nodes, relative to the heat turned over, at which a field is solved."""
+
+
+@dataclass(frozen=True)
+class HousingField:
+    """Temperatures of one housing with the conditions they answer to."""
+
+    gearbox: str
+    conditions: tuple[Condition, ...]
+    solution: TemperatureSolution
+
+    @property
+    def temperature(self) -> NDArray[np.float64]:
+        """(n_nodes,) [K]"""
+        return self.solution.temperature
+
+
+def solve_housing(
+    rig: Rig,
+    name: str,
+    point: OperatingPoint,
+    feedback: Feedback,
+    bearings: Mapping[str, BearingState],
+    losses: Sequence[PlacedLoss],
+    start: HousingField | None = None,
+    *,
+    radiation_included: bool | None = None,
+    tolerance: float = TOLERANCE,
+) -> HousingField:
+    """Temperature field of the housing of gearbox ``name``.
+
+    start : field of an earlier pass, a good first guess
+    radiation_included : reading of the film to room air; that of the case when left out
+    tolerance : of the heat left over, relative to the heat turned over
+
+    Raises
+    ------
+    ConditionError
+        Conditions that cannot be computed.
+    NotConverged
+        Newton's method stalls.
+    """
+    housing = rig.case.gearboxes[name].housing
+    assert housing is not None
+    included = housing.radiation_included if radiation_included is None else radiation_included
+    conditions = boundary_conditions(
+        rig, name, point, feedback, bearings, losses, radiation_included=included
+    )
+    setup = rig.conduction[name]
+    solution = solve_steady(
+        setup.mesh,
+        setup.conductivity,
+        conditions,
+        near=None if start is None else start.solution,
+        reuse=setup,
+        tolerance=tolerance,
+    )
+    return HousingField(gearbox=name, conditions=tuple(conditions), solution=solution)
+
+
+def heat_into_oil(field: HousingField) -> dict[str, float]:
+    """Heat the solids give to each oil stream of the gearbox [W], bearing films left out."""
+    return {
+        f"{field.gearbox}.{kind}": -math.fsum(
+            row.power for row in field.solution.balance.rows if row.kind == kind
+        )
+        for kind in (GEAR_OIL, BEARING_OIL)
+    }
+
+
+def heat_into_films(field: HousingField) -> dict[str, float]:
+    """Heat that journal and bore give to each bearing film [W], by ``gearbox.bearing``."""
+    heat: dict[str, float] = {}
+    for row in field.solution.balance.rows:
+        kind, _, part = row.kind.partition(":")
+        if kind == BEARING_FILM:
+            name = f"{field.gearbox}.{part}"
+            heat[name] = heat.get(name, 0.0) - row.power
+    return heat
+
+
+def heat_to_room(field: HousingField) -> float:
+    """Heat to room air and walls of the room [W]."""
+    return -math.fsum(row.power for row in field.solution.balance.rows if row.kind in ("air", "radiation"))
+
+
+def heat_stored(field: HousingField) -> float:
+    """Heat that bodies which are not steady yet take up [W]."""
+    return -math.fsum(row.power for row in field.solution.balance.rows if row.kind == STORED)
+
+
+def body_mean(rig: Rig, field: HousingField, body: str) -> float:
+    """Volume mean temperature of a body [K]."""
+    return rig.conduction[field.gearbox].elements.body_mean(field.temperature, body)

@@ -1,0 +1,227 @@
+"""The time run over the whole schedule: once, after the coupling loop, with the warm rig of its last point."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.response.propagator import DEFAULT_CUTOFF
+from dynamics.response.schedule import Command, Kind, Schedule, Stage, s_function
+from dynamics.response.time_response import Command as RunCommand
+from dynamics.response.time_response import DragCurve, TimeResponse, run_schedule
+from rigdesign.base.errors import NotConvergedError
+from rigdesign.case.schedule import StageValues
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.drag_torques import drag_shafts, drag_torques
+from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.loads import Setting, locked_share, shifted_laws
+from rigdesign.coupling.losses import rotating_losses
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.rig.model import Rig
+
+KINDS: Mapping[str, Kind] = {
+    "load": "torque", "unload": "torque", "run_up": "speed", "run_down": "speed", "dwell": "hold"
+}  # fmt: skip
+DRAG_SHARES = (0.02, 0.0625, 0.125, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0)
+"""Shares of the highest speed at which drag torques are computed for the run."""
+SPEED_TOLERANCE = 0.01
+"""Share of the test speed that may be missing at the end of a run-up."""
+SLOT = 0.01
+"""Length of the envelope slots [s]."""
+LEAST_TORQUE = 1.0
+"""Bracing torque [N m] that is kept at standstill: the flanks just touch."""
+QUICK_CUTOFF = 20e3
+"""Highest mode of the time run at quick fidelity [Hz]."""
+DRIVE_ONSET = 0.1
+"""Time over which a constant drive torque is applied by the S-function [s]."""
+RPM = np.pi / 30.0
+COMMAND_INTERVAL = 1e-3
+"""Interval of the command samples [s]."""
+
+
+def schedule_of(rig: Rig) -> Schedule:
+    """The stages of the case as a schedule.
+
+    Raises
+    ------
+    ScheduleError
+        Stages that contradict themselves.
+    """
+    return Schedule(stages=tuple(_stage(rig, stage) for stage in rig.case.schedule.resolved()))
+
+
+def _stage(rig: Rig, stage: StageValues) -> Stage:
+    ratio = rig.torque_ratio
+    return Stage(
+        name=stage.name,
+        kind=KINDS[stage.kind],
+        speed=(rig.pinion_speed(stage.speed_start), rig.pinion_speed(stage.speed_end)),
+        torque=(ratio * stage.torque_start, ratio * stage.torque_end),
+        duration=stage.duration,
+        held=stage.held,
+    )
+
+
+def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -> TimeResponse:
+    """March over the schedule with the warm gears and films of ``warm``.
+
+    Raises
+    ------
+    NotConvergedError
+        The motor does not reach a speed the schedule asks for; the message shows the torque balance.
+    """
+    assert rig.system is not None and rig.case.drivetrain is not None
+    schedule = schedule_of(rig)
+    command = schedule.command(COMMAND_INTERVAL)
+    numerics = rig.case.numerics
+    controlled = setting.mode == "torque_controlled"
+    laws = shifted_laws(rig, warm.models, setting)
+    response = run_schedule(
+        rig.system,
+        laws,
+        RunCommand(
+            time=command.time,
+            speed=_speed_command(rig, schedule, command),
+            torque=np.maximum(command.torque * locked_share(rig), LEAST_TORQUE) if controlled else None,
+            twist=None if controlled else np.full_like(command.time, setting.twist),
+        ),
+        torque_limit=torque_limits(rig)[command.stage],
+        drags=drag_curves(rig, warm, feedback),
+        sample_rate=numerics.sample_rate,
+        substeps=numerics.internal_steps,
+        slot=SLOT,
+        keep_channels=False,
+        keep_accounts=False,
+        cutoff=QUICK_CUTOFF if rig.fidelity == "quick" else DEFAULT_CUTOFF,
+    )
+    require_speeds(rig, schedule, response)
+    return response
+
+
+def torque_limits(rig: Rig) -> NDArray[np.float64]:
+    """Largest torque of the motor in every stage [N m]: its own limit, or the constant torque the stage asks for."""
+    assert rig.case.drivetrain is not None
+    own = rig.case.drivetrain.motor.torque_limit
+    return np.array(
+        [
+            own if stage.drive_torque is None else min(own, stage.drive_torque)
+            for stage in rig.case.schedule.resolved()
+        ]
+    )
+
+
+def _speed_command(rig: Rig, schedule: Schedule, command: Command) -> NDArray[np.float64]:
+    """Speed over time [rad/s]; a stage with a constant drive torque asks for its end speed at once.
+
+    The controller then stands at its torque limit until the speed is there: the stage's duration is the most it
+    may take.
+    """
+    speed = command.speed.copy()
+    for index, stage in enumerate(rig.case.schedule.resolved()):
+        if stage.drive_torque is not None:
+            own = command.stage == index
+            since = command.time[own] - command.time[own][0]
+            start, end = schedule.stages[index].speed
+            speed[own] = start + (end - start) * s_function(since / DRIVE_ONSET)
+    return speed
+
+
+def drag_curves(rig: Rig, warm: PassResult, feedback: Feedback) -> dict[str, DragCurve]:
+    """Drag torque over speed of every place that brakes, with the films at their own balance at each speed.
+
+    A jet that is faster than the teeth at low speed pushes them; that help is left out of the run.
+    """
+    top = max(stage.speed_end for stage in rig.case.schedule.resolved())
+    speeds = [share * top for share in DRAG_SHARES]
+    tables = [drags_at(rig, warm, feedback, speed) for speed in speeds]
+    assert rig.drivetrain is not None
+    shafts = drag_shafts(rig.drivetrain)
+    curves = {}
+    for name in tables[-1]:
+        place = np.array([0.0, *(rig.shaft_speed(shafts[name], speed) for speed in speeds)])
+        torque = [max(table.get(name, 0.0), 0.0) for table in tables]
+        curves[name] = DragCurve(speed=place, torque=np.array([torque[0], *torque]))
+    return curves
+
+
+def drags_at(rig: Rig, warm: PassResult, feedback: Feedback, speed: float) -> dict[str, float]:
+    """Drag torques at one speed [N m] under the load of the warm point."""
+    point = replace(warm.point, speed=speed)
+    bearings = solve_bearings(rig, point, feedback)
+    return drag_torques(rotating_losses(rig, point, feedback, warm.models, bearings), rig, speed)
+
+
+def require_speeds(rig: Rig, schedule: Schedule, response: TimeResponse) -> None:
+    """Every stage must end at its speed before the next begins, a dwell at the speed it holds.
+
+    The speed is the mean over whole mesh periods before the end of the stage: a vibration is no lack of speed.
+    Raises NotConvergedError with the torque balance at the end of the first stage that does not.
+    """
+    limit = SPEED_TOLERANCE * max(max(stage.speed) for stage in schedule.stages)
+    for stage, end, most in zip(schedule.stages, schedule.starts[1:], torque_limits(rig)):
+        mean = response.mean_speed(float(end), mesh_synchronous_window(rig, stage.speed[1], stage.duration))
+        excess = mean - stage.speed[1]
+        if abs(excess) > limit:
+            at = min(int(np.searchsorted(response.time, end)), len(response.time) - 1)
+            raise NotConvergedError(
+                f"stage {stage.name!r} {_missed(stage, excess)}: {mean / RPM:.0f} rpm against "
+                f"{stage.speed[1] / RPM:.0f} rpm at {end:.2f} s, limit {limit / RPM:.0f} rpm. "
+                f"{_balance(rig, response, at)}; {_remedy(float(response.drive_torque[at]), float(most))}"
+            )
+
+
+def mesh_synchronous_window(rig: Rig, speed: float, duration: float) -> float:
+    """Whole periods of the first mesh that last one slot at least, within the stage [s].
+
+    speed : of the pinion of the first mesh [rad/s]; duration : of the stage [s]
+    """
+    period = 2.0 * np.pi / (speed * rig.pairs[rig.mesh_names[0]].gears[0].teeth) if speed > 0.0 else SLOT
+    return min(float(np.ceil(SLOT / period)) * period, duration)
+
+
+def _missed(stage: Stage, excess: float) -> str:
+    """What went wrong at the end of a stage that is ``excess`` too fast [rad/s]."""
+    if stage.kind != "speed":
+        return f"does not hold its speed, {abs(excess) / RPM:.0f} rpm {'too slow' if excess < 0.0 else 'too fast'}"
+    if stage.actual_direction == "rising":
+        return (
+            "does not reach its speed" if excess < 0.0 else f"overshoots its speed by {excess / RPM:.0f} rpm"
+        )
+    if excess < 0.0:
+        return f"falls through its speed by {-excess / RPM:.0f} rpm"
+    return f"does not come down to its speed, {excess / RPM:.0f} rpm are left"
+
+
+def _balance(rig: Rig, response: TimeResponse, at: int) -> str:
+    assert rig.case.drivetrain is not None
+    drag = sum(float(torque[at]) for torque in response.drag_torque.values())
+    return (
+        f"Torque balance: motor {response.drive_torque[at]:.2f} N m (drivetrain.motor.torque_limit "
+        f"{rig.case.drivetrain.motor.torque_limit:.2f} N m), drag of bearings, windage, oil and seals "
+        f"{drag:.2f} N m, the rest tooth friction and acceleration"
+    )
+
+
+def _remedy(drive_torque: float, limit: float) -> str:
+    if abs(drive_torque) >= 0.999 * limit:
+        return "raise the limit or give the stage more time"
+    return (
+        "the motor is within its limit, so its speed control is still settling: give the stage more time, or "
+        "stiffen the shaft between motor and gears"
+    )
+
+
+def stage_names(schedule: Schedule, time: NDArray[np.float64]) -> list[str]:
+    """Stage at each time [s]."""
+    index = schedule.at(time).stage
+    return [schedule.stages[i].name for i in index]
+
+
+def held_points(rig: Rig) -> list[OperatingPoint]:
+    """Operating points of the stages marked held; the last dwell if none is."""
+    stages = rig.case.schedule.resolved()
+    held: Sequence[StageValues] = [stage for stage in stages if stage.held] or stages[-1:]
+    return [
+        OperatingPoint(stage=stage.name, speed=stage.speed_end, torque=stage.torque_end) for stage in held
+    ]

@@ -1,0 +1,1 @@
+"""From evidence to a verdict that holds on points kept aside."""

@@ -1,0 +1,317 @@
+"""What may be claimed of the effects that a search has found.
+
+A name is given if its size matters, if it shrinks the gap on the points kept aside by more than the scatter of that
+(`rigdesign.diagnosis.statistics.heldout`), and if no other effect leaves the same trace; the case with all names in
+it, run in full, has to shrink the gap as well. What does not hold is reported with its reason.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import hypot
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from rigdesign.base.errors import RigdesignError
+from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.decision import Decision, Verdict
+from rigdesign.diagnosis.decision.naming import Names, display_scale
+from rigdesign.diagnosis.decision.proof import Proof, Sizes
+from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.covariance import Whitened
+from rigdesign.diagnosis.statistics.detectability import ALIAS, SEEN
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
+from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, Gap, gap_in_words
+from rigdesign.diagnosis.statistics.intervals import JointFit
+
+REACHES = 0.5
+"""Share of the trace of a name that another effect must leave within its bounds to stand for it."""
+
+SIZES = 13
+"""Sizes over the bounds of a curve at which its answer is held against a trace."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Refusal:
+    """A name that the search gave and that is not claimed.
+
+    name : of the entry; explanation : with tooth or order; coordinates : its fitted size; verdict : where it was the
+        only name; gap : without and with it on the points kept aside, None where none were or where its size was enough
+        to refuse it
+    """
+
+    name: str
+    explanation: str
+    coordinates: tuple[float, ...]
+    verdict: Verdict
+    reason: str
+    gap: Gap | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """What is left of the names, and why the others are gone.
+
+    found : of names, with the leader of a group apart from which they hold; fit : of these together; fits : member of
+        such a group -> the fit with it in the place of the leader; answer : (n,) of what was fitted, at all kept
+        numbers, zero without any; gap : with it, None without points kept aside
+    """
+
+    decision: Decision
+    found: tuple[Evidence, ...]
+    fit: JointFit | None
+    fits: Mapping[str, JointFit]
+    answer: Array
+    gap: Gap | None
+    refused: tuple[Refusal, ...]
+
+
+def claim(
+    decision: Decision,
+    found: Sequence[Evidence],
+    traces: "Traces",
+    proof: Proof,
+    fitted: Callable[[Sequence[Evidence]], JointFit],
+) -> Claim:
+    """Hold the names of a decision against their sizes, the points kept aside and all other effects.
+
+    found : the explanation of every name; traces : of all in the first look; fitted : the joint fit of some
+    """
+    refused: list[Refusal] = []
+    if decision.verdict != "named":
+        return _without(decision, proof, refused)
+    left = list(found)
+    while left:
+        fit = fitted(left)
+        doubt = _weakest(left, fit, proof)
+        if doubt is None:
+            break
+        refused.append(doubt)
+        left = [one for one in left if one.hypothesis.name != doubt.explanation]
+    if not left:
+        return _without(_unclaimed(decision, refused), proof, refused)
+    sizes = _sizes(left, fit)
+    group = _group(left, sizes, traces)
+    if group is not None and not group.apart:
+        return _without(group, proof, refused)
+    try:
+        answer = proof.again(sizes)
+    except RigdesignError as error:
+        reason = f"the case with {' and '.join(sizes)} does not run: {error}"
+        refused += [_refusal(one, sizes, "unknown_located", reason) for one in left]
+        return _without(_unclaimed(decision, refused), proof, refused)
+    whole = proof.gap(answer)
+    if not whole.shrunk:
+        refused += [_unproven(one, sizes, whole) for one in left]
+        return _without(_unclaimed(decision, refused), proof, refused)
+    named = tuple(dict.fromkeys(part for one in left for part in one.hypothesis.parts))
+    fits: dict[str, JointFit] = {}
+    if group is not None:
+        others = [one for one in left if one.hypothesis.parts[0] in group.apart]
+        fits = {member: fitted([*others, traces.of(member)]) for member in group.named}
+    return Claim(
+        decision=group or replace(decision, named=named),
+        found=tuple(left),
+        fit=fit,
+        fits=fits,
+        answer=answer,
+        gap=whole,
+        refused=tuple(refused),
+    )
+
+
+def _without(decision: Decision, proof: Proof, refused: Sequence[Refusal]) -> Claim:
+    """No names."""
+    nothing = np.zeros(len(proof.subject.features))
+    return Claim(
+        decision=decision,
+        found=(),
+        fit=None,
+        fits={},
+        answer=nothing,
+        gap=proof.gap(nothing) if proof.points else None,
+        refused=tuple(refused),
+    )
+
+
+def _sizes(found: Sequence[Evidence], fit: JointFit) -> Sizes:
+    return {one.hypothesis.name: size for one, size in zip(found, fit.coordinates, strict=True)}
+
+
+def _refusal(one: Evidence, sizes: Sizes, verdict: Verdict, reason: str, gap: Gap | None = None) -> Refusal:
+    name = one.hypothesis.name
+    return Refusal(
+        name=one.hypothesis.parts[0],
+        explanation=name,
+        coordinates=sizes[name],
+        verdict=verdict,
+        reason=reason,
+        gap=gap,
+    )
+
+
+def _unproven(one: Evidence, sizes: Sizes, whole: Gap) -> Refusal:
+    """Of a name that does not shrink the gap by more than its scatter, or with others does not."""
+    reason = f"with {one.hypothesis.name} in the model the gap {gap_in_words(whole)}"
+    return _refusal(one, sizes, "unknown_located" if whole.grown else "too_small", reason, whole)
+
+
+def _weakest(found: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal | None:
+    """The first name too small to matter, else that of those not proven which shrinks the gap least; None if all hold.
+
+    Each is proven by itself, with the others in the model: by the stored runs.
+    """
+    sizes = _sizes(found, fit)
+    for one in found:
+        if text := too_little(proof.subject.effects, one.hypothesis.name, sizes[one.hypothesis.name]):
+            return _refusal(one, sizes, "too_small", text)
+    if not proof.points:
+        running = len(proof.subject.library.settings)
+        text = f"none of {running} operating points could be kept aside to prove it; at least {LEAST_POINTS} are needed"
+        reason = f"{found[0].hypothesis.name} fits best, but {text}"
+        return _refusal(found[0], sizes, "data_insufficient", reason)
+    gaps = []
+    for one in found:
+        name = one.hypothesis.name
+        others = proof.stored({other: size for other, size in sizes.items() if other != name})
+        gaps.append(proof.gap(proof.stored({name: sizes[name]}), others))
+    least = min(range(len(found)), key=lambda place: gaps[place].fall / max(gaps[place].scatter, 1e-300))
+    if gaps[least].shrunk:
+        return None
+    return _unproven(found[least], sizes, gaps[least])
+
+
+def too_little(effects: Sequence[Effect], explanation: str, coordinates: Sequence[float]) -> str:
+    """Why an effect of this size does not matter; empty where it does."""
+    known = Names(effects, ()).entry(explanation)
+    if known is None or not isinstance(known[0], Effect) or hypot(*coordinates) >= known[0].matters:
+        return ""
+    effect = known[0]
+    scale, unit = display_scale(effect.parameters[0].unit, effect.parameters[0].factor)
+    size, least = (f"{scale * value:.3g} {unit}".rstrip() for value in (hypot(*coordinates), effect.matters))
+    return f"{explanation} fits best with {size}; less than {least} does not matter"
+
+
+def _unclaimed(decision: Decision, refused: Sequence[Refusal]) -> Decision:
+    """The verdict where no name is left: that of one that was contradicted, else of the last one."""
+    if not refused:
+        reason = f"{decision.named[0]} is in every explanation that counts, but none of them is it alone"
+        return Decision(verdict="unknown_located", named=(), reason=reason)
+    worst = next((one for one in refused if one.verdict == "unknown_located"), refused[-1])
+    return Decision(verdict=worst.verdict, named=(), reason=worst.reason)
+
+
+def _group(found: Sequence[Evidence], sizes: Sizes, traces: "Traces") -> Decision | None:
+    """The verdict where another effect leaves the trace of a name; None where every name stands alone.
+
+    The group is that of the first such name; the reason names those of further ones.
+    """
+    rivals = {
+        one.hypothesis.parts[0]: traces.like(one.hypothesis.name, sizes[one.hypothesis.name]) for one in found
+    }
+    unclear = [name for name, others in rivals.items() if others]
+    if not unclear:
+        return None
+    reasons = [
+        f"{rivals[name][0][0]} leaves the trace of {name}, correlation {rivals[name][0][1]:.3f}"
+        for name in unclear
+    ]
+    group = (unclear[0], *(other for other, _ in rivals[unclear[0]]))
+    return Decision(
+        verdict="alias_group",
+        named=group,
+        reason="; ".join(reasons),
+        apart=tuple(name for name in rivals if name not in unclear and name not in group),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Traces:
+    """What single effects and sensor errors leave in the numbers they were sought in.
+
+    space : of the first look; explanations : of that look; assembly : (n,) how the rig was put together at the point of
+        each number
+    """
+
+    space: Whitened
+    explanations: Sequence[Evidence]
+    assembly: Sequence[object]
+
+    def like(self, explanation: str, size: Sequence[float]) -> list[tuple[str, float]]:
+        """Effects and sensor errors whose trace correlates with that of a name above `ALIAS`, those most alike first.
+
+        The trace of a name is its whitened answer at its size. It is held against the answers of every other one over
+        its bounds, of two parameters against the plane they span, under the covariance of the data. Where the rig was
+        put together otherwise at some points, to tell such effects apart, they are alike only if they also are with the
+        trace counting as much in each assembly: one may be read far more exactly than the other. What within its bounds
+        leaves less than `REACHES` of the trace cannot stand for it; offset and scale of one sensor are one finding.
+        """
+        own = next(one for one in self._single if one.hypothesis.name == explanation)
+        name = own.hypothesis.parts[0]
+        trace = _answers(own.hypothesis, np.array([size]))[0]
+        found: dict[str, float] = {}
+        for one in self._single:
+            other = one.hypothesis.parts[0]
+            if other == name or _of_one_sensor(own, one):
+                continue
+            for plane in _planes(one.hypothesis, trace):
+                correlation = _cosine(plane, trace)
+                if correlation > ALIAS and _cosine(*self._by_assembly(plane, trace)) > ALIAS:
+                    found[other] = max(found.get(other, 0.0), correlation)
+        return sorted(found.items(), key=lambda pair: -pair[1])
+
+    def of(self, name: str) -> Evidence:
+        """The best explanation by a name alone."""
+        return next(one for one in self._single if one.hypothesis.parts == (name,))
+
+    @property
+    def _single(self) -> list[Evidence]:
+        return [one for one in self.explanations if one.hypothesis.family in ("physical", "sensor")]
+
+    def _by_assembly(self, plane: Array, trace: Array) -> tuple[Array, Array]:
+        """Columns (n, k) and a trace (n,), scaled so that no assembly in which the trace is seen outweighs another."""
+        states = list(dict.fromkeys(self.assembly))
+        if len(states) == 1:
+            return plane, trace
+        lower, matrix = self.space.covariance.lower, self.space.covariance.matrix
+        both = lower @ np.column_stack([plane, trace])
+        for state in states:
+            rows = np.array([row for row, one in enumerate(self.assembly) if one == state])
+            factor = np.linalg.cholesky(matrix[np.ix_(rows, rows)])
+            own = solve_triangular(factor, both[rows], lower=True, check_finite=False)
+            both[rows] = own / max(1.0, float(np.linalg.norm(own[:, -1])) / SEEN)
+        return both[:, :-1], both[:, -1]
+
+
+def _answers(hypothesis: Hypothesis, sizes: Array) -> Array:
+    """(m, n) whitened answers at sizes (m, k)."""
+    if hypothesis.curve is not None:
+        return hypothesis.curve.at(sizes[:, 0])
+    assert hypothesis.columns is not None
+    return np.asarray(sizes @ hypothesis.columns.T)
+
+
+def _planes(hypothesis: Hypothesis, trace: Array) -> list[Array]:
+    """Columns (n, k) of what may stand for a trace (n,): a curve at sizes over its bounds, a plane as it is."""
+    least = REACHES * float(trace @ trace)
+    if hypothesis.curve is None:
+        assert hypothesis.columns is not None
+        reach = hypothesis.half * float(np.linalg.norm(hypothesis.columns.T @ trace))
+        return [hypothesis.columns] if reach >= least else []
+    sizes = np.linspace(*hypothesis.curve.bounds, SIZES)[:, None]
+    return [answer[:, None] for answer in _answers(hypothesis, sizes) if answer @ trace >= least]
+
+
+def _of_one_sensor(first: Evidence, second: Evidence) -> bool:
+    """Whether two explanations are errors of the same sensor or setting."""
+    if {first.hypothesis.family, second.hypothesis.family} != {"sensor"}:
+        return False
+    kinds, places = zip(
+        *(one.hypothesis.parts[0].partition(":")[::2] for one in (first, second)), strict=True
+    )
+    return len({kind.rpartition("_")[0] for kind in kinds}) == len(set(places)) == 1
+
+
+def _cosine(plane: Array, trace: Array) -> float:
+    """Between a trace (n,) and what columns (n, k) span."""
+    return float(np.linalg.norm(np.linalg.qr(plane)[0].T @ trace) / np.linalg.norm(trace))

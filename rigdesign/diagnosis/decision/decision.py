@@ -1,0 +1,255 @@
+"""From evidence to a verdict: a name, a group of aliases, or an honest refusal.
+
+The order of the questions is that of the workflow's step 8. Thresholds are frozen with the calibration
+(`rigdesign.diagnosis.decision.defaults`).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.special import logsumexp
+
+from rigdesign.diagnosis.statistics.evidence import Evidence
+
+Verdict = Literal[
+    "named",
+    "alias_group",
+    "unknown_located",
+    "within_noise",
+    "too_small",
+    "input_error_suspected",
+    "data_insufficient",
+]
+
+PRIOR = {
+    "none": 0.50, "physical": 0.22, "sensor": 0.08, "local": 0.08, "anonymous": 0.10, "pair": 0.10, "input": 0.03,
+}  # fmt: skip
+"""Prior weight of each family of explanations, split evenly among its members.
+
+Heat that one thermometer alone feels is as likely as an error of that thermometer.
+"""
+
+UNNAMED = frozenset({"anonymous", "local"})
+"""Families of what is outside the catalogue."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Thresholds:
+    """Numbers the verdict hangs on.
+
+    named : inclusion probability of a name; input : mass of input errors; catalogue : logarithm of the Bayes factor
+    by which an explanation outside the catalogue may lead the best one within; misfit : standard deviations of the
+    whitened square after the best fit above which nothing known fits, unless that is less than a share of the fall;
+    group : most members of an alias group; evidence, evidence_loop : logarithm of the Bayes factor against a
+    healthy rig that each name of an explanation needs, in the heat and in orders and natural frequencies; support :
+    fall of the whitened square that must be left of a name's explanation without the operating point that speaks
+    for it most; share, share_loop : of the largest fall explained so far that this must be, as no answer of the model
+    is more exact, in the heat and in orders and natural frequencies
+    """
+
+    named: float = 0.95
+    input: float = 0.5
+    catalogue: float = 5.0
+    misfit: float = 5.0
+    group: int = 3
+    evidence: float = 0.0
+    evidence_loop: float = 0.0
+    support: float = 12.0
+    share: float = 0.05
+    share_loop: float = 0.25
+
+
+@dataclass(frozen=True, kw_only=True)
+class Posterior:
+    """Masses of all hypotheses, nothing included.
+
+    masses : by name of the hypothesis; inclusion : by part, over all hypotheses that claim it
+    """
+
+    masses: Mapping[str, float]
+    inclusion: Mapping[str, float]
+    families: Mapping[str, float]
+    best: Evidence | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Decision:
+    """The verdict with the parts it rests on.
+
+    named : effects of a name, or the members of an alias group; reason : in one sentence; apart : names that hold
+        whichever of the group is present
+    """
+
+    verdict: Verdict
+    named: tuple[str, ...]
+    reason: str
+    apart: tuple[str, ...] = ()
+
+
+def posterior(
+    evidence: Sequence[Evidence], members: Mapping[str, int], priors: Mapping[str, float] = PRIOR
+) -> Posterior:
+    """Masses from log Bayes factors and prior weights.
+
+    members : how many explanations each family has, those that were not worth weighing included: its prior weight
+        is split evenly among them
+    """
+    logs = [float(np.log(priors["none"]))]
+    logs += [
+        one.log_bayes + float(np.log(priors[one.hypothesis.family] / members[one.hypothesis.family]))
+        for one in evidence
+    ]
+    total = float(logsumexp(logs))
+    masses = {"none": float(np.exp(logs[0] - total))}
+    inclusion: dict[str, float] = {}
+    families = {"none": masses["none"]}
+    best, highest = None, logs[0]
+    for one, log in zip(evidence, logs[1:], strict=True):
+        mass = float(np.exp(log - total))
+        masses[one.hypothesis.name] = mass
+        families[one.hypothesis.family] = families.get(one.hypothesis.family, 0.0) + mass
+        for part in dict.fromkeys(one.hypothesis.parts):
+            inclusion[part] = inclusion.get(part, 0.0) + mass
+        if log > highest:
+            best, highest = one, log
+    return Posterior(masses=masses, inclusion=inclusion, families=families, best=best)
+
+
+def decide(
+    evidence: Sequence[Evidence],
+    weights: Posterior,
+    *,
+    chi_square: float,
+    count: int,
+    effects: frozenset[str],
+    detectable: Mapping[str, bool],
+    thresholds: Thresholds,
+    loop: frozenset[str] = frozenset(),
+    sensors: frozenset[str] = frozenset(),
+) -> Decision:
+    """The verdict.
+
+    Parameters
+    ----------
+    chi_square, count : whitened square of the residual and number of readings
+    effects : names that may be named: catalogue and sensors, not the anonymous ones
+    detectable : effect -> whether these sensors could see it within its bounds at all
+    loop : those of the names that show in orders and natural frequencies
+    sensors : those that are errors of sensors and settings
+    """
+    if weights.families.get("input", 0.0) > thresholds.input:
+        named = _parts_of_family(evidence, weights, "input")
+        return Decision(
+            verdict="input_error_suspected",
+            named=named,
+            reason=f"the data fit the rig once {named[0]} is undone",
+        )
+    best = weights.best
+    if best is None:
+        return _silent(weights, evidence, chi_square, count, thresholds, detectable)
+    floor = thresholds.evidence if loop.isdisjoint(best.hypothesis.parts) else thresholds.evidence_loop
+    if best.log_bayes < floor * len(set(best.hypothesis.parts)) and weights.masses["none"] < 0.5:
+        reason = "an effect may be present; healthy rigs have given as much evidence"
+        return Decision(verdict="too_small", named=(), reason=reason)
+    left = chi_square - best.gain - count
+    if left > max(thresholds.misfit * (2.0 * count) ** 0.5, thresholds.share * best.gain):
+        excess = left / (2.0 * count) ** 0.5
+        return Decision(
+            verdict="unknown_located",
+            named=(),
+            reason=f"the best explanation leaves {excess:.1f} standard deviations more than a healthy rig does",
+        )
+    known = [one for one in evidence if _credible(one, effects, sensors)]
+    leads = best.log_bayes - max((one.log_bayes for one in known), default=0.0)
+    if weights.masses["none"] < 0.5 and leads > thresholds.catalogue:
+        return Decision(
+            verdict="unknown_located",
+            named=(),
+            reason=f"an effect outside the catalogue explains more: ln B {leads:.0f} above the best known one",
+        )
+    named = tuple(
+        part
+        for part, mass in sorted(weights.inclusion.items(), key=lambda item: -item[1])
+        if part in effects and mass >= thresholds.named
+    )
+    if named:
+        return Decision(
+            verdict="named", named=named, reason=f"{named[0]} is in every explanation that counts"
+        )
+    if weights.masses["none"] < 1.0 - thresholds.named:
+        group = _smallest_group(evidence, weights, effects, thresholds)
+        if group:
+            return Decision(
+                verdict="alias_group",
+                named=group,
+                reason="one of them is at work; these data cannot tell which",
+            )
+        return Decision(
+            verdict="unknown_located",
+            named=(),
+            reason="an effect is present that no few of the catalogue account for",
+        )
+    return _silent(weights, evidence, chi_square, count, thresholds, detectable)
+
+
+def _credible(one: Evidence, effects: frozenset[str], sensors: frozenset[str]) -> bool:
+    """Of the catalogue alone; an error of a sensor by itself, not to mend what something else leaves."""
+    parts = frozenset(one.hypothesis.parts)
+    return parts <= effects and (len(parts) == 1 or parts.isdisjoint(sensors))
+
+
+def _smallest_group(
+    evidence: Sequence[Evidence], weights: Posterior, effects: frozenset[str], thresholds: Thresholds
+) -> tuple[str, ...]:
+    """Smallest set of effects of which at least one is at work with the asked probability; empty if none is small."""
+    parts = [
+        part for part, _ in sorted(weights.inclusion.items(), key=lambda item: -item[1]) if part in effects
+    ]
+    chosen: list[str] = []
+    for part in parts[: thresholds.group]:
+        chosen.append(part)
+        mass = sum(
+            weights.masses[one.hypothesis.name]
+            for one in evidence
+            if not set(one.hypothesis.parts).isdisjoint(chosen)
+        )
+        if len(chosen) > 1 and mass >= thresholds.named:
+            return tuple(chosen)
+    return ()
+
+
+def _silent(
+    weights: Posterior,
+    evidence: Sequence[Evidence],
+    chi_square: float,
+    count: int,
+    thresholds: Thresholds,
+    detectable: Mapping[str, bool],
+) -> Decision:
+    if not any(detectable.values()):
+        return Decision(
+            verdict="data_insufficient",
+            named=(),
+            reason="no effect of the catalogue could be seen with these sensors and points",
+        )
+    if (chi_square - count) / (2.0 * count) ** 0.5 > thresholds.misfit:
+        return Decision(
+            verdict="unknown_located",
+            named=(),
+            reason="the residual is larger than a healthy rig's, nothing explains it",
+        )
+    if weights.masses["none"] >= 0.5:
+        return Decision(verdict="within_noise", named=(), reason="a healthy rig leaves as much")
+    return Decision(
+        verdict="too_small",
+        named=(),
+        reason="an effect may be present, too small to be distinguished from its rivals",
+    )
+
+
+def _parts_of_family(evidence: Sequence[Evidence], weights: Posterior, family: str) -> tuple[str, ...]:
+    members = [one for one in evidence if one.hypothesis.family == family]
+    best = max(members, key=lambda one: weights.masses[one.hypothesis.name])
+    return best.hypothesis.parts

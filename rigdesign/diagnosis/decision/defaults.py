@@ -1,0 +1,136 @@
+"""What calibration froze: amplitudes, widening, thresholds and signature errors, with their origin.
+
+Fitted by `rigdesign.diagnosis.residual.calibration` to 108 healthy sets of the virtual rig, 36 of each of three rigs;
+the amplitudes to those 76 with up to 700 numbers (36 of the prototype, 24 of the 1:1 loop, 16 of the loop with a
+hunting ratio), the widening to all. Dimensionless, so that they serve rigs that nobody has simulated. Thresholds come
+from the development split and from what healthy sets reach.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from rigdesign.diagnosis.decision.decision import Thresholds
+from rigdesign.diagnosis.residual.baseline import Drift
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
+
+AMPLITUDES = Amplitudes(
+    constant_loss=1.95,
+    constant_film=0.932,
+    constant_oil=2.25,
+    constant_loop=2.5,
+    tooth=1.85,
+    exponent=0.0798,
+    link=0.625,
+    link_speed=0.147,
+    answer=0.375,
+    source=0.00109,
+    channel=0.00298,
+    channel_speed=0.00072,
+    point=0.00366,
+    series_mean=0.000851,
+    series_mesh=0.0567,
+    series_mesh_point=0.451,
+    series_shaft=0.0111,
+    series_shaft_point=0.00915,
+    frequency=0.0158,
+    sensor=1.0,
+    input=1.0,
+)
+
+WIDENING = {
+    "single_pitch": 1.03e-06,
+    "weak_tooth": 0.0454,
+    "motor_ripple": 0.00502,
+    "bypass": 0.158,
+    "shell_contact": 0.000185,
+    "heat unpaid at oil ~n": 0.0197,
+    "bracing_drift": 0.000276,
+    "heat unpaid at oil ~T n": 0.0415,
+    "heat at oil ~T n": 0.039,
+    "coupling_stiffness": 0.115,
+    "bearing_film": 0.202,
+    "spline_stiffness": 0.324,
+    "inertia": 0.0726,
+    "not_steady": 6.08e-06,
+    "heat unpaid at oil ~n2": 0.00476,
+    "jet_loss": 0.0718,
+    "heat unpaid at film ~T n": 0.0345,
+    "mesh_loss": 0.0482,
+    "heat unpaid at oil constant": 0.00436,
+    "run_out": 1.86e-06,
+    "oil_heat_capacity": 0.0128,
+    "heat unpaid at rim ~n2": 0.00148,
+    "profile_slope": 5.25e-07,
+}
+"""Spread of a coordinate beyond the columns, by likeness of the cause; of heat without a name its share of all
+losses."""
+
+SIGNATURE_ERROR = {
+    "": 0.15,
+    "film": 0.25,
+    "ambient_film": 0.25,
+    "bearing_film": 0.25,
+    "emissivity": 0.25,
+    "shell_contact": 0.35,
+    "foot_contact": 0.35,
+    "windage_loss": 0.25,
+    "loss_split": 0.25,
+    "not_steady": 0.35,
+    "run_out": 0.04,
+    "cumulative_pitch": 0.04,
+    "motor_ripple": 0.04,
+    "coupling_order_2": 0.04,
+}
+"""Kind of effect -> relative error of the model's answer to it: how far the traces of 22 effects of the heat, and of
+run-out, ripple and coupling torques, lie from those of the virtual rig with nominal constants; of a rig not yet steady
+by how far its rate was off in the second score, as its parts warm at their own pace."""
+
+
+PLAIN = Thresholds(evidence=10.0, evidence_loop=100.0)
+"""Without a baseline; the evidence is as much as any of 108 healthy sets gave: what teeth do is known that badly."""
+
+GIVEN_BASELINE = Thresholds(evidence=6.0, evidence_loop=18.0)
+"""With one."""
+
+DRIFT = Drift(
+    shared=0.00375,
+    slope=0.592,
+    shaft=0.982,
+    mesh=1.33,
+    amplitude=0.0216,
+    widening={
+        "film.chamber_oil": 0.000609,
+        "coupling_stiffness": 0.0168,
+        "bearing_film": 0.00605,
+        "film.chamber_sump": 0.00222,
+        "heat at rim ~T n": 5.03e-05,
+        "weak_tooth": 0.000149,
+        "coupling_damping": 0.0847,
+        "heat unpaid at rim ~n2": 3e-05,
+        "short_circuit": 0.000814,
+    },
+)
+"""Fitted to 80 pairs of healthy sets, those with up to 900 numbers: 36 of the prototype, 28 of the 1:1 loop, 16 of the
+loop with a hunting ratio; the widening to 108 pairs, 36 of each rig."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Calibration:
+    """Everything a diagnosis takes from calibration."""
+
+    amplitudes: Amplitudes = AMPLITUDES
+    widening: Mapping[str, float] = field(default_factory=lambda: dict(WIDENING))
+    """Likeness of an effect -> spread of its coordinate that healthy sets asked for beyond the columns."""
+    plain: Thresholds = PLAIN
+    """Without a baseline."""
+    given_baseline: Thresholds = GIVEN_BASELINE
+    signature_error: Mapping[str, float] = field(default_factory=lambda: dict(SIGNATURE_ERROR))
+    drift: Drift = DRIFT
+    """With a baseline."""
+
+    def thresholds(self, baseline: bool) -> Thresholds:
+        """Those of a set with a baseline or without one."""
+        return self.given_baseline if baseline else self.plain
+
+
+DEFAULT = Calibration()

@@ -1,0 +1,259 @@
+"""One look at a residual: every explanation weighed, the best of them joined in pairs, a verdict."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rigdesign.diagnosis.decision.decision import (
+    PRIOR,
+    UNNAMED,
+    Decision,
+    Posterior,
+    Thresholds,
+    decide,
+    posterior,
+)
+from rigdesign.diagnosis.residual.signature import Contest, Signature
+from rigdesign.diagnosis.statistics.covariance import Whitened
+from rigdesign.diagnosis.statistics.detectability import Detectability, detectabilities
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, weigh, weigh_pair
+from rigdesign.diagnosis.statistics.support import support
+
+LEADERS = 12
+"""Explanations of the catalogue that are joined with every other one."""
+
+UNNAMED_LEADERS = 4
+"""Anonymous ones that are."""
+
+COPY = 0.99
+"""Cosine of two answers above which they are one explanation: what bears a name keeps it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Explanations:
+    """All hypotheses of a comparison, by family."""
+
+    physical: Sequence[Hypothesis]
+    sensor: Sequence[Hypothesis]
+    anonymous: Sequence[Hypothesis]
+    data: Sequence[Hypothesis]
+
+    @property
+    def members(self) -> dict[str, int]:
+        """Number of explanations by family; a pair joins any two."""
+        known, unnamed = len(self.physical) + len(self.sensor), len(self.anonymous)
+        local = sum(1 for one in self.anonymous if one.family == "local")
+        return {
+            "physical": len(self.physical),
+            "sensor": len(self.sensor),
+            "anonymous": unnamed - local,
+            "local": local,
+            "input": len(self.data),
+            "pair": (known + unnamed) * (known + unnamed - 1) // 2,
+        }
+
+
+@dataclass(frozen=True, kw_only=True)
+class Examination:
+    """What was found.
+
+    evidence : of every hypothesis, best first; detectability : by effect, known before any name
+    """
+
+    evidence: tuple[Evidence, ...]
+    weights: Posterior
+    decision: Decision
+    detectability: tuple[Detectability, ...]
+    chi_square: float
+    count: int
+
+
+def examine(
+    space: Whitened,
+    explanations: Explanations,
+    thresholds: Thresholds,
+    priors: Mapping[str, float] = PRIOR,
+    *,
+    points: Sequence[str] = (),
+    loop: frozenset[str] = frozenset(),
+    signature: Signature | None = None,
+    table: Sequence[Detectability] | None = None,
+    explained: float = 0.0,
+    earlier: "Earlier | None" = None,
+) -> Examination:
+    """Weigh everything and decide.
+
+    points : (n,) operating point of each number; left out, a name may rest on one
+    loop : names of effects that show in orders and natural frequencies
+    signature : how wrong the model may answer to a right cause; left out, not at all
+    table : detectability where it is known already; it depends on covariance and explanations alone
+    explained : largest fall of the whitened square by what was named before
+    earlier : the look that named it
+    """
+    known = (*explanations.physical, *explanations.sensor)
+    if table is None:
+        table = detectabilities(space, known, explanations.anonymous)
+    contest = None if signature is None else Contest(space, signature)
+    singles = _judged(contest, [weigh(space, one) for one in (*known, *explanations.anonymous)])
+    singles = _without_copies(singles)
+    data = [weigh(space, one) for one in explanations.data]
+    pairs = _judged(contest, _pairs(space, singles))
+    evidence = sorted((*singles, *data, *pairs), key=lambda one: -one.log_bayes)
+    weights = posterior(evidence, explanations.members, priors)
+    decision = decide(
+        evidence,
+        weights,
+        chi_square=space.chi_square,
+        count=len(space.residual),
+        effects=frozenset(part for one in known for part in one.parts),
+        detectable={row.effect: row.detectable <= row.bound for row in table},
+        thresholds=thresholds,
+        loop=loop,
+        sensors=frozenset(part for one in explanations.sensor for part in one.parts),
+    )
+    return Examination(
+        evidence=tuple(evidence),
+        weights=weights,
+        decision=_undivided(
+            _supported(space, points, decision, evidence, weights, thresholds, explained, loop),
+            earlier,
+            thresholds,
+        ),
+        detectability=tuple(table),
+        chi_square=space.chi_square,
+        count=len(space.residual),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Earlier:
+    """The first look, and what was named since."""
+
+    look: Examination
+    named: frozenset[str]
+
+    def rivals(self, part: str) -> tuple[float, float]:
+        """Posterior mass of what added anything at all to the names, and of that part of it that added ``part``."""
+        masses = self.look.weights.masses
+        more = [one.hypothesis for one in self.look.evidence if self.named < frozenset(one.hypothesis.parts)]
+        return sum(masses[one.name] for one in more), sum(
+            masses[one.name] for one in more if part in one.parts
+        )
+
+
+def _undivided(decision: Decision, earlier: Earlier | None, thresholds: Thresholds) -> Decision:
+    """The decision without a further name that the first look left divided: it knew the names and their rivals at once.
+
+    With the sizes of the names left free, a later look sees less of what tells the rivals apart.
+    """
+    if earlier is None or decision.verdict != "named":
+        return decision
+    kept = []
+    for part in decision.named:
+        whole, own = earlier.rivals(part)
+        if whole < 1.0 - thresholds.named or own >= thresholds.named * whole:
+            kept.append(part)
+    if kept:
+        return replace(decision, named=tuple(kept))
+    reason = f"{decision.named[0]} or another one explains what is left, the names before it taken at once"
+    return Decision(verdict="too_small", named=(), reason=reason)
+
+
+def _supported(
+    space: Whitened,
+    points: Sequence[str],
+    decision: Decision,
+    evidence: Sequence[Evidence],
+    weights: Posterior,
+    thresholds: Thresholds,
+    explained: float,
+    loop: frozenset[str],
+) -> Decision:
+    """The decision without the names that rest on one operating point or explain too little beside the others.
+
+    Of an alias group its leader is asked.
+    """
+    if not points or decision.verdict not in ("named", "alias_group"):
+        return decision
+    ordered = sorted(evidence, key=lambda one: -weights.masses[one.hypothesis.name])
+    refused: dict[str, str] = {}
+    for part in decision.named if decision.verdict == "named" else decision.named[:1]:
+        best = next(one for one in ordered if part in one.hypothesis.parts)
+        least, where = support(space, points, best, part)
+        whole = max(explained, best.gain)
+        if least < thresholds.support:
+            alone = f"operating point {where}" if where else "chance"
+            refused[part] = f"what speaks for {part} comes from {alone} alone"
+        elif least < thresholds.share * whole or (
+            part in loop and _added(best, part, evidence) < thresholds.share_loop * whole
+        ):
+            refused[part] = f"{part} explains too little beside what is known already"
+    kept = tuple(part for part in decision.named if part not in refused)
+    if not refused or (decision.verdict == "named" and kept):
+        return replace(decision, named=kept)
+    return Decision(verdict="too_small", named=(), reason=next(iter(refused.values())))
+
+
+def _added(best: Evidence, part: str, evidence: Sequence[Evidence]) -> float:
+    """Fall of the whitened square that a part adds to the rest of an explanation."""
+    rest = tuple(other for other in best.hypothesis.parts if other != part)
+    alone = max((one.gain for one in evidence if rest and one.hypothesis.parts == rest), default=0.0)
+    return best.gain - alone
+
+
+def _judged(contest: Contest | None, evidence: list[Evidence]) -> list[Evidence]:
+    return evidence if contest is None else contest.judged(evidence)
+
+
+def _without_copies(singles: Sequence[Evidence]) -> list[Evidence]:
+    """Explanations less the anonymous ones that answer as one of the catalogue does.
+
+    An error of a sensor has no claim to what is heat just as well: it keeps its anonymous rivals.
+    """
+    known = [one.answer for one in singles if one.hypothesis.family == "physical" and np.any(one.answer)]
+    if not known:
+        return list(singles)
+    directions = np.array([answer / np.linalg.norm(answer) for answer in known])
+
+    def copied(one: Evidence) -> bool:
+        length = float(np.linalg.norm(one.answer))
+        return length > 0.0 and float((directions @ one.answer).max()) > COPY * length
+
+    return [one for one in singles if one.hypothesis.family not in UNNAMED or not copied(one)]
+
+
+def _pairs(space: Whitened, singles: Sequence[Evidence]) -> list[Evidence]:
+    """The leading explanations joined with everything else, those without a name among them."""
+    ordered = sorted(singles, key=lambda one: -one.log_bayes)
+    unnamed = [one for one in ordered if one.hypothesis.family in UNNAMED]
+    leaders = [one for one in ordered if one.hypothesis.family not in UNNAMED][:LEADERS]
+    leaders += unnamed[:UNNAMED_LEADERS]
+    done: set[frozenset[str]] = set()
+    pairs = []
+    for first in leaders:
+        partners = _promising(space, first, singles)
+        for second in partners:
+            key = frozenset((first.hypothesis.name, second.hypothesis.name))
+            if len(key) == 2 and key not in done:
+                done.add(key)
+                pairs.append(weigh_pair(space, first, second))
+    return pairs
+
+
+PARTNERS = 24
+"""Partners of a leader that explain most of what it leaves."""
+
+
+def _promising(space: Whitened, first: Evidence, singles: Sequence[Evidence]) -> list[Evidence]:
+    """Those whose columns, less what the leader spans, hold most of what it leaves."""
+    others = [one for one in singles if one.hypothesis.name != first.hypothesis.name and one.columns.shape[1]]
+    left = space.residual - first.answer
+    columns = np.hstack([one.columns for one in others])
+    if first.columns.shape[1]:
+        own, _ = np.linalg.qr(first.columns)
+        columns = columns - own @ (own.T @ columns)
+    explained = (columns.T @ left) ** 2 / np.maximum(np.einsum("nk,nk->k", columns, columns), 1e-300)
+    ends = np.cumsum([one.columns.shape[1] for one in others])
+    shares = np.add.reduceat(explained, np.concatenate([[0], ends[:-1]]))
+    return [others[place] for place in np.argsort(-shares, kind="stable")[:PARTNERS]]

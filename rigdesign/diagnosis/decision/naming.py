@@ -1,0 +1,307 @@
+"""From the name of an explanation to what is said of it: effect, tooth, sizes with unit and interval.
+
+A harmonic that is fitted by its parts along cosine and sine is told by amplitude and phase as well. Sizes are rounded
+once, here: what a report says is what a patch writes.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import atan2, exp, hypot, isfinite, log, pi
+
+from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
+from rigdesign.diagnosis.residual.sensors import SensorError, angle_of_mark
+from rigdesign.diagnosis.statistics.evidence import Evidence
+from rigdesign.diagnosis.statistics.intervals import NORMAL_95, Size
+
+DIGITS = 6
+"""Significant digits of a fitted size."""
+
+PARTS = (" along cosine", " along sine")
+"""How the names of the two parameters of a harmonic end."""
+
+INPUT_UNITS = {"speed": "rad/s", "torque": "N m", "flow": "m3/s"}
+"""Kind of a setting -> unit of its error."""
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Value:
+    """One number that is told of an effect.
+
+    interval : 95 %; open : it ends on a physical bound, the size may be larger
+    factor : neutral at one; phase : an angle on the circle, its interval may pass zero
+    """
+
+    name: str
+    value: float
+    unit: str
+    interval: Interval
+    open: bool = False
+    factor: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sized:
+    """An explanation with its sizes.
+
+    name : of the entry, ``single_pitch:test.pinion``; explanation : with tooth or order, ``single_pitch:test.pinion/7``
+    values : of the entry's parameters, as a patch writes them; ends : their intervals
+    shown : what is told: amplitude and phase of a harmonic, then its parts
+    """
+
+    name: str
+    explanation: str
+    title: str
+    entry: Effect | SensorError
+    tooth: int | None
+    values: tuple[float, ...]
+    ends: tuple[Interval, ...]
+    shown: tuple[Value, ...]
+
+    @property
+    def kind(self) -> str:
+        """The part of the name before its place."""
+        return self.name.split(":")[0].split("/")[0]
+
+    @property
+    def coordinates(self) -> tuple[float, ...]:
+        """Of the entry's parameters, as a hypothesis has them."""
+        parameters = _parameters(self.entry)
+        return tuple(
+            log(value) if p.factor else value for p, value in zip(parameters, self.values, strict=True)
+        )
+
+
+class Names:
+    """Finds what an explanation of one diagnosis stands for."""
+
+    def __init__(self, effects: Sequence[Effect], errors: Sequence[SensorError]) -> None:
+        self._effects = {effect.name: effect for effect in effects}
+        self._errors = {error.name: error for error in errors}
+
+    def entry(self, explanation: str) -> tuple[Effect | SensorError, int | None] | None:
+        """Entry and tooth; None for what has no entry: unknown causes, exchanged channels, wrong units, pairs."""
+        found = self._effects.get(explanation) or self._errors.get(explanation)
+        if found is not None:
+            return found, None
+        name, _, tooth = explanation.rpartition("/")
+        effect = self._effects.get(name)
+        if effect is None or not effect.any_tooth or not tooth.isdigit():
+            return None
+        return effect, int(tooth)
+
+    def plain(self, explanation: str) -> str:
+        """The explanation without its tooth: one name for all teeth of a gear."""
+        found = self.entry(explanation)
+        return explanation if found is None else found[0].name
+
+    def title(self, explanation: str) -> str:
+        """In words; of a pair both."""
+        if " + " in explanation:
+            return " and ".join(self.title(part) for part in explanation.split(" + "))
+        found = self.entry(explanation)
+        if found is None:
+            return _without_entry(explanation)
+        entry, tooth = found
+        return entry.title if tooth is None else f"{entry.title}: tooth {tooth}"
+
+    def sized(self, explanation: str, sizes: Sequence[float], ends: Sequence[Interval]) -> Sized:
+        """With coordinates and their intervals.
+
+        Raises ValueError for an explanation without an entry.
+        """
+        found = self.entry(explanation)
+        if found is None:
+            raise ValueError(f"explanation {explanation} has no size; only entries of the catalogue have one")
+        entry, tooth = found
+        parameters = _parameters(entry)
+        values = tuple(_value(p, size) for p, size in zip(parameters, sizes, strict=True))
+        limits = tuple(_ends(p, pair) for p, pair in zip(parameters, ends, strict=True))
+        return Sized(
+            name=entry.claim if isinstance(entry, Effect) else entry.name,
+            explanation=explanation,
+            title=self.title(explanation),
+            entry=entry,
+            tooth=tooth,
+            values=values,
+            ends=limits,
+            shown=_shown(entry, parameters, values, limits),
+        )
+
+
+def from_fit(names: Names, sizes: Sequence[Size]) -> tuple[Sized, ...]:
+    """The named effects of a joint fit, in its order."""
+    by_effect: dict[str, list[Size]] = {}
+    for size in sizes:
+        by_effect.setdefault(size.effect, []).append(size)
+    return tuple(
+        names.sized(effect, [one.coordinate for one in own], [one.interval for one in own])
+        for effect, own in by_effect.items()
+    )
+
+
+def from_evidence(names: Names, evidence: Evidence, signature_error: Mapping[str, float]) -> Sized:
+    """An explanation at its own best fit, as if it were the only one; the interval as that of a joint fit."""
+    found = names.entry(evidence.hypothesis.name)
+    if found is None:
+        raise ValueError(f"explanation {evidence.hypothesis.name} has no size")
+    entry = found[0]
+    kind = entry.kind if isinstance(entry, Effect) else entry.name.split(":")[0]
+    width = signature_error.get(kind.split("/")[0], signature_error.get("", 0.25))
+    whole = hypot(*evidence.coordinates)
+    ends = []
+    for parameter, size, deviation in zip(
+        _parameters(entry), evidence.coordinates, evidence.deviations, strict=True
+    ):
+        half = NORMAL_95 * hypot(deviation, width * whole)
+        low, high = parameter.bounds
+        ends.append((max(size - half, low), min(size + half, high)))
+    return names.sized(evidence.hypothesis.name, evidence.coordinates, ends)
+
+
+def size_value(names: Names, explanation: str, coordinate: float) -> float | None:
+    """A size in the coordinate of an entry as the value of its parameter; None where there is none."""
+    found = names.entry(explanation)
+    if found is None or not isfinite(coordinate):
+        return None
+    try:
+        return _value(_parameters(found[0])[0], coordinate)
+    except OverflowError:
+        return None
+
+
+def parameter_of(names: Names, explanation: str) -> Parameter | None:
+    """The parameter a detectable size belongs to; of a harmonic its amplitude."""
+    found = names.entry(explanation)
+    if found is None:
+        return None
+    first = _parameters(found[0])[0]
+    return Parameter(
+        name=_amplitude_name(first.name), unit=first.unit, low=first.low, high=first.high,
+        source=first.source, factor=first.factor,
+    )  # fmt: skip
+
+
+def rounded(value: float) -> float:
+    """A size as it is told and written."""
+    return float(f"{value:.{DIGITS}g}") + 0.0
+
+
+def _value(parameter: Parameter, coordinate: float) -> float:
+    return rounded(exp(coordinate) if parameter.factor else coordinate)
+
+
+def _ends(parameter: Parameter, pair: Interval) -> Interval:
+    return _value(parameter, pair[0]), _value(parameter, pair[1])
+
+
+def _parameters(entry: Effect | SensorError) -> tuple[Parameter, ...]:
+    if isinstance(entry, Effect):
+        return entry.parameters
+    name = "share" if not entry.unit else "error"
+    unit = entry.unit if entry.unit != "SI" else INPUT_UNITS.get(entry.name.split("_")[0], "")
+    return (Parameter(name=name, unit=unit, low=-entry.bound, high=entry.bound, source="stated uncertainty"),)
+
+
+def _shown(
+    entry: Effect | SensorError,
+    parameters: Sequence[Parameter],
+    values: Sequence[float],
+    ends: Sequence[Interval],
+) -> tuple[Value, ...]:
+    plain = tuple(
+        Value(
+            name=parameter.name, value=value, unit=parameter.unit, interval=pair, factor=parameter.factor,
+            open=any(_meets(end, limit) for end, limit in zip(pair, (parameter.low, parameter.high))),
+        )
+        for parameter, value, pair in zip(parameters, values, ends)
+    )  # fmt: skip
+    if len(parameters) != 2 or not parameters[0].name.endswith(PARTS[0]):
+        return plain
+    along, across = values
+    halves = [max(high - value, value - low) for value, (low, high) in zip(values, ends)]
+    amplitude, phase = _polar(_amplitude_name(parameters[0].name), parameters[0].unit, along, across, halves)
+    told = (amplitude, phase)
+    if isinstance(entry, Effect) and entry.kind == "run_out":
+        told = (amplitude, phase, _twice(amplitude))  # type: ignore[assignment]
+    return (*told, *plain)
+
+
+def _meets(end: float, limit: float) -> bool:
+    """Whether an interval ends on a bound; zero, where an effect begins, leaves nothing open."""
+    return limit != 0.0 and abs(end - limit) <= 1e-5 * abs(limit)
+
+
+def _polar(name: str, unit: str, along: float, across: float, halves: Sequence[float]) -> tuple[Value, Value]:
+    """Amplitude and phase of along cos x + across sin x, their intervals by first order."""
+    size = hypot(along, across)
+    angle = atan2(across, along) % (2.0 * pi)
+    if size == 0.0:
+        reach = hypot(*halves)
+        return (
+            Value(name=name, value=0.0, unit=unit, interval=(0.0, rounded(reach))),
+            Value(name="phase", value=0.0, unit="rad", interval=(0.0, rounded(2.0 * pi))),
+        )
+    half = hypot(along / size * halves[0], across / size * halves[1])
+    turn = pi if half >= size else min(pi, hypot(across / size * halves[0], along / size * halves[1]) / size)
+    return (
+        Value(
+            name=name, value=rounded(size), unit=unit,
+            interval=(rounded(max(0.0, size - half)), rounded(size + half)),
+        ),
+        Value(
+            name="phase", value=rounded(angle), unit="rad", interval=(rounded(angle - turn), rounded(angle + turn))
+        ),
+    )  # fmt: skip
+
+
+def _twice(amplitude: Value) -> Value:
+    """F_r, the run-out as a drawing and the case have it."""
+    low, high = amplitude.interval
+    return Value(
+        name="run-out F_r", value=rounded(2.0 * amplitude.value), unit=amplitude.unit,
+        interval=(rounded(2.0 * low), rounded(2.0 * high)),
+    )  # fmt: skip
+
+
+def _amplitude_name(name: str) -> str:
+    return name.removesuffix(PARTS[0]).removesuffix(PARTS[1])
+
+
+def _without_entry(explanation: str) -> str:
+    """Words for what has no entry."""
+    kind, _, rest = explanation.partition(":")
+    if kind == "unknown":
+        return f"not in the catalogue:{rest}"
+    first, _, second = rest.partition(",")
+    if kind == "swapped_channels":
+        return f"channels {first} and {second} exchanged"
+    if kind == "swapped_points":
+        return f"operating points {first} and {second} exchanged"
+    if angle := angle_of_mark(explanation):
+        return f"the mark of the tach stands elsewhere by {angle}"
+    if kind == "unit":
+        channel, _, what = rest.partition(" (")
+        return f"{channel} in another unit or sign: {what.removesuffix(')')}"
+    return explanation
+
+
+_SCALES = {"m": (1e6, "um"), "m3/s": (6e4, "l/min"), "rad/s": (30.0 / pi, "rpm"), "rad": (180.0 / pi, "deg")}
+"""Unit of the catalogue -> factor to, and unit of what an engineer reads."""
+
+
+def display_scale(unit: str, factor: bool) -> tuple[float, str]:
+    """Factor to the unit in which a size is read, and that unit; a share is read in percent."""
+    if factor:
+        return 1.0, ""
+    return _SCALES.get(unit, (1.0, unit)) if unit else (100.0, "%")
+
+
+def told(value: Value) -> str:
+    """``run-out F_r 24.1 um (22.0 to 26.2)``."""
+    scale, unit = display_scale(value.unit, value.factor)
+    numbers = [f"{scale * one:.3g}" for one in (value.value, *value.interval)]
+    number = f"x {numbers[0]}" if value.factor else f"{numbers[0]} {unit}"
+    bound = ", open at a bound" if value.open else ""
+    return f"{value.name} {number} ({numbers[1]} to {numbers[2]}{bound})"

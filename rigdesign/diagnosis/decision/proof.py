@@ -1,0 +1,147 @@
+"""What effects at given sizes do on the points kept aside: by the stored runs, and by the full model run again.
+
+The stored runs of a library answer to first order and by a reduced thermal model. What is reported is the answer of the
+full model: the case as it is and the case with the effects in it, both solved as a check solves them, at the points and
+for the sensors in question; the difference is what the effects add.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import Protocol
+
+import numpy as np
+
+from rigdesign.base.parallel import Beside
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.naming import Names
+from rigdesign.diagnosis.decision.patch import Fitted, patched_case
+from rigdesign.diagnosis.residual.hypotheses import physical, sensor
+from rigdesign.diagnosis.residual.residual_problem import Comparison
+from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.diagnosis.statistics.heldout import Gap, gap
+from rigdesign.prediction import predict
+from rigdesign.prediction.model import Channel, Feature, Setting
+
+Sizes = Mapping[str, tuple[float, ...]]
+"""Explanation, with tooth or order -> coordinates."""
+
+
+class Rerun(Protocol):
+    """The model once more, with effects of the catalogue at their sizes in it."""
+
+    def __call__(self, features: Sequence[Feature], sizes: Sizes) -> Array:
+        """(n,) what the effects add to these numbers [SI].
+
+        Raises RigdesignError where the case with the effects is refused or does not converge.
+        """
+
+
+@dataclass(frozen=True, kw_only=True)
+class FullRun:
+    """The full model of a case at the operating points and for the sensors of a set; ``say`` is called before a run."""
+
+    case: Case
+    settings: tuple[Setting, ...]
+    channels: tuple[Channel, ...]
+    effects: tuple[Effect, ...]
+    say: Callable[[str], None] = lambda message: None
+
+    def __call__(self, features: Sequence[Feature], sizes: Sizes) -> Array:
+        """(n,) prediction of the case with the effects less that of the case as it is; sizes as a patch writes them.
+
+        Raises RigdesignError as `predict`.
+        """
+        names = Names(self.effects, ())
+        sized = [names.sized(name, size, [(value, value) for value in size]) for name, size in sizes.items()]
+        fitted = [
+            Fitted(effect=one.entry, values=one.values, tooth=one.tooth)
+            for one in sized
+            if isinstance(one.entry, Effect)
+        ]
+        points = {feature.setting for feature in features}
+        sensors = {feature.channel for feature in features}
+        settings = [one for one in self.settings if one.name in points]
+        channels = [one for one in self.channels if one.name in sensors]
+        cases = (self.case, patched_case(self.case, fitted))
+        self.say(
+            f"full model at {', '.join(one.name for one in settings)}, without and with {' and '.join(sizes)}"
+        )
+        with Beside([partial(predict, case, settings, channels) for case in cases]) as beside:
+            before, after = beside.results()
+        place = {feature: row for row, feature in enumerate(before.features)}
+        rows = np.array([place[feature] for feature in features], dtype=np.intp)
+        return np.asarray((after.values - before.values)[rows])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proof:
+    """What effects are held against: numbers of points that no fit has seen.
+
+    subject, whole : all numbers that were kept, and their residual where a healthy rig is white noise; points : kept
+        aside; rerun : None leaves it at the stored runs
+    """
+
+    subject: Comparison
+    whole: Whitened
+    points: tuple[str, ...]
+    rerun: Rerun | None = None
+
+    @cached_property
+    def rows(self) -> Array:
+        """Places of the numbers at the points kept aside."""
+        aside = set(self.points)
+        found = [row for row, one in enumerate(self.subject.features) if one.setting in aside]
+        return np.array(found, dtype=np.intp)
+
+    def stored(self, sizes: Sizes) -> Array:
+        """(n,) what effects and sensors at these sizes add to all kept numbers, by the stored runs."""
+        subject = self.subject
+        entries = {Names(subject.effects, subject.errors).plain(name) for name in sizes}
+        known = [effect for effect in subject.effects if effect.name in entries]
+        errors = [error for error in subject.errors if error.name in entries]
+        effects = physical(
+            None, subject.features, known, subject.library.responses, subject.teeth_a_turn, 0.0
+        )
+        answer = np.zeros(len(subject.features))
+        for one in (*effects, *sensor(None, errors)):
+            if one.name not in sizes:
+                continue
+            size = np.array(sizes[one.name])
+            if one.curve is not None:
+                answer += one.curve.at(size)[0]
+            elif one.columns is not None:
+                answer += one.columns @ size
+        return answer
+
+    def again(self, sizes: Sizes) -> Array:
+        """(n,) the same with the full model run again at the points kept aside; sensors have no other answer.
+
+        Raises RigdesignError as `Rerun`.
+        """
+        answer = self.stored(sizes)
+        effects = {effect.name for effect in self.subject.effects}
+        names = Names(self.subject.effects, ())
+        of_case = {name: size for name, size in sizes.items() if names.plain(name) in effects}
+        if of_case and self.rerun is not None:
+            of_sensors = {name: size for name, size in sizes.items() if name not in of_case}
+            features = [self.subject.features[row] for row in self.rows]
+            answer[self.rows] = self.rerun(features, of_case) + self.stored(of_sensors)[self.rows]
+        return answer
+
+    def gap(self, answer: Array, given: Array | None = None) -> Gap:
+        """The gap without and with an answer (n,); ``given`` (n,) is in the model both times."""
+        residual = self.whole.raw if given is None else self.whole.raw - given
+        rows = self.rows
+        quantities = [self.subject.channels[self.subject.features[row].channel].quantity for row in rows]
+        return gap(
+            self.covariance, residual[rows], answer[rows], self.subject.noise[rows], quantities, self.points
+        )
+
+    @cached_property
+    def covariance(self) -> Covariance:
+        """Of the numbers at the points kept aside."""
+        matrix = self.whole.covariance.matrix[np.ix_(self.rows, self.rows)]
+        return Covariance(base=matrix, columns=(), amplitudes={})

@@ -1,0 +1,160 @@
+"""What to measure next: the rivals of a diagnosis held against everything the rig could still be asked."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.decision.workflow import Diagnosis, Problem
+from rigdesign.diagnosis.library.candidates import COST, NOISE, SPARE, Extra, extra_points
+from rigdesign.diagnosis.library.library import Library
+from rigdesign.diagnosis.residual.hypotheses import physical, sensor
+from rigdesign.diagnosis.residual.residual_problem import Comparison
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
+from rigdesign.diagnosis.statistics.next_measurement import Proposal, Ranked, Rival, ranked
+from rigdesign.diagnosis.statistics.reference_scale import levels
+from rigdesign.measurement.places import Places
+from rigdesign.prediction.model import Channel, Feature, Setting
+
+RIVALS = 3
+"""Explanations that are to be told apart."""
+
+
+def extras_of(case: Case, settings: Sequence[Setting]) -> tuple[Extra, ...]:
+    """Points beside the plan of a set."""
+    return extra_points(settings, Places(case).meshes if case.drivetrain is not None else ())
+
+
+def proposals(
+    problem: Problem, found: Diagnosis, library: Library, extras: Sequence[Extra], amplitudes: Amplitudes
+) -> tuple[Ranked, ...]:
+    """Measurements that tell the leading rivals apart, best first; none where something is named.
+
+    With too few data to name anything: those that tell the leading explanation from nothing at all.
+
+    library : with the candidates, points and channels under the names of the set
+    """
+    if found.decision.verdict not in ("alias_group", "too_small", "unknown_located", "data_insufficient"):
+        return ()
+    rivals = _rivals(found)
+    alone = found.decision.verdict == "data_insufficient"
+    if len(rivals) < (1 if alone else 2):
+        return ()
+    whole, measured = _with_candidates(problem.subject.rows(found.kept), library)
+    answers = _answers(problem, whole, rivals)
+    told = [_rival(one, answers[one.hypothesis.name]) for one in rivals]
+    if alone:
+        told = [told[0], _nothing(len(whole.features))]
+    return ranked(
+        whole.covariance(amplitudes),
+        measured,
+        found.residual,
+        told,
+        _offers(whole.features[measured:], whole.channels, extras),
+    )
+
+
+def _rivals(found: Diagnosis) -> list[Evidence]:
+    """The likeliest single explanations of different things, the members of a group first."""
+    masses, group = found.examinations[0].weights.inclusion, found.decision.named
+    singles = [
+        one
+        for one in found.examinations[0].evidence
+        if one.hypothesis.family in ("physical", "sensor") and len(one.hypothesis.parts) == 1
+    ]
+    best = {one.hypothesis.parts[0]: one for one in reversed(singles)}
+    ordered = sorted(best.items(), key=lambda item: (item[0] not in group, -masses.get(item[0], 0.0)))
+    return [one for _, one in ordered][:RIVALS]
+
+
+def _with_candidates(subject: Comparison, library: Library) -> tuple[Comparison, int]:
+    """The numbers of the set followed by those that could be read."""
+    have = set(subject.features)
+    spare = tuple(feature for feature in library.features if feature not in have and _offered(feature))
+    features = (*subject.features, *spare)
+    channels = {channel.name: channel for channel in library.channels}
+    noise = np.array([NOISE[channels[feature.channel].quantity] for feature in spare])
+    count = len(spare)
+    errors = tuple(
+        replace(error, values=np.concatenate([error.values, np.zeros(count)])) for error in subject.errors
+    )
+    scatter = np.zeros((len(features), len(features)))
+    measured = len(subject.features)
+    cut = library.rows(features)
+    scatter[:measured, :measured] = subject.scatter
+    return (
+        Comparison(
+            features=features,
+            values=np.concatenate([subject.values, np.zeros(count)]),
+            noise=np.concatenate([subject.noise, noise]),
+            library=cut,
+            channels=channels,
+            effects=subject.effects,
+            errors=errors,
+            scatter=scatter,
+            mesh_orders=subject.mesh_orders,
+            teeth_a_turn=subject.teeth_a_turn,
+            level=levels(features, cut.base, channels, cut.settings, subject.mesh_orders),
+        ),
+        measured,
+    )
+
+
+def _offered(feature: Feature) -> bool:
+    """A new sensor at the points of the set, or all sensors at a new point."""
+    return feature.channel.startswith(SPARE) != feature.setting.startswith(SPARE)
+
+
+def _answers(problem: Problem, whole: Comparison, rivals: Sequence[Evidence]) -> dict[str, Hypothesis]:
+    """Of the rivals at all numbers, in the units of the features."""
+    names = {one.hypothesis.name for one in rivals}
+    effects = [one for one in whole.effects if any(f"{name}/".startswith(f"{one.name}/") for name in names)]
+    everything = (
+        *physical(None, whole.features, effects, whole.library.responses, whole.teeth_a_turn, 0.0),
+        *sensor(None, [error for error in whole.errors if error.name in names]),
+    )
+    return {one.name: one for one in everything if one.name in names}
+
+
+def _rival(one: Evidence, hypothesis: Hypothesis) -> Rival:
+    sizes = np.array(one.coordinates)
+    if hypothesis.curve is not None:
+        answer, slopes = hypothesis.curve.at(sizes)[0], hypothesis.curve.slope(float(sizes[0]))[:, None]
+    else:
+        assert hypothesis.columns is not None
+        slopes = hypothesis.columns
+        answer = slopes @ sizes
+    return Rival(name=one.hypothesis.name, answer=answer, slopes=slopes, deviations=np.array(one.deviations))
+
+
+def _nothing(count: int) -> Rival:
+    """That nothing is at work: with too few data the first question is whether the leading explanation is real."""
+    return Rival(name="none", answer=np.zeros(count), slopes=np.zeros((count, 0)), deviations=np.zeros(0))
+
+
+def _offers(
+    features: Sequence[Feature], channels: Mapping[str, Channel], extras: Sequence[Extra]
+) -> list[Proposal]:
+    by_channel: dict[str, list[int]] = {}
+    by_point: dict[str, list[int]] = {}
+    for row, feature in enumerate(features):
+        if feature.channel.startswith(SPARE):
+            by_channel.setdefault(feature.channel, []).append(row)
+        else:
+            by_point.setdefault(feature.setting, []).append(row)
+    found = [
+        Proposal(
+            title=f"a sensor: {name.removeprefix(SPARE)}",
+            rows=tuple(rows),
+            cost=COST[channels[name].quantity],
+        )
+        for name, rows in by_channel.items()
+    ]
+    titles = {extra.setting.name: extra for extra in extras}
+    return found + [
+        Proposal(title=titles[name].title, rows=tuple(rows), cost=titles[name].cost)
+        for name, rows in by_point.items()
+        if name in titles
+    ]

@@ -1,0 +1,197 @@
+"""A diagnosis in sentences: the verdict, how sure it is, and what to do next."""
+
+from dataclasses import dataclass
+
+from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.naming import told
+from rigdesign.diagnosis.decision.workflow import LEAST_RUNNING_POINTS
+from rigdesign.diagnosis.document.outcome import Outcome
+from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, gap_in_words
+from rigdesign.diagnosis.statistics.next_measurement import Ranked
+from rigdesign.measurement.comparison.compare import sentence, significant
+
+VERDICTS = {
+    "named": "effect named",
+    "alias_group": "one of a few",
+    "unknown_located": "unknown, located",
+    "within_noise": "nothing missing",
+    "too_small": "too small to tell",
+    "input_error_suspected": "data suspected",
+    "data_insufficient": "data insufficient",
+}
+"""Verdict -> as a heading."""
+
+
+NOTABLE = 1.5
+"""Residual of a group [standard deviations of a healthy rig] from which on it is told although it proves nothing."""
+
+
+WORTH = 1.0
+"""Separation [variances] from which on a measurement is proposed."""
+
+MOST_PROPOSED = 8
+"""Measurements proposed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Step:
+    """Something to measure or do next.
+
+    separation : of the rivals it tells apart least [variances], cost : relative to one thermocouple; None where it
+    follows from a rule and not from a computation
+    """
+
+    text: str
+    why: str
+    separation: float | None = None
+    cost: float | None = None
+    decides: bool | None = None
+
+
+def headline(outcome: Outcome) -> str:
+    """The verdict in a sentence or two."""
+    found = outcome.result.diagnosis
+    match outcome.verdict:
+        case "named":
+            return " ".join(_named(outcome))
+        case "alias_group":
+            group = f"One of these effects is present; the data do not identify which: {_titles(outcome)}."
+            return " ".join([group, *_named(outcome)])
+        case "input_error_suspected":
+            return f"The data look wrong rather than the model: {_titles(outcome)}."
+        case "unknown_located":
+            reason = found.decision.reason
+            lead = "An effect is present; the data do not identify it"
+            return f"{lead}: {reason}. {_where(outcome)}".rstrip()
+        case "within_noise":
+            return "Nothing is missing that these data could show: a healthy rig leaves as much."
+        case "too_small":
+            first = _titles(outcome)
+            return f"An effect may be present, too small to be distinguished from its rivals; first of them: {first}."
+    return f"These data cannot name anything: {found.decision.reason}. {_foremost(outcome)}".rstrip()
+
+
+def _named(outcome: Outcome) -> list[str]:
+    """What is named, of the case and of the measurement apart."""
+    texts = []
+    for lead, of_case in (("What the model lacks", True), ("What is off in the measurement", False)):
+        own = [one for one in outcome.named if isinstance(one.entry, Effect) == of_case]
+        if own:
+            texts.append(f"{lead}: {'; '.join(f'{one.title}, {told(one.shown[0])}' for one in own)}.")
+    return texts
+
+
+def _where(outcome: Outcome) -> str:
+    """The most conspicuous group in a sentence; empty where none is outside what a healthy rig leaves."""
+    first = outcome.before[0] if outcome.before else None
+    return "" if first is None or not significant(first) else sentence(first, outcome.result.measurement)
+
+
+def _foremost(outcome: Outcome) -> str:
+    """Where model and data part most, and what fits best there, as far as too few data tell."""
+    first = outcome.before[0] if outcome.before else None
+    if first is None or first.rms < NOTABLE:
+        return ""
+    text = (
+        f"Model and data part most at the {first.group}: {first.rms:.2g} standard deviations of a healthy rig"
+    )
+    leading = outcome.suspects[0].title if outcome.suspects else ""
+    return f"{text}; first among what could be behind it: {leading}." if leading else f"{text}."
+
+
+def certainty(outcome: Outcome) -> str:
+    """Why the verdict is proven or only indicative."""
+    found = outcome.result.diagnosis
+    if found.strength == "proven" and found.gap is not None:
+        return (
+            "Proven: the noise is known from repeats, and with what is named in the model, run in full, the gap "
+            f"{gap_in_words(found.gap)}."
+        )
+    missing = []
+    if outcome.verdict == "alias_group":
+        missing.append("a group is no name")
+    elif not found.found:
+        missing.append("nothing is named that could be proven")
+    elif found.proof.rerun is None:
+        missing.append("the case with what is named was not run in full")
+    if not outcome.result.problem.repeated:
+        missing.append("most numbers have a single reading, so the noise is what the set declares")
+    if not found.held_out_points:
+        missing.append(f"no operating point was kept aside (that takes at least {LEAST_POINTS})")
+    return f"Indicative: {', and '.join(missing)}."
+
+
+def steps(outcome: Outcome) -> tuple[Step, ...]:
+    """What to measure or do next: computed proposals first, then what the rules of the workflow say."""
+    computed = [
+        Step(
+            text=one.title, why=_why(outcome, one), separation=one.separation, cost=one.cost, decides=one.decides
+        )
+        for one in outcome.proposals
+        if one.separation >= WORTH
+    ][:MOST_PROPOSED]  # fmt: skip
+    return (*_first(outcome), *computed, *_better_data(outcome))
+
+
+def _why(outcome: Outcome, proposal: Ranked) -> str:
+    """What a proposal is good for."""
+    apart = (
+        "the leading explanation from nothing at all"
+        if outcome.verdict == "data_insufficient"
+        else "the leading explanations apart"
+    )
+    return f"tells {apart}" if proposal.decides else f"goes some way to tell {apart}"
+
+
+def _first(outcome: Outcome) -> list[Step]:
+    """What the verdict itself asks for."""
+    corrections = [Step(text=one.text, why="then diagnose again") for one in outcome.corrections]
+    match outcome.verdict:
+        case "alias_group":
+            if outcome.picked is None:
+                return [
+                    Step(
+                        text="look for what one of the group would show elsewhere on the rig, or pick one with --name",
+                        why="these data fit all of them alike",
+                    )
+                ]
+        case "unknown_located":
+            place = outcome.before[0].group if outcome.before else "the rig"
+            return [Step(text=f"look at {place}", why="there the residual stands out most")]
+    return corrections
+
+
+def _better_data(outcome: Outcome) -> list[Step]:
+    result, found = outcome.result, outcome.result.diagnosis
+    running = len(result.data.settings)
+    steps = []
+    if running < LEAST_RUNNING_POINTS:
+        steps.append(
+            Step(
+                text="measure 9 to 15 operating points that mix low and high speed, torque, oil temperature and flow",
+                why=f"{running} operating point{'s' if running != 1 else ''} cannot tell effects apart",
+            )
+        )
+    elif not found.held_out_points:
+        steps.append(
+            Step(
+                text=f"measure at least {LEAST_POINTS} operating points: corners of speed, torque and oil temperature",
+                why="some can then be kept aside to prove a name",
+            )
+        )
+    if not result.problem.repeated:
+        steps.append(
+            Step(text="repeat every operating point", why="the noise is then measured, not declared")
+        )
+    if result.baseline is None and outcome.verdict != "named":
+        steps.append(
+            Step(
+                text="measure the same points in a state known to be healthy and give that set as baseline",
+                why="errors of the model cancel in the difference, so that smaller effects are seen",
+            )
+        )
+    return steps
+
+
+def _titles(outcome: Outcome) -> str:
+    return "; ".join(one.title for one in outcome.suspects)

@@ -1,0 +1,349 @@
+"""diagnosis.json: what was found, how sure it is, what it rests on and what it leaves."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from rigdesign import __version__
+from rigdesign.base import units
+from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.naming import Names, Sized, Value, from_evidence, parameter_of, size_value
+from rigdesign.diagnosis.document.advice import certainty, headline, steps
+from rigdesign.diagnosis.document.gap import gap_document, refused_rows
+from rigdesign.diagnosis.document.outcome import Outcome
+from rigdesign.diagnosis.statistics.detectability import Detectability
+from rigdesign.measurement import MeasurementSet
+from rigdesign.measurement.comparison.compare import sentence, significant
+from rigdesign.measurement.comparison.locate import Located
+from rigdesign.measurement.quantities import CHANNELS
+from rigdesign.report.results_json import to_plain
+
+SCHEMA = 1
+
+
+def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
+    """The document; plain values, numbers with ten significant digits at most.
+
+    Raises
+    ------
+    NonFiniteResultError
+        If a number is not finite; what does not exist is None.
+    """
+    result, found = outcome.result, outcome.result.diagnosis
+    document = {
+        "schema_version": SCHEMA,
+        "tool_version": __version__,
+        "case": {"name": result.case.name, "path": str(result.case.path), "hash": result.case.hash},
+        "measurement": _measurement(result.measurement),
+        "baseline": None if result.baseline is None else _measurement(result.baseline),
+        "verdict": outcome.verdict,
+        "strength": found.strength,
+        "headline": headline(outcome),
+        "certainty": certainty(outcome),
+        "reason": found.decision.reason,
+        "named": [{**_sized(one), "posterior": _inclusion(outcome, one)} for one in outcome.named],
+        "suspects": [
+            {
+                "effect": one.name,
+                "title": one.title,
+                "posterior": one.inclusion,
+                **(_NO_SIZE if one.size is None else _size_keys(one.size)),
+            }
+            for one in outcome.suspects
+        ],
+        "refused": refused_rows(outcome),
+        "suspected_inputs": suspected_inputs(outcome),
+        "picked": None if outcome.picked is None else _sized(outcome.picked),
+        "alternatives": _alternatives(outcome),
+        "detectability": detectability_rows(outcome),
+        "aliases": _aliases(outcome),
+        "gap": gap_document(outcome),
+        "located": [_located(one, result.measurement) for one in outcome.before],
+        "unexplained": _unexplained(outcome),
+        "next_measurements": [
+            {
+                "measurement": one.text,
+                "why": one.why,
+                "separation": one.separation,
+                "cost": one.cost,
+                "decides": one.decides,
+            }
+            for one in steps(outcome)
+        ],
+        "data": {
+            "findings": result.data.findings,
+            "rejected_readings": _rejected(outcome),
+            "numbers": len(found.kept),
+            "points": [
+                {
+                    "point": setting.name,
+                    "speed_rpm": units.display(setting.speed, "speed"),
+                    "torque_Nm": setting.torque,
+                    "held_out": setting.name in found.held_out_points,
+                }
+                for setting in result.data.settings
+            ],
+        },
+        "patch": _patch(outcome),
+        "calibration": asdict(result.calibration),
+        "seed": result.problem.seed,
+    }
+    plain = to_plain(document)
+    assert isinstance(plain, dict)
+    return plain
+
+
+def suspected_inputs(outcome: Outcome) -> list[dict[str, Any]]:
+    """What may be wrong with the data: stated doubts, and what the data checks found."""
+    return [
+        {"id": one.id, "text": one.text, "channels": list(one.channels), "points": list(one.points)}
+        for one in outcome.result.data.findings
+        if one.weight == "suspect"
+    ]
+
+
+def _measurement(measurement: MeasurementSet) -> dict[str, Any]:
+    return {
+        "title": measurement.title,
+        "path": str(measurement.folder),
+        "hash": measurement.hash,
+        "points": len(measurement.points),
+        "channels": list(measurement.channels),
+    }
+
+
+def _inclusion(outcome: Outcome, one: Sized) -> float:
+    """Posterior mass of all explanations that hold the effect, in the look at the data that named it."""
+    masses = [look.weights.inclusion.get(one.name, 0.0) for look in outcome.result.diagnosis.examinations]
+    return max(masses)
+
+
+def _sized(one: Sized) -> dict[str, Any]:
+    return {"effect": one.name, "title": one.title, **_size_keys(one)}
+
+
+_NO_SIZE: Mapping[str, Any] = {
+    "explanation": None, "belongs_to": None, "tooth": None, "signature": None, "parameters": [],
+}  # fmt: skip
+
+
+def _size_keys(one: Sized) -> dict[str, Any]:
+    """Entry, tooth, and parameters as the contract has them."""
+    effect = isinstance(one.entry, Effect)
+    return {
+        "explanation": one.explanation,
+        "belongs_to": "case" if effect else "measurement",
+        "tooth": one.tooth,
+        "signature": one.entry.signature if isinstance(one.entry, Effect) else None,
+        "parameters": [_value(value) for value in one.shown],
+    }
+
+
+def _value(value: Value) -> dict[str, Any]:
+    return {
+        "name": value.name,
+        "value": value.value,
+        "unit": value.unit,
+        "interval_95": list(value.interval),
+        "interval_open": value.open,
+        "factor": value.factor,
+    }
+
+
+def _alternatives(outcome: Outcome) -> list[dict[str, Any]]:
+    """Explanations that were weighed, by posterior mass; that nothing is at work among them."""
+    found = outcome.result.diagnosis
+    evidence = {one.hypothesis.name: one for one in found.deciding.evidence}
+    rows: list[dict[str, Any]] = [
+        {"explanation": "none", "title": "nothing but what a healthy rig leaves", "family": "none", "effects": [],
+         "posterior": found.deciding.weights.masses["none"], "gain": 0.0, "parameters": []}
+    ]  # fmt: skip
+    for one in found.alternatives:
+        own = evidence[one.name]
+        sized = outcome.names.entry(one.name) is not None
+        size = (
+            from_evidence(outcome.names, own, outcome.result.calibration.signature_error) if sized else None
+        )
+        rows.append(
+            {
+                "explanation": one.name,
+                "title": outcome.names.title(one.name),
+                "family": own.hypothesis.family,
+                "effects": list(one.parts),
+                "posterior": one.posterior,
+                "gain": one.gain,
+                "parameters": [] if size is None else [_value(value) for value in size.shown],
+            }
+        )
+    return sorted(rows, key=lambda row: -row["posterior"])
+
+
+def detectability_rows(outcome: Outcome) -> list[dict[str, Any]]:
+    """One row an effect, of any tooth the one seen worst; sizes as values of the parameter, None where unbounded.
+
+    The smallest ``isolable`` relative to its bound comes first.
+    """
+    names = outcome.names
+    worst: dict[str, tuple[Detectability, int]] = {}
+    for row in outcome.result.diagnosis.detectability:
+        effect = names.plain(row.effect)
+        kept, count = worst.get(effect, (row, 0))
+        worst[effect] = (max(kept, row, key=lambda one: one.isolable), count + 1)
+    rows = [
+        _detectability(names, effect, row, count)
+        for effect, (row, count) in sorted(
+            worst.items(), key=lambda item: item[1][0].isolable / item[1][0].bound
+        )
+    ]
+    seen = {row["effect"] for row in rows}
+    missing = [effect for effect in outcome.result.effects if effect.name not in seen]
+    return rows + [_unseen(effect) for effect in missing]
+
+
+def _detectability(names: Names, effect: str, row: Detectability, count: int) -> dict[str, Any]:
+    parameter = parameter_of(names, row.effect)
+    return {
+        "effect": effect,
+        "title": names.title(effect),
+        "parameter": None if parameter is None else parameter.name,
+        "unit": None if parameter is None else parameter.unit,
+        "factor": parameter is not None and parameter.factor,
+        "teeth": count if count > 1 else None,
+        "detectable": size_value(names, row.effect, row.detectable),
+        "isolable": size_value(names, row.effect, row.isolable),
+        "bound": size_value(names, row.effect, row.bound),
+        "detectable_share_of_bound": row.detectable / row.bound if isfinite(row.detectable) else None,
+        "isolable_share_of_bound": row.isolable / row.bound if isfinite(row.isolable) else None,
+        "nearest_rival": row.rival,
+        "rival_title": names.title(row.rival),
+        "correlation": row.correlation,
+        "verdict": row.verdict,
+    }
+
+
+def _unseen(effect: Effect) -> dict[str, Any]:
+    """An effect that no sensor of the set answers to."""
+    parameter = effect.parameters[0]
+    return {
+        "effect": effect.name, "title": effect.title, "parameter": parameter.name, "unit": parameter.unit,
+        "factor": parameter.factor, "teeth": effect.any_tooth or None, "detectable": None, "isolable": None,
+        "bound": parameter.high, "detectable_share_of_bound": None, "isolable_share_of_bound": None,
+        "nearest_rival": None, "rival_title": None, "correlation": None, "verdict": "not testable here",
+    }  # fmt: skip
+
+
+def _aliases(outcome: Outcome) -> list[dict[str, Any]]:
+    """Pairs of effects that look alike, teeth of one gear taken together."""
+    names = outcome.names
+    strongest: dict[tuple[str, str], float] = {}
+    for first, second, correlation in outcome.result.diagnosis.aliases:
+        pair = sorted((names.plain(first), names.plain(second)))
+        key = (pair[0], pair[1])
+        if key[0] != key[1]:
+            strongest[key] = max(strongest.get(key, 0.0), correlation)
+    return [
+        {"effects": list(pair), "titles": [names.title(one) for one in pair], "correlation": correlation}
+        for pair, correlation in sorted(strongest.items(), key=lambda item: (-item[1], item[0]))
+    ]
+
+
+def _located(item: Located, measurement: MeasurementSet) -> dict[str, Any]:
+    return {
+        "group": item.group,
+        "significant": significant(item),
+        "sentence": sentence(item, measurement),
+        "whitened_rms": item.rms,
+        "by_chance": item.excess,
+        "channels": list(item.channels),
+        "points_off": list(item.points),
+    }
+
+
+def _unexplained(outcome: Outcome) -> dict[str, Any]:
+    """What is left once the named effects are in the model."""
+    found = outcome.result.diagnosis
+    last = found.examinations[-1]
+    return {
+        "verdict": last.decision.verdict,
+        "reason": last.decision.reason,
+        "groups": [_located(one, outcome.result.measurement) for one in outcome.after if significant(one)],
+    }
+
+
+def _rejected(outcome: Outcome) -> list[dict[str, Any]]:
+    result = outcome.result
+    rows = []
+    for row, deviation in result.diagnosis.rejected:
+        feature = result.problem.subject.features[row]
+        entry = result.data.channels[feature.channel]
+        kind = CHANNELS[entry.channel.quantity].kind
+        value = float(result.problem.subject.values[row])
+        rows.append(
+            {
+                "channel": feature.channel, "point": feature.setting or None, "order": feature.order,
+                "part": feature.part, "value": units.display(value, kind, entry.unit), "unit": entry.unit,
+                "deviation": deviation,
+            }
+        )  # fmt: skip
+    return rows
+
+
+def _patch(outcome: Outcome) -> Mapping[str, Any]:
+    written = outcome.case_patch is not None
+    return {
+        "case": "case.patch.json" if written else None,
+        "variant": "patched/case.toml" if written else None,
+        "refused": None if written else outcome.refused,
+        "picked_by_user": outcome.picked is not None,
+        "measurement": "measurement.patch.json" if outcome.corrections else None,
+    }
+
+
+def measurement_patch(outcome: Outcome) -> dict[str, Any]:
+    """measurement.patch.json: JSON Patch on measurement.toml, and corrections that no key of it says."""
+    measurement = outcome.result.measurement
+    plain = to_plain(
+        {
+            "schema_version": SCHEMA,
+            "tool_version": __version__,
+            "measurement": {
+                "title": measurement.title,
+                "path": str(measurement.folder),
+                "hash": measurement.hash,
+            },
+            "operations": [operation for one in outcome.corrections for operation in one.operations],
+            "corrections": [
+                {
+                    "effect": one.name,
+                    "text": one.text,
+                    "parameters": [] if one.size is None else [_value(value) for value in one.size.shown],
+                }
+                for one in outcome.corrections
+            ],
+        }
+    )
+    assert isinstance(plain, dict)
+    return plain
+
+
+def sentences(items: Sequence[Located], measurement: MeasurementSet) -> list[str]:
+    """Conspicuous groups in words."""
+    return [sentence(item, measurement) for item in items if significant(item)]
+
+
+def leading_sentences(outcome: Outcome) -> list[str]:
+    """Groups that the named effects move most, or that hold most of the residual; where none betrays itself."""
+    found = outcome.result.diagnosis
+    values = found.answer if outcome.named else found.residual
+    shares = (values / np.sqrt(np.diagonal(found.covariance.matrix))) ** 2
+    whole = float(shares.sum())
+    weights = [(float(shares[list(item.features)].sum()), item) for item in outcome.before]
+    ordered = sorted(weights, key=lambda pair: -pair[0])
+    told = [item for weight, item in ordered if weight > 0.15 * whole]
+    return [
+        f"{sentence(item, outcome.result.measurement)} {item.rms:.2g} standard deviations of a healthy rig."
+        for item in told
+    ]

@@ -1,0 +1,281 @@
+"""A diagnosis as it is told: effects with their sizes, suspects, what may be patched and what is refused."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Any
+
+from rigdesign.base.errors import CaseError, RigdesignError, UsageError
+from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.naming import Names, Sized, from_evidence, from_fit, told
+from rigdesign.diagnosis.decision.patch import Fitted, patched_title, patched_values
+from rigdesign.diagnosis.document.correction import Correction, of_data, of_sensor
+from rigdesign.diagnosis.document.located import located
+from rigdesign.diagnosis.run import Result
+from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.evidence import Evidence
+from rigdesign.diagnosis.statistics.heldout import Gap, gap_in_words
+from rigdesign.diagnosis.statistics.next_measurement import Ranked
+from rigdesign.measurement.comparison.locate import Located
+
+SHOWN = 3
+"""Explanations that are told where nothing is named."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Suspect:
+    """Something that may be at work but is not named.
+
+    inclusion : posterior mass of all explanations that claim it; size : at its own best fit, None for what has none
+    """
+
+    name: str
+    title: str
+    inclusion: float
+    size: Sized | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CasePatch:
+    """What is changed in the case: title of the variant, path -> marked value."""
+
+    title: str
+    values: Mapping[str, Mapping[str, Any]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """Everything the document, the page and the terminal say.
+
+    named : of verdict ``named``, and what stands apart from an alias group; suspects : members of an alias group,
+        suspected data, or the leading explanations
+    picked : what the user chose among those not named; case_patch : None where refused, with the reason in ``refused``
+    answer : (n,) what named or picked effects add to the kept numbers; gap : with them on the points kept aside
+    before, after : where the residual sits without and with the named effects
+    """
+
+    result: Result
+    names: Names
+    named: tuple[Sized, ...]
+    suspects: tuple[Suspect, ...]
+    picked: Sized | None
+    case_patch: CasePatch | None
+    refused: str
+    answer: Array
+    gap: Gap | None
+    corrections: tuple[Correction, ...]
+    before: tuple[Located, ...]
+    after: tuple[Located, ...]
+    proposals: tuple[Ranked, ...]
+
+    @property
+    def verdict(self) -> str:
+        """Of the decision."""
+        return self.result.diagnosis.decision.verdict
+
+    @property
+    def applied(self) -> tuple[Sized, ...]:
+        """What a patch holds: the named effects, or the one the user picked with those apart from its group."""
+        return _applied(self.verdict, self.named, self.picked)
+
+    @property
+    def in_model(self) -> tuple[str, ...]:
+        """Explanations in ``answer`` and ``gap``; a group from which others stand apart is there by its leader."""
+        if self.picked is None:
+            return tuple(one.hypothesis.name for one in self.result.diagnosis.found)
+        return tuple(one.explanation for one in self.applied)
+
+
+def _applied(verdict: str, named: tuple[Sized, ...], picked: Sized | None) -> tuple[Sized, ...]:
+    if picked is None:
+        return named
+    others = tuple(one for one in named if one.name != picked.name) if verdict == "alias_group" else ()
+    return (*others, picked)
+
+
+def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Ranked] = ()) -> Outcome:
+    """Put a diagnosis into words and patches.
+
+    pick : name of an effect that the user decides for although, or of those that, the data name
+    proposals : measurements that would tell the rivals apart, best first
+
+    Raises
+    ------
+    UsageError
+        An effect picked that these data do not weigh, or that is not among the named ones.
+    """
+    found = result.diagnosis
+    names = Names(result.effects, result.problem.subject.errors)
+    fit = found.fit if pick is None else found.fits.get(pick, found.fit)
+    fitted = () if fit is None else from_fit(names, fit.sizes)
+    group = found.decision.verdict == "alias_group"
+    named = tuple(one for one in fitted if not group or one.name in found.decision.apart)
+    picked = None if pick is None else _picked(result, names, fitted, pick)
+    applied = _applied(found.decision.verdict, named, picked)
+    answer, gap = found.answer, found.gap
+    if group and picked is None:
+        patch, refused = None, _why_not(result, False)
+    else:
+        patch, refused = _case_patch(result, applied, picked)
+    if picked is not None:
+        answer, gap, failure = _put_to_the_proof(result, applied)
+        if patch is not None and failure:
+            patch, refused = None, failure
+    corrections = [of_sensor(one) for one in applied if not isinstance(one.entry, Effect)]
+    if found.decision.verdict == "input_error_suspected":
+        corrections += [of_data(name, result.measurement) for name in found.decision.named]
+    return Outcome(
+        result=result,
+        names=names,
+        named=named,
+        suspects=() if named and not group else _suspects(result, names),
+        picked=picked,
+        case_patch=patch,
+        refused=refused,
+        answer=answer,
+        gap=gap,
+        corrections=tuple(corrections),
+        before=located(result, found.residual),
+        after=located(result, found.residual - found.answer),
+        proposals=tuple(proposals),
+    )
+
+
+def check_pick(effects: Sequence[Effect], pick: str) -> None:
+    """Refuse a name that is in no catalogue before anything is computed; sensors are known with the data only.
+
+    Raises
+    ------
+    UsageError
+        With the nearest names.
+    """
+    known = dict.fromkeys(name for effect in effects for name in (effect.claim, effect.name))
+    sensors = ("sensor_", "torque_zero:", "flow_", "inlet_", "speed_", "torque_")
+    if pick in known or pick in ("ambient", "angle_zero") or pick.startswith(sensors):
+        return
+    if any(effect.any_tooth and pick.rpartition("/")[0] == effect.name for effect in effects):
+        return
+    raise UsageError(f"--name {pick}: no such effect for this case; {_nearest(pick, list(known))}")
+
+
+def _nearest(pick: str, known: Sequence[str]) -> str:
+    near = get_close_matches(pick, known, n=3, cutoff=0.4)
+    return f"did you mean {' or '.join(near)}?" if near else f"known are {', '.join(known)}"
+
+
+def _suspects(result: Result, names: Names) -> tuple[Suspect, ...]:
+    """Members of the group the verdict gives, or the leading explanations."""
+    found = result.diagnosis
+    weights = found.deciding.weights
+    if found.decision.named:
+        wanted = list(found.decision.named)
+    elif found.decision.verdict == "data_insufficient":
+        singles = [one for one in found.deciding.evidence if _single(one)]
+        ordered = sorted(singles, key=lambda one: -weights.masses[one.hypothesis.name])
+        wanted = list(dict.fromkeys(one.hypothesis.parts[0] for one in ordered))[:SHOWN]
+    else:
+        parts = sorted(weights.inclusion.items(), key=lambda item: -item[1])
+        wanted = [part for part, _ in parts[:SHOWN]]
+    suspects = []
+    for name in wanted:
+        best = _best(result, names, name)
+        size = None if best is None else from_evidence(names, best, result.calibration.signature_error)
+        title = names.title(name) if size is None else size.title
+        suspects.append(
+            Suspect(name=name, title=title, inclusion=weights.inclusion.get(name, 0.0), size=size)
+        )
+    return tuple(suspects)
+
+
+def _single(one: Evidence) -> bool:
+    return one.hypothesis.family != "pair"
+
+
+def _best(result: Result, names: Names, name: str) -> Evidence | None:
+    """The best explanation by this effect alone, of those with an entry."""
+    for one in result.diagnosis.examinations[0].evidence:
+        alone = one.hypothesis.parts == (name,) or one.hypothesis.name == name
+        if alone and names.entry(one.hypothesis.name) is not None:
+            return one
+    return None
+
+
+def _picked(result: Result, names: Names, fitted: Sequence[Sized], pick: str) -> Sized:
+    own = next((one for one in fitted if pick in (one.name, one.explanation)), None)
+    if own is not None:
+        return own
+    if result.diagnosis.decision.verdict == "named":
+        named = ", ".join(one.name for one in fitted)
+        raise UsageError(f"--name {pick}: the data name {named}; leave --name out or pick of them")
+    best = _best(result, names, pick)
+    if best is None:
+        weighed = [
+            one.hypothesis.name
+            for one in result.diagnosis.examinations[0].evidence
+            if names.entry(one.hypothesis.name) is not None
+        ]
+        raise UsageError(f"--name {pick}: these sensors and points do not see it; {_nearest(pick, weighed)}")
+    return from_evidence(names, best, result.calibration.signature_error)
+
+
+def _put_to_the_proof(result: Result, applied: Sequence[Sized]) -> tuple[Array, Gap | None, str]:
+    """What picked effects add, the gap with them on the points kept aside, and why they are not patched or nothing."""
+    proof = result.diagnosis.proof
+    sizes = {one.explanation: one.coordinates for one in applied}
+    together = " and ".join(sizes)
+    if not proof.points:
+        return proof.stored(sizes), None, ""
+    try:
+        answer = proof.again(sizes)
+    except RigdesignError as error:
+        answer = proof.stored(sizes)
+        return answer, proof.gap(answer), f"the case with {together} does not run: {error}"
+    gap = proof.gap(answer)
+    return answer, gap, f"with {together} in the model the gap {gap_in_words(gap)}" if gap.grown else ""
+
+
+def _case_patch(
+    result: Result, applied: Sequence[Sized], picked: Sized | None
+) -> tuple[CasePatch | None, str]:
+    """The patch, or why there is none."""
+    fitted = [
+        Fitted(
+            effect=one.entry, values=one.values, ends=one.ends, tooth=one.tooth,
+            reason=_evidence_text(result, one, one is picked),
+        )
+        for one in applied
+        if isinstance(one.entry, Effect)
+    ]  # fmt: skip
+    if not fitted:
+        return None, _why_not(result, bool(applied))
+    try:
+        values = patched_values(result.case, fitted)
+    except CaseError as error:
+        return None, f"the case does not admit the fitted value: {error}"
+    return CasePatch(title=patched_title(result.case, fitted), values=values), ""
+
+
+def _why_not(result: Result, sensors: bool) -> str:
+    if sensors:
+        return "only sensors or settings are off; the case stays as it is"
+    match result.diagnosis.decision.verdict:
+        case "alias_group":
+            return "these data do not tell the members of the group apart; pick one with --name, or measure what would"
+        case "unknown_located":
+            return "no name for what is at work is safe; pick one with --name, or measure what would decide"
+        case "input_error_suspected":
+            return "the data look wrong, not the model; correct them first"
+        case "data_insufficient":
+            return "these data cannot name anything"
+        case "too_small":
+            return "what may be at work is too small to be told from its rivals; pick one with --name, or measure more"
+    return "nothing is missing that these data could show"
+
+
+def _evidence_text(result: Result, one: Sized, picked: bool) -> str:
+    sizes = ", ".join(told(value) for value in one.shown)
+    strength = "picked by the user among explanations the data do not tell apart" if picked else (
+        f"named, {result.diagnosis.strength}"
+    )  # fmt: skip
+    origin = f"fitted to measurement '{result.measurement.title}' ({result.measurement.hash[:16]})"
+    return f"{origin}: {one.title}, {sizes}, 95 %; {strength}"

@@ -1,0 +1,135 @@
+"""The page of effects, made from the catalogue: what can be named, with bounds and signature, and what waits."""
+
+from collections.abc import Sequence
+
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
+from rigdesign.diagnosis.catalogue.waiting import WAITING
+from rigdesign.diagnosis.decision.naming import display_scale
+from rigdesign.diagnosis.residual.sensors import TIMES
+
+HEAD = """# Effects that a diagnosis can name
+
+Written by `python -m rigdesign.diagnosis.catalogue CASE ...`; do not edit by hand.
+
+`rigdesign diagnose` names an effect of this page, a few that the data cannot tell apart, or nothing. An entry is named
+`kind:place`. It changes the case, and the ordinary model computes what follows; bounds are what is believed of a rig, a
+healthy spread is what no rig is free of. What a healthy rig does not have at all is named from the size on that
+matters. Effects whose traces correlate above 0.95 end as a group, and a name has to close the gap on operating points
+that were kept aside. Which of them a measurement can see and tell apart is in its report.
+"""
+
+SENSORS = (
+    ("sensor_offset:<channel>", "reads a constant amount off", "constant over all points"),
+    (
+        "sensor_scale:<channel>",
+        "reads a constant share off; of a thermocouple of its excess over ambient (fin error)",
+        "grows with the reading",
+    ),
+    ("torque_zero:<channel>", "zero of a torque or angle channel", "mean only, the same at any torque"),
+    ("angle_zero", "the mark of the tach stands elsewhere", "all orders turned, the higher the more"),
+    (
+        "inlet_offset:<stream>, inlet_scale:<stream>",
+        "inlet temperature of an oil stream read wrong",
+        "all that the stream wets, and its outlet",
+    ),
+    (
+        "flow_offset:<stream>, flow_scale:<stream>",
+        "flow of an oil stream read wrong",
+        "oil rise against losses",
+    ),
+    ("ambient", "room temperature read wrong", "the whole outside of the housing"),
+    (
+        "speed_offset, speed_scale, torque_offset, torque_scale",
+        "speed or torque read wrong",
+        "losses and mesh orders together",
+    ),
+    ("swapped_channels:<a>,<b>", "two channels exchanged", "each fits the other's prediction"),
+    (
+        "swapped_points:<a>,<b>",
+        "readings of two operating points exchanged",
+        "each fits the other's prediction",
+    ),
+    ("unit:<channel>", "channel in another unit or with the wrong sign", "a factor or shift no sensor has"),
+)
+"""Entries of sensors and settings: name, words, signature."""
+
+
+def effects_page(cases: Sequence[Case]) -> str:
+    """The page in Markdown, from the entries that these cases have."""
+    kinds: dict[str, tuple[Effect, set[str]]] = {}
+    for case in cases:
+        for effect in effects_of(case):
+            kinds.setdefault(effect.kind, (effect, set()))[1].add(case.name)
+    lines = [HEAD, "## In the case\n"]
+    lines += _table(
+        (
+            "kind",
+            "example",
+            "parameters and bounds",
+            "healthy spread",
+            "matters from",
+            "how it shows",
+            "cases that have it",
+        ),
+        [
+            (
+                f"`{kind}`",
+                f"`{effect.name}`: {effect.title}",
+                "; ".join(_bounds(parameter) for parameter in effect.parameters[:1]) + _more(effect),
+                _size(effect, effect.healthy),
+                _size(effect, effect.matters),
+                effect.signature,
+                ", ".join(case.name for case in cases if case.name in names),
+            )
+            for kind, (effect, names) in kinds.items()
+        ],
+    )
+    sources = dict.fromkeys(
+        parameter.source for effect, _ in kinds.values() for parameter in effect.parameters
+    )
+    lines.append(f"Bounds: {'; '.join(sources)}.\n")
+    lines.append("## In the measurement\n")
+    lines.append(
+        f"Sizes up to {TIMES:g} times the systematic uncertainty that the measurement states are believed. They leave "
+        "the case alone and are written to `measurement.patch.json`.\n"
+    )
+    lines += _table(("entry", "what", "how it shows"), [(f"`{name}`", *words) for name, *words in SENSORS])
+    lines.append("## Waiting for a model\n")
+    lines.append("What these make is reported as located but unknown, or not seen at all.\n")
+    lines += _table(
+        ("effect", "what", "how it shows", "what it waits for"),
+        [(f"`{one.name}`", one.title, one.signature, one.lacks) for one in WAITING],
+    )
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}"]
+    return [*lines, *(f"| {' | '.join(row)} |" for row in rows), ""]
+
+
+def _bounds(parameter: Parameter) -> str:
+    scale, unit = display_scale(parameter.unit, parameter.factor)
+    name = parameter.name.removesuffix(" along cosine")
+    ends = f"{scale * parameter.low:.3g} to {scale * parameter.high:.3g}"
+    return f"{name} x {ends}" if parameter.factor else f"{name} {ends} {unit}"
+
+
+def _more(effect: Effect) -> str:
+    """What an entry leaves open besides its size."""
+    if len(effect.parameters) == 2:
+        return " along cosine and sine: phase free"
+    return ", any tooth" if effect.any_tooth else ""
+
+
+def _size(effect: Effect, size: float) -> str:
+    """A size of the first parameter, a dash for zero."""
+    if size == 0.0:
+        return "–"
+    parameter = effect.parameters[0]
+    if parameter.factor:
+        return f"{100.0 * size:.3g} %"
+    scale, unit = display_scale(parameter.unit, False)
+    return f"{scale * size:.3g} {unit}"

@@ -1,0 +1,1 @@
+"""How the numbers of a rig answer to every effect: computed once, kept on disk."""

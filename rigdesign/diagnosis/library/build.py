@@ -1,0 +1,225 @@
+"""Makes the library of a rig: runs of the model for every effect, derivatives for everything else."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.base.errors import RigdesignError
+from rigdesign.base.parallel import Beside, cores
+from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue.effects import DYNAMIC, Effect
+from rigdesign.diagnosis.library.cache import Parts
+from rigdesign.diagnosis.library.library import Library, Response
+from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.prediction import Predictor
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Setting
+
+Progress = Callable[[str], None]
+
+SHARES = (-1.0, -0.4, -0.12, 0.12, 0.4, 1.0)
+"""Runs of a nonlinear effect, as shares of its bounds."""
+
+FEWER_SHARES = (-1.0, -0.3, 0.3, 1.0)
+"""The same of the flanks of a gear, whose runs take longest, and of inertias, which move little."""
+
+GIVING_WAY = (0.12, 0.4, 0.7, 1.0)
+"""The same of a tooth that gives way: the model may refuse the largest sizes."""
+
+BATCH = 4
+"""Works a core between two notes of what is done."""
+
+LINEAR_SHARE = 0.1
+"""Run of an effect that the numbers answer to in proportion."""
+
+SWING_SHARE = 0.01
+"""The same of an excitation: what grows with its square stays small beside."""
+
+POWER = Channel(name="losses of the rig", quantity="motor_power", place="motor")
+"""Read beside the channels of the measurement: all losses together; without a drivetrain they are given."""
+
+
+def build_library(
+    case: Case,
+    settings: Sequence[Setting],
+    channels: Sequence[Channel],
+    effects: Sequence[Effect],
+    say: Progress = lambda message: None,
+) -> Library:
+    """Run the model at the plan for everything that may be off; on all cores.
+
+    Finished responses are kept until the library is whole, so that an interrupted run goes on there.
+
+    Raises what the model raises at the base state; an effect that the model refuses at some size is kept up to the
+    sizes it can compute.
+    """
+    say(f"model of {len(settings)} operating points and {len(channels)} sensors")
+    metered = (POWER,) if case.drivetrain is not None else ()
+    predictor = Predictor(case, tuple(settings), (*channels, *metered))
+    predictor.prepare()
+    base = predictor.base
+    parts = Parts.of(case, settings, channels, effects)
+    moving = [effect for effect in effects if _reaches(effect, channels)]
+    responses = _responses(predictor, case, moving, parts, say)
+    say("local conductances, sources, settings")
+    own = np.array([feature.channel != POWER.name for feature in predictor.features])
+    given = math.fsum(loss.power for loss in case.losses.given.values())
+    powers = {setting.name: given for setting in settings}
+    powers |= {
+        feature.setting: float(value)
+        for feature, value in zip(predictor.features, base, strict=True)
+        if feature.channel == POWER.name
+    }
+    unpaid, watt = predictor.sources(), predictor.motor_watt()
+    library = Library(
+        channels=tuple(channels),
+        features=tuple(feature for feature, keep in zip(predictor.features, own, strict=True) if keep),
+        settings=tuple(settings),
+        base=base[own],
+        inputs=_by_point(predictor, own),
+        responses={
+            name: Response(coordinates=one.coordinates, answers=one.answers[:, own])
+            for name, one in responses.items()
+        },
+        exponents={name: values[own] for name, values in _exponents(predictor, case, responses)},
+        links={name: values[own] for name, values in predictor.links().items()},
+        sources={name: (values + watt)[own] for name, values in unpaid.items()},
+        dry_sources={name: values[own] for name, values in unpaid.items()},
+        powers=powers,
+        modes=predictor.natural_frequencies(),
+        error=predictor.error,
+    )
+    parts.remove()
+    return library
+
+
+def _reaches(effect: Effect, channels: Sequence[Channel]) -> bool:
+    """Whether an effect can show at all: teeth and swinging torques only where orders or modes are read."""
+    dynamic = any(channel.quantity in (*ORDER_QUANTITIES, "natural_frequency") for channel in channels)
+    return dynamic or effect.family not in DYNAMIC
+
+
+def _by_point(predictor: Predictor, own: NDArray[np.bool_]) -> dict[tuple[str, str, str], Array]:
+    """Derivatives by the settings, each point's by itself."""
+    points = np.array([feature.setting for feature in predictor.features])
+    return {
+        (kind, place, setting.name): np.where(points == setting.name, values, 0.0)[own]
+        for (kind, place), values in predictor.inputs().items()
+        for setting in predictor.settings
+    }
+
+
+def _responses(
+    predictor: Predictor, case: Case, effects: Sequence[Effect], parts: Parts, say: Progress
+) -> dict[str, Response]:
+    """Effect -> its runs, without those that the model refuses; finished ones are kept as ``parts``."""
+    found = parts.known(say)
+    left = [effect for effect in effects if effect.name not in found]
+    works = [_Runs(predictor, case, tuple(group)) for group in _together(left)]
+    size = BATCH * cores()
+    for start in range(0, len(works), size):
+        say(f"response {len(effects) - len(left) + 1} of {len(effects)}")
+        with Beside(works[start : start + size]) as beside:
+            new = {name: one for made in beside.results() for name, one in made.items()}
+        parts.keep(new)
+        found |= new
+        left = [effect for effect in left if effect.name not in new]
+    whole = ((effect.name, found[effect.name]) for effect in effects)
+    return {name: one for name, one in whole if one is not None}
+
+
+def _together(effects: Sequence[Effect]) -> list[list[Effect]]:
+    """Effects that share what one process remembers: the same of both gears of a mesh may be one to its contacts."""
+    groups: dict[object, list[Effect]] = {}
+    for effect in sorted(effects, key=_haste):
+        flanks = effect.family == "tooth" and not effect.any_tooth
+        place = effect.claim.partition(":")[2].partition(".")[0]
+        groups.setdefault((effect.kind, place) if flanks else effect.name, []).append(effect)
+    return list(groups.values())
+
+
+class _Runs:
+    """The runs of some effects; a class, so that another core can be handed it."""
+
+    def __init__(self, predictor: Predictor, case: Case, effects: tuple[Effect, ...]) -> None:
+        self._predictor, self._case, self._effects = predictor, case, effects
+
+    def __call__(self) -> dict[str, Response | None]:
+        return {effect.name: self._response(effect) for effect in self._effects}
+
+    def _response(self, effect: Effect) -> Response | None:
+        """From the smallest run on: where the model refuses one, the larger ones are left out."""
+        base = self._predictor.base
+        coordinates, answers = [np.zeros(len(effect.parameters))], [np.zeros_like(base)]
+        refused: list[Array] = []
+        for place in sorted(run_places(effect), key=lambda one: float(np.abs(one).max())):
+            if any(np.all(np.sign(place) == np.sign(smaller)) for smaller in refused):
+                continue
+            changes = effect.changes(self._case, tuple(float(value) for value in place))
+            try:
+                run = self._predictor.swinging if swings(effect) else self._predictor.response
+                answers.append(run(changes) - base)
+                coordinates.append(place)
+            except RigdesignError:
+                refused.append(place)
+        if len(coordinates) < 1 + len(effect.parameters):
+            return None
+        return Response(coordinates=np.array(coordinates), answers=np.array(answers))
+
+
+def swings(effect: Effect) -> bool:
+    """Whether an effect only swings, with no mean over a turn: waves over the teeth, harmonic torques."""
+    return effect.family == "excitation" and effect.linear and not effect.any_tooth
+
+
+def run_places(effect: Effect) -> list[Array]:
+    """Coordinates at which an effect is run."""
+    bounds = [parameter.bounds for parameter in effect.parameters]
+    if effect.linear or len(bounds) > 1:
+        share = SWING_SHARE if swings(effect) else LINEAR_SHARE
+        steps = [share * max(abs(low), abs(high)) for low, high in bounds]
+        return list(np.diag(steps))
+    low, high = bounds[0]
+    shares: tuple[float, ...] = SHARES
+    if effect.family in ("tooth", "inertia"):
+        shares = FEWER_SHARES if low < 0.0 else GIVING_WAY
+    places = (share * (high if share > 0.0 else -low) for share in shares)
+    return [np.array([place]) for place in places if place != 0.0]
+
+
+def _haste(effect: Effect) -> tuple[int, int]:
+    """Order in which the works are dealt to the cores: what runs longest first, so that none ends alone."""
+    dear = ("tooth", "stiffness", "inertia", "damping", "excitation", "state", "oil")
+    place = dear.index(effect.family) if effect.family in dear else len(dear)
+    return place, -len(run_places(effect))
+
+
+_EXPONENT_LAWS = {"mesh": ("speed", "torque"), "bearing": ("speed",), "windage": ("speed",)}
+
+
+def _exponents(
+    predictor: Predictor, case: Case, responses: Mapping[str, Response]
+) -> Iterator[tuple[str, Array]]:
+    """Derivatives by the exponents of the loss laws, about the mean point.
+
+    An exponent scales the loss of each point by itself, and a number follows its own point only: the derivative is
+    that by the logarithm of the loss times the logarithm of the point's ratio.
+    """
+    for name in case.gearboxes:
+        for kind, laws in _EXPONENT_LAWS.items():
+            response = responses.get(f"{kind}_loss:{name}")
+            if response is None:
+                continue
+            slope = response.slope()[:, 0]
+            for law in laws:
+                turned = dict(
+                    zip((s.name for s in predictor.settings), np.log(_ratios(predictor.settings, law)))
+                )
+                share = np.array([turned.get(feature.setting, 0.0) for feature in predictor.features])
+                yield f"{kind} loss of {name} over {law}", slope * share
+
+
+def _ratios(settings: Sequence[Setting], law: str) -> Array:
+    values = np.array([max(abs(getattr(setting, law)), 1e-3) for setting in settings])
+    return np.asarray(values / np.exp(np.log(values).mean()))

@@ -1,0 +1,1 @@
+"""What is to be explained, and everything that may explain it."""

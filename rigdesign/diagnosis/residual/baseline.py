@@ -1,0 +1,164 @@
+"""What a set leaves given a healthy set of the same rig.
+
+What both share (the model's errors, the sensors) is known from the healthy one; what remains is noise, scatter of the
+settings, and a drift.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+
+from rigdesign.diagnosis.residual.residual_problem import Comparison
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
+from rigdesign.diagnosis.statistics.columns import Array, amplitudes_of
+from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.prediction.met_again import met_again
+
+TWINS = 10.0
+"""How much more two readings of one number may share than each is off by itself: what the model has wrong there in a
+way that no column spans is taken from the healthy set number by number."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drift:
+    """What a healthy rig changes from one set to the next.
+
+    A point is met again at a speed a little off, and orders follow it, whatever excites them and whether the model
+    knows of it or not.
+
+    widening : likeness of an effect -> spread of its coordinate from set to set that healthy pairs asked for
+    """
+
+    shared: float
+    """Of everything."""
+    slope: float
+    """Of what the model says that an order changes with the speed from one set to the other."""
+    shaft: float
+    """Of what the natural frequencies make of a shaft order or sideband that the healthy set reads
+    (`rigdesign.diagnosis.statistics.resonance`)."""
+    mesh: float
+    """The same of an order of the meshes."""
+    amplitude: float
+    """Of an order of the meshes that the healthy set reads, at the same speed: torque and oil differ as well."""
+    widening: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """What one set leaves given a healthy one, and of what it may consist.
+
+    expected : (n,) residual that the healthy set foretells; known : (n, n) its covariance, with noise and scatter
+    shared : (n, n) covariance of what both sets share
+    slope, steep : (n,) what speeds met differently make of an order, by the model's derivative and by the natural
+        frequencies near it; amplitude : (n,) of the orders in the healthy set; all zero for all other numbers
+    """
+
+    subject: Comparison
+    expected: Array
+    known: Array
+    shared: Array
+    slope: Array
+    steep: Array
+    amplitude: Array
+
+    @classmethod
+    def of(cls, subject: Comparison, baseline: Comparison, amplitudes: Amplitudes) -> "Change":
+        """By the columns both have: what they span is known from it, and errors number by number."""
+        subject = subject.on_the_scale_of(baseline)
+        here, there = subject.covariance(amplitudes), baseline.covariance(amplitudes)
+        after, before = here.deviations, _matched(there, here)
+        own, other = subject.own_spread(amplitudes), baseline.own_spread(amplitudes)
+        again = met_again(subject.library.settings, baseline.library.settings)
+        twins, step = _same_numbers(subject, baseline, again), _speed_steps(subject, baseline, again)
+        amplitude = twins @ amplitudes_of(baseline.features, baseline.values)
+        cross = after @ before.T + TWINS**2 * own[:, None] * twins * other[None, :]
+        known = before @ before.T + TWINS**2 * np.diag(other**2)
+        noise_before = np.diag(baseline.noise**2) + baseline.scatter
+        both = after @ after.T
+        expected, covariance = _given(
+            known, cross, both + TWINS**2 * np.diag(own**2), noise_before, baseline.residual
+        )
+        alone = np.diag(subject.noise**2) + subject.scatter
+        return cls(
+            subject=subject,
+            expected=expected,
+            known=covariance + alone,
+            shared=both + np.diag(own**2),
+            slope=step * amplitudes_of(subject.features, _by_speed(subject)),
+            steep=step * subject.steepness * amplitude,
+            amplitude=amplitude,
+        )
+
+    def covariance(self, drift: Drift) -> Array:
+        """(n, n) of the change in a rig that stayed healthy."""
+        mesh = self.subject.of_mesh
+        steep = np.where(mesh, drift.mesh, drift.shaft) * self.steep
+        still = np.where(mesh, drift.amplitude, 0.0) * self.amplitude
+        alone = np.diag((drift.slope * self.slope) ** 2 + steep**2 + still**2)
+        widened = self.subject.widened(drift.widening)
+        return np.asarray(self.known + drift.shared**2 * self.shared + alone + widened)
+
+    def whitened(self, drift: Drift) -> Whitened:
+        """The change where a healthy rig is white noise."""
+        total = Covariance(base=self.covariance(drift), columns=(), amplitudes={})
+        return Whitened.of(total, self.subject.residual - self.expected)
+
+
+def differenced(subject: Comparison, baseline: Comparison, amplitudes: Amplitudes, drift: Drift) -> Whitened:
+    """The residual of a set given a healthy set of the same rig.
+
+    What both share is the covariance of the columns at either set's numbers; noise, the settings' scatter and a
+    drift are each set's own.
+    """
+    return Change.of(subject, baseline, amplitudes).whitened(drift)
+
+
+def _matched(there: Covariance, here: Covariance) -> Array:
+    """Deviations of the other set in the order of the columns of this one; zero where it has none."""
+    place = {column.name: number for number, column in enumerate(there.columns)}
+    deviations = there.deviations
+    rows = [
+        deviations[:, place[column.name]] if column.name in place else np.zeros(len(deviations))
+        for column in here.columns
+    ]
+    return np.stack(rows, axis=1)
+
+
+def _same_numbers(subject: Comparison, baseline: Comparison, again: Mapping[str, str]) -> Array:
+    """(n, m) one where two numbers are the same channel and order at a point that was met again."""
+    others = {(f.channel, f.setting, f.order, f.part): j for j, f in enumerate(baseline.features)}
+    found = np.zeros((len(subject.features), len(baseline.features)))
+    for row, f in enumerate(subject.features):
+        twin = others.get((f.channel, again[f.setting], f.order, f.part)) if f.setting in again else None
+        if twin is not None:
+            found[row, twin] = 1.0
+    return found
+
+
+def _speed_steps(subject: Comparison, baseline: Comparison, again: Mapping[str, str]) -> Array:
+    """(n,) by how much each number's point was met at another speed: logarithm of the ratio, without sign."""
+    before = {setting.name: setting.speed for setting in baseline.library.settings}
+    steps = {
+        setting.name: abs(float(np.log(setting.speed / before[again[setting.name]])))
+        for setting in subject.library.settings
+        if setting.name in again
+    }
+    return np.array([steps.get(feature.setting, 0.0) for feature in subject.features])
+
+
+def _by_speed(subject: Comparison) -> Array:
+    """(n,) derivative of the prediction by the logarithm of the speed of its point."""
+    speeds = {setting.name: setting.speed for setting in subject.library.settings}
+    found = np.zeros(len(subject.features))
+    for (kind, _, point), values in subject.library.inputs.items():
+        if kind == "speed":
+            found += speeds[point] * values
+    return found
+
+
+def _given(known: Array, cross: Array, own: Array, noise: Array, residual: Array) -> tuple[Array, Array]:
+    """Mean (n,) and covariance (n, n) of the shared part given another set's residual (m,)."""
+    solved = cho_solve(cho_factor(known + noise), np.column_stack([residual, cross.T]), check_finite=False)
+    return np.asarray(cross @ solved[:, 0]), np.asarray(own - cross @ solved[:, 1:])

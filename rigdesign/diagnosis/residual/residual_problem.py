@@ -1,0 +1,243 @@
+"""What is to be explained: readings less prediction, and the covariance of what a healthy rig leaves.
+
+What is left given a healthy set of the same rig is in `rigdesign.diagnosis.residual.baseline`. What the model answers
+wrongly to a right cause is weighed with each cause (`rigdesign.diagnosis.residual.signature`).
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_solve
+
+from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.library.library import Library
+from rigdesign.diagnosis.residual.directions import Direction, directions
+from rigdesign.diagnosis.residual.healthy import answer_error, healthy_columns, own_spread
+from rigdesign.diagnosis.residual.sensors import (
+    SensorError,
+    Stated,
+    input_errors,
+    sensor_errors,
+    setting_scatter,
+)
+from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
+from rigdesign.diagnosis.statistics.columns import Array, Column
+from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
+from rigdesign.diagnosis.statistics.evidence import Curve
+from rigdesign.diagnosis.statistics.reference_scale import levels
+from rigdesign.diagnosis.statistics.resonance import steepness
+from rigdesign.measurement import Data
+from rigdesign.prediction.model import Channel, Feature
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """One set held against the library of its rig, on the numbers that are usable.
+
+    values, noise : (n,)
+    """
+
+    features: tuple[Feature, ...]
+    values: Array
+    noise: Array
+    library: Library
+    channels: Mapping[str, Channel]
+    effects: tuple[Effect, ...]
+    errors: tuple[SensorError, ...]
+    scatter: Array
+    """(n, n) covariance from the random error of the settings read."""
+    mesh_orders: frozenset[float]
+    teeth_a_turn: int
+    """Of the gear that counts."""
+    level: Array
+    """(n,) over which errors of the model are relative (`rigdesign.diagnosis.statistics.reference_scale`)."""
+
+    @cached_property
+    def of_mesh(self) -> NDArray[np.bool_]:
+        """(n,) whether a number is of an order of the meshes."""
+        return np.array([feature.order in self.mesh_orders for feature in self.features], dtype=bool)
+
+    @cached_property
+    def steepness(self) -> Array:
+        """(n,) of the orders (`rigdesign.diagnosis.statistics.resonance`)."""
+        return steepness(self.features, self.library.settings, self.library.modes)
+
+    @property
+    def residual(self) -> Array:
+        """Readings less prediction."""
+        return np.asarray(self.values - self.library.base)
+
+    def rows(self, keep: Sequence[int]) -> "Comparison":
+        """The comparison cut to some of its numbers, in their order."""
+        places = np.array(keep, dtype=np.intp)
+        features = tuple(self.features[place] for place in places)
+        return Comparison(
+            features=features,
+            values=self.values[places],
+            noise=self.noise[places],
+            library=self.library.rows(features),
+            channels=self.channels,
+            effects=self.effects,
+            errors=tuple(replace(error, values=error.values[places]) for error in self.errors),
+            scatter=self.scatter[np.ix_(places, places)],
+            mesh_orders=self.mesh_orders,
+            teeth_a_turn=self.teeth_a_turn,
+            level=self.level[places],
+        )  # fmt: skip
+
+    def on_the_scale_of(self, other: "Comparison") -> "Comparison":
+        """The same with orders over the levels that they have in another set of the rig.
+
+        What the model has wrong in both is the same amount; its own levels follow speeds that were met differently.
+        """
+        there = {
+            (one.channel, one.order): level for one, level in zip(other.features, other.level, strict=True)
+        }
+        level = [
+            there.get((one.channel, one.order), own) if one.order else own
+            for one, own in zip(self.features, self.level, strict=True)
+        ]
+        return replace(self, level=np.array(level))
+
+    def own_spread(self, amplitudes: Amplitudes) -> Array:
+        """(n,) standard deviation of what each number is off by itself, noise left out."""
+        return own_spread(self.features, self.channels, self.mesh_orders, self.level, amplitudes)
+
+    def base_noise(self, amplitudes: Amplitudes) -> Array:
+        """(n, n) covariance of noise, settings read and what each number is off by itself."""
+        own = self.own_spread(amplitudes)
+        alone = np.diag(self.noise**2 + own**2 + self.library.error**2 * self._thermal)
+        return np.asarray(alone + amplitudes.answer**2 * self.answer_error + self.scatter)
+
+    @cached_property
+    def answer_error(self) -> Array:
+        """(n, n) covariance of what the answers to its constants have wrong, at an amplitude of one."""
+        return answer_error(self.library, self.effects)
+
+    def columns(self) -> tuple[Column, ...]:
+        """Columns of the model, of sensors and of settings."""
+        model = healthy_columns(self.library, self.effects, self.channels, self.mesh_orders, self.level)
+        return (*model, *(error.column() for error in self.errors))
+
+    def covariance(self, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None) -> Covariance:
+        """Of a healthy rig; ``widening``: likeness of cause -> spread [coordinate] that calibration found missing."""
+        base = self.base_noise(amplitudes) + self.widened(widening or {})
+        return Covariance(base=base, columns=self.columns(), amplitudes=amplitudes.as_dict())
+
+    def curves(self) -> dict[str, Curve]:
+        """Effect -> its answer over its size, of constants of one parameter that bend."""
+        found = {}
+        for effect in self.effects:
+            response = self.library.responses.get(effect.name)
+            if effect.healthy > 0.0 and response is not None and response.bends:
+                found[effect.name] = Curve.of(response.coordinates[:, 0], response.answers)
+        return found
+
+    @property
+    def _thermal(self) -> Array:
+        quantities = (self.channels[feature.channel].quantity for feature in self.features)
+        return np.array(["temperature" in quantity for quantity in quantities], dtype=np.float64)
+
+    def directions(self) -> Iterator[Direction]:
+        """In which its numbers go with one cause each."""
+        return directions(self.library, self.effects, self.teeth_a_turn)
+
+    def widened(self, widening: Mapping[str, float]) -> Array:
+        """(n, n) covariance from spreads [coordinate] by likeness of cause."""
+        columns = [
+            widening[one.likeness] * one.values
+            for one in (self.directions() if widening else ())
+            if one.likeness in widening
+        ]
+        both = np.hstack(columns) if columns else np.zeros((len(self.features), 0))
+        return np.asarray(both @ both.T)
+
+
+def compare(
+    data: Data,
+    library: Library,
+    effects: Sequence[Effect],
+    stated: Mapping[tuple[str, str], Stated],
+    mesh_orders: frozenset[float],
+    teeth_a_turn: int,
+) -> Comparison:
+    """Hold the usable numbers of a set against its library.
+
+    stated : systematic uncertainties of the settings, by (kind, place)
+    """
+    known = set(library.features)
+    usable = [row for row, feature in enumerate(data.features) if data.usable[row] and feature in known]
+    features = tuple(data.features[row] for row in usable)
+    cut = library.rows(features)
+    channels = {name: entry.channel for name, entry in data.channels.items()}
+    own = {
+        name: Stated(offset=entry.offset_sd, scale=entry.scale_sd) for name, entry in data.channels.items()
+    }
+    noise = {setting.name: noise for setting, noise in zip(data.settings, data.setting_noise, strict=True)}
+    return Comparison(
+        features=features,
+        values=data.values[usable],
+        noise=data.noise[usable],
+        library=cut,
+        channels=channels,
+        effects=tuple(effects),
+        errors=(*sensor_errors(cut, channels, own), *input_errors(cut, data.settings, stated)),
+        scatter=setting_scatter(cut, noise),
+        mesh_orders=mesh_orders,
+        teeth_a_turn=teeth_a_turn,
+        level=levels(features, cut.base, channels, cut.settings, mesh_orders),
+    )
+
+
+def plain(
+    subject: Comparison, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None
+) -> Whitened:
+    """The residual of one set against the model.
+
+    Constants are far enough off for their answer to bend: each column is the slope where the data put its constant,
+    found by a few steps, and what the answer has beyond it is taken out of the residual.
+    """
+    covariance = subject.covariance(amplitudes, widening)
+    curves = subject.curves()
+    bends: dict[str, Array] = {}
+    sizes = dict.fromkeys(curves, 0.0)
+    for _ in range(BENDING_STEPS if curves else 0):
+        residual = subject.residual - sum(bends.values(), np.zeros(len(subject.features)))
+        found = _constants_at(covariance, residual, curves)
+        sizes = {
+            effect: size + BENDING_SHARE * (found[effect] - size)
+            for effect, size in sizes.items()
+            if effect in found
+        }
+        slopes = {effect: curves[effect].slope(size) for effect, size in sizes.items()}
+        bends = {
+            effect: curves[effect].at(np.array([size]))[0] - size * slopes[effect]
+            for effect, size in sizes.items()
+        }
+        columns = tuple(
+            replace(column, values=slopes[column.effect]) if column.effect in slopes else column
+            for column in covariance.columns
+        )
+        covariance = Covariance(base=covariance.base, columns=columns, amplitudes=covariance.amplitudes)
+    residual = subject.residual - sum(bends.values(), np.zeros(len(subject.features)))
+    return Whitened.of(covariance, residual, bends)
+
+
+BENDING_STEPS = 5
+"""Steps in which the slopes of the constants follow the data."""
+BENDING_SHARE = 0.6
+"""Of every step: a full one swings between two slopes where a course bends much."""
+
+
+def _constants_at(covariance: Covariance, residual: Array, curves: Mapping[str, Curve]) -> dict[str, float]:
+    """Where the data put every constant that has a curve, all its columns together, kept within its bounds."""
+    solved = cho_solve((covariance.lower, True), residual)
+    found: dict[str, float] = {}
+    for place, column in enumerate(covariance.columns):
+        if column.effect in curves:
+            size = covariance.spread(place) ** 2 * float(column.values @ solved)
+            found[column.effect] = found.get(column.effect, 0.0) + size
+    return {effect: float(np.clip(size, *curves[effect].bounds)) for effect, size in found.items()}

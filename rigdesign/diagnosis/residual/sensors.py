@@ -1,0 +1,207 @@
+"""Errors of sensors and settings: entries of the catalogue that leave the case alone.
+
+Each is a column in closed form and a healthy spread, the systematic uncertainty that the measurement states. As an
+effect it may be many times that.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rigdesign.diagnosis.library.library import Library, value_of
+from rigdesign.diagnosis.statistics.columns import Array, Column
+from rigdesign.diagnosis.statistics.phase_shift import Turning
+from rigdesign.diagnosis.statistics.reference_scale import excess
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Setting
+
+TIMES = 12.0
+"""Bound of a sensor error over its stated systematic uncertainty."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stated:
+    """Systematic uncertainties of one channel or setting, as the measurement states them [SI, one sigma]."""
+
+    offset: float = 0.0
+    scale: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class SensorError:
+    """One sensor or setting that may read wrong.
+
+    values : (n,) change of what is read per unit of the error; unit : of the error; spread : healthy
+    """
+
+    name: str
+    title: str
+    kind: str
+    """``sensor`` or ``input``: names the amplitude."""
+    values: Array
+    unit: str
+    spread: float
+    times: float = TIMES
+    """Bound over the spread."""
+
+    @property
+    def bound(self) -> float:
+        """Largest error that is believed."""
+        return self.times * self.spread
+
+    def column(self) -> Column:
+        """Its healthy part."""
+        return Column(
+            name=self.name, kind=self.kind, values=self.values, spread=self.spread, effect=self.name
+        )
+
+
+UNITS = {
+    "temperature": "K",
+    "oil_outlet_temperature": "K",
+    "motor_power": "W",
+    "drive_torque": "N m",
+    "torque": "N m",
+    "angle": "rad",
+    "natural_frequency": "rad/s",
+    "backlash": "m",
+    "seal_gap": "m",
+}
+
+
+def sensor_errors(
+    library: Library, channels: Mapping[str, Channel], stated: Mapping[str, Stated]
+) -> tuple[SensorError, ...]:
+    """Offset and scale of every channel whose measurement states them; the zero of a torque cell is on the mean."""
+    above = excess(library.features, library.base, channels, library.settings)
+    found = []
+    for name, channel in channels.items():
+        own = np.array([feature.channel == name for feature in library.features], dtype=np.float64)
+        one = stated.get(name, Stated())
+        if not own.any():
+            continue
+        orders = channel.quantity in ORDER_QUANTITIES
+        if one.offset > 0.0:
+            mean = np.array([feature.order == 0.0 for feature in library.features], dtype=np.float64)
+            found.append(
+                SensorError(
+                    name=f"torque_zero:{name}" if orders else f"sensor_offset:{name}",
+                    title=f"{name} reads a constant amount off",
+                    kind="sensor",
+                    values=own * mean if orders else own,
+                    unit=UNITS[channel.quantity],
+                    spread=one.offset,
+                )
+            )
+        if one.scale > 0.0:
+            found.append(
+                SensorError(
+                    name=f"sensor_scale:{name}",
+                    title=f"{name} reads a constant share off",
+                    kind="sensor",
+                    values=own * (library.base if channel.quantity != "temperature" else above),
+                    unit="",
+                    spread=one.scale,
+                )
+            )
+    return (*found, *_angle_zero(library))
+
+
+ANGLE_ZERO = 2e-3
+"""Healthy error of the angle at which the mark of the tach stands [rad], one sigma."""
+
+LARGEST_ANGLE_ERROR = 20.0 * ANGLE_ZERO
+"""Up to which orders answer to it by their slope [rad]; beyond it the mark stands elsewhere (`wrong_data`)."""
+
+
+def mark_elsewhere(angle: float) -> str:
+    """Name of the explanation that the mark stands elsewhere by an angle [rad] beyond that."""
+    return f"angle_zero ({angle:+.4f} rad)"
+
+
+def angle_of_mark(explanation: str) -> str:
+    """The angle in such a name, as ``+0.2000 rad``; empty for other names."""
+    kind, _, angle = explanation.partition(" (")
+    return angle.removesuffix(")") if kind == "angle_zero" else ""
+
+
+def _angle_zero(library: Library) -> list[SensorError]:
+    """All orders turned by one angle of the gear that counts: X_k by i k X_k per radian."""
+    turning = Turning.of(library.features)
+    values = turning.order_of(len(library.features)) * turning.ahead(library.base)
+    if not values.any():
+        return []
+    return [
+        SensorError(
+            name="angle_zero",
+            title="the mark of the tach stands elsewhere",
+            kind="sensor",
+            values=values,
+            unit="rad",
+            spread=ANGLE_ZERO,
+            times=LARGEST_ANGLE_ERROR / ANGLE_ZERO,
+        )
+    ]
+
+
+def input_errors(
+    library: Library, settings: Sequence[Setting], stated: Mapping[tuple[str, str], Stated]
+) -> tuple[SensorError, ...]:
+    """Systematic errors of the settings: what was run is not what was read, so the rig answers to something else.
+
+    stated : (kind, place) of a setting -> its systematic uncertainties
+    """
+    found = []
+    for (kind, place), one in stated.items():
+        keys = [key for key in library.inputs if key[:2] == (kind, place)]
+        if not keys:
+            continue
+        by_name = {setting.name: setting for setting in settings}
+        offset = np.sum([library.inputs[key] for key in keys], axis=0)
+        scale = np.sum([library.inputs[key] * value_of(by_name[key[2]], kind, place) for key in keys], axis=0)
+        at = f"{kind} of {place}".removesuffix(" of ")
+        if one.offset > 0.0:
+            found.append(
+                SensorError(
+                    name=_input_name(kind, place, "offset"),
+                    title=f"{at} is read a constant amount off",
+                    kind="input",
+                    values=offset,
+                    unit="K" if "temperature" in kind else "SI",
+                    spread=one.offset,
+                )
+            )
+        if one.scale > 0.0:
+            found.append(
+                SensorError(
+                    name=_input_name(kind, place, "scale"),
+                    title=f"{at} is read a constant share off",
+                    kind="input",
+                    values=scale,
+                    unit="",
+                    spread=one.scale,
+                )
+            )
+    return tuple(found)
+
+
+def _input_name(kind: str, place: str, what: str) -> str:
+    """Names as the catalogue has them."""
+    if kind == "flow":
+        return f"flow_{what}:{place}"
+    if kind == "inlet_temperature":
+        return f"inlet_{what}:{place}"
+    return "ambient" if kind == "ambient_temperature" else f"{kind}_{what}"
+
+
+def setting_scatter(library: Library, noise: Mapping[str, Mapping[tuple[str, str], float]]) -> Array:
+    """(n, n) covariance of the features from the random error of the settings read.
+
+    noise : setting -> (kind, place) -> standard deviation of what was read [SI]
+    """
+    columns = [
+        noise.get(setting, {}).get((kind, place), 0.0) * derivative
+        for (kind, place, setting), derivative in library.inputs.items()
+    ]
+    spread = np.array(columns).reshape(-1, len(library.features))
+    return np.asarray(spread.T @ spread)

@@ -1,0 +1,1 @@
+"""Covariances, evidence and intervals, on numbers alone."""

@@ -1,0 +1,148 @@
+"""What these sensors and points can see and tell apart, before any name is looked for."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.covariance import Whitened
+from rigdesign.diagnosis.statistics.evidence import Hypothesis, release_of
+
+SEEN = 3.3
+"""Standard deviations at which a size is told from nothing with 5 % error on both sides (1.645 + 1.645)."""
+
+TOLD = 4.3
+"""Standard deviations at which it is told from its nearest rival as well."""
+
+ALIAS = 0.95
+"""Correlation above which two effects look alike to these sensors."""
+
+Verdict = Literal["testable", "visible only", "not testable here"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Detectability:
+    """One effect in the eyes of these sensors; sizes in the coordinate of its parameter.
+
+    detectable : smallest size that is seen; isolable : smallest that can be named; rival : nearest explanation
+    """
+
+    effect: str
+    detectable: float
+    isolable: float
+    bound: float
+    rival: str
+    correlation: float
+
+    @property
+    def verdict(self) -> Verdict:
+        """Against the physical bound."""
+        if self.isolable <= self.bound:
+            return "testable"
+        return "visible only" if self.detectable <= self.bound else "not testable here"
+
+
+def slope_of(hypothesis: Hypothesis) -> Array:
+    """(n, k) whitened columns of a hypothesis at its smallest size."""
+    if hypothesis.curve is not None:
+        return hypothesis.curve.slope(0.0)[:, None]
+    assert hypothesis.columns is not None
+    return hypothesis.columns
+
+
+def detectabilities(
+    space: Whitened, effects: Sequence[Hypothesis], rivals: Sequence[Hypothesis]
+) -> tuple[Detectability, ...]:
+    """The table of all effects against all rivals, anonymous ones included.
+
+    Nonlinear effects are judged by their slope at the detectable size, found by one repetition.
+    """
+    seen = [_seen(space, effect) for effect in effects]
+    rows = []
+    nearest = _nearest(effects, [column for _, column in seen], (*effects, *rivals))
+    for effect, (size, _), (rival, correlation) in zip(effects, seen, nearest, strict=True):
+        half = effect.half if effect.curve is None else effect.curve.half
+        told = TOLD / SEEN * size / max(np.sqrt(max(1.0 - correlation**2, 0.0)), 1e-9)
+        rows.append(
+            Detectability(
+                effect=effect.name,
+                detectable=size,
+                isolable=float(told),
+                bound=half,
+                rival=rival,
+                correlation=correlation,
+            )
+        )
+    return tuple(rows)
+
+
+def _seen(space: Whitened, effect: Hypothesis) -> tuple[float, Array]:
+    """Smallest size of an effect that is seen, and its columns (n, k) there."""
+    release = release_of(space, effect.own)
+    column = slope_of(effect)
+    size = _detectable(release.product(column, column))
+    if effect.curve is not None and np.isfinite(size):
+        at = float(np.clip(size, *effect.curve.bounds))
+        if at > 0.0:
+            column = effect.curve.at(np.array([at]))[0][:, None] / at
+            size = _detectable(release.product(column, column))
+    return size, column
+
+
+def _detectable(gram: Array) -> float:
+    """Size seen in its least visible phase."""
+    least = float(np.linalg.eigvalsh(np.atleast_2d(gram))[0])
+    return SEEN / least**0.5 if least > 0.0 else float("inf")
+
+
+def _nearest(
+    effects: Sequence[Hypothesis], columns: Sequence[Array], everything: Sequence[Hypothesis]
+) -> list[tuple[str, float]]:
+    """For the columns of each effect the explanation most like them that claims something else."""
+    if not effects:
+        return []
+    alike = _alike(_bases(columns), _bases([slope_of(one) for one in everything]))
+    number: dict[tuple[str, ...], int] = {}
+    claims = np.array([number.setdefault(one.parts, len(number)) for one in everything])
+    found = []
+    for effect, row in zip(effects, alike, strict=True):
+        others = np.where(claims == number.get(effect.parts, -1), -1.0, row)
+        best = int(np.argmax(others))
+        found.append((everything[best].name, max(float(others[best]), 0.0)))
+    return found
+
+
+def _bases(columns: Sequence[Array]) -> Array:
+    """(n, 2 m) orthonormal bases of what each (n, 1 or 2) columns span; zeros for a second that is not there."""
+    bases = np.zeros((len(columns[0]) if columns else 0, 2 * len(columns)))
+    for place, own in enumerate(columns):
+        if own.shape[1] == 1:
+            bases[:, 2 * place] = own[:, 0] / max(float(np.linalg.norm(own)), 1e-300)
+        else:
+            bases[:, 2 * place : 2 * place + 2] = np.linalg.qr(own)[0]
+    return bases
+
+
+def _alike(bases: Array, others: Array) -> Array:
+    """(m, k) largest cosine between each of m and each of k bases: of two planes that of the nearest directions."""
+    cosines = (bases.T @ others).reshape(bases.shape[1] // 2, 2, others.shape[1] // 2, 2)
+    a, b, c, d = (cosines[:, i, :, j] for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)))
+    first, second, mixed = a**2 + b**2, c**2 + d**2, a * c + b * d
+    squares = 0.5 * (first + second) + np.hypot(0.5 * (first - second), mixed)
+    return np.asarray(np.sqrt(np.clip(squares, 0.0, 1.0)))
+
+
+def aliases(space: Whitened, effects: Sequence[Hypothesis]) -> list[tuple[str, str, float]]:
+    """Pairs of effects these sensors cannot tell apart, with their correlation, those most alike first.
+
+    Pairs that are alike to rounding stand in the order of the effects.
+    """
+    bases = _bases([slope_of(one) for one in effects])
+    alike = np.triu(_alike(bases, bases), 1)
+    pairs = [
+        (effects[first].name, effects[second].name, float(alike[first, second]))
+        for first, second in np.argwhere(alike > ALIAS)
+    ]
+    return sorted(pairs, key=lambda pair: -round(pair[2], 9))

@@ -1,0 +1,370 @@
+"""Evidence of one hypothesis after the other: how much better each explains the residual than nothing does.
+
+    ln B = ln p(residual | effect) - ln p(residual | healthy),  sizes integrated over a prior from the bounds
+
+The prior of a size is a mixture of normals around neutral with spreads from the bound down to a five-hundredth of
+it, so that a small effect is not punished for the width of its bound. What the covariance lets the same thing
+spread by itself is taken out while its effect is tested (`covariance.Release`).
+
+Source: design of the workflow, step 6; the integrals are those of Bayesian model comparison (Kass, Raftery,
+J. Am. Stat. Assoc. 90, 1995, 773).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PPoly
+
+from rigdesign.diagnosis.statistics.columns import Array
+from rigdesign.diagnosis.statistics.covariance import Release, Whitened
+
+SPREADS = (0.6, 0.2, 0.06, 0.02, 0.006, 0.002)
+"""Standard deviations of the mixture, relative to the bound."""
+
+_PAIRS_OF_SPREADS = np.array([(one, other) for one in SPREADS for other in SPREADS])
+
+GRID = 121
+"""Points of the quadrature over one size, denser towards neutral."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curve:
+    """Answer of the numbers to one size, from runs of the model.
+
+    coordinates : (m,) sorted, zero among them; answers : (m, n) change of the features, whitened
+    """
+
+    coordinates: Array
+    answers: Array
+    bounds: tuple[float, float]
+
+    @classmethod
+    def of(
+        cls, coordinates: Array, answers: Array, bounds: tuple[float, float] = (-np.inf, np.inf)
+    ) -> "Curve":
+        """From runs in any order, (m,) and (m, n); it ends where its bounds or its runs end."""
+        order = np.argsort(coordinates)
+        ends = float(coordinates[order[0]]), float(coordinates[order[-1]])
+        return cls(
+            coordinates=coordinates[order],
+            answers=answers[order],
+            bounds=(max(bounds[0], ends[0]), min(bounds[1], ends[1])),
+        )
+
+    @property
+    def half(self) -> float:
+        """The wider side of the bounds."""
+        return max(abs(self.bounds[0]), abs(self.bounds[1]))
+
+    def at(self, coordinates: Array) -> Array:
+        """(k, n) answers between the runs."""
+        return np.asarray(self.shares(coordinates) @ self.answers)
+
+    def slope(self, coordinate: float) -> Array:
+        """(n,) derivative by the coordinate."""
+        return np.asarray(self.slope_shares(coordinate) @ self.answers)
+
+    def shares(self, coordinates: Array) -> Array:
+        """(k, m) share of every run in the answers between them: a spline is linear in what it passes through."""
+        return np.asarray(_interpolation(tuple(self.coordinates.tolist()))(coordinates))
+
+    def slope_shares(self, coordinate: float) -> Array:
+        """(m,) the same of the derivative."""
+        step = 1e-3 * self.half
+        low, high = max(coordinate - step, self.bounds[0]), min(coordinate + step, self.bounds[1])
+        before, after = self.shares(np.array([low, high]))
+        return np.asarray((after - before) / (high - low))
+
+
+@lru_cache(maxsize=256)
+def _interpolation(coordinates: tuple[float, ...]) -> CubicSpline | PPoly:
+    """Coordinate (k,) -> (k, m) shares of the runs: a cubic spline, a straight line between two."""
+    if len(coordinates) > 2:
+        return CubicSpline(coordinates, np.eye(len(coordinates)))
+    low, high = coordinates
+    slopes = np.array([-1.0, 1.0]) / (high - low)
+    return PPoly(np.array([slopes, [1.0, 0.0]])[:, None, :], np.array([low, high]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hypothesis:
+    """One explanation of the residual.
+
+    Either a curve (one size), or whitened columns (n, k) with equal spread and a half bound each; `mean` shifts the
+    residual itself for swaps and wrong units.
+    """
+
+    name: str
+    family: str
+    parts: tuple[str, ...]
+    """What it claims, effects by the name of their entry; anonymous and input parts included."""
+    curve: Curve | None = None
+    columns: Array | None = None
+    half: float = 1.0
+    own: tuple[str, ...] = ()
+    """Effects whose own spread is released."""
+    residual: Array | None = field(default=None, repr=False)
+    """Whitened residual under the hypothesis, where the data themselves are wrong."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evidence:
+    """What a hypothesis is worth.
+
+    log_bayes : against no effect; coordinates : at the best fit; deviations : of the coordinates there (with a flat
+    prior); gain : fall of the whitened square against a healthy rig;
+    column : (n, k) whitened slope there
+    """
+
+    hypothesis: Hypothesis
+    log_bayes: float
+    coordinates: tuple[float, ...]
+    deviations: tuple[float, ...]
+    gain: float
+    columns: Array = field(repr=False)
+    answer: Array = field(repr=False)
+    """(n,) whitened answer at the best fit."""
+    spreads: Array = field(repr=False, default_factory=lambda: np.zeros((0, 0)))
+    """(m, k) standard deviations of the mixture of normals its sizes are integrated over."""
+    joined: int = 0
+    """Where two explanations are joined: columns of the first."""
+
+    def share_of(self, part: str) -> Array:
+        """(n,) what one of its parts adds to the answer."""
+        if not self.joined:
+            return self.answer
+        second = self.columns[:, self.joined :] @ np.array(self.coordinates[self.joined :])
+        return np.asarray(second if part == self.hypothesis.parts[-1] else self.answer - second)
+
+
+def release_of(space: Whitened, own: Sequence[str]) -> Release:
+    """The space without the spreads of these effects."""
+    places = sorted({place for effect in own for place in space.covariance.own(effect)})
+    return Release.of(space.columns[:, places])
+
+
+def weigh(space: Whitened, hypothesis: Hypothesis) -> Evidence:
+    """Evidence of one hypothesis."""
+    if hypothesis.residual is not None:
+        return _weigh_data(space, hypothesis)
+    if hypothesis.curve is not None:
+        return _weigh_curve(space, hypothesis, hypothesis.curve)
+    assert hypothesis.columns is not None
+    return _weigh_columns(space, hypothesis, hypothesis.columns)
+
+
+def mixture_density(coordinates: Array, half: float) -> Array:
+    """(k,) logarithm of the prior density of a size, not cut at its bounds."""
+    spreads = np.array(SPREADS) * half
+    terms = -0.5 * (coordinates[:, None] / spreads) ** 2 - np.log(spreads * np.sqrt(2.0 * np.pi))
+    return np.asarray(_log_sum(terms.T) - np.log(len(SPREADS)))
+
+
+def graded(bounds: tuple[float, float], count: int = GRID) -> tuple[Array, Array]:
+    """Coordinates (k,) between bounds, dense around zero, with their quadrature weights (k,)."""
+    half = max(abs(bounds[0]), abs(bounds[1]))
+    least = SPREADS[-1] * half / 4.0
+    ends = [np.arcsinh(bound / least) for bound in bounds]
+    nodes = np.linspace(float(ends[0]), float(ends[1]), count)
+    step = (ends[1] - ends[0]) / (count - 1)
+    weights = least * np.cosh(nodes) * step
+    weights[[0, -1]] *= 0.5
+    return least * np.sinh(nodes), weights
+
+
+def _weigh_data(space: Whitened, hypothesis: Hypothesis) -> Evidence:
+    """Data that are wrong as they stand: another residual under the same covariance."""
+    assert hypothesis.residual is not None
+    gain = space.chi_square - float(hypothesis.residual @ hypothesis.residual)
+    nothing = np.zeros((len(space.residual), 0))
+    return Evidence(
+        hypothesis=hypothesis,
+        log_bayes=0.5 * gain,
+        coordinates=(),
+        deviations=(),
+        gain=gain,
+        columns=nothing,
+        answer=space.residual - hypothesis.residual,
+    )
+
+
+def _weigh_curve(space: Whitened, hypothesis: Hypothesis, curve: Curve) -> Evidence:
+    release = release_of(space, hypothesis.own)
+    grid, weights = graded(curve.bounds)
+    residual = space.freed(hypothesis.own)
+    fit = _CurveFit.of(release, curve, residual)
+    squares = fit.squares(grid)
+    logs = -0.5 * (squares - space.chi_square) - 0.5 * release.log_determinant
+    prior = mixture_density(grid, curve.half)
+    prior = prior - _log_sum(prior + np.log(weights))
+    log_bayes = float(_log_sum(logs + prior + np.log(weights)))
+    best = fit.refined(float(grid[int(np.argmin(squares))]))
+    stiffness = fit.stiffness(best)
+    return Evidence(
+        hypothesis=hypothesis,
+        log_bayes=log_bayes,
+        coordinates=(best,),
+        deviations=(stiffness**-0.5 if stiffness > 0.0 else float("inf"),),
+        gain=space.chi_square - float(fit.squares(np.array([best]))[0]),
+        columns=curve.slope(best)[:, None],
+        answer=curve.at(np.array([best]))[0],
+        spreads=np.array(SPREADS)[:, None] * curve.half,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _CurveFit:
+    """Fit of a curve by the products of its runs alone, (m, m) and (m,): no pass over the numbers a size.
+
+    gram : of the runs; load : of the runs with the residual; square : of the residual
+    """
+
+    curve: Curve
+    gram: Array
+    load: Array
+    square: float
+
+    @classmethod
+    def of(cls, release: Release, curve: Curve, residual: Array) -> "_CurveFit":
+        runs = curve.answers.T
+        return cls(
+            curve=curve,
+            gram=release.product(runs, runs),
+            load=release.product(runs, residual),
+            square=float(release.product(residual, residual)),
+        )
+
+    def squares(self, sizes: Array) -> Array:
+        """(k,) whitened squares of what sizes leave."""
+        shares = self.curve.shares(sizes)
+        return np.asarray(
+            self.square - 2.0 * (shares @ self.load) + np.einsum("km,km->k", shares @ self.gram, shares)
+        )
+
+    def stiffness(self, size: float) -> float:
+        """Square of the slope."""
+        slope = self.curve.slope_shares(size)
+        return float(slope @ self.gram @ slope)
+
+    def refined(self, start: float) -> float:
+        """Best size by Gauss-Newton steps on the curve, kept within its bounds."""
+        size = start
+        for _ in range(20):
+            slope = self.curve.slope_shares(size)
+            stiffness = float(slope @ self.gram @ slope)
+            if stiffness <= 0.0:
+                break
+            left = float(slope @ (self.load - self.gram @ self.curve.shares(np.array([size]))[0]))
+            after = float(np.clip(size + left / stiffness, *self.curve.bounds))
+            if abs(after - size) <= 1e-6 * self.curve.half:
+                return after
+            size = after
+        return size
+
+
+def _weigh_columns(space: Whitened, hypothesis: Hypothesis, columns: Array) -> Evidence:
+    release = release_of(space, hypothesis.own)
+    gram = np.atleast_2d(release.product(columns, columns))
+    residual = space.freed(hypothesis.own)
+    load = np.atleast_1d(release.product(columns, residual))
+    spreads = np.outer(np.array(SPREADS) * hypothesis.half, np.ones(len(load)))
+    before = float(release.product(residual, residual))
+    shift = 0.5 * (space.chi_square - before)
+    log_bayes = mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
+    inverse = inverse_of(gram)
+    best = np.clip(inverse @ load, -hypothesis.half, hypothesis.half)
+    return Evidence(
+        hypothesis=hypothesis,
+        log_bayes=log_bayes,
+        coordinates=tuple(float(value) for value in best),
+        deviations=deviations_of(inverse),
+        gain=space.chi_square - before + float(2.0 * best @ load - best @ gram @ best),
+        columns=columns,
+        answer=columns @ best,
+        spreads=spreads,
+    )
+
+
+def mixed(gram: Array, load: Array, spreads: Array) -> float:
+    """Mean over (m, k) spreads S of ln B of columns with normal sizes,
+
+    ln B = .5 b'(G + S^-2)^-1 b - .5 ln|I + S G S|.
+    """
+    system = np.eye(len(load)) + spreads[:, :, None] * gram * spreads[:, None, :]
+    half_load = spreads * load
+    _, logarithm = np.linalg.slogdet(system)
+    solved = np.linalg.solve(system, half_load[:, :, None])[:, :, 0]
+    logs = 0.5 * np.einsum("mk,mk->m", half_load, solved) - 0.5 * logarithm
+    return float(_log_sum(logs) - np.log(len(logs)))
+
+
+def _log_sum(logs: Array) -> Array:
+    """Logarithm of the sum of exponentials over the first axis."""
+    most = logs.max(axis=0)
+    return np.asarray(most + np.log(np.exp(logs - most).sum(axis=0)))
+
+
+ALIKE = 1e-10
+"""Share of the mean square below which a direction of columns of equal length is rounding."""
+
+
+def inverse_of(gram: Array) -> Array:
+    """Of a symmetric matrix (k, k), whatever the units of its columns; zero along directions it does not see."""
+    lengths = np.sqrt(np.diagonal(gram))
+    scale = np.divide(1.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
+    values, vectors = np.linalg.eigh(scale[:, None] * gram * scale)
+    inverse = np.divide(1.0, values, out=np.zeros_like(values), where=values > ALIKE)
+    return np.asarray(scale[:, None] * ((vectors * inverse) @ vectors.T) * scale)
+
+
+def deviations_of(inverse: Array) -> tuple[float, ...]:
+    """Standard deviations of coordinates from their covariance (k, k)."""
+    return tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0)))
+
+
+def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
+    """Two explanations at once, in closed form around the best fit of the first.
+
+    The first is taken at its own best size with the slope there; of the second the slope at its best size. The
+    spreads of both are integrated over the same mixtures as alone.
+    """
+    name = f"{first.hypothesis.name} + {second.hypothesis.name}"
+    own = (*first.hypothesis.own, *second.hypothesis.own)
+    release = release_of(space, own)
+    base = first.answer - first.columns @ np.array(first.coordinates)
+    columns = np.hstack([first.columns, second.columns])
+    left = space.freed(own) - base
+    gram = release.product(columns, columns)
+    load = release.product(columns, left)
+    owner = np.repeat([0, 1], [first.columns.shape[1], second.columns.shape[1]])
+    halves = np.array([_half(first.hypothesis), _half(second.hypothesis)])
+    shift = 0.5 * (space.chi_square - float(release.product(left, left)))
+    spreads = (_PAIRS_OF_SPREADS * halves)[:, owner]
+    log_bayes = mixed(gram, load, spreads) + shift - 0.5 * release.log_determinant
+    inverse = inverse_of(gram)
+    best = inverse @ load
+    after = left - columns @ best
+    hypothesis = Hypothesis(
+        name=name,
+        family="pair",
+        parts=(*first.hypothesis.parts, *second.hypothesis.parts),
+        columns=columns,
+        own=own,
+    )
+    return Evidence(
+        hypothesis=hypothesis,
+        log_bayes=log_bayes,
+        coordinates=tuple(float(value) for value in best),
+        deviations=deviations_of(inverse),
+        gain=space.chi_square - float(release.product(after, after)),
+        columns=columns,
+        answer=base + columns @ best,
+        spreads=spreads,
+        joined=first.columns.shape[1],
+    )
+
+
+def _half(hypothesis: Hypothesis) -> float:
+    return hypothesis.half if hypothesis.curve is None else hypothesis.curve.half

@@ -1,0 +1,323 @@
+"""Where simulation and data disagree: residuals, their groups, and a sentence for each."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign import __version__
+from rigdesign.base import units
+from rigdesign.measurement.comparison.bands import Bands
+from rigdesign.measurement.comparison.locate import VARIABLES, Located, locate
+from rigdesign.measurement.comparison.suspects import swap_findings, unit_findings
+from rigdesign.measurement.processing.baseline import Foretold, HealthySet, foretold
+from rigdesign.measurement.processing.features import Data
+from rigdesign.measurement.processing.propagation import setting_spread
+from rigdesign.measurement.quantities import CHANNELS
+from rigdesign.measurement.reading.measurement_set import Finding, MeasurementSet
+from rigdesign.prediction.model import Feature, Prediction, Setting
+from rigdesign.report.results_json import to_plain
+
+Array = NDArray[np.float64]
+BY_CHANCE = 1e-3
+"""Probability below which a residual is more than the declared uncertainty makes."""
+SHOWN = 3
+"""Groups named in the headline."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparison:
+    """Measured beside simulated.
+
+    simulated, expected, residual, spread : (n_features,) SI in the order of ``data.features``, NaN where nothing
+        is measured; expected = simulated and, where a healthy set has the number, its residual there;
+        residual = measured - expected; spread = 1 sigma of noise, settings, sensor and the model's stated error,
+        of which a healthy set leaves the noise and settings of both
+    healthy, foretold : the baseline of the set and what it says; None without one
+    located : groups by the size of their whitened residual
+    findings : of the data, and what the simulation adds
+    """
+
+    measurement: MeasurementSet
+    data: Data
+    simulated: Array
+    expected: Array
+    residual: Array
+    spread: Array
+    located: tuple[Located, ...]
+    sentences: tuple[str, ...]
+    findings: tuple[Finding, ...]
+    healthy: HealthySet | None = None
+    foretold: Foretold | None = None
+
+    @property
+    def reference(self) -> str:
+        """What the readings are held against, in a sentence."""
+        return SIMULATION if self.healthy is None else "the simulation and the healthy set"
+
+    @property
+    def whitened(self) -> Array:
+        """Residual over its standard deviation; NaN where nothing is measured."""
+        return np.asarray(self.residual / self.spread)
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the whitened residual."""
+        return float(np.sqrt(np.nanmean(self.whitened**2)))
+
+
+def compare(
+    measurement: MeasurementSet, data: Data, prediction: Prediction, healthy: HealthySet | None = None
+) -> Comparison:
+    """Hold measured against simulated numbers; given a healthy set, against what both say.
+
+    ``prediction`` has the features of ``data`` in the same order; ValueError otherwise.
+    """
+    if prediction.features != data.features:
+        raise ValueError(
+            "prediction and data have other features; predict with the settings and channels of the data"
+        )
+    known = None if healthy is None else foretold(data, healthy)
+    expected = prediction.values
+    variance = _variance(measurement, data, prediction)
+    if known is not None:
+        expected = expected + np.where(known.known, known.residual, 0.0)
+        variance = np.where(known.known, _variance_given(data, prediction, known), variance)
+    residual = np.where(data.usable, data.values - expected, np.nan)
+    spread = np.where(data.usable, np.sqrt(variance), np.nan)
+    bands = Bands(measurement)
+    groups = [bands.of(feature) for feature in data.features]
+    ambient = measurement.case.ambient.temperature
+    located = locate(data.features, residual, spread, groups, data.settings, ambient)
+    found = Comparison(
+        measurement=measurement,
+        data=data,
+        simulated=prediction.values,
+        expected=expected,
+        residual=residual,
+        spread=spread,
+        located=located,
+        sentences=(),
+        findings=(
+            *data.findings,
+            *(_of_baseline(data, healthy, known) if healthy is not None and known is not None else ()),
+            *unit_findings(data, prediction.values),
+            *swap_findings(data, expected, spread),
+        ),
+        healthy=healthy,
+        foretold=known,
+    )
+    said = (sentence(item, measurement, found.reference) for item in located if significant(item))
+    return replace(found, sentences=tuple(said))
+
+
+def _of_baseline(data: Data, healthy: HealthySet, known: Foretold) -> Iterator[Finding]:
+    """What the healthy set says of itself, and how much of this one it does not have."""
+    for finding in healthy.data.findings:
+        yield replace(finding, text=f"healthy set: {finding.text}")
+    lacking = int(np.count_nonzero(data.usable & ~known.known))
+    if lacking:
+        gone = tuple(setting.name for setting in data.settings if setting.name not in known.points)
+        why = f" (operating points not met again: {', '.join(gone)})" if gone else ""
+        yield Finding(
+            id="not_in_baseline", weight="note", points=gone,
+            text=f"{lacking} of {int(data.usable.sum())} numbers have no counterpart in the healthy set{why}; they are "
+            "held against the simulation alone",
+        )  # fmt: skip
+
+
+def significant(item: Located) -> bool:
+    """Whether a group is off by more than the declared uncertainty makes by chance."""
+    return item.excess < BY_CHANCE
+
+
+def headline(comparison: Comparison) -> str:
+    """The verdict in a sentence."""
+    count = int(np.count_nonzero(comparison.data.usable))
+    given = "" if comparison.healthy is None else f"Given the healthy set {_title(comparison.healthy)}: "
+    if not comparison.sentences:
+        subject = "Simulation and data" if not given else "simulation, healthy set and data"
+        return (
+            f"{given}{subject} agree within the declared uncertainty at all {count} numbers "
+            f"(whitened residual {comparison.rms:.2g}, chance alone makes 1)."
+        )
+    more = len(comparison.sentences) - SHOWN
+    tail = f" {more} more groups differ." if more > 0 else ""
+    return given + " ".join(comparison.sentences[:SHOWN]) + tail
+
+
+def _title(healthy: HealthySet) -> str:
+    return f"“{healthy.measurement.title}”"
+
+
+SIMULATION = "the simulation"
+
+
+def sentence(item: Located, measurement: MeasurementSet, reference: str = SIMULATION) -> str:
+    """One group as a sentence: where, which way off ``reference``, how much, at which points, along with what."""
+    channel = measurement.channels[item.channels[0]]
+    quantity = channel.channel.quantity
+    complex_parts = "orders" in item.group
+    size = display_residual(item.largest, quantity, channel.unit)
+    if complex_parts:
+        way = f"off by up to {abs(size[0]):.3g} {size[1]}"
+    elif item.positive > 0.9:
+        way = f"above {reference} by up to {abs(size[0]):.3g} {size[1]}"
+    elif item.positive < 0.1:
+        way = f"below {reference} by up to {abs(size[0]):.3g} {size[1]}"
+    else:
+        way = f"off {reference} both ways by up to {abs(size[0]):.3g} {size[1]}"
+    text = f"{item.group[0].upper()}{item.group[1:]}: {way}"
+    if set(item.points) - {""}:
+        count = len(item.points)
+        text += (
+            ", all operating points"
+            if count == item.all_points > 1
+            else f", {count} of {item.all_points} operating points"
+        )
+    if item.variable:
+        text += f"; the difference {VARIABLES[item.variable]} ({100.0 * item.share:.0f} % of it)"
+    return text + "."
+
+
+def display_residual(value: float, quantity: str, unit: str) -> tuple[float, str]:
+    """A difference [SI] in the unit of its channel; of temperatures in kelvin."""
+    measured = CHANNELS[quantity]
+    if measured.kind == "temperature":
+        return value, "K"
+    return value / units.worth(measured.kind, unit)[0], unit
+
+
+def _variance(measurement: MeasurementSet, data: Data, prediction: Prediction) -> Array:
+    """Of measured minus simulated: noise, scatter of the settings, offset, scale, stated error of the model."""
+    ambient = {
+        setting.name: setting.ambient_temperature or measurement.case.ambient.temperature
+        for setting in data.settings
+    }
+    inputs = setting_spread(data, prediction.values)
+    variance = np.empty(len(data.features))
+    for i, feature in enumerate(data.features):
+        entry = data.channels[feature.channel]
+        thermal = CHANNELS[entry.channel.quantity].kind == "temperature"
+        level = data.values[i] - ambient.get(feature.setting, 0.0) if thermal else data.values[i]
+        offset = entry.offset_sd if feature.part == "value" else 0.0
+        error = prediction.error if thermal else 0.0
+        variance[i] = (
+            data.noise[i] ** 2 + inputs[i] ** 2 + offset**2 + (entry.scale_sd * level) ** 2 + error**2
+        )
+    return variance
+
+
+def _variance_given(data: Data, prediction: Prediction, known: Foretold) -> Array:
+    """Of the difference of two residuals: noise and scatter of the settings of both sets.
+
+    Offset and stated error are in both and cancel, the scale but for the difference of the readings.
+    """
+    inputs = setting_spread(data, prediction.values)
+    scale = np.array([data.channels[feature.channel].scale_sd for feature in data.features])
+    steps = scale * (data.values - known.reading)
+    return np.asarray(data.noise**2 + inputs**2 + known.variance + steps**2)
+
+
+def comparison_document(comparison: Comparison, *, model: str, fidelity: str) -> dict[str, Any]:
+    """compare.json: what was compared, the sentence, the groups, every number, and the findings."""
+    measurement, data = comparison.measurement, comparison.data
+    case = measurement.case
+    healthy = None if comparison.healthy is None else comparison.healthy.measurement
+    return {
+        "schema_version": 1,
+        "tool_version": __version__,
+        "case": {"name": case.name, "path": str(case.path), "hash": case.hash},
+        "measurement": {
+            "title": measurement.title,
+            "path": str(measurement.folder),
+            "hash": measurement.hash,
+            "points": len(data.settings),
+            "channels": list(data.channels),
+            "strength": data.strength,
+        },
+        "baseline": None
+        if healthy is None
+        else {
+            "title": healthy.title,
+            "path": str(healthy.folder),
+            "hash": healthy.hash,
+            "points": {now: before for now, before in comparison.foretold.points.items() if now}
+            if comparison.foretold is not None
+            else {},
+        },
+        "model": {"thermal": model, "fidelity": fidelity},
+        "headline": headline(comparison),
+        "whitened_rms": to_plain(comparison.rms),
+        "numbers": int(np.count_nonzero(data.usable)),
+        "located": [_located_row(item, comparison) for item in comparison.located],
+        "settings": [_setting_row(setting) for setting in data.settings],
+        "residuals": _residual_rows(comparison),
+        "findings": to_plain(comparison.findings),
+    }
+
+
+def _located_row(item: Located, comparison: Comparison) -> dict[str, Any]:
+    return {
+        "group": item.group,
+        "significant": significant(item),
+        "sentence": sentence(item, comparison.measurement, comparison.reference),
+        "whitened_rms": to_plain(item.rms),
+        "by_chance": to_plain(item.excess),
+        "leading_variable": item.variable or None,
+        "explained_share": to_plain(item.share),
+        "channels": list(item.channels),
+        "points_off": list(item.points),
+    }
+
+
+def _setting_row(setting: Setting) -> dict[str, Any]:
+    return {
+        "point": setting.name,
+        "speed_rpm": to_plain(units.display(setting.speed, "speed")),
+        "torque_Nm": to_plain(setting.torque),
+        "inlet_temperature_degC": {
+            k: to_plain(units.display(v, "temperature")) for k, v in setting.inlet_temperature.items()
+        },
+        "flow_l_min": {k: to_plain(units.display(v, "flow")) for k, v in setting.flow.items()},
+        "ambient_temperature_degC": None
+        if setting.ambient_temperature is None
+        else to_plain(units.display(setting.ambient_temperature, "temperature")),
+    }
+
+
+def _residual_rows(comparison: Comparison) -> list[dict[str, Any]]:
+    rows = []
+    data = comparison.data
+    for i, feature in enumerate(data.features):
+        if not data.usable[i]:
+            continue
+        entry = data.channels[feature.channel]
+        quantity, unit = entry.channel.quantity, entry.unit
+        numbers = (data.values[i], comparison.simulated[i], comparison.expected[i])
+        measured, simulated, expected = (
+            units.display(float(x), CHANNELS[quantity].kind, unit) for x in numbers
+        )
+        residual, residual_unit = display_residual(float(comparison.residual[i]), quantity, unit)
+        spread, _ = display_residual(float(comparison.spread[i]), quantity, unit)
+        rows.append(
+            {
+                "channel": feature.channel, "point": feature.setting or None, "order": feature.order,
+                "part": feature.part, "measured": to_plain(measured), "simulated": to_plain(simulated),
+                "expected": to_plain(expected), "unit": unit,
+                "residual": to_plain(residual), "spread": to_plain(spread), "residual_unit": residual_unit,
+                "whitened": to_plain(float(comparison.whitened[i])), "repeats": int(data.repeats[i]),
+            }
+        )  # fmt: skip
+    return rows
+
+
+def series_of(features: Sequence[Feature]) -> dict[str, list[int]]:
+    """Features by what one row of a map shows: a channel, of orders one order."""
+    rows: dict[str, list[int]] = {}
+    for i, feature in enumerate(features):
+        label = feature.channel if feature.order == 0.0 else f"{feature.channel}, order {feature.order:g}"
+        rows.setdefault(label, []).append(i)
+    return rows

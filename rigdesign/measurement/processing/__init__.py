@@ -1,0 +1,1 @@
+"""From readings to the numbers that a prediction is held against."""

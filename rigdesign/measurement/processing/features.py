@@ -1,0 +1,200 @@
+"""From readings to the numbers a prediction is held against: means over repeats, their noise, what is usable."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.base.errors import MeasurementError
+from rigdesign.measurement.processing.repeats import pooled_noise, without_outliers
+from rigdesign.measurement.processing.transfer import gain
+from rigdesign.measurement.quality.checks import data_findings
+from rigdesign.measurement.quality.consistency import consistency_findings
+from rigdesign.measurement.reading.measurement_set import (
+    Finding,
+    MeasuredChannel,
+    MeasuredPoint,
+    MeasurementSet,
+)
+from rigdesign.prediction.model import Feature, Setting, features_of
+
+Strength = Literal["proven", "indicative"]
+
+THERMAL = frozenset(("temperature", "oil_outlet_temperature", "seal_gap"))
+"""Quantities that mean nothing before temperatures have settled."""
+LEAST_GAIN = 0.1
+"""What a sensor must let through of an order to be corrected for."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Data:
+    """Numbers of a measurement set in the order of ``features_of(settings, channels)``, SI.
+
+    features, values, noise, usable, repeats : one entry per feature; NaN and infinity where not usable
+    """
+
+    features: tuple[Feature, ...]
+    values: NDArray[np.float64]
+    """Means over repeats, corrected for the transfer function of the sensor."""
+    noise: NDArray[np.float64]
+    """1 sigma of the mean: repeats pooled over the operating points, or the declared uncertainty."""
+    usable: NDArray[np.bool_]
+    repeats: NDArray[np.int64]
+    """Readings behind each number."""
+    settings: tuple[Setting, ...]
+    setting_noise: tuple[Mapping[tuple[str, str], float], ...]
+    """Per setting, 1 sigma of the mean of each measured setting by (quantity, place) [SI; K]."""
+    assembly: tuple[int, ...]
+    """Per setting, how often the rig has been put together anew before it."""
+    channels: Mapping[str, MeasuredChannel]
+    findings: tuple[Finding, ...]
+    strength: Strength
+    """indicative: without repeats, noise is what the set declares."""
+
+
+def features(measurement: MeasurementSet) -> Data:
+    """Means over repeats with their noise, after the data checks.
+
+    Raises
+    ------
+    MeasurementError
+        No reading is left to use; says why each channel fell out.
+    """
+    dropped, checks = data_findings(measurement)
+    settings = measurement.settings
+    channels = {name: entry for name, entry in measurement.channels.items() if name not in dropped}
+    names = features_of(settings, (entry.channel for entry in channels.values()))
+    clean, outliers = without_outliers(
+        {feature: measurement.readings.get(feature, np.empty(0)) for feature in names}, channels
+    )
+    noise = pooled_noise(clean, channels)
+    values = np.array([_mean(clean[feature]) for feature in names], dtype=float)
+    repeats = np.array([np.count_nonzero(np.isfinite(clean[feature])) for feature in names], dtype=np.int64)
+    with np.errstate(divide="ignore"):
+        spread = np.array([noise[feature] for feature in names], dtype=float) / np.sqrt(repeats)
+    usable = np.isfinite(values) & (spread > 0.0) & np.isfinite(spread)
+    findings = [*measurement.findings, *checks, *outliers]
+    findings += _not_steady(measurement, names, usable)
+    findings += _through_sensors(settings, channels, names, values, spread, usable)
+    findings += _few_readings(settings, names, repeats, usable)
+    if not usable.any():
+        reasons = "; ".join(finding.text for finding in findings if finding.weight == "dropped")
+        raise MeasurementError(
+            f"no usable reading is left: {reasons or 'every cell is empty'}", str(measurement.folder)
+        )
+    values[~usable], spread[~usable] = np.nan, np.inf
+    data = Data(
+        features=names,
+        values=values,
+        noise=spread,
+        usable=usable,
+        repeats=repeats,
+        settings=settings,
+        setting_noise=tuple(_setting_noise(measurement, point) for point in measurement.points),
+        assembly=_assemblies(measurement.points),
+        channels=channels,
+        findings=tuple(findings),
+        strength="proven" if _repeated(names, repeats, usable) else "indicative",
+    )
+    return replace(data, findings=(*findings, *consistency_findings(measurement, data)))
+
+
+def _mean(values: NDArray[np.float64]) -> float:
+    finite = values[np.isfinite(values)]
+    return float(finite.mean()) if finite.size else math.nan
+
+
+def _not_steady(
+    measurement: MeasurementSet, names: Sequence[Feature], usable: NDArray[np.bool_]
+) -> Iterable[Finding]:
+    """Take temperatures out at points that had not settled."""
+    restless = tuple(point.name for point in measurement.points if not point.steady)
+    thermal = {name for name, entry in measurement.channels.items() if entry.channel.quantity in THERMAL}
+    hit = [i for i, feature in enumerate(names) if feature.setting in restless and feature.channel in thermal]
+    usable[hit] = False
+    if hit:
+        yield Finding(
+            id="not_steady", weight="dropped", points=restless,
+            text=f"{', '.join(restless)}: said not to be steady; temperatures there are not used",
+        )  # fmt: skip
+
+
+def _through_sensors(
+    settings: Sequence[Setting],
+    channels: Mapping[str, MeasuredChannel],
+    names: Sequence[Feature],
+    values: NDArray[np.float64],
+    noise: NDArray[np.float64],
+    usable: NDArray[np.bool_],
+) -> Iterable[Finding]:
+    """Undo what sensor and logger do to orders; orders they hold back are taken out."""
+    speeds = {setting.name: setting.speed for setting in settings}
+    place = {feature: i for i, feature in enumerate(names)}
+    lost: dict[str, list[Feature]] = {}
+    for feature, i in place.items():
+        transfer = channels[feature.channel].transfer
+        if transfer is None or feature.part != "real":
+            continue
+        j = place[Feature(feature.channel, feature.setting, feature.order, "imaginary")]
+        factor = gain(transfer, feature.order * speeds[feature.setting])
+        if abs(factor) < LEAST_GAIN:
+            usable[[i, j]] = False
+            lost.setdefault(feature.channel, []).append(feature)
+            continue
+        true = complex(values[i], values[j]) / factor
+        values[i], values[j] = true.real, true.imag
+        noise[[i, j]] /= abs(factor)
+    for name, gone in lost.items():
+        lowest = min(gone, key=lambda feature: feature.order * speeds[feature.setting])
+        yield Finding(
+            id="held_back", weight="dropped", channels=(name,),
+            text=f"{name}: {len(gone)} orders pass its sensor with less than {LEAST_GAIN:g} of their size, from "
+            f"order {lowest.order:g} at {lowest.setting} on; they are not used",
+        )  # fmt: skip
+
+
+def _few_readings(
+    settings: Sequence[Setting],
+    names: Sequence[Feature],
+    repeats: NDArray[np.int64],
+    usable: NDArray[np.bool_],
+) -> Iterable[Finding]:
+    if len(settings) == 1:
+        yield Finding(
+            id="one_point", weight="note", points=(settings[0].name,),
+            text="one operating point only: most effects cannot be told apart; measure at other speeds, torques "
+            "and oil temperatures",
+        )  # fmt: skip
+    if not _repeated(names, repeats, usable):
+        yield Finding(
+            id="no_repeats", weight="note",
+            text="fewer than half the numbers have a second reading: noise is what the set declares, verdicts are "
+            "indicative; repeat every point",
+        )  # fmt: skip
+
+
+def _repeated(names: Sequence[Feature], repeats: NDArray[np.int64], usable: NDArray[np.bool_]) -> bool:
+    """Whether at least half the usable numbers of running points rest on two readings or more."""
+    running = usable & np.array([feature.setting != "" for feature in names], dtype=bool)
+    chosen = running if running.any() else usable
+    return bool(chosen.any() and np.mean(repeats[chosen] >= 2) >= 0.5)
+
+
+def _setting_noise(measurement: MeasurementSet, point: MeasuredPoint) -> dict[tuple[str, str], float]:
+    found = {}
+    for column, sensor in measurement.setting_sensors.items():
+        count = np.count_nonzero(np.isfinite(point.readings[column]))
+        if count:
+            found[sensor.quantity, sensor.place] = sensor.noise / math.sqrt(count)
+    return found
+
+
+def _assemblies(points: Sequence[MeasuredPoint]) -> tuple[int, ...]:
+    count, found = 0, []
+    for point in points:
+        count += point.reassembled
+        found.append(count)
+    return tuple(found)

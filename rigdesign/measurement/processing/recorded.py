@@ -1,0 +1,247 @@
+"""Raw recordings of a set: every channel they hold becomes a mean, those of torque and angle become orders."""
+
+import math
+from collections.abc import Iterator, Mapping, MutableSequence, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.base.errors import Fault, MeasurementError
+from rigdesign.case.faults import unknown, written
+from rigdesign.measurement.places import Places
+from rigdesign.measurement.processing.averaging import Orders, signal_orders
+from rigdesign.measurement.quality.signal_checks import (
+    lines_off_the_mesh,
+    signal_findings,
+    usable_signal,
+    without_wrong_samples,
+)
+from rigdesign.measurement.quantities import CHANNELS, accepted_unit, same_worth, to_si
+from rigdesign.measurement.reading.document import MeasurementFile, Recording
+from rigdesign.measurement.reading.measurement_set import Finding, MeasuredChannel, MeasuredPoint, Weight
+from rigdesign.measurement.reading.rows import Rows
+from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
+from rigdesign.measurement.reading.tach import TachError, TurnAngle, turn_angle
+from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Feature
+
+Readings = dict[Feature, NDArray[np.float64]]
+SPEED_OFF = 0.02
+"""Relative difference between the speed of the tach and that of the table from which one of them is wrong."""
+
+SHORTER = 0.1
+"""Part of its length that a recording may lack of the longest one of its point."""
+
+
+def read_recordings(
+    folder: Path,
+    document: MeasurementFile,
+    places: Places,
+    channels: Mapping[str, MeasuredChannel],
+    points: Sequence[MeasuredPoint],
+    rows: Rows,
+    known: Mapping[Feature, NDArray[np.float64]],
+    findings: MutableSequence[Finding],
+) -> Readings:
+    """Readings of all recordings by feature [SI]; what the tables hold already (``known``) is left to them.
+
+    Raises
+    ------
+    MeasurementError
+        A file that cannot be read, an unknown point or repeat, a signal in another unit than its channel.
+    """
+    faults = list(_faults(document, rows))
+    if faults:
+        raise MeasurementError(faults)
+    found: Readings = {}
+    lasting: dict[str, dict[str, float]] = {}
+    by_name = {point.name: point for point in points}
+    for entry in document.data.recordings:
+        if entry.point not in by_name:
+            continue
+        try:
+            signals = read_signals(folder, entry.file, document.data)
+        except MeasurementError as error:
+            faults += error.faults
+            continue
+        lasting.setdefault(entry.point, {})[entry.file] = max(float(np.ptp(s.time)) for s in signals.values())
+        here = {name: channel for name, channel in channels.items()
+                if channel.signal in signals and channel.channel.quantity not in STANDING_QUANTITIES}  # fmt: skip
+        faults += _unit_faults(entry, here, signals)
+        if faults:
+            continue
+        place = rows.place(entry.point, entry.repeat)
+        assert place is not None
+        count = len(rows.rows_of(entry.point))
+        read = _Recording(entry, document, places, by_name[entry.point], findings)
+        for feature, value in read.numbers(here, signals):
+            if feature not in known:
+                found.setdefault(feature, np.full(count, np.nan))[place] = value
+    if faults:
+        raise MeasurementError(faults)
+    findings.extend(_shorter(lasting))
+    return found
+
+
+def _shorter(lasting: Mapping[str, Mapping[str, float]]) -> Iterator[Finding]:
+    """Recordings that last much less than another one of their point; ``lasting``: point -> file -> seconds."""
+    for point, files in lasting.items():
+        longest = max(files.values())
+        for file, length in files.items():
+            if length < (1.0 - SHORTER) * longest:
+                yield Finding(
+                    id="shorter_recording", weight="suspect", points=(point,),
+                    text=f"{file}: lasts {length:.4g} s, another recording of {point} {longest:.4g} s; look whether it "
+                    "was cut off",
+                )  # fmt: skip
+
+
+class _Recording:
+    """One file: its angle, its channels, and what is to be said of them."""
+
+    def __init__(
+        self,
+        entry: Recording,
+        document: MeasurementFile,
+        places: Places,
+        point: MeasuredPoint,
+        findings: MutableSequence[Finding],
+    ) -> None:
+        self._entry = entry
+        self._document = document
+        self._places = places
+        self._point = point
+        self._findings = findings
+
+    def numbers(
+        self, channels: Mapping[str, MeasuredChannel], signals: Signals
+    ) -> Iterator[tuple[Feature, float]]:
+        """Features with their numbers [SI]."""
+        by_orders = {name for name, c in channels.items() if c.channel.quantity in ORDER_QUANTITIES}
+        turn = self._turn(signals) if by_orders else None
+        for name, channel in channels.items():
+            measured = CHANNELS[channel.channel.quantity]
+            kind = measured.kind
+            unit = accepted_unit(signals[channel.signal].unit, kind) or channel.unit
+            signal, said = without_wrong_samples(signals[channel.signal], measured, unit)
+            if not self._looks_right(name, signal, said):
+                continue
+            if name in by_orders:
+                if turn is not None:
+                    yield from self._orders(name, channel, signal, turn, to_si(1.0, kind, unit))
+            else:
+                yield Feature(name, self._point.name), to_si(float(np.nanmean(signal.values)), kind, unit)
+
+    def _turn(self, signals: Signals) -> TurnAngle | None:
+        tach = self._document.data.tach
+        if tach is None:
+            return None
+        try:
+            turn = turn_angle(tach, signals, self._entry.start_turn)
+        except TachError as error:
+            self._say("tach", "dropped", f"{error}; no orders are read from this recording")
+            return None
+        if turn.lost or turn.surplus:
+            self._say(
+                "tach", "note", f"{turn.lost} tach pulses lost and filled, {turn.surplus} too many left out"
+            )
+        speed = self._point.setting.speed
+        if abs(turn.speed - speed) > SPEED_OFF * speed:
+            self._say(
+                "tach_speed", "suspect",
+                f"the tach gives {turn.speed * 30 / math.pi:.5g} rpm, the table {speed * 30 / math.pi:.5g} rpm; "
+                "look at data.tach.pulses_per_turn and at the speed column",
+            )  # fmt: skip
+        return turn
+
+    def _looks_right(self, name: str, signal: Signal, said: Sequence[tuple[str, Weight, str]]) -> bool:
+        for identity, weight, text in (*said, *signal_findings(signal)):
+            self._say(identity, weight, f"{name}: {text}", name)
+        return usable_signal(signal)
+
+    def _orders(
+        self, name: str, channel: MeasuredChannel, signal: Signal, turn: TurnAngle, scale: float
+    ) -> Iterator[tuple[Feature, float]]:
+        wanted = channel.channel.orders
+        try:
+            found = signal_orders(signal, turn, wanted, self._places.cycle)
+        except ValueError as error:
+            self._say("recording", "dropped", f"{name}: {error}", name)
+            return
+        self._say_orders(name, found, signal, turn)
+        for order, value in found.values.items():
+            if order == 0.0:
+                yield Feature(name, self._point.name), scale * value.real
+            else:
+                yield Feature(name, self._point.name, order, "real"), scale * value.real
+                yield Feature(name, self._point.name, order, "imaginary"), scale * value.imag
+
+    def _say_orders(self, name: str, found: Orders, signal: Signal, turn: TurnAngle) -> None:
+        if found.left_out:
+            self._say(
+                "missing_samples",
+                "note",
+                f"{name}: {found.left_out} cycles with missing samples left out",
+                name,
+            )
+        if found.too_fast:
+            self._say(
+                "too_fast", "dropped",
+                f"{name}: orders from {min(found.too_fast):g} on have too few samples per period; sample faster", name,
+            )  # fmt: skip
+        if found.without_phase:
+            shown = ", ".join(f"{order:.4g}" for order in found.without_phase[:4])
+            why = (
+                f"the recording is shorter than the {self._places.cycle} turns of a hunting cycle"
+                if turn.absolute or found.cycle != self._places.cycle
+                else "full turns are not counted from where both teeth 0 met; state start_turn of the recording"
+            )
+            self._say("without_phase", "dropped", f"{name}: orders {shown}, … are not used: {why}", name)
+        for mesh, line in lines_off_the_mesh(signal, turn, self._places.mesh_orders):
+            self._say(
+                "mesh_order", "suspect",
+                f"{name}: a line at order {line:.4g} stands where {mesh} should have "
+                f"{float(self._places.mesh_orders[mesh]):g}; look at tooth numbers, pulses per turn and speed", name,
+            )  # fmt: skip
+
+    def _say(self, identity: str, weight: Weight, text: str, *channels: str) -> None:
+        self._findings.append(
+            Finding(
+                id=identity, weight=weight,
+                text=f"{self._entry.file}: {text}", channels=channels, points=(self._point.name,),
+            )
+        )  # fmt: skip
+
+
+def _faults(document: MeasurementFile, rows: Rows) -> Iterator[Fault]:
+    order_channels = [n for n, entry in document.channels.items() if entry.quantity in ORDER_QUANTITIES]
+    if order_channels and document.data.tach is None and document.data.orders is None:
+        yield Fault(
+            "data.tach", "", f"recordings of {', '.join(order_channels)} need the angle of the gear that counts",
+            'add [data.tach] with kind = "pulses" or "angle" and the name of its signal',
+        )  # fmt: skip
+    seen: set[tuple[str, int]] = set()
+    for index, entry in enumerate(document.data.recordings):
+        at = f"data.recordings.{index}"
+        if entry.point not in rows.names:
+            yield unknown(f"{at}.point", entry.point, rows.names, f"point in {rows.table.file}")
+        elif rows.place(entry.point, entry.repeat) is None:
+            yield Fault(f"{at}.repeat", str(entry.repeat), f"{entry.point} has no such repeat", "correct it")
+        elif (entry.point, entry.repeat) in seen:
+            yield Fault(
+                f"{at}.repeat", str(entry.repeat), f"{entry.point} has two recordings of it", "keep one"
+            )
+        seen.add((entry.point, entry.repeat))
+
+
+def _unit_faults(
+    entry: Recording, channels: Mapping[str, MeasuredChannel], signals: Signals
+) -> Iterator[Fault]:
+    for name, channel in channels.items():
+        unit = signals[channel.signal].unit
+        kind = CHANNELS[channel.channel.quantity].kind
+        if unit and not same_worth(unit, channel.unit, kind):
+            yield Fault(
+                f"{entry.file}, {channel.signal}", written(unit), f'channels.{name}.unit says "{channel.unit}"',
+                "correct what is wrong; nothing is converted",
+            )  # fmt: skip

@@ -1,0 +1,1 @@
+"""Data checks: what readings and signals say about themselves."""

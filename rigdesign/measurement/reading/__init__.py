@@ -1,0 +1,1 @@
+"""Measurement sets on disk: documents, tables, recordings, as readings in SI."""

@@ -1,0 +1,215 @@
+"""What measurement.toml says of columns and points, held against the rig: places, units, uncertainties."""
+
+import re
+from collections.abc import Iterator, Mapping
+
+from rigdesign.base import units
+from rigdesign.base.errors import Fault
+from rigdesign.base.quantity_kinds import KINDS
+from rigdesign.case.faults import unknown, written
+from rigdesign.measurement.places import MOTOR, Places
+from rigdesign.measurement.quantities import (
+    CHANNELS,
+    LEAST_UNCERTAINTY,
+    SETTINGS,
+    Measured,
+    accepted_unit,
+    unit_kind,
+)
+from rigdesign.measurement.reading.document import ChannelTable, MeasurementFile, SettingColumn
+from rigdesign.measurement.reading.measurement_set import MeasuredChannel, SettingSensor
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
+
+PLACED_SETTINGS = frozenset(("inlet_temperature", "flow"))
+NEEDED = ("speed", "torque")
+"""Settings without which an operating point is not known."""
+
+
+def column_faults(document: MeasurementFile, places: Places) -> list[Fault]:
+    """Everything wrong with settings, channels and points."""
+    faults = [
+        Fault(
+            "settings", "", f"no column for {quantity}",
+            f'add [settings.{quantity}] with quantity = "{quantity}", unit and uncertainty',
+        )
+        for quantity in NEEDED
+        if quantity not in {entry.quantity for entry in document.settings.values()}
+    ]  # fmt: skip
+    faults += [fault for name, entry in document.settings.items() for fault in _setting(name, entry, places)]
+    faults += _said_twice(document)
+    faults += [fault for name, entry in document.channels.items() for fault in _channel(name, entry, places)]
+    faults += [
+        Fault(f"channels.{name}", "", "is the name of a setting, too", "give each column its own name")
+        for name in document.channels if name in document.settings
+    ]  # fmt: skip
+    for point, entry in document.points.items():
+        faults += [
+            unknown(f"points.{point}.tooth_offset", mesh, places.meshes, "mesh")
+            for mesh in entry.tooth_offset if mesh not in places.meshes
+        ]  # fmt: skip
+    return faults
+
+
+def channels_of(document: MeasurementFile, places: Places) -> dict[str, MeasuredChannel]:
+    """The sensors in SI; the document must be free of faults."""
+    channels = {}
+    for name, entry in document.channels.items():
+        measured = CHANNELS[entry.quantity]
+        orders = _orders(entry, places)
+        channels[name] = MeasuredChannel(
+            channel=Channel(
+                name=name,
+                quantity=entry.quantity,
+                place="" if entry.place == MOTOR else entry.place,
+                at=entry.at,
+                orders=orders,
+            ),
+            unit=_spelled(entry.unit, measured),
+            noise=units.parse(entry.uncertainty, measured.spread),
+            offset_sd=_sd(entry.offset_uncertainty, measured),
+            scale_sd=entry.scale_uncertainty,
+            calibrated=entry.calibrated,
+            transfer=entry.transfer,
+            signal=entry.signal or name,
+        )
+    return channels
+
+
+def sensors_of(document: MeasurementFile) -> dict[str, SettingSensor]:
+    """The setting columns in SI; the document must be free of faults."""
+    return {
+        name: SettingSensor(
+            name=name,
+            quantity=entry.quantity,
+            place=entry.place,
+            unit=_spelled(entry.unit, SETTINGS[entry.quantity]),
+            noise=units.parse(entry.uncertainty, SETTINGS[entry.quantity].spread),
+            offset_sd=SETTINGS[entry.quantity].offset
+            if entry.offset_uncertainty is None
+            else units.parse(entry.offset_uncertainty, SETTINGS[entry.quantity].spread),
+            scale_sd=SETTINGS[entry.quantity].scale
+            if entry.scale_uncertainty is None
+            else entry.scale_uncertainty,
+        )
+        for name, entry in document.settings.items()
+    }
+
+
+def _orders(entry: ChannelTable, places: Places) -> tuple[float, ...]:
+    if entry.quantity not in ORDER_QUANTITIES:
+        return ()
+    chosen = places.orders
+    if entry.orders is not None:
+        chosen = tuple(sorted({places.snapped(order) for order in entry.orders}))
+    return tuple(order for order in chosen if order > 0.0) if entry.quantity == "angle" else chosen
+
+
+def _spelled(unit: str, measured: Measured) -> str:
+    spelled = accepted_unit(unit, measured.kind)
+    assert spelled is not None
+    return spelled
+
+
+def _sd(text: str | None, measured: Measured) -> float:
+    return 0.0 if text is None else units.parse(text, measured.spread)
+
+
+def _setting(name: str, entry: SettingColumn, places: Places) -> Iterator[Fault]:
+    at = f"settings.{name}"
+    spreads = {"uncertainty": entry.uncertainty}
+    if entry.offset_uncertainty is not None:
+        spreads["offset_uncertainty"] = entry.offset_uncertainty
+    yield from _unit_and_spread(at, entry.unit, spreads, SETTINGS[entry.quantity])
+    if entry.quantity in PLACED_SETTINGS:
+        if entry.place not in places.streams:
+            yield unknown(f"{at}.place", entry.place, places.streams, "oil stream")
+    elif entry.place:
+        yield Fault(f"{at}.place", written(entry.place), f"{entry.quantity} has no place", "remove the key")
+
+
+def _said_twice(document: MeasurementFile) -> Iterator[Fault]:
+    seen: dict[tuple[str, str], str] = {}
+    for name, entry in document.settings.items():
+        other = seen.setdefault((entry.quantity, entry.place), name)
+        if other != name:
+            what = f"{entry.quantity} {entry.place}".strip()
+            yield Fault(
+                f"settings.{name}", "", f"{other} says {what} already",
+                "keep one of them; a second sensor may become a note of its own",
+            )  # fmt: skip
+
+
+def _channel(name: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
+    at = f"channels.{name}"
+    spreads = {"uncertainty": entry.uncertainty, "offset_uncertainty": entry.offset_uncertainty}
+    given = {key: text for key, text in spreads.items() if text is not None}
+    yield from _unit_and_spread(at, entry.unit, given, CHANNELS[entry.quantity])
+    yield from _place(f"{at}.place", entry, places)
+    if entry.quantity not in ORDER_QUANTITIES and entry.orders is not None:
+        yield Fault(
+            f"{at}.orders", "", f"{entry.quantity} is read as one number, not by orders", "remove the key"
+        )
+    if entry.orders is not None and not entry.orders:
+        yield Fault(f"{at}.orders", "[]", "no order is named", "name some or leave the key out")
+    if entry.quantity == "angle" and entry.orders == (0.0,):
+        yield Fault(f"{at}.orders", "[0]", "the mean of an angle says nothing", "name orders above 0")
+
+
+def _place(at: str, entry: ChannelTable, places: Places) -> Iterator[Fault]:
+    known = places.of(entry.quantity)
+    what = f"place of a channel of {entry.quantity.replace('_', ' ')}"
+    if entry.at is not None and entry.quantity not in ("temperature", "seal_gap"):
+        yield Fault(
+            f"{at.removesuffix('.place')}.at", "", f"{entry.quantity} has no coordinates", "remove the key"
+        )
+    if entry.quantity == "temperature" and entry.at is not None:
+        if entry.place not in places.housings:
+            yield unknown(at, entry.place, places.housings, "gearbox with a housing")
+        return
+    if entry.quantity == "temperature" and entry.place in places.housings:
+        yield Fault(
+            at, written(entry.place), "a gearbox alone is no place of a temperature",
+            f'add coordinates, at = ["0.1 m", "0 m", "0.2 m"], or a surface such as "{known[0]}"',
+        )  # fmt: skip
+        return
+    if entry.quantity == "natural_frequency" and known:
+        if not re.fullmatch(r"[1-9][0-9]{0,3}", entry.place):
+            yield Fault(
+                at, written(entry.place), "not the number of a natural frequency", 'write "1", "2", …'
+            )
+        return
+    if known == (MOTOR,) and entry.place in ("", MOTOR):
+        return
+    if entry.quantity == "temperature" and places.from_file(entry.place.partition(".")[0]):
+        return
+    if entry.place not in known:
+        yield unknown(at, entry.place, known, what)
+
+
+def _unit_and_spread(at: str, unit: str, spreads: Mapping[str, str], measured: Measured) -> Iterator[Fault]:
+    if accepted_unit(unit, measured.kind) is None:
+        other = unit_kind(unit)
+        problem = "is not a known unit" if other is None else f"is a unit of {KINDS[other].label}"
+        choices = ", ".join(KINDS[measured.kind].units)
+        yield Fault(
+            f"{at}.unit",
+            written(unit),
+            f"{problem}, not of {KINDS[measured.kind].label}",
+            f"write one of {choices}",
+        )
+    for key, text in spreads.items():
+        try:
+            value = units.parse(text, measured.spread)
+        except units.QuantityError as error:
+            yield Fault(f"{at}.{key}", written(text), error.problem, error.remedy)
+            continue
+        span = measured.limits[1] - measured.limits[0]
+        problem = ""
+        if value < 0.0:
+            problem = "is below zero"
+        elif value > span:
+            problem = f"is more than the quantity can be, {units.show(span, measured.spread, digits=3)}"
+        elif 0.0 < value < LEAST_UNCERTAINTY * span:
+            problem = "is smaller than that of any instrument"
+        if problem:
+            yield Fault(f"{at}.{key}", written(text), problem, f'write e.g. "{measured.uncertainty}"')

@@ -1,0 +1,279 @@
+"""Rows of data.csv: operating points, their repeats, settings and scalar channels."""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.base.errors import Fault
+from rigdesign.case.faults import unknown, written
+from rigdesign.measurement.quantities import (
+    CHANNELS,
+    SETTINGS,
+    Measured,
+    accepted_unit,
+    impossible,
+    impossible_text,
+    same_worth,
+    to_si,
+)
+from rigdesign.measurement.reading.document import MeasurementFile
+from rigdesign.measurement.reading.document import Point as PointTable
+from rigdesign.measurement.reading.measurement_set import (
+    Finding,
+    MeasuredChannel,
+    MeasuredPoint,
+    SettingSensor,
+)
+from rigdesign.measurement.reading.table import Table, numbers
+from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Feature, Setting
+
+STANDSTILL = "standstill"
+"""Name of rows that hold numbers of the rig at rest and cold; they need no settings."""
+KEYS = ("point", "repeat")
+WHOLE = re.compile(r"[0-9]{1,9}")
+"""A repeat as the table may have it."""
+SHOWN = 5
+"""Columns that are named of those not described."""
+
+
+class Rows:
+    """The table of the set read as numbers; ``faults`` says what is wrong with it."""
+
+    def __init__(self, document: MeasurementFile, table: Table) -> None:
+        self.table = table
+        self._document = document
+        self._columns: dict[str, NDArray[np.float64]] = {}
+        self._impossible: dict[str, list[int]] = {}
+        self.points, self.repeats, self.faults = self._read_keys()
+        """Of each row."""
+        self._by_point: dict[str, list[int]] = {}
+        for row in sorted(range(len(self.points)), key=self.repeats.__getitem__):
+            self._by_point.setdefault(self.points[row], []).append(row)
+        self._places = {
+            (point, self.repeats[row]): place
+            for point, chosen in self._by_point.items() for place, row in enumerate(chosen)
+        }  # fmt: skip
+        self.faults += self._read_columns()
+        self.names: tuple[str, ...] = tuple(
+            dict.fromkeys(point for point in self.points if point != STANDSTILL)
+        )
+        """Operating points in the order of the table."""
+        self.faults += [
+            unknown(f"points.{name}", name, self.names, f"point in {table.file}")
+            for name in document.points if name not in self.names
+        ]  # fmt: skip
+        if not self.names and not self.faults:
+            self.faults.append(Fault(table.file, "", "holds no operating point", "add rows"))
+
+    def column(self, name: str) -> NDArray[np.float64]:
+        """A column [SI], one number per row; KeyError when there is none."""
+        return self._columns[name]
+
+    def rows_of(self, point: str) -> list[int]:
+        """Rows of an operating point in the order of their repeats."""
+        return self._by_point.get(point, [])
+
+    def place(self, point: str, repeat: int) -> int | None:
+        """Index of a repeat among those of its point; None when there is no such row."""
+        return self._places.get((point, repeat))
+
+    def impossible(self, name: str, point: str) -> list[int]:
+        """Rows of a point with a reading in this column that its quantity cannot have."""
+        found = set(self._impossible.get(name, ()))
+        return [row for row in self.rows_of(point) if row in found] if found else []
+
+    def impossible_cells(self, name: str, rows: Sequence[int], measured: Measured, unit: str) -> str:
+        """Line, column and value of the first of such rows, and what is wrong with it."""
+        at = f"{self.table.file} line {self.table.lines[rows[0]]}, {name}"
+        cell = written(self.table.column(name)[rows[0]].strip())
+        return f"{at} = {cell}: {impossible_text(measured, unit, len(rows))}"
+
+    def scalars(
+        self, channels: Mapping[str, MeasuredChannel], points: Sequence[MeasuredPoint]
+    ) -> dict[Feature, NDArray[np.float64]]:
+        """Readings of the columns by feature; the column of an order channel is its mean."""
+        found: dict[Feature, NDArray[np.float64]] = {}
+        for name, channel in channels.items():
+            if name not in self._columns:
+                continue
+            if channel.channel.quantity in STANDING_QUANTITIES:
+                values = self._columns[name]
+                found[Feature(name, "")] = values[np.isfinite(values)]
+                continue
+            if channel.channel.quantity in ORDER_QUANTITIES and 0.0 not in channel.channel.orders:
+                continue
+            for point in points:
+                found[Feature(name, point.name)] = self._columns[name][self.rows_of(point.name)]
+        return found
+
+    def findings(self, channels: Mapping[str, MeasuredChannel]) -> list[Finding]:
+        """What the table holds that is not used, readings that cannot be, and a last row that was cut."""
+        known = {*KEYS, *self._document.settings, *channels}
+        unused = [name for name in self.table.names if name not in known]
+        found = [
+            Finding(
+                id="impossible_reading", weight="dropped", channels=(name,),
+                points=tuple(dict.fromkeys(self.points[row] for row in rows)),
+                text=self.impossible_cells(name, rows, CHANNELS[channels[name].channel.quantity], channels[name].unit),
+            )
+            for name, rows in self._impossible.items() if name in channels
+        ]  # fmt: skip
+        if unused:
+            names = ", ".join(unused[:SHOWN]) + (f" and {len(unused) - SHOWN} more" if unused[SHOWN:] else "")
+            text = f"{self.table.file}: no channel is described of column {names}; add [channels.{unused[0]}] to use it"
+            found.append(Finding(id="unused_column", weight="note", text=text))
+        if self.table.cut:
+            text = f"{self.table.file} {self.table.cut}; export it again"
+            found.append(Finding(id="cut_file", weight="dropped", text=text))
+        return found
+
+    def _read_keys(self) -> tuple[tuple[str, ...], tuple[int, ...], list[Fault]]:
+        file = self.table.file
+        faults: list[Fault] = []
+        if "point" not in self.table.names:
+            missing = Fault(
+                f"{file} line 1", "", "there is no column 'point'", "name the point of each row there"
+            )
+            return (), (), [missing]
+        cells = tuple(cell.strip() or STANDSTILL for cell in self.table.column("point"))
+        repeats = [1] * len(cells)
+        if "repeat" in self.table.names:
+            for row, cell in enumerate(self.table.column("repeat")):
+                text = cell.strip()
+                if not WHOLE.fullmatch(text) and (text or cells[row] != STANDSTILL):
+                    faults.append(
+                        Fault(f"{file} line {self.table.lines[row]}, repeat", written(text), "not a whole number",
+                              "count the repeats of each point from 1")
+                    )  # fmt: skip
+                repeats[row] = int(text) if WHOLE.fullmatch(text) else 1
+        seen: dict[tuple[str, int], int] = {}
+        for row, key in enumerate(zip(cells, repeats)):
+            if seen.setdefault(key, row) != row and key[0] != STANDSTILL:
+                faults.append(
+                    Fault(f"{file} line {self.table.lines[row]}", f"{key[0]}, {key[1]}",
+                          f"stands in line {self.table.lines[seen[key]]}, too", "number the repeats of a point 1, 2, …")
+                )  # fmt: skip
+        return cells, tuple(repeats), faults
+
+    def _read_columns(self) -> list[Fault]:
+        faults: list[Fault] = []
+        wanted = {name: (f"settings.{name}", SETTINGS[entry.quantity], entry.unit)
+                  for name, entry in self._document.settings.items()}  # fmt: skip
+        faults += [
+            unknown(f"settings.{name}", name, self.table.names, f"column in {self.table.file}")
+            for name in wanted
+            if name not in self.table.places
+        ]
+        wanted |= {
+            name: (f"channels.{name}", CHANNELS[entry.quantity], entry.unit)
+            for name, entry in self._document.channels.items()
+        }
+        for name, (key, measured, unit) in wanted.items():
+            if name not in self.table.places:
+                continue
+            spelled = accepted_unit(unit, measured.kind)
+            if spelled is None:
+                continue
+            faults += self._unit_fault(name, key, measured.kind, spelled)
+            values, wrong = numbers(self.table, name, self._document.data.decimal)
+            faults += wrong
+            self._keep(name, to_si(np.array(values, dtype=float), measured.kind, spelled), measured)
+        return faults
+
+    def _keep(self, name: str, values: NDArray[np.float64], measured: Measured) -> None:
+        """A column [SI] without the readings that its quantity cannot have."""
+        wrong = impossible(values, measured)
+        self._columns[name] = np.where(wrong, np.nan, values)
+        if wrong.any():
+            self._impossible[name] = np.flatnonzero(wrong).tolist()
+
+    def _unit_fault(self, name: str, key: str, kind: str, spelled: str) -> list[Fault]:
+        """The unit above a column must be the one measurement.toml states."""
+        said = self.table.unit(name).strip().strip("[]()")
+        at = f"{self.table.file} line 2, {name}"
+        if not said:
+            return [Fault(at, "", "the column has no unit", f'write "{spelled}"')]
+        if not same_worth(said, spelled, kind):
+            return [
+                Fault(
+                    at,
+                    written(said),
+                    f'{key}.unit says "{spelled}"',
+                    "correct what is wrong; nothing is converted",
+                )
+            ]
+        return []
+
+
+def points_of(
+    document: MeasurementFile, sensors: Mapping[str, SettingSensor], rows: Rows
+) -> tuple[tuple[MeasuredPoint, ...], list[Finding]]:
+    """Operating points as run, with a finding for those whose speed or torque is not known."""
+    points: list[MeasuredPoint] = []
+    findings: list[Finding] = []
+    for name in rows.names:
+        chosen = rows.rows_of(name)
+        readings = {column: rows.column(column)[chosen] for column in sensors}
+        means = {column: _mean(values) for column, values in readings.items()}
+        lost = [column for column, sensor in sensors.items()
+                if math.isnan(means[column]) and sensor.quantity in ("speed", "torque")]  # fmt: skip
+        wrong = [rows.impossible_cells(column, cells, SETTINGS[sensor.quantity], sensor.unit)
+                 for column, sensor in sensors.items() if (cells := rows.impossible(column, name))]  # fmt: skip
+        still = [f"{column} is zero" for column, sensor in sensors.items()
+                 if sensor.quantity == "speed" and means[column] == 0.0]  # fmt: skip
+        if lost or wrong or still:
+            why = [*wrong, *still] or [f"no reading of {', '.join(lost)}"]
+            findings.append(
+                Finding(id="unknown_setting", weight="dropped", points=(name,),
+                        text=f"{name} is left out: {'; '.join(why)}; complete or correct its rows")
+            )  # fmt: skip
+            continue
+        entry = document.points.get(name, PointTable())
+        findings += [
+            Finding(id="unknown_setting", weight="note", points=(name,),
+                    text=f"{name}: no reading of {column}; taken as in the case")
+            for column in sensors if math.isnan(means[column])
+        ]  # fmt: skip
+        points.append(
+            MeasuredPoint(
+                setting=_setting(name, sensors, means, entry.tooth_offset),
+                readings=readings,
+                steady=entry.steady,
+                reassembled=entry.reassembled,
+            )
+        )
+    return tuple(points), findings
+
+
+def _setting(
+    name: str,
+    sensors: Mapping[str, SettingSensor],
+    means: Mapping[str, float],
+    tooth_offset: Mapping[str, int],
+) -> Setting:
+    by_place: dict[str, dict[str, float]] = {"inlet_temperature": {}, "flow": {}}
+    single: dict[str, float] = {}
+    for column, sensor in sensors.items():
+        if math.isnan(means[column]):
+            continue
+        if sensor.quantity in by_place:
+            by_place[sensor.quantity][sensor.place] = means[column]
+        else:
+            single[sensor.quantity] = means[column]
+    return Setting(
+        name=name,
+        speed=single["speed"],
+        torque=single["torque"],
+        inlet_temperature=by_place["inlet_temperature"],
+        flow=by_place["flow"],
+        ambient_temperature=single.get("ambient_temperature"),
+        tooth_offset=dict(tooth_offset),
+    )
+
+
+def _mean(values: NDArray[np.float64]) -> float:
+    finite = values[np.isfinite(values)]
+    return float(finite.mean()) if finite.size else math.nan

@@ -1,0 +1,205 @@
+"""Tables on disk: names in the first row, units in the second, numbers below; decimal points or commas."""
+
+import csv
+import io
+import math
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from rigdesign.base.errors import Fault, MeasurementError
+from rigdesign.base.files import foreign
+from rigdesign.case.faults import written
+from rigdesign.measurement.reading.document import Data
+from rigdesign.measurement.reading.files import refused, set_file
+
+MISSING = frozenset(("", "nan", "n/a", "na", "-", "--", "#n/a"))
+"""Cells that say that there is no reading."""
+NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+"""What a cell with a number looks like: no other digits, no grouping, no infinity."""
+MOST_FAULTS = 20
+"""Cells of one table that are complained of one by one."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table as text.
+
+    names, units : one per column; units are empty texts where the file has none
+    rows : cells, each row as long as ``names``
+    lines : line of the file of each row, from 1
+    cut : how the file ends within its last row, and what of it was left out; empty for a whole file
+    """
+
+    file: str
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    lines: tuple[int, ...]
+    cut: str = ""
+
+    @cached_property
+    def places(self) -> Mapping[str, int]:
+        """Column of each name, from 0."""
+        return {name: place for place, name in enumerate(self.names)}
+
+    def column(self, name: str) -> tuple[str, ...]:
+        """Cells of a column; KeyError when there is none."""
+        place = self.places[name]
+        return tuple(row[place] for row in self.rows)
+
+    def unit(self, name: str) -> str:
+        """Unit above a column; KeyError when there is none."""
+        return self.units[self.places[name]]
+
+
+def read_table(folder: Path, name: str, data: Data, *, with_units: bool) -> Table:
+    """Read a table of the set.
+
+    Parameters
+    ----------
+    with_units : whether a second row with units must be there; else one is taken where it holds no number
+
+    Raises
+    ------
+    MeasurementError
+        The file is missing, empty, not text, no file of the set (`rigdesign.measurement.reading.files.set_file`), has
+        columns without or of the same name, or rows of other length.
+    """
+    text = _text(set_file(folder, name, data.size_limit), name, data)
+    rows = _cells(text, name, data)
+    if len(rows) < 2:
+        raise refused(name, "holds no readings", "write names, units and at least one row")
+    names = tuple(cell.strip() for cell in rows[0][1])
+    faults = _names(name, names, data)
+    units, body = ("",) * len(names), rows[1:]
+    has_units = not any(_is_number(cell, data.decimal) for cell in body[0][1])
+    if has_units:
+        units = tuple(cell.strip() for cell in body[0][1])
+        units, body = units + ("",) * (len(names) - len(units)), body[1:]
+    elif with_units:
+        faults.append(
+            Fault(f"{name} line 2", written(", ".join(body[0][1])), "a row of units is missing below the names",
+                  "write the unit of every column there, nothing below point and repeat")
+        )  # fmt: skip
+    cut = ""
+    if body and len(body[-1][1]) < len(names):
+        (line, cells), body = body[-1], body[:-1]
+        cut = f"line {line}: the file ends after {len(cells)} of {len(names)} cells of this row, which is left out"
+    elif body and not text.endswith(("\n", "\r")) and len(body[-1][1]) == len(names):
+        line, cells = body[-1]
+        cut = f"line {line}, {names[-1]} = {written(cells[-1])}: the file ends without a line end; the cell may be cut "
+        cut += "and is left out"
+        cells[-1] = ""
+    for line, cells in body:
+        if len(cells) != len(names):
+            faults.append(
+                Fault(f"{name} line {line}", "", f"has {len(cells)} cells, the names are {len(names)}",
+                      "correct the row; an empty cell is a missing reading")
+            )  # fmt: skip
+    if not body and not faults:
+        faults.append(Fault(name, "", "holds no complete row of readings", "write at least one row"))
+    if faults:
+        raise MeasurementError(faults[:MOST_FAULTS])
+    return Table(
+        name, names, units, tuple(tuple(cells) for _, cells in body), tuple(line for line, _ in body), cut
+    )
+
+
+def number(cell: str, decimal: str) -> float:
+    """The number of a cell, NaN for a missing one; ValueError for anything else."""
+    text = cell.strip()
+    if text.lower() in MISSING:
+        return math.nan
+    if decimal == "," and "." in text:
+        raise ValueError("a point in a file with decimal commas")
+    if decimal == "." and "," in text:
+        raise ValueError("a comma in a file with decimal points")
+    plain = text.replace(",", ".").replace("\u2212", "-")
+    if not NUMBER.fullmatch(plain):
+        raise ValueError("not a number")
+    value = float(plain)
+    if not math.isfinite(value):
+        raise ValueError("not finite")
+    return value
+
+
+def numbers(table: Table, name: str, decimal: str) -> tuple[list[float], list[Fault]]:
+    """A column as numbers, NaN where missing; a fault names the first cell that is none and counts the others."""
+    values: list[float] = []
+    wrong: list[tuple[int, str, str]] = []
+    for line, cell in zip(table.lines, table.column(name)):
+        try:
+            values.append(number(cell, decimal))
+        except ValueError as error:
+            values.append(math.nan)
+            wrong.append((line, cell, str(error)))
+    if not wrong:
+        return values, []
+    line, cell, reason = wrong[0]
+    more = f", and {len(wrong) - 1} more cells below" if len(wrong) > 1 else ""
+    remedy = f'write a number (data.decimal = "{decimal}") or leave the cell empty'
+    return values, [Fault(f"{table.file} line {line}, {name}", written(cell), reason + more, remedy)]
+
+
+def _text(path: Path, name: str, data: Data) -> str:
+    encoding = "utf-8-sig" if data.encoding == "utf-8" else data.encoding
+    try:
+        content = path.read_bytes()
+        if (what := foreign(content)) is not None:
+            raise refused(name, f"is {what}, not a table of text", "export the sheet as CSV")
+        text = content.decode(encoding)
+    except OSError as error:
+        raise refused(name, f"cannot be read: {error.strerror}", "check its rights") from None
+    except UnicodeError:
+        raise refused(
+            name, f"is not {data.encoding} text", 'save it so, or write data.encoding = "cp1252"'
+        ) from None
+    if "\0" in text:
+        raise refused(name, "holds bytes that are no text", "save it as CSV text")
+    return text
+
+
+def _cells(text: str, name: str, data: Data) -> list[tuple[int, list[str]]]:
+    """Rows that hold something, each with the line it begins in."""
+    rows = csv.reader(io.StringIO(text, newline=""), delimiter=data.delimiter, strict=True)
+    found: list[tuple[int, list[str]]] = []
+    line = 1
+    try:
+        for cells in rows:
+            if any(cell.strip() for cell in cells):
+                found.append((line, cells))
+            line = rows.line_num + 1
+    except csv.Error as error:
+        raise refused(f"{name} line {line}", f"cannot be read: {error}", "correct it") from None
+    return found
+
+
+def _names(file: str, names: Sequence[str], data: Data) -> list[Fault]:
+    faults = [
+        Fault(f"{file} line 1", "", f"column {number} has no name", "name it or remove it")
+        for number, name in enumerate(names, start=1)
+        if not name
+    ]
+    faults += [
+        Fault(f"{file} line 1", written(name), "two columns have this name", "give each its own name")
+        for name, count in Counter(names).items()
+        if name and count > 1
+    ]
+    if len(names) == 1:
+        other = ";" if data.delimiter == "," else ","
+        faults.append(
+            Fault(f"{file} line 1", written(names[0]), "only one column was found",
+                  f'write data.delimiter = "{other}" if that parts the columns')
+        )  # fmt: skip
+    return faults
+
+
+def _is_number(cell: str, decimal: str) -> bool:
+    try:
+        return not math.isnan(number(cell, decimal))
+    except ValueError:
+        return False

@@ -1,0 +1,97 @@
+"""Growth of a housing as a linear map of its temperature shapes: clearances without an elastic solve.
+
+Expansion is linear in the temperature and the clearances are read from displacements a thousand times smaller than
+the rig, so that a clearance follows each shape in proportion to nanometres. Each shape is expanded once.
+"""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from rigdesign.coupling.expansion import HousingGrowth, read_growth
+from rigdesign.prediction.parallel_fields import fields_beside
+from rigdesign.rig.model import Rig
+from thermal.expansion.expansion import read_expansion
+from thermal.fe.mesh import FloatArray
+
+AMPLITUDE = 10.0
+"""Temperature [K] with which a shape is expanded."""
+EXACT = 1e-8
+"""Relative residual of the expansion of the field the map starts from."""
+ENOUGH = 1e-3
+"""Relative residual of the expansion of a shape that reaches 1 K: ten nanometres of a clearance."""
+LEAST = 0.1
+"""Temperature [K] a shape has to reach to be expanded: 0.1 K moves a clearance by a tenth of a micrometre."""
+
+
+class GrowthMap:
+    """Clearances of one housing by the coefficients of its temperature shapes.
+
+    shapes : (n_nodes, m); sizes : (m,) temperature [K] that each reaches, strongest first; base : (m,)
+        coefficients of a warm field near which the map is made
+    """
+
+    def __init__(self, rig: Rig, name: str, shapes: FloatArray, sizes: FloatArray, base: FloatArray) -> None:
+        setup, cold = rig.expansion[name], rig.case.ambient.reference_temperature
+        self._base = base
+        field = shapes @ base
+        start = setup.elastic.solve(field, cold, EXACT, None).values
+
+        def read(temperature: FloatArray, supported: FloatArray) -> HousingGrowth:
+            return read_growth(rig, name, read_expansion(setup, temperature, cold, supported))
+
+        self.growth = read(field, start)
+        """At the base."""
+        first = numbers_of(self.growth)
+
+        def follows(shape: FloatArray, size: float) -> FloatArray:
+            if size < LEAST:
+                return np.zeros_like(first)
+            bent = setup.elastic.solve(AMPLITUDE * shape, 0.0, min(1e-2, ENOUGH / size), None).values
+            moved = read(field + AMPLITUDE * shape, start + bent)
+            return np.asarray((numbers_of(moved) - first) / AMPLITUDE)
+
+        works = [partial(follows, shape, size) for shape, size in zip(shapes.T, sizes.tolist())]
+        self.first, self.slope = first, np.array(fields_beside(len(field), works)).T
+        """Numbers of the growth at the base, and (k, m) how they follow the coefficients [m/K]."""
+
+    def at(self, coefficients: FloatArray) -> HousingGrowth:
+        """Growth of the field with these coefficients (m,)."""
+        return with_numbers(self.growth, self.first + self.slope @ (coefficients - self._base))
+
+
+def numbers_of(growth: HousingGrowth) -> FloatArray:
+    """Bores and journals, seal gaps, centre distances, axial travels, in this order [m]."""
+    shape = growth.expansion
+    parts = [np.array([(b.bore_growth, b.journal_growth) for b in shape.bearings.values()]).ravel()]
+    parts += [seal.gaps.ravel() for seal in shape.seals.values()]
+    parts.append(np.array([*growth.centre_distance.values(), *growth.tooth_growth.values()]))
+    return np.concatenate(parts)
+
+
+def with_numbers(growth: HousingGrowth, numbers: FloatArray) -> HousingGrowth:
+    """The growth with other numbers; displacements and what else hangs on them stay those of the base."""
+    left = numbers
+
+    def take(count: int) -> FloatArray:
+        nonlocal left
+        taken, left = left[:count], left[count:]
+        return taken
+
+    bearings = {}
+    for name, bearing in growth.expansion.bearings.items():
+        bore, journal = map(float, take(2))
+        bearings[name] = replace(bearing, bore_growth=bore, journal_growth=journal)
+    seals = {
+        name: replace(seal, gaps=take(seal.gaps.size).reshape(seal.gaps.shape))
+        for name, seal in growth.expansion.seals.items()
+    }
+    distance = dict(zip(growth.centre_distance, map(float, take(len(growth.centre_distance)))))
+    travel = dict(zip(growth.tooth_growth, map(float, take(len(growth.tooth_growth)))))
+    return replace(
+        growth,
+        expansion=replace(growth.expansion, bearings=bearings, seals=seals),
+        centre_distance=distance,
+        tooth_growth=travel,
+    )

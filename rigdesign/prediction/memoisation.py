@@ -1,0 +1,173 @@
+"""Parts of a pass that remember: bearing films, meshes, responses and bracing whose inputs were met before.
+
+A remembered part is the same numbers, only not computed twice. Each is known by all numbers that enter it and by
+nothing else of the case, so that a change finds again whatever it leaves alone. Gaps of the teeth count as the same
+within a tenth of a picometre: the mean over teeth that deviate is zero only to rounding.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from dynamics.bearing.journal import BearingState, solve_bearing
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.losses.mesh_loss import ToothPath
+from dynamics.mesh.flank import alike_teeth
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.iteration import Parts
+from rigdesign.coupling.loads import (
+    MeshModel,
+    Setting,
+    brace_cold,
+    laws_of,
+    mesh_friction,
+    mesh_model,
+    mesh_phase,
+    respond,
+    shifted_laws,
+    signed_torque,
+)
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.rig.model import Rig
+
+MOST = {"films": 20000, "meshes": 2000, "responses": 1000, "bracings": 1000}
+"""Entries kept of each kind; all of a kind are forgotten when one more comes."""
+SAME_GAP = 13
+"""Decimal places of a gap [m] that count."""
+
+
+class Memory:
+    """What passes of one rig and its variants found out."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, dict[Any, Any]] = {kind: {} for kind in MOST}
+
+    @property
+    def parts(self) -> Parts:
+        """The parts of a pass that remember."""
+        return Parts(models=self.models, bearings=self.bearings, response=self.response)
+
+    def bearings(self, rig: Rig, point: OperatingPoint, feedback: Feedback) -> dict[str, BearingState]:
+        """As `solve_bearings`."""
+        return solve_bearings(rig, point, feedback, self._film)
+
+    def _film(self, *given: Any, **named: Any) -> BearingState:
+        key = (given, tuple(named.items()))
+        known = self._room("films")
+        if key not in known:
+            known[key] = solve_bearing(*given, **named)
+        found: BearingState = known[key]
+        return found
+
+    def models(self, rig: Rig, point: OperatingPoint, feedback: Feedback) -> tuple[MeshModel, ...]:
+        """As `mesh_models`; of a mesh that differs in friction and damping alone all arrays are shared."""
+        return tuple(self._model(rig, name, point, feedback) for name in rig.mesh_names)
+
+    def _model(self, rig: Rig, name: str, point: OperatingPoint, feedback: Feedback) -> MeshModel:
+        key = _shape_key(rig, name, point, feedback)
+        known = self._room("meshes")
+        if key not in known:
+            known[key] = mesh_model(rig, name, point, feedback)
+        model: MeshModel = known[key]
+        friction = mesh_friction(rig, name, model.pair, point, feedback)
+        box, mesh = rig.mesh(name)
+        entry, law = box.meshes[mesh], model.law
+        damped = entry.damping, entry.damping_acts_on
+        if friction == model.friction and damped == (law.damping, law.damping_acts_on):
+            return model
+        along = ToothPath.of_pair(model.pair).transverse_friction(friction.value)
+        law = law._replace(friction=along, damping=damped[0], damping_acts_on=damped[1])
+        return replace(model, friction=friction, law=law)
+
+    def bracing(self, rig: Rig, point: OperatingPoint) -> Setting | None:
+        """As `brace_cold`; None without a drivetrain."""
+        if rig.case.drivetrain is None:
+            return None
+        cold = cold_feedback(rig, point)
+        assert rig.system is not None
+        models = self.models(rig, point, cold)
+        at_rest = [alike_teeth(law)._replace(friction=0.0, damping=0.0) for law in laws_of(models)]
+        key = (
+            rig.system.stiffness.tobytes(),
+            rig.system.twist_load.tobytes(),
+            tuple(map(law_key, at_rest)),
+            signed_torque(rig, point),
+            rig.case.drivetrain.bracing,
+        )
+        known = self._room("bracings")
+        if key not in known:
+            known[key] = brace_cold(rig, point, cold, models)
+        found: Setting = known[key]
+        return found
+
+    def response(
+        self,
+        rig: Rig,
+        point: OperatingPoint,
+        models: Sequence[MeshModel],
+        drags: Mapping[str, float],
+        setting: Setting,
+    ) -> CurvePoint:
+        """As `respond`."""
+        laws = periodic_laws(rig, shifted_laws(rig, models, setting))
+        asked = signed_torque(rig, point) if setting.mode == "torque_controlled" else setting.twist
+        key = (
+            id(rig.system),
+            tuple(map(law_key, laws)),
+            rig.pinion_speed(point.speed),
+            (setting.mode, asked),
+            rig.case.numerics.response_period,
+            tuple(drags.items()),
+        )
+        known = self._room("responses")
+        if key not in known:
+            known[key] = rig.system, respond(rig, point, models, drags, setting)
+        found: tuple[LinearSystem, CurvePoint] = known[key]
+        return found[1]
+
+    def _room(self, kind: str) -> dict[Any, Any]:
+        """What is known of a kind, with room for one more."""
+        known = self._known[kind]
+        if len(known) >= MOST[kind]:
+            known.clear()
+        return known
+
+
+def _shape_key(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback) -> tuple[object, ...]:
+    """All that enters a mesh but its friction and damping."""
+    box, own = rig.mesh(name)
+    mesh, power, numerics = box.meshes[own], rig.case.drivetrain, rig.case.numerics
+    pinion, wheel = rig.mesh_gears(name)
+    gears = box.gears[mesh.pinion], box.gears[mesh.wheel]
+    return (
+        name,
+        rig.coarsening,
+        rig.pairs[name],
+        "" if power is None else power.mesh_stiffness,
+        numerics.slices_spur,
+        numerics.slices_helical,
+        rig.case.ambient.reference_temperature,
+        tuple((gear.teeth, gear.flank, rig.materials[gear.material].expansion_coefficient) for gear in gears),
+        (mesh.application_factor, mesh.low_load_factor, mesh.stiffness_factor, mesh.tooth_offset),
+        mesh_phase(rig, name),
+        rig.shaft_speed(gears[0].shaft, point.speed),
+        feedback.gear_temperature[pinion],
+        feedback.gear_temperature[wheel],
+        feedback.centre_distance[name],
+        feedback.tooth_growth[name],
+        feedback.mesh_torque[name],
+    )
+
+
+def law_key(law: MeshLaw) -> tuple[object, ...]:
+    """What a mesh law is known by."""
+    return tuple(
+        (np.round(value, SAME_GAP) + 0.0).tobytes() if isinstance(value, np.ndarray) else value
+        for value in law
+    )

@@ -1,0 +1,1 @@
+"""Properties of oils and solid materials."""

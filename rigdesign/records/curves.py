@@ -1,0 +1,209 @@
+"""K_V over speed: simulated, under variants of the mesh law, and by ISO 6336-1 beside it."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from dynamics.mesh.law import MeshLaw
+from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
+from dynamics.response.speed_sweep import ResponseCurve, periodic_response, refined_response
+from dynamics.standards.iso6336_1_2006 import DynamicFactor
+from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.loads import laws_of, locked_share, mesh_models, signed_torque
+from rigdesign.coupling.time_run import held_points
+from rigdesign.coupling.tooth_deviations import periodic_laws
+from rigdesign.results.result import DynamicFactorPoint
+from rigdesign.rig.model import Rig
+
+QUICK_SPEEDS = 24
+"""Speeds of a curve at quick fidelity, or where every speed is solved over a whole revolution."""
+ROUNDS = 2
+"""Halvings of the speed step beside a peak."""
+SLOWEST = 0.05
+"""Share of a held speed below which no resonance is looked for."""
+BEYOND = 1.25
+"""How far past the least distance of a resonance the curve goes on, as a share of that distance."""
+HARDNESS = ("case_hardened", "nitrided", "through_hardened")
+"""Treatments of flanks from hard to soft: the softer gear of a mesh runs in."""
+DEFAULT = RatingOptions()
+VARIANT = "weber_banaschek_0.8"
+"""The other reading of the mesh stiffness, shown beside the shipped one."""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Response over speed of the warm rig."""
+
+    response: ResponseCurve
+    """At the torque of the governing held point, past the highest held speed."""
+    others: Mapping[float, ResponseCurve]
+    """At every other torque [N m, at the control mesh] at which the schedule holds or changes the speed."""
+    variants: Mapping[str, ResponseCurve]
+    """At the torque of ``response`` with another reading of the mesh stiffness."""
+    torque: float
+    """Of ``response`` [N m]."""
+
+    @property
+    def named(self) -> Mapping[str, tuple[float, ResponseCurve]]:
+        """Every curve of the shipped mesh laws with its torque, by its name in the results."""
+        found = {self.torque: self.response, **self.others}
+        return {f"{abs(torque):g} Nm": (torque, curve) for torque, curve in found.items()}
+
+
+@dataclass(frozen=True)
+class CurvePlan:
+    """What `Curves` are made of: computations that need nothing of each other."""
+
+    torque: float
+    works: Mapping[float | str, Callable[[], ResponseCurve]]
+    """By torque, those of the shipped laws; by name, those under a variant."""
+
+    def curves(self, solved: Sequence[ResponseCurve]) -> Curves:
+        """The results of the works, in their order."""
+        found = dict(zip(self.works, solved, strict=True))
+        shipped = {key: curve for key, curve in found.items() if isinstance(key, float)}
+        return Curves(
+            response=shipped.pop(self.torque),
+            others=shipped,
+            variants={key: curve for key, curve in found.items() if isinstance(key, str)},
+            torque=self.torque,
+        )
+
+
+def plan_curves(rig: Rig, warm: PassResult) -> CurvePlan:
+    """Periodic response over speed at every torque of the schedule, warm gears of ``warm``."""
+    numerics = rig.case.numerics
+    governing = _key(signed_torque(rig, warm.point))
+    solve = partial(_curve, rig, warm, laws_of(warm.models))
+    works: dict[float | str, Callable[[], ResponseCurve]] = {
+        torque: partial(solve, torque, grid(rig, *limits)) for torque, limits in speed_ranges(rig).items()
+    }
+    shipped = rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else ""
+    other = "iso_6336_scaled" if shipped == VARIANT else VARIANT
+    if rig.fidelity != "quick":
+        models = mesh_models(rig, warm.point, warm.feedback, other)
+        own = grid(rig, numerics.curve_speed_start, numerics.curve_speed_end)
+        works[other] = partial(_curve, rig, warm, laws_of(models), governing, own, refined=False)
+    return CurvePlan(torque=governing, works=works)
+
+
+def solve_curves(rig: Rig, warm: PassResult) -> Curves:
+    """The curves of `plan_curves`, one after the other."""
+    plan = plan_curves(rig, warm)
+    return plan.curves([work() for work in plan.works.values()])
+
+
+def speed_ranges(rig: Rig) -> dict[float, tuple[float, float]]:
+    """Torque at the control mesh [N m] -> stated speeds [rad/s] between which its response is wanted.
+
+    Held torques: the range of the case, widened until a resonance too near to any held speed lies within it.
+    Torques under which the speed changes: what the stage runs through of the range of the case. Stages at the
+    start torque are left to the time run: they are short, and flanks may part there without harm.
+    """
+    numerics = rig.case.numerics
+    first, last = numerics.curve_speed_start, numerics.curve_speed_end
+    away = BEYOND * (rig.case.limits.dynamics.resonance_distance_minimum or 0.0)
+    light = rig.case.limits.bearing.start_torque_limit or 0.0
+    held = held_points(rig)
+    low = max(1.0 - away, SLOWEST) * min(point.speed for point in held)
+    high = (1.0 + away) * max(point.speed for point in held)
+    ranges = {_key(signed_torque(rig, point)): (min(first, low), max(last, high)) for point in held}
+    for stage in rig.case.schedule.resolved():
+        torque = _key(rig.torque_ratio * stage.torque_end * locked_share(rig))
+        low, high = sorted((stage.speed_start, stage.speed_end))
+        low, high = max(low, first), min(high, last)
+        if stage.kind in ("run_up", "run_down") and abs(stage.torque_end) > light and low < high:
+            before = ranges.get(torque, (low, high))
+            ranges[torque] = (min(low, before[0]), max(high, before[1]))
+    return ranges
+
+
+def _key(torque: float) -> float:
+    """Torques that differ by round-off are one."""
+    return round(torque, 6)
+
+
+def grid(rig: Rig, low: float, high: float) -> list[float]:
+    """Speeds of the first pinion [rad/s] as dense as the case asks; few where a whole revolution is solved."""
+    numerics = rig.case.numerics
+    count = numerics.curve_speeds if resolved(rig) else QUICK_SPEEDS
+    step = (numerics.curve_speed_end - numerics.curve_speed_start) / (count - 1)
+    if step <= 0.0:
+        return [rig.pinion_speed(speed) for speed in dict.fromkeys((low, high))]
+    pieces = max(1, math.ceil((high - low) / step - 1e-9))
+    return [rig.pinion_speed(float(speed)) for speed in np.linspace(low, high, pieces + 1)]
+
+
+def resolved(rig: Rig) -> bool:
+    """Whether the curves are dense enough to show every resonance."""
+    return rig.fidelity != "quick" and rig.case.numerics.response_period == "mesh"
+
+
+def _curve(
+    rig: Rig,
+    warm: PassResult,
+    laws: Sequence[MeshLaw],
+    torque: float,
+    speeds: Sequence[float],
+    *,
+    refined: bool = True,
+) -> ResponseCurve:
+    assert rig.system is not None
+    solve = partial(
+        periodic_response, rig.system, periodic_laws(rig, laws), torque=torque, drag_torques=warm.drags,
+        period=rig.case.numerics.response_period, cutoff=rig.highest_mode,
+    )  # fmt: skip
+    return refined_response(solve, speeds, rounds=ROUNDS) if refined and resolved(rig) else solve(speeds)
+
+
+def rating_options(rig: Rig, name: str) -> RatingOptions:
+    """What ISO 6336-1 needs of a mesh beside its geometry; profile crowning counts as tip relief C_a."""
+    box, mesh = rig.mesh(name)
+    entry = box.meshes[mesh]
+    gears = box.gears[entry.pinion], box.gears[entry.wheel]
+    relief = min(gear.flank.tip_relief or gear.flank.profile_crowning for gear in gears)
+    solid = [rig.materials[gear.material] for gear in gears]
+    first, second = (material.flank_strength or DEFAULT.sigma_hlim[0] for material in solid)
+    softest = max((material.treatment for material in solid), key=HARDNESS.index)
+    return RatingOptions(
+        grade=max(gear.quality_grade for gear in gears),
+        tip_relief=relief if relief > 0.0 else None,
+        sigma_hlim=(first, second),
+        run_in=softest,
+        application_factor=entry.application_factor,
+        low_load_factor=entry.low_load_factor,
+    )
+
+
+def iso_factor(rig: Rig, name: str, torque: float, speed: float) -> DynamicFactor:
+    """K_V of one mesh by ISO 6336-1 method B; torque [N m] and speed [rad/s] of its pinion, cold gears."""
+    return dynamic_factor(rig.pairs[name], abs(torque), speed, rating_options(rig, name))
+
+
+def own_ratio(rig: Rig, mesh: int) -> float:
+    """Speed of the pinion of a mesh per speed of the first pinion."""
+    box, own = rig.mesh(rig.mesh_names[mesh])
+    return rig.shaft_speed(box.gears[box.meshes[own].pinion].shaft, 1.0) / rig.pinion_speed(1.0)
+
+
+def factor_points(rig: Rig, mesh: int, curve: ResponseCurve) -> list[DynamicFactorPoint]:
+    """The K_V(n) curve of one mesh with ISO beside it, over the speed of its own pinion."""
+    name = rig.mesh_names[mesh]
+    ratio = own_ratio(rig, mesh)
+    points = []
+    for point in curve.points:
+        speed = point.speed * ratio
+        iso = iso_factor(rig, name, float(point.mean[mesh]), speed)
+        points.append(
+            DynamicFactorPoint(
+                speed_rpm=speed * 30.0 / math.pi,
+                simulated=float(point.dynamic_factor[mesh]),
+                simulated_half_peak_to_peak=float(point.dynamic_factor_half_peak_to_peak[mesh]),
+                iso_6336_1_method_b=iso.K_V,
+                method=point.method,
+            )
+        )
+    return points

@@ -1,0 +1,238 @@
+"""Numbers an engineer can redo on paper beside the key results."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rigdesign.coupling.expansion import spin_growth
+from rigdesign.coupling.loads import MeshModel
+from rigdesign.coupling.losses import ANDERSON_LOEWENTHAL
+from rigdesign.records.solved_rig import Subject
+from rigdesign.results.result import GrowthResult
+from thermal.conduction.heat_rows import HeatRow
+
+PLATE = (
+    "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)], T_h the mean of the partition; the colder box round the plate "
+    "narrows the bore further"
+)
+RING = "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)], T_h of the bore; a warmer wall round it widens it further"
+BORE = (
+    "C + D [alpha_h (T_w - T_0) - alpha_s (T_j - T_0)] less the growth by spin, T_w the mean of the end wall, T_j of "
+    "the journal: a wall that is warmer away from its bore widens it more than the temperature of the bore itself; a "
+    "warmer box behind the wall stretches it further, the bore by 2/(1 - nu) times that stretch"
+)
+
+WINDAGE = (
+    "2.82e-7 (1 + 2.3 b/R) n^2.8 R^4.6 (0.028 eta + 0.019)^0.2 kW (Anderson and Loewenthal), a mist of about 27 kg/m3 "
+    "built in; the default law takes the density of the case, 1.2 to 20 kg/m3 believable; put a range on "
+    "loss_factors.windage where both still differ"
+)
+
+RISE = (
+    "alpha_f h_f (T_f - T_0) + alpha h (T_h - T_0), T_f the mean of the field under the housing, T_h of the housing; "
+    "end walls colder than that rise less, a field that bows towards its warm side lifts them"
+)
+
+
+def hand_checks(subject: Subject) -> list[dict[str, Any]]:
+    """quantity, computed, by_hand, unit, formula; in the order of the report."""
+    return [*_loads(subject), *_losses(subject), *_growth(subject)]
+
+
+def _row(quantity: str, computed: float, by_hand: float, unit: str, formula: str) -> dict[str, Any]:
+    return {"quantity": quantity, "computed": computed, "by_hand": by_hand, "unit": unit, "formula": formula}
+
+
+def _loads(subject: Subject) -> list[dict[str, Any]]:
+    last, rig = subject.test.last, subject.rig
+    rows = []
+    for model in last.models:
+        box, mesh = rig.mesh(model.name)
+        shaft = box.gears[box.meshes[mesh].pinion].shaft
+        speed = rig.shaft_speed(shaft, subject.test.point.speed)
+        torque = abs(last.feedback.mesh_torque[model.name])
+        stiffness, pair = model.law.mean_stiffness, model.pair
+        deflection = torque / pair.base_radii[0] / stiffness + mean_gap(model)
+        rows.append(
+            _row(
+                f"mesh frequency, {model.name}", speed * pair.teeth[0] / (2.0 * math.pi),
+                pair.teeth[0] * speed * 30.0 / math.pi / 60.0, "Hz", "z_1 n_1 / 60",
+            )
+        )  # fmt: skip
+        if last.response is not None:
+            index = rig.mesh_names.index(model.name)
+            approach = abs(float(last.response.wave.approach[index].mean()))
+            if last.response.flank[index] < 0:
+                approach -= model.law.backlash
+            rows.append(
+                _row(
+                    f"mean tooth deflection, {model.name}", 1e6 * approach, 1e6 * deflection, "um",
+                    "T_1 / (r_b1 c_gamma b) + mean gap of the flanks, weighted with their stiffness; early contact and "
+                    "the edges of crowned flanks that do not touch explain the difference",
+                )
+            )  # fmt: skip
+    return rows
+
+
+def mean_gap(model: MeshModel) -> float:
+    """Gap of the modified flanks over the path of contact and the face, weighted with the stiffness [m]."""
+    law, path = model.law, model.pair.path
+    at = law.path_start + law.path_step * np.arange(law.gap.shape[1])
+    active = (at >= path.start) & (at <= path.end)
+    return float(np.average(law.gap[:, active], weights=law.stiffness[:, active]))
+
+
+def _losses(subject: Subject) -> list[dict[str, Any]]:
+    rows = []
+    for placed in subject.test.last.losses:
+        details = placed.loss.details
+        if placed.loss.kind == "mesh" and not placed.given:
+            by_hand = math.prod(
+                float(details[key])
+                for key in ("transmitted_power", "friction_coefficient", "tooth_loss_factor")
+            )
+            rows.append(
+                _row(
+                    f"sliding loss, {placed.name}", placed.loss.power, by_hand, "W",
+                    "P mu H_V of rigid teeth; deflected ones share the load beyond the ends of the path. The gear bulk "
+                    "temperature hangs on the difference",
+                )
+            )  # fmt: skip
+        if placed.loss.kind == "windage" and not placed.given:
+            rows.append(
+                _row(
+                    f"windage, {placed.name}", placed.loss.power, float(details[ANDERSON_LOEWENTHAL]), "W",
+                    f"{WINDAGE}; at losses.chamber_density = {float(details['mist_density']):.3g} kg/m3 here",
+                )
+            )  # fmt: skip
+    for row in subject.cooler:
+        given, taken = (
+            math.fsum(float(row[key]) for key in keys)
+            for keys in (("losses_W", "pump_W", "heater_W"), ("cooler_W", "room_W"))
+        )
+        rows.append(
+            _row(f"heat carried away, stage {row['stage']}", taken, given, "W",
+                 "cooler + room = losses + jets of the pump + heaters")
+        )  # fmt: skip
+    return rows
+
+
+def _growth(subject: Subject) -> list[dict[str, Any]]:
+    rows = []
+    for result in subject.growth:
+        rows += [
+            _row(
+                f"growth of {shaft['shaft']}", shaft["growth_mm"], shaft["free_expansion_mm"], "mm",
+                "alpha L (T_m - T_0)",
+            )
+            for shaft in result.shafts
+        ]  # fmt: skip
+        for seal in result.seal_gaps:
+            plate = partition_gap(subject, result, seal["seal"])
+            by_hand, formula = (1e3 * plate, PLATE) if plate is not None else (seal["by_hand_mm"], RING)
+            rows.append(_row(f"mean gap of seal {seal['seal']}", seal["hot_mean_mm"], by_hand, "mm", formula))
+        for bearing in result.bearings:
+            clearance = end_wall_clearance(subject, result, bearing["bearing"])
+            if clearance is not None:
+                rows.append(
+                    _row(
+                        f"hot diametral clearance of {bearing['bearing']}", bearing["diametral_clearance_hot_um"],
+                        1e6 * clearance, "um", BORE,
+                    )
+                )  # fmt: skip
+        for coupling in result.couplings:
+            ends = [coupling[end].endswith("(cold)") for end in ("first", "second")]
+            if any(ends):
+                rise = coupling["recommended_cold_vertical_mm"] * (1.0 if ends[0] else -1.0)
+                name, by_hand = (
+                    f"rise of the shaft at coupling {coupling['coupling']}",
+                    axis_rise(subject, result),
+                )
+                rows.append(_row(name, rise, by_hand, "mm", RISE))
+    return rows
+
+
+def axis_rise(subject: Subject, result: GrowthResult) -> float:
+    """Free expansion of the housing and of the field under it up to the shaft axes [mm], by their mean temperatures."""
+    name = result.gearbox
+    housing = subject.case.gearboxes[name].housing
+    assert housing is not None
+    field = next(p for p in subject.points if p.point.stage == result.stage).last.fields[name].temperature
+    elements, bodies = subject.rig.conduction[name].elements, subject.rig.models[name].mesh.bodies
+    box = elements.mesh.points[np.unique(elements.mesh.cells[bodies["housing"]]), :2]
+    low, high = box.min(axis=0), box.max(axis=0)
+    cold, rise = subject.case.ambient.reference_temperature, 0.0
+    for body, material, height in (
+        ("field", housing.field.material, housing.field.thickness),
+        ("housing", housing.material, housing.shaft_height),
+    ):
+        values, volumes = elements.at_points(field, bodies[body])
+        places, _ = elements.at_points(elements.mesh.points[:, :2], bodies[body])
+        under = ((places >= low) & (places <= high)).all(axis=1)
+        mean = float(np.average(values[under], weights=volumes[under]))
+        rise += subject.rig.materials[material].expansion_coefficient * height * (mean - cold)
+    return 1e3 * rise
+
+
+def partition_gap(subject: Subject, result: GrowthResult, seal: str) -> float | None:
+    """Hot gap [m] of a seal in a partition: a free plate widens its bore by its mean strain, however its warmth lies.
+
+    None for the seals at the ends, whose walls have no surfaces of their own. Source: disc with a free bore,
+    Timoshenko and Goodier, Theory of Elasticity, section 150.
+    """
+    shaft, _, side = seal.rpartition("_")
+    housing = subject.case.gearboxes[result.gearbox].housing
+    if housing is None or shaft not in housing.shafts:
+        return None
+    point = next(p for p in subject.points if p.point.stage == result.stage)
+    rows = point.last.fields[result.gearbox].solution.balance.rows
+    plate, journal = (
+        _mean_temperature(rows, names)
+        for names in ((f"partition_warm_{side}", f"partition_cold_{side}"), (f"shaft_{shaft}_seal_{side}",))
+    )
+    entry, materials = housing.shafts[shaft], subject.rig.materials
+    cold = subject.case.ambient.reference_temperature
+    wide = materials[housing.material].expansion_coefficient * (plate - cold)
+    thick = materials[entry.material].expansion_coefficient * (journal - cold)
+    gap = next(
+        s.radial_gap for s in subject.case.gearboxes[result.gearbox].seals.values() if s.shaft == shaft
+    )
+    return gap + 0.5 * entry.seal_diameter * (wide - thick)
+
+
+def end_wall_clearance(subject: Subject, result: GrowthResult, full: str) -> float | None:
+    """Hot diametral clearance [m] of the bearing ``gearbox.bearing``: its end wall widens the bore by its mean strain.
+
+    None for a user's mesh that has no material where the box has its end wall. Source: as `partition_gap`.
+    """
+    rig = subject.rig
+    name, part = full.split(".")
+    box = subject.case.gearboxes[name]
+    assert box.housing is not None
+    entry, geometry = box.bearings[part], rig.geometries[name]
+    point = next(p for p in subject.points if p.point.stage == result.stage)
+    field = point.last.fields[name]
+    elements, cells = rig.conduction[name].elements, rig.models[name].mesh.bodies["housing"]
+    values, volumes = elements.at_points(field.temperature, cells)
+    places, _ = elements.at_points(elements.mesh.points[:, 0], cells)
+    depth = places if entry.side == "front" else geometry.length - places
+    inside = depth < geometry.end_wall_thickness
+    if not inside.any():
+        return None
+    wall = float(np.average(values[inside], weights=volumes[inside]))
+    journal = _mean_temperature(field.solution.balance.rows, (f"shaft_{entry.shaft}_journal_{entry.side}",))
+    cold, materials = subject.case.ambient.reference_temperature, rig.materials
+    wide = materials[box.housing.material].expansion_coefficient * (wall - cold)
+    thick = materials[box.housing.shafts[entry.shaft].material].expansion_coefficient * (journal - cold)
+    spin = spin_growth(rig, entry, point.point.speed)
+    return entry.diametral_clearance + entry.diameter * (wide - thick) - spin
+
+
+def _mean_temperature(rows: Sequence[HeatRow], surfaces: tuple[str, ...]) -> float:
+    """Area mean over some surfaces [K]."""
+    found = {row.surface: row for row in rows if row.surface in surfaces}
+    return float(
+        np.average([r.mean_temperature for r in found.values()], weights=[r.area for r in found.values()])
+    )

@@ -1,0 +1,157 @@
+"""The heat split as a result: what the oil takes of the friction heat of each gear, with its range."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+from rigdesign.case.geometry import conditions_of
+from rigdesign.case.housing import FlankFilm
+from rigdesign.coupling.boundary import GEAR_OIL
+from rigdesign.coupling.flank_heat import GearFlanks, flank_films, gear_flanks, rim_surfaces
+from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.temperatures import HousingField, body_mean
+from rigdesign.results.result import HeatSplitRow
+from rigdesign.rig.model import Rig
+from thermal.conditions.boundary import Film, SurfaceSource
+from thermal.conduction.condition_checks import Condition
+from thermal.conduction.steady import solve_steady
+from thermal.films.flank import fin_efficiency, tooth_excess
+
+ZERO = 273.15
+RANGED = ("wetted_share", "film_factor")
+"""Inputs of a flank film whose ranges make the range of the split, both at their low and both at their high end."""
+
+COMPARED = 1e-7
+"""Heat left over, relative to the heat turned over, of fields that are only held beside the result: microkelvins."""
+
+SHOWN = ("share_into_oil", "bulk_degC", "tooth_degC", "flank_film_W_m2K")
+"""What a row shows at the ends of its range."""
+
+
+def heat_split_rows(rig: Rig, result: PointResult, field: HousingField) -> list[HeatSplitRow]:
+    """One row for every gear of a housing at a held stage.
+
+    The range holds losses, oil and warm gears of the settled state and solves the housing anew.
+    """
+    friction = friction_heat(rig, result, field.gearbox)
+    films = _films(rig, field.gearbox)
+    rows = split_as_solved(rig, result, field)
+    found: list[dict[str, dict[str, float | None]]] = []
+    for end in (0, 1):
+        ends = _ends(rig, field.gearbox, films, end)
+        if ends is None:
+            return list(rows.values())
+        other = _solved_again(rig, result, field, friction, ends)
+        at_end = {gear: _row(rig, result, other, gear, friction[gear], ends[gear]) for gear in rows}
+        found.append({gear: {key: getattr(row, key) for key in SHOWN} for gear, row in at_end.items()})
+    low, high = found
+    return [replace(row, weak_film=low[gear], strong_film=high[gear]) for gear, row in rows.items()]
+
+
+def split_as_solved(rig: Rig, result: PointResult, field: HousingField) -> dict[str, HeatSplitRow]:
+    """Row of every meshed gear that friction heats, without its range: nothing is solved again."""
+    films, box = _films(rig, field.gearbox), rig.case.gearboxes[field.gearbox]
+    bodies = rig.models[field.gearbox].mesh.bodies
+    return {
+        gear: _row(rig, result, field, gear, heat, films.get(gear))
+        for gear, heat in friction_heat(rig, result, field.gearbox).items()
+        if heat and f"gear_{box.gears[gear].shaft}" in bodies
+    }
+
+
+def friction_heat(rig: Rig, result: PointResult, name: str) -> dict[str, float]:
+    """Friction heat of all its meshes that enters the flanks of each gear of a gearbox [W]."""
+    box = rig.case.gearboxes[name]
+    heat = dict.fromkeys(box.gears, 0.0)
+    for placed in result.last.losses:
+        if placed.gearbox == name and placed.split is not None:
+            mesh = box.meshes[placed.part]
+            heat[mesh.pinion] += placed.split.pinion * placed.loss.power
+            heat[mesh.wheel] += (1.0 - placed.split.pinion) * placed.loss.power
+    return heat
+
+
+def _films(rig: Rig, name: str) -> dict[str, FlankFilm]:
+    box = rig.case.gearboxes[name]
+    return flank_films(box, rim_surfaces(box))
+
+
+def _ends(rig: Rig, name: str, films: Mapping[str, FlankFilm], end: int) -> dict[str, FlankFilm] | None:
+    """The films at one end of the ranges of the case; None where it states no range."""
+    box = rig.case.gearboxes[name]
+    if box.housing is None or box.heat_split.rule != "flank_film":
+        return None
+    ranges = {mark.path: mark.range for mark in rig.case.origin.marks if mark.range is not None}
+    rims = rim_surfaces(box)
+    entries = {surface: entry for entry, surface, _ in conditions_of(box.housing, rims.values())}
+    changed = {}
+    for gear, film in films.items():
+        at = f"gearboxes.{name}.housing.boundary.{entries[rims[gear]]}"
+        given = {key: float(ranges[f"{at}.{key}"][end]) for key in RANGED if f"{at}.{key}" in ranges}
+        changed[gear] = film.model_copy(update=given)
+    return changed if changed != dict(films) else None
+
+
+def _flanks(rig: Rig, result: PointResult, name: str, gear: str, film: FlankFilm) -> GearFlanks:
+    return gear_flanks(rig, name, gear, result.point, film)
+
+
+def _solved_again(
+    rig: Rig,
+    result: PointResult,
+    field: HousingField,
+    friction: Mapping[str, float],
+    films: Mapping[str, FlankFilm],
+) -> HousingField:
+    """The field with other films on the teeth and what these let through to the rims."""
+    name = field.gearbox
+    gears = {surface: gear for gear, surface in rim_surfaces(rig.case.gearboxes[name]).items()}
+    bulk = result.last.feedback.gear_temperature
+    conditions: list[Condition] = []
+    for condition in field.conditions:
+        gear = gears.get(getattr(condition, "surface", ""))
+        if gear is not None and isinstance(condition, Film):
+            condition = _flanks(rig, result, name, gear, films[gear]).film(condition.surface, condition.kind)
+        elif gear is not None and isinstance(condition, SurfaceSource):
+            kept = _flanks(rig, result, name, gear, films[gear]).kept(bulk[f"{name}.{gear}"])
+            condition = replace(condition, power=kept * friction[gear])
+        conditions.append(condition)
+    setup = rig.conduction[name]
+    solution = solve_steady(
+        setup.mesh, setup.conductivity, conditions, near=field.solution, reuse=setup, tolerance=COMPARED
+    )
+    return HousingField(gearbox=name, conditions=tuple(conditions), solution=solution)
+
+
+def _row(
+    rig: Rig, result: PointResult, field: HousingField, gear: str, heat: float, condition: FlankFilm | None
+) -> HeatSplitRow:
+    name = field.gearbox
+    box = rig.case.gearboxes[name]
+    rim = rim_surfaces(box)[gear]
+    rows = [row for row in field.solution.balance.rows if row.surface == rim]
+    reached = math.fsum(row.power for row in rows if row.kind == "mesh_loss")
+    film = -math.fsum(row.power for row in rows if row.kind == GEAR_OIL)
+    bulk = body_mean(rig, field, f"gear_{box.gears[gear].shaft}")
+    coefficient = efficiency = tooth = None
+    if condition is not None:
+        flanks = _flanks(rig, result, name, gear, condition)
+        wall = rows[0].mean_temperature
+        coefficient = flanks.law(wall, flanks.oil_temperature).value
+        efficiency = fin_efficiency(flanks.ring, coefficient)
+        excess = tooth_excess(flanks.ring, coefficient, heat, wall - flanks.oil_temperature)
+        tooth = flanks.oil_temperature + excess - ZERO
+    share = (heat - reached + film) / heat
+    return HeatSplitRow(
+        gear=f"{name}.{gear}",
+        rule=box.heat_split.rule,
+        friction_W=heat,
+        at_once_W=heat - reached,
+        film_W=film,
+        share_into_oil=share,
+        share_into_bodies=1.0 - share,
+        bulk_degC=bulk - ZERO,
+        tooth_degC=tooth,
+        flank_film_W_m2K=coefficient,
+        fin_efficiency=efficiency,
+    )

@@ -1,0 +1,116 @@
+"""Peaks of the dynamic torque over speed, named by what vibrates."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from dynamics.drivetrain.modes import LoopMode
+from dynamics.rating.dynamic_factor import DynamicFactorCurve, Resonance
+from dynamics.rating.dynamic_factor import resonances as find_resonances
+from dynamics.response.speed_sweep import CurvePoint, ResponseCurve
+from rigdesign.coupling.time_run import held_points
+from rigdesign.records.curves import Curves, own_ratio
+from rigdesign.rig.model import Rig
+
+HARMONICS = 4
+"""Mesh orders that may excite a mode."""
+LEAST_PROMINENCE = 0.01
+"""Prominence of a peak of the dynamic torque, as a share of the mean, from which it counts as a resonance."""
+NEAR = 0.2
+"""Distance of a mode, as a share of its frequency, within which it may still be called near: loaded teeth are stiffer
+or softer than the mean stiffness of the modes."""
+LEAST_GAIN = 0.1
+"""Gain of a mode below which its mesh hardly excites it (`LoopMode.mesh_gain`)."""
+LEAST_ORDER = 0.1
+"""Amplitude of an order, over that of the strongest one, from which it may name a resonance."""
+RPM = 30.0 / math.pi
+
+
+def resonance_rows(rig: Rig, curves: Curves, mesh: int, modes: Sequence[LoopMode]) -> list[dict[str, Any]]:
+    """Resonances of one mesh at every torque of the curves, over the speed of its own pinion.
+
+    amplification is the peak over the level it stands on; dangerous means above a limit of the case.
+    """
+    limits = rig.case.limits.dynamics
+    ratio = own_ratio(rig, mesh)
+    teeth = ratio * rig.pairs[rig.mesh_names[mesh]].teeth[0]
+    rows = []
+    fastest = rig.pinion_speed(max(point.speed for point in held_points(rig)))
+    for name, (_, curve) in curves.named.items():
+        if len(curve.points) < 3:
+            continue
+        searched = curve.speeds[-1] > fastest  # a ramp stage ends where the next one takes over
+        for peak in find_resonances(_of_mesh(curve, mesh), least_prominence=LEAST_PROMINENCE):
+            if peak.at_end and not searched:
+                continue
+            mode, frequency, harmonic = name_of(peak, curve, mesh, teeth, modes)
+            rows.append(
+                {
+                    "torque": name,
+                    "mode": mode,
+                    "frequency_Hz": frequency,
+                    "harmonic": harmonic,
+                    "speed_rpm": ratio * peak.speed * RPM,
+                    "dynamic_factor": peak.factor,
+                    "force_share": peak.force_share,
+                    "amplification": peak.amplification,
+                    "at_end": peak.at_end,
+                    "dangerous": peak.amplification > limits.dangerous_amplification
+                    or peak.force_share > limits.dangerous_force_share,
+                }
+            )
+    return rows
+
+
+def _of_mesh(curve: ResponseCurve, mesh: int) -> DynamicFactorCurve:
+    points = curve.points
+    return DynamicFactorCurve(
+        speed=curve.speeds,
+        factor=np.array([[p.dynamic_factor[mesh] for p in points]]),
+        half_peak_to_peak=np.array([[p.dynamic_factor_half_peak_to_peak[mesh] for p in points]]),
+        mean_torque=np.array([[p.mean[mesh] for p in points]]),
+        amplitude=np.array([[0.5 * (p.maximum[mesh] - p.minimum[mesh]) for p in points]]),
+        lift_off_share=np.array([[p.lift_off_share[mesh] for p in points]]),
+    )
+
+
+def name_of(
+    peak: Resonance, curve: ResponseCurve, mesh: int, teeth: float, modes: Sequence[LoopMode]
+) -> tuple[str, float, int]:
+    """Mode, frequency [Hz] and order that make a peak.
+
+    A mode counts if an order of the mesh meets it within half its line width or the step of the speeds, if the
+    mesh excites it and the order is there; of several the one with most gain times amplitude. With none it is
+    looked for more widely and called ``near``; failing that the strongest order stands alone: the peak has
+    several parents, or one above the modes that are listed.
+
+    teeth : mesh frequency over the turning frequency of the first pinion
+    """
+    at = int(np.argmin(np.abs(curve.speeds - peak.speed)))
+    amplitude = _amplitudes(curve.points[at], mesh)
+    base = peak.speed * teeth / (2.0 * math.pi)
+    beside = curve.speeds[max(at - 1, 0) : at + 2]
+    step = 0.5 * float(np.ptp(beside)) * teeth / (2.0 * math.pi) / max(len(beside) - 1, 1)
+    strongest = int(np.argmax(amplitude)) + 1
+    candidates = [
+        (harmonic, height, mode, abs(harmonic * base - mode.frequency))
+        for harmonic, height in enumerate(amplitude.tolist(), start=1)
+        for mode in modes
+        if height >= LEAST_ORDER * amplitude.max() and mode.mesh_gain[mesh] >= LEAST_GAIN
+    ]
+    meeting = [c for c in candidates if c[3] <= max(c[2].damping_ratio * c[2].frequency, c[0] * step)]
+    near = [c for c in candidates if c[3] <= NEAR * c[2].frequency]
+    if not near and not meeting:
+        return "no single mode", strongest * base, strongest
+    harmonic, _, mode, _ = max(meeting or near, key=lambda c: float(c[1] * c[2].mesh_gain[mesh]))
+    return (mode.name if meeting else f"near {mode.name}"), mode.frequency, harmonic
+
+
+def _amplitudes(point: CurvePoint, mesh: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Amplitudes of the orders 1 to `HARMONICS` of the dynamic torque [N m], zero where none was computed."""
+    amplitude = np.zeros(HARMONICS)
+    own = point.harmonics[mesh, 1 : HARMONICS + 1]
+    amplitude[: own.size] = own
+    return amplitude

@@ -1,0 +1,266 @@
+"""Figures of the drivetrain: K_V(n), order crossings, root stress over the mesh."""
+
+from itertools import cycle
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rigdesign.report.figures.drawing import (
+    INK,
+    MUTED,
+    SERIES,
+    VERDICT_COLOURS,
+    finish,
+    legend_right,
+    new_figure,
+    plain,
+)
+from rigdesign.results.result import DynamicFactorPoint, DynamicsResult, GearboxDynamics
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+KV = "K_V"
+SIGMA_F = "σ_F"
+
+
+def dynamic_factor_figure(dynamics: DynamicsResult) -> "Figure":
+    """K_V(n) of every gearbox: simulated max/mean, half peak-to-peak, ISO 6336-1 method B, variants."""
+    count = len(dynamics.gearboxes)
+    figure = new_figure(0.4 + 2.6 * count)
+    axes_list = figure.subplots(count, 1, squeeze=False)[:, 0]
+    for axes, (name, gearbox) in zip(axes_list, dynamics.gearboxes.items(), strict=True):
+        _dynamic_factor(axes, gearbox)
+        finish(
+            axes,
+            "pinion speed n [rpm]",
+            f"dynamic factor {KV} [–]",
+            f"Gearbox {plain(name)} ({gearbox.role})",
+        )
+        legend_right(axes)
+    _margins(figure, count, right=0.72)
+    return figure
+
+
+def _dynamic_factor(axes: "Axes", gearbox: GearboxDynamics) -> None:
+    points = gearbox.dynamic_factor
+    speed = [point.speed_rpm for point in points]
+    main = _with_gaps(gearbox, gearbox.torque, points)
+    axes.plot(
+        [p.speed_rpm for p in main],
+        [p.simulated for p in main],
+        color=SERIES[0],
+        label=f"simulated at {gearbox.torque}, max / mean",
+        zorder=4,
+    )
+    axes.plot(
+        [p.speed_rpm for p in main],
+        [p.simulated_half_peak_to_peak for p in main],
+        color=SERIES[0],
+        linewidth=0.8,
+        linestyle=(0, (3, 2)),
+        label="simulated, 1 + half peak-to-peak / mean",
+    )
+    others = {f"simulated at {key}": (key, curve) for key, curve in gearbox.dynamic_factor_at.items()}
+    others |= {
+        f"variant {plain(key.replace('_', ' '))} at {gearbox.torque}": (key, curve)
+        for key, curve in gearbox.dynamic_factor_variants.items()
+    }
+    for colour, (label, (key, curve)) in zip(cycle(SERIES[1:]), others.items(), strict=False):
+        shown = _with_gaps(gearbox, key, curve)
+        axes.plot(
+            [point.speed_rpm for point in shown],
+            [point.simulated for point in shown],
+            color=colour,
+            linewidth=0.9,
+            label=_wrapped(f"{label}, max / mean"),
+        )
+    axes.plot(
+        speed,
+        [p.iso_6336_1_method_b for p in points],
+        color=INK,
+        linewidth=1.5,
+        label="ISO 6336-1:2006 method B",
+    )
+    dangerous = [
+        item["speed_rpm"]
+        for item in gearbox.resonances
+        if item.get("dangerous") and item["torque"] == gearbox.torque
+    ]
+    if dangerous and points:
+        heights = np.interp(dangerous, speed, [p.simulated for p in points])
+        axes.plot(
+            dangerous,
+            heights,
+            "o",
+            color=VERDICT_COLOURS["fail"],
+            markersize=4,
+            label="dangerous resonance",
+            zorder=5,
+        )
+    axes.set_xlim(left=0)
+
+
+def _with_gaps(
+    gearbox: GearboxDynamics, curve: str, points: list[DynamicFactorPoint]
+) -> list[DynamicFactorPoint]:
+    """The points with one without value at every speed that has no solution, so that no line is drawn over it."""
+    nothing = float("nan")
+    holes = [
+        DynamicFactorPoint(
+            speed_rpm=row["speed_rpm"],
+            simulated=nothing,
+            simulated_half_peak_to_peak=nothing,
+            iso_6336_1_method_b=nothing,
+        )
+        for row in gearbox.unsolved
+        if row["curve"] == curve
+    ]
+    return sorted([*points, *holes], key=lambda point: point.speed_rpm)
+
+
+def campbell_figure(dynamics: DynamicsResult) -> "Figure":
+    """Tooth-mesh orders of every gearbox over speed against the modes of the closed loop and of its shafts alone."""
+    names = list(dynamics.gearboxes)
+    figure = new_figure(3.5)
+    axes_list = figure.subplots(1, max(1, len(names)), squeeze=False)[0]
+    top_speed = _top_speed(dynamics)
+    for axes, name in zip(axes_list, names, strict=True):
+        crossings = [item for item in dynamics.crossings if item.get("gearbox") == name]
+        _orders(axes, crossings, top_speed)
+        _natural_frequencies(axes, crossings, top_speed)
+        _loop_modes(axes, [item for item in dynamics.loop_crossings if item["order_of"] == name], top_speed)
+        _crossing_marks(axes, crossings, dynamics.gearboxes[name], top_speed)
+        axes.set_xlim(0, top_speed)
+        axes.set_ylim(bottom=0)
+        finish(axes, "pinion speed n [rpm]", "frequency [Hz]", f"Gearbox {plain(name)}")
+        axes.legend(loc="lower right", fontsize=7)
+    figure.subplots_adjust(left=0.075, right=0.985, top=0.92, bottom=0.14, wspace=0.2)
+    return figure
+
+
+def _top_speed(dynamics: DynamicsResult) -> float:
+    speeds = [p.speed_rpm for box in dynamics.gearboxes.values() for p in box.dynamic_factor]
+    speeds += [item["speed_rpm"] for item in dynamics.crossings]
+    return 1.02 * max(speeds, default=1.0)
+
+
+def _orders(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> None:
+    """Straight lines k f_z(n); f_z per rpm follows from any crossing."""
+    slopes = {
+        item["harmonic"]: item["frequency_Hz"] / item["speed_rpm"]
+        for item in crossings
+        if item["speed_rpm"] > 0
+    }
+    ceiling = 1.15 * max((item["frequency_Hz"] for item in crossings), default=1.0)
+    for harmonic, slope in sorted(slopes.items()):
+        end = min(top_speed, ceiling / slope)
+        axes.plot([0, end], [0, slope * end], color=INK, linewidth=0.9)
+        label = "f_z" if harmonic == 1 else f"{harmonic:g} f_z"
+        # the steep lines end close together: their labels stand in two rows
+        row = 13 if harmonic > 2 and harmonic % 2 else 4
+        axes.annotate(
+            label, (end, slope * end), textcoords="offset points", xytext=(-3, row), ha="right", fontsize=7.5
+        )
+    axes.set_ylim(0, 1.16 * ceiling)
+
+
+def _natural_frequencies(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> None:
+    shafts = list(dict.fromkeys(item["shaft"] for item in crossings))
+    for colour, shaft in zip(SERIES, shafts, strict=False):
+        frequencies = sorted({item["frequency_Hz"] for item in crossings if item["shaft"] == shaft})
+        for number, frequency in enumerate(frequencies):
+            label = f"torsion of {plain(shaft)}, free-free" if number == 0 else None
+            axes.plot([0, top_speed], [frequency, frequency], color=colour, linewidth=0.8, label=label)
+
+
+def _loop_modes(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> None:
+    """Modes of the closed loop that the mesh excites, and where its orders meet them."""
+    excited = [item for item in crossings if item["kind"] == "mesh" and item["excited"]]
+    for number, frequency in enumerate(sorted({item["frequency_Hz"] for item in excited})):
+        label = "mode of the closed loop" if number == 0 else None
+        axes.plot([0, top_speed], [frequency, frequency], "--", color=INK, linewidth=0.8, label=label)
+    if excited:
+        speeds, frequencies = ([item[key] for item in excited] for key in ("speed_rpm", "frequency_Hz"))
+        axes.plot(speeds, frequencies, "s", color=INK, markersize=3.5, label="crossing, closed loop")
+
+
+def _crossing_marks(
+    axes: "Axes", crossings: list[dict[str, Any]], gearbox: GearboxDynamics, top_speed: float
+) -> None:
+    axes.plot(
+        [item["speed_rpm"] for item in crossings],
+        [item["frequency_Hz"] for item in crossings],
+        "o",
+        markerfacecolor="white",
+        markeredgecolor=MUTED,
+        markersize=4,
+        label="crossing, isolated shaft",
+    )
+    dangerous = [
+        item
+        for item in gearbox.resonances
+        if item.get("dangerous") and item["torque"] == gearbox.torque and item["speed_rpm"] <= top_speed
+    ]
+    if dangerous:
+        axes.plot(
+            [item["speed_rpm"] for item in dangerous],
+            [item["frequency_Hz"] for item in dangerous],
+            "o",
+            color=VERDICT_COLOURS["fail"],
+            markersize=5,
+            label="dangerous resonance of the assembled loop",
+        )
+
+
+def root_stress_figure(gearbox: GearboxDynamics) -> "Figure":
+    """sigma_F over the rolling angle, dynamic against quasi-static, and the stress ratio over speed."""
+    histories = gearbox.root_stress
+    columns = len(histories) + bool(gearbox.root_stress_factor)
+    figure = new_figure(2.9)
+    axes_list = list(figure.subplots(1, columns, squeeze=False)[0])
+    for axes, history in zip(axes_list, histories, strict=False):
+        angle = history.rolling_angle_deg
+        axes.plot(angle, history.quasi_static_MPa, color=INK, linewidth=1.0, label="quasi-static")
+        axes.plot(angle, history.dynamic_MPa, color=SERIES[1], label="dynamic")
+        axes.set_ylim(bottom=0)
+        title = f"{plain(history.gear)}, stage {plain(history.stage)}"
+        finish(axes, "rolling angle φ [°]", f"root stress {SIGMA_F}(φ) [N/mm²]", title)
+        axes.legend(loc="best")
+    if gearbox.root_stress_factor:
+        _stress_ratio(axes_list[-1], gearbox.root_stress_factor, gearbox.dynamic_factor)
+    figure.subplots_adjust(left=0.075, right=0.985, top=0.90, bottom=0.17, wspace=0.3)
+    return figure
+
+
+def _stress_ratio(axes: "Axes", rows: list[dict[str, float]], points: list[DynamicFactorPoint]) -> None:
+    speed = [row["speed_rpm"] for row in rows]
+    gears = [key for key in rows[0] if key != "speed_rpm"]
+    axes.plot(
+        [p.speed_rpm for p in points], [p.simulated for p in points], color=MUTED, linewidth=0.9, label=KV
+    )
+    for colour, gear in zip(SERIES, gears, strict=False):
+        axes.plot(speed, [row[gear] for row in rows], color=colour, label=f"{SIGMA_F} ratio, {plain(gear)}")
+    axes.set_xlim(left=0)
+    axes.locator_params(axis="x", nbins=4)
+    finish(
+        axes,
+        "pinion speed n [rpm]",
+        f"max {SIGMA_F} dynamic / quasi-static [–]",
+        f"Stress ratio beside {KV}(n)",
+    )
+    axes.legend(loc="best")
+
+
+def _margins(figure: "Figure", rows: int, right: float) -> None:
+    height = figure.get_figheight()
+    figure.subplots_adjust(
+        left=0.075, right=right, top=1 - 0.28 / height, bottom=0.45 / height, hspace=0.16 + 0.17 * rows
+    )
+
+
+def _wrapped(label: str, width: int = 34) -> str:
+    from textwrap import fill
+
+    return fill(label, width)

@@ -1,0 +1,156 @@
+"""Heat from sources to sinks: of the whole rig at one stage, and through the bodies of one gearbox."""
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from rigdesign.report.figures.drawing import INK, SERIES, new_figure, plain
+from rigdesign.report.figures.sankey import NODE_WIDTH, Flow, Layout, layout, spread
+from rigdesign.report.numbers import number_text
+from rigdesign.results.result import LossRow, OilRow, ThermalResult
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+OIL, BODIES, COOLER, ROOM, HEATERS = "oil", "gears, shafts, housings", "cooler", "room", "oil heaters"
+TURNING, STANDING = "gears and shafts", "housing and field"
+WORDS = {
+    "mesh_loss": "tooth friction",
+    "bearing": "journal bearings",
+    "squeeze": "squeezed oil",
+    "mesh": "tooth friction",
+    "air": "room air",
+    "radiation": "radiation to the room",
+    "bearing_film": "bearing films",
+    "exchange": "seal gaps",
+}
+LABEL_ROOM = 0.062
+"""Between labels, as a share of the height."""
+
+
+def rig_flow_figure(
+    losses: Sequence[LossRow], oil: Sequence[OilRow], cooler: Mapping[str, Any]
+) -> "Figure | None":
+    """Losses of one stage by kind, through oil and bodies, to cooler and room [W]; None without a loss.
+
+    losses, oil : rows of the stage; cooler : its row of ``RunResult.cooler``
+    """
+    into_oil: dict[str, float] = defaultdict(float)
+    into_bodies: dict[str, float] = defaultdict(float)
+    for row in losses:
+        if not (row.into_oil_W or row.into_body_W):
+            continue  # work of the mesh dampers is no heat
+        into_oil[_words(row.kind)] += row.into_oil_W
+        into_bodies[_words(row.kind)] += row.into_body_W
+    flows = [Flow(kind, OIL, max(power, 0.0)) for kind, power in into_oil.items()]
+    flows += [Flow(kind, BODIES, max(power, 0.0)) for kind, power in into_bodies.items()]
+    flows += [Flow(HEATERS, OIL, float(cooler["heater_W"])), Flow(OIL, COOLER, float(cooler["cooler_W"]))]
+    flows.append(Flow(BODIES, ROOM, max(float(cooler["room_W"]), 0.0)))
+    given = sum(row.heat_W for row in oil) - sum(row.into_oil_W for row in losses)
+    flows.append(Flow(BODIES, OIL, given) if given >= 0.0 else Flow(OIL, BODIES, -given))
+    totals = {kind: into_oil[kind] + into_bodies[kind] for kind in into_oil}
+    kinds = sorted(totals, key=lambda kind: (into_bodies[kind] > 0.1 * totals[kind], -totals[kind]))
+    if not any(flow.value > 0.0 for flow in flows):
+        return None
+    middle, bodies = ([BODIES, OIL], 1) if given >= 0.0 else ([OIL, BODIES], 2)
+    columns = [[HEATERS, *kinds], [middle[0]], [middle[1]], [COOLER, ROOM]]
+    return _drawn(layout(columns, flows, low=(bodies,)), len(kinds) + 1)
+
+
+def body_flow_figure(thermal: ThermalResult) -> "Figure":
+    """Heat into and out of the solids of one gearbox by kind of boundary [W]."""
+    flows: dict[tuple[str, str, bool], float] = defaultdict(float)
+    for row in thermal.heat:
+        kind = _words(row.kind.partition(":")[0])
+        group = TURNING if row.surface.startswith(("shaft_", "gear_")) else STANDING
+        flows[kind, group, row.power_W > 0.0] += abs(row.power_W)
+    sources = _by_size({key: power for key, power in flows.items() if key[2]})
+    sinks = _by_size({key: power for key, power in flows.items() if not key[2]})
+    ribbons = [
+        Flow(f"{kind} ", group, power) if source else Flow(group, f" {kind}", power)
+        for (kind, group, source), power in flows.items()
+    ]
+    columns = [[f"{kind} " for kind in sources], [TURNING, STANDING], [f" {kind}" for kind in sinks]]
+    return _drawn(layout(columns, ribbons, gap=0.09), max(len(sources), len(sinks)))
+
+
+def _by_size(flows: Mapping[tuple[str, str, bool], float]) -> list[str]:
+    totals: dict[str, float] = defaultdict(float)
+    for (kind, _, _), power in flows.items():
+        totals[kind] += power
+    return sorted(totals, key=lambda kind: -totals[kind])
+
+
+def _words(kind: str) -> str:
+    return WORDS.get(kind, kind.replace("_", " "))
+
+
+def _drawn(found: Layout, rows: int) -> "Figure":
+    height = max(2.6, 0.9 + 0.34 * rows)
+    figure = new_figure(height)
+    axes = figure.add_axes((0.21, 0.03, 0.56, 0.92))
+    axes.set_xlim(0.0, 1.0)
+    axes.set_ylim(-0.07, 1.05)
+    axes.set_axis_off()
+    colours = _colours(found)
+    _ribbons(axes, found, colours)
+    _boxes(axes, found, colours)
+    return figure
+
+
+def _colours(found: Layout) -> dict[str, str]:
+    """Sources each by a colour of their own, everything else in ink."""
+    sources = [box.name for box in found.boxes if box.column == 0]
+    return {name: SERIES[i % len(SERIES)] for i, name in enumerate(sources)}
+
+
+def _ribbons(axes: "Axes", found: Layout, colours: Mapping[str, str]) -> None:
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    for ribbon in found.ribbons:
+        (x0, low0, high0), (x1, low1, high1) = ribbon.start, ribbon.end
+        middle = 0.5 * (x0 + x1)
+        points = [
+            (x0, low0), (middle, low0), (middle, low1), (x1, low1), (x1, high1), (middle, high1), (middle, high0),
+            (x0, high0), (x0, low0),
+        ]  # fmt: skip
+        codes = [Path.MOVETO, *[Path.CURVE4] * 3, Path.LINETO, *[Path.CURVE4] * 3, Path.CLOSEPOLY]
+        colour = colours.get(ribbon.flow.source, "#6b7a87")
+        axes.add_patch(PathPatch(Path(points, codes), facecolor=colour, alpha=0.42, linewidth=0))
+
+
+def _boxes(axes: "Axes", found: Layout, colours: Mapping[str, str]) -> None:
+    from matplotlib.patches import Rectangle
+
+    last = max(box.column for box in found.boxes)
+    for column in range(last + 1):
+        boxes = [box for box in found.boxes if box.column == column]
+        heights = spread([0.5 * (box.low + box.high) for box in boxes], LABEL_ROOM)
+        for box, height in zip(boxes, heights, strict=True):
+            size = box.high - box.low
+            colour = colours.get(box.name, INK)
+            axes.add_patch(Rectangle((box.x, box.low), NODE_WIDTH, size, facecolor=colour, edgecolor="none"))
+            text = f"{plain(box.name.strip())}  {_power(box.value)}"
+            if column in (0, last):
+                _outer_label(axes, box.x, 0.5 * (box.low + box.high), height, text, left=column == 0)
+            else:
+                below = box.low < 0.02
+                axes.annotate(
+                    text, (box.x + 0.5 * NODE_WIDTH, box.low if below else box.high), ha="center",
+                    va="top" if below else "bottom", textcoords="offset points", xytext=(0, -3 if below else 3),
+                    fontsize=8, fontweight="bold",
+                    bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0.0, "pad": 1.0},
+                )  # fmt: skip
+
+
+def _power(value: float) -> str:
+    return f"{number_text(1e-3 * value)} kW" if value >= 1e4 else f"{number_text(value, 3)} W"
+
+
+def _outer_label(axes: "Axes", x: float, at: float, height: float, text: str, *, left: bool) -> None:
+    edge, far, align = (x, x - 0.025, "right") if left else (x + NODE_WIDTH, x + NODE_WIDTH + 0.025, "left")
+    axes.plot([edge, far], [at, height], color=INK, linewidth=0.5, clip_on=False)
+    shift = -0.006 if left else 0.006
+    axes.text(far + shift, height, text, ha=align, va="center", fontsize=8)

@@ -1,0 +1,148 @@
+"""Figures of losses, oil, heat flows, clearances and convergence."""
+
+from typing import TYPE_CHECKING
+
+from rigdesign.report.figures.drawing import MUTED, SERIES, finish, legend_right, new_figure, plain
+from rigdesign.report.numbers import power_text
+from rigdesign.results.result import CouplingHistory, LossRow, OilRow
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WARM, COLD = "#b3452c", "#2b6ca3"
+
+
+def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
+    """Power loss at the end of every stage [W], stacked by kind."""
+    stages = list(dict.fromkeys(row.stage for row in losses))
+    kinds = list(dict.fromkeys(row.kind for row in losses))
+    height = 0.75 + 0.34 * len(stages)
+    figure = new_figure(height)
+    axes = figure.subplots()
+    left = [0.0] * len(stages)
+    for colour, kind in zip(_colours(len(kinds)), kinds, strict=True):
+        power = [
+            sum(row.power_W for row in losses if row.stage == stage and row.kind == kind) for stage in stages
+        ]
+        axes.barh(range(len(stages)), power, left=left, color=colour, height=0.65, label=plain(_words(kind)))
+        left = [start + width for start, width in zip(left, power, strict=True)]
+    for row, total in enumerate(left):
+        axes.annotate(
+            f"{total:.0f} W", (total, row), textcoords="offset points", xytext=(4, -3), fontsize=7.5
+        )
+    axes.set_yticks(range(len(stages)), [plain(stage) for stage in stages])
+    axes.invert_yaxis()
+    axes.grid(axis="y", visible=False)
+    axes.margins(x=0.1)
+    finish(axes, "power loss at the end of the stage [W]")
+    legend_right(axes)
+    figure.subplots_adjust(left=0.16, right=0.8, top=1 - 0.1 / height, bottom=0.47 / height)
+    return figure
+
+
+def losses_by_place_figure(losses: list[LossRow], stage: str) -> "Figure":
+    """Power loss of every place at one stage [W], split into oil and body."""
+    rows = sorted((row for row in losses if row.stage == stage), key=lambda row: -row.power_W)
+    height = 0.75 + 0.24 * len(rows)
+    figure = new_figure(height)
+    axes = figure.subplots()
+    places = range(len(rows))
+    axes.barh(places, [r.into_oil_W for r in rows], color=SERIES[0], height=0.65, label="into the oil")
+    axes.barh(
+        places,
+        [r.into_body_W for r in rows],
+        left=[r.into_oil_W for r in rows],
+        color=SERIES[1],
+        height=0.65,
+        label="into the body",
+    )
+    if any(r.not_heat_W > 0.0 for r in rows):
+        heat = [r.into_oil_W + r.into_body_W for r in rows]
+        axes.barh(
+            places,
+            [r.not_heat_W for r in rows],
+            left=heat,
+            color=SERIES[2],
+            height=0.65,
+            label="no heat (mesh damper)",
+        )
+    axes.set_yticks(places, [plain(_words(f"{row.place}, {row.kind}")) for row in rows])
+    axes.invert_yaxis()
+    axes.grid(axis="y", visible=False)
+    finish(axes, f"power loss at stage {plain(stage)} [W]")
+    axes.legend(loc="lower right")
+    figure.subplots_adjust(left=0.32, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
+    return figure
+
+
+def oil_figure(oil: list[OilRow], stage: str) -> "Figure":
+    """Oil temperature of every consumer at one stage, inlet to outlet [degC]."""
+    rows = [row for row in oil if row.stage == stage]
+    height = 0.75 + 0.26 * len(rows)
+    figure = new_figure(height)
+    axes = figure.subplots()
+    for place, row in enumerate(rows):
+        axes.plot([row.inlet_degC, row.outlet_degC], [place, place], color=MUTED, linewidth=1.6, zorder=2)
+    places = range(len(rows))
+    axes.plot([r.inlet_degC for r in rows], places, "o", color=COLD, markersize=5, label="inlet")
+    axes.plot([r.outlet_degC for r in rows], places, "o", color=WARM, markersize=5, label="outlet")
+    axes.set_yticks(places, [plain(_words(row.consumer)) for row in rows])
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.margins(x=0.08)
+    finish(axes, f"oil temperature at stage {plain(stage)}, mixed mean [°C]")
+    axes.legend(loc="best")
+    figure.subplots_adjust(left=0.26, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
+    return figure
+
+
+def convergence_figure(histories: list[CouplingHistory]) -> "Figure":
+    """Residuals of the coupling loop by pass, logarithmic."""
+    quantities = list(dict.fromkeys(key for history in histories for row in history.residuals for key in row))
+    figure = new_figure(2.3)
+    axes_list = figure.subplots(1, max(1, len(quantities)), squeeze=False)[0]
+    for axes, quantity in zip(axes_list, quantities, strict=False):
+        for colour, history in zip(_colours(len(histories)), histories, strict=True):
+            values = [
+                (n, row[quantity]) for n, row in enumerate(history.residuals, start=1) if row.get(quantity)
+            ]
+            axes.plot(
+                [n for n, _ in values],
+                [abs(v) for _, v in values],
+                "o-",
+                markersize=3,
+                color=colour,
+                label=plain(history.stage),
+            )
+        if any(row.get(quantity) for history in histories for row in history.residuals):
+            _logarithmic(axes)
+        axes.xaxis.get_major_locator().set_params(integer=True)
+        finish(axes, "pass [–]", _residual_label(quantity))
+        axes.legend(loc="best")
+    figure.subplots_adjust(left=0.085, right=0.985, top=0.94, bottom=0.21, wspace=0.32)
+    return figure
+
+
+def _logarithmic(axes: "Axes") -> None:
+    """A logarithmic axis whose ticks are powers of ten, without the search for smaller ones."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+    axes.set_yscale("log")
+    axes.yaxis.set_major_locator(LogLocator(numticks=7))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: power_text(value)))
+    axes.yaxis.set_minor_locator(NullLocator())
+
+
+def _residual_label(key: str) -> str:
+    from rigdesign.report.numbers import split_key
+
+    words, unit = split_key(key)
+    return f"change of {words.replace(' relative', '')}, max [{unit or '–'}]"
+
+
+def _colours(count: int) -> list[str]:
+    return [SERIES[index % len(SERIES)] for index in range(count)]
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")

@@ -1,0 +1,1 @@
+"""Self-contained pages: report, comparison, diagnosis, study."""

@@ -1,0 +1,77 @@
+"""diagnosis.html: a diagnosis as a story, one self-contained page."""
+
+from typing import TYPE_CHECKING, Any
+
+from rigdesign.diagnosis.decision.naming import display_scale
+from rigdesign.diagnosis.document.advice import VERDICTS
+from rigdesign.diagnosis.document.document import leading_sentences, sentences
+from rigdesign.diagnosis.document.outcome import Outcome
+from rigdesign.report.figures.drawing import drawing_style, inline_svg
+from rigdesign.report.numbers import number_text, unit_text
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+BANNERS = {"named": "pass", "within_noise": "pass", "input_error_suspected": "fail"}
+"""Verdict -> colour of the banner; the others warn."""
+CHANNELS_SHOWN = 12
+"""Channels of the table of gaps."""
+
+
+def diagnosis_page(outcome: Outcome, document: dict[str, Any]) -> str:
+    """The page as one HTML document; two calls give the same text."""
+    from rigdesign.report.figures import diagnosis as figures
+    from rigdesign.report.pages.report import environment
+
+    count = 0
+
+    def draw(figure: Any, description: str) -> "Markup | None":
+        from markupsafe import Markup
+
+        nonlocal count
+        if figure is None:
+            return None
+        count += 1
+        return Markup(inline_svg(figure, f"f{count}", description))
+
+    measurement = outcome.result.measurement
+    with drawing_style():
+        context = {
+            "document": document,
+            "case": outcome.result.case,
+            "verdict_words": VERDICTS[outcome.verdict],
+            "banner": BANNERS.get(outcome.verdict, "warn"),
+            "where": sentences(outcome.before, measurement),
+            "leading": leading_sentences(outcome),
+            "channels_shown": CHANNELS_SHOWN,
+            "shown": shown_value,
+            "size": shown_size,
+            "map": draw(
+                figures.residual_maps(outcome), "Residuals by channel and operating point, before and after"
+            ),
+            "readings": draw(
+                figures.with_and_without(outcome), "Measured against simulated, without and with the effect"
+            ),
+            "likeness": lambda value: "–" if value is None else f"{value:.2f}",
+            "posterior": draw(
+                figures.posterior_bars(document["alternatives"]), "Posterior of the best explanations"
+            ),
+            "detectability": draw(
+                figures.detectability_figure(document["detectability"]), "Detectable and isolable sizes"
+            ),
+        }
+    return environment().get_template("diagnosis.html.j2").render(context)
+
+
+def shown_value(parameter: dict[str, Any]) -> str:
+    """Value of a parameter in the unit an engineer reads."""
+    return shown_size(parameter["value"], parameter["unit"], parameter["factor"])
+
+
+def shown_size(value: float | None, unit: str | None, factor: bool) -> str:
+    """A size; a factor as such, a share in percent; a dash for none."""
+    if value is None or unit is None:
+        return "–"
+    scale, name = display_scale(unit, factor)
+    text = number_text(scale * value, 3)
+    return f"× {text}" if factor else f"{text} {unit_text(name)}".rstrip()

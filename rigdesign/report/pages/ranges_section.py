@@ -1,0 +1,39 @@
+"""The ranges of the assumed inputs in the report: two figures and the margins worth a line."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from rigdesign.results.result import RunResult
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+    from matplotlib.figure import Figure
+
+    from rigdesign.results.ranges import CheckRange, RangeMargin
+
+LEAST_MOVE = 0.01
+"""Shift of the utilisation from which a pair of check and input has a line in the report; results.json has more."""
+
+
+def ranges_context(result: RunResult, draw: Callable[["Figure", str], "Markup"]) -> dict[str, Any]:
+    """What the section needs beside the result; nothing where no ranges were evaluated."""
+    shown: dict[str, Any] = {"range_margins": None, "range_temperature": None, "strong_margins": []}
+    ranges = result.ranges
+    if ranges is None:
+        return shown
+    from rigdesign.report.figures.ranges import margins_figure, temperature_figure
+
+    titles = {check.id: check.title for check in result.checks}
+    margins, temperatures = margins_figure(ranges, titles), temperature_figure(ranges)
+    if margins is not None:
+        shown["range_margins"] = draw(margins, "Margin of every check over the ranges of the assumed inputs")
+    if temperatures is not None:
+        shown["range_temperature"] = draw(temperatures, "Highest temperature over the ranges of the inputs")
+    stated = {row.check: row for row in ranges.checks}
+    shown["strong_margins"] = [row for row in ranges.margins if _moves(row, stated[row.check])]
+    return shown
+
+
+def _moves(row: "RangeMargin", stated: "CheckRange") -> bool:
+    ends = (row.utilisation_low, row.utilisation_high)
+    return any(end is not None and abs(end - (stated.utilisation or 0.0)) > LEAST_MOVE for end in ends)

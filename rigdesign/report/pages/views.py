@@ -1,0 +1,104 @@
+"""What the pages show, picked and ordered from a result: pure functions, no drawing and no markup."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from rigdesign.report.numbers import unit_text
+from rigdesign.results.result import AssumptionRecord, Check, LossRow, RunResult
+
+VERDICT_ORDER = ("fail", "warn", "pass", "not applicable")
+BAR_END = 1.5
+"""Utilisation at the right end of a bar in the table of checks."""
+MAX_DRIVERS = 6
+
+
+def sorted_checks(checks: list[Check]) -> list[Check]:
+    """Failing checks first, then warnings; the most used-up first within each verdict."""
+    return sorted(checks, key=lambda c: (VERDICT_ORDER.index(c.verdict), -(c.utilisation or 0.0)))
+
+
+def drivers(result: RunResult) -> list[tuple[Check, list[AssumptionRecord]]]:
+    """The checks that decide the verdict, each with the assumptions its value rests on.
+
+    Every failing and warning check, filled up with the most used-up passing ones to ``MAX_DRIVERS``.
+    """
+    records = {record.path: record for record in result.assumptions}
+    ordered = [check for check in sorted_checks(result.checks) if check.verdict != "not applicable"]
+    undecided = sum(check.verdict in ("fail", "warn") for check in ordered)
+    chosen = ordered[: max(MAX_DRIVERS, undecided)]
+    return [
+        (check, [records.get(p, AssumptionRecord(path=p, value="", reason="")) for p in check.assumptions])
+        for check in chosen
+    ]
+
+
+def main_stage(result: RunResult) -> str:
+    """The stage that turns over the most heat, shown in the figures of one stage; empty without losses."""
+    totals: dict[str, float] = {}
+    for row in result.losses:
+        totals[row.stage] = totals.get(row.stage, 0.0) + row.power_W
+    return max(totals, key=lambda stage: totals[stage]) if totals else ""
+
+
+def bar_width(utilisation: float) -> float:
+    """Width of a utilisation bar [%]; it ends at ``BAR_END``."""
+    return 100 * min(max(utilisation, 0.0), BAR_END) / BAR_END
+
+
+def check_families(identities: Sequence[str]) -> str:
+    """Checks by the group in their ids, ``dynamics (8), oil.room``: a group of one is written out."""
+    groups: dict[str, list[str]] = {}
+    for identity in identities:
+        groups.setdefault(identity.split(".")[0], []).append(identity)
+    return ", ".join(ids[0] if len(ids) == 1 else f"{group} ({len(ids)})" for group, ids in groups.items())
+
+
+def mesh_errors(result: RunResult) -> list[dict[str, Any]]:
+    """What the housing mesh leaves open in every check that rests on it, largest share of the margin first.
+
+    At `reference` with the change that the fine mesh made.
+    """
+    shifts = {entry.id: entry.shift for entry in result.reference_shift}
+    rows = []
+    for check in result.checks:
+        if check.discretisation_error is None or check.value is None:
+            continue
+        share = abs(check.discretisation_error / check.margin) if check.margin else None
+        row = {
+            "check": check.title, "value": check.value, "unit": unit_text(check.unit), "margin": check.margin,
+            "mesh_error": check.discretisation_error, "error_over_margin": share,
+        }  # fmt: skip
+        rows.append(row | ({"shift_on_fine_mesh": shifts[check.id]} if check.id in shifts else {}))
+    return sorted(rows, key=lambda row: -(row["error_over_margin"] or 0.0))
+
+
+def columns(rows: list[dict[str, Any]]) -> list[str]:
+    """Keys of all records in their order of appearance, lists (curves) left out."""
+    keys = dict.fromkeys(key for row in rows for key in row)
+    return [key for key in keys if not any(isinstance(row.get(key), list | tuple) for row in rows)]
+
+
+def loss_table(losses: Sequence[LossRow]) -> tuple[list[str], list[tuple[str, list[float | None]]]]:
+    """Stages, and (place, power at each stage [W]) with None where a place has no entry."""
+    stages = list(dict.fromkeys(row.stage for row in losses))
+    powers: dict[str, dict[str, float]] = {}
+    for row in losses:
+        at_place = powers.setdefault(row.place, {})
+        at_place[row.stage] = at_place.get(row.stage, 0.0) + row.power_W
+    return stages, [(place, [found.get(stage) for stage in stages]) for place, found in powers.items()]
+
+
+def crossing_table(
+    crossings: list[dict[str, Any]], keys: Sequence[str] = ("gearbox", "shaft", "frequency_Hz")
+) -> tuple[list[Any], list[tuple[list[Any], list[Any]]]]:
+    """Harmonics, and (values of ``keys``, speed by harmonic) of every natural frequency."""
+    harmonics = sorted({item["harmonic"] for item in crossings})
+    speeds: dict[tuple[Any, ...], dict[Any, float]] = {}
+    for item in crossings:
+        speeds.setdefault(tuple(item[key] for key in keys), {})[item["harmonic"]] = item["speed_rpm"]
+    return harmonics, [(list(key), [found.get(k) for k in harmonics]) for key, found in speeds.items()]
+
+
+def is_number(value: Any) -> bool:
+    """True for what stands right-aligned in a table."""
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,0 +1,1 @@
+"""The main job: a case in, a verdict with everything behind it out."""

@@ -1,0 +1,157 @@
+"""How far the dynamic loads behind the checks are from those of infinitely many slices and shaft elements.
+
+The periodic response behind a check is solved again, once with half the slices of every mesh and once with shaft
+elements twice as long; each change gives an error of its own, and they are added. Both are of second order (midpoint
+rule over the face, lumped inertia), so that a third of the change is left where the rules of `rig.resolution` decide;
+slices or elements that the case states may be too few for any order: there the whole change counts. Peaks and least
+torques of the time run take the error of the periodic response at the speed and torque at which they occur: the run
+itself is not marched again. Source: Roache, Annu. Rev. Fluid Mech. 29 (1997) 123.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from dynamics.drivetrain.static_loop import NotConverged
+from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.checks.dynamics import loaded_stages
+from rigdesign.coupling.loads import Setting, mesh_models, respond
+from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.records.solved_rig import Subject
+from rigdesign.results.result import DiscretisationRow
+from rigdesign.rig.model import Rig
+from rigdesign.rig.resolution import Coarsening
+
+HALVED = (Coarsening(slices=2), Coarsening(elements=2))
+ORDER = 2.0
+RPM = math.pi / 30.0
+Value = Callable[[CurvePoint, int], float]
+Rigs = tuple[Rig, ...]
+"""As the result has it, with half the slices, with elements twice as long."""
+
+
+@dataclass(frozen=True)
+class _Loaded:
+    """An operating point of the warm rig at which a periodic response is wanted."""
+
+    point: OperatingPoint
+    feedback: Feedback = field(repr=False)
+    drags: Mapping[str, float]
+    setting: Setting
+
+    def responses(self, rigs: Rigs) -> tuple[CurvePoint, ...]:
+        """Of each rig; nothing where one of them finds none."""
+        try:
+            return tuple(
+                respond(
+                    rig, self.point, mesh_models(rig, self.point, self.feedback), self.drags, self.setting
+                )
+                for rig in rigs
+            )
+        except NotConverged:
+            return ()
+
+
+def load_errors(subject: Subject) -> tuple[DiscretisationRow, ...]:
+    """Discretisation errors of the checks on dynamic loads by id; none without loads or where no response is found."""
+    if subject.run is None:
+        return ()
+    rigs = (subject.rig, *(replace(subject.rig, coarsening=halved) for halved in HALVED))
+    rows = [*_held(subject, rigs)]
+    for mesh in range(len(subject.rig.mesh_names)):
+        rows += _run(subject, rigs, mesh)
+    return tuple(rows)
+
+
+def missing_load_errors(subject: Subject) -> tuple[str, ...]:
+    """Ids of the checks on dynamic loads whose error is not known: a coarser rig found no periodic response."""
+    if subject.run is None:
+        return ()
+    known = {row.quantity for row in subject.discretisation}
+    wanted = [
+        f"dynamics.{key}.{subject.label(mesh)}"
+        for mesh in range(len(subject.rig.mesh_names))
+        for key in (
+            "dynamic_factor",
+            *(("ramp_peak", "contact_margin") if loaded_stages(subject, mesh) else ()),
+        )
+    ]
+    return tuple(name for name in wanted if name not in known)
+
+
+def _held(subject: Subject, rigs: Rigs) -> Iterator[DiscretisationRow]:
+    """K_V of every mesh at the held stage where it is highest."""
+    found: dict[str, tuple[CurvePoint, ...]] = {}
+    for mesh in range(len(subject.rig.mesh_names)):
+        worst = max(
+            (point for point in subject.points if point.last.response is not None),
+            key=lambda point: _factor(point.last.response, mesh) if point.last.response else 0.0,
+        )
+        stage, last = worst.point.stage, worst.last
+        assert worst.setting is not None
+        if stage not in found:
+            loaded = _Loaded(worst.point, last.feedback, last.drags, worst.setting)
+            found[stage] = loaded.responses(rigs)
+        yield from _row(subject, "dynamic_factor", mesh, found[stage], _factor)
+
+
+def _run(subject: Subject, rigs: Rigs, mesh: int) -> Iterator[DiscretisationRow]:
+    """Highest peak and least share of the time run, in the stages that the checks look at."""
+    rows = loaded_stages(subject, mesh)
+    if not rows:
+        return
+    peak = max(rows, key=lambda row: float(row["peak_Nm"]))
+    least = min(rows, key=lambda row: float(row["least_share"]))
+    for key, row, place, value in (
+        ("ramp_peak", peak, ("speed_rpm", "mean_Nm"), _factor),
+        ("contact_margin", least, ("least_share_at_rpm", "least_share_mean_Nm"), _least),
+    ):
+        loaded = _at(subject, mesh, str(row["stage"]), float(row[place[0]]) * RPM, float(row[place[1]]))
+        yield from _row(subject, key, mesh, loaded.responses(rigs), value)
+
+
+def _at(subject: Subject, mesh: int, stage: str, speed: float, torque: float) -> _Loaded:
+    """The warm rig of the test at another speed [rad/s] and mean torque [N m] of the pinion of a mesh."""
+    test, rig = subject.test, subject.rig
+    assert test.last.response is not None
+    share = torque / float(test.last.response.mean[mesh])
+    point = OperatingPoint(
+        stage=stage,
+        speed=speed / rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, 1.0),
+        torque=share * test.point.torque,
+    )
+    torques = {name: share * value for name, value in test.last.feedback.mesh_torque.items()}
+    return _Loaded(
+        point, replace(test.last.feedback, mesh_torque=torques), {}, Setting(mode="torque_controlled")
+    )
+
+
+def _row(
+    subject: Subject, key: str, mesh: int, responses: tuple[CurvePoint, ...], value: Value
+) -> Iterator[DiscretisationRow]:
+    """Error of the check ``key`` of a mesh from the responses of the rigs."""
+    if not responses:
+        return
+    numerics = subject.case.numerics
+    ruled = (
+        numerics.slices_spur is None and numerics.slices_helical is None,
+        numerics.shaft_element_length is None,
+    )
+    fine, *halved = (value(response, mesh) for response in responses)
+    shares = [1.0 / (2.0**ORDER - 1.0) if rule else 1.0 for rule in ruled]
+    parts = [share * abs(fine - other) for share, other in zip(shares, halved, strict=True)]
+    yield DiscretisationRow(
+        quantity=f"dynamics.{key}.{subject.label(mesh)}", gearbox="", stage="", value=fine, error=sum(parts),
+        unit="-", order=ORDER if all(ruled) else None,
+        method=f"periodic response at {responses[0].speed / RPM:.0f} rpm of the first pinion, half the slices "
+        f"{halved[0]:.4f}, elements twice as long {halved[1]:.4f}"
+        + ("" if all(ruled) else "; whole change where the case states slices or element length"),
+    )  # fmt: skip
+
+
+def _factor(response: CurvePoint, mesh: int) -> float:
+    return float(response.dynamic_factor[mesh])
+
+
+def _least(response: CurvePoint, mesh: int) -> float:
+    return float(response.minimum[mesh] / response.mean[mesh])

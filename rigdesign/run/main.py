@@ -1,0 +1,279 @@
+"""The main job on one page: a case in, a verdict with everything behind it out.
+
+Linear algebra runs on one thread: the matrices are small, and threads that wait for each other cost more than
+they give and make the last digits of a result depend on the machine's load.
+"""
+
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from rigdesign.base.errors import (
+    CaseError,
+    MissingLibraryError,
+    NotConvergedError,
+    RigdesignError,
+    UsageError,
+)
+from rigdesign.base.finite import require_finite
+from rigdesign.base.system import gmsh_remedy, missing_gmsh_libraries
+from rigdesign.case.model import Case
+from rigdesign.checks import Subject, all_checks
+from rigdesign.checks.rules import overall
+from rigdesign.coupling.loop import PointResult, governing_point, solve_point
+from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.stage_losses import stage_losses
+from rigdesign.coupling.state import OperatingPoint
+from rigdesign.coupling.time_run import held_points, schedule_of
+from rigdesign.prediction.model import Channel, Prediction, Setting
+from rigdesign.records import heat
+from rigdesign.records.dynamics import dynamics_result
+from rigdesign.records.hand import hand_checks
+from rigdesign.results.result import AssumptionRecord, Check, Fidelity, Finding, RunResult
+from rigdesign.rig.model import Rig, build_rig
+from rigdesign.run.dynamic_work import DynamicWork
+from rigdesign.run.load_convergence import load_errors
+from rigdesign.run.mesh_convergence import discretisation
+from rigdesign.run.mesh_refinement import MeshesBeside, looping_rig, on_mesh
+from rigdesign.run.warnings import not_modelled, unanswered, warnings_of
+from thermal.fe.kernels import one_thread
+
+Progress = Callable[[str], None]
+
+
+def run_case(
+    case: Case,
+    fidelity: Fidelity = "standard",
+    progress: Progress | None = None,
+    *,
+    transient: bool = False,
+) -> RunResult:
+    """Compute a case and hold it against its limits.
+
+    Parameters
+    ----------
+    case : from `load_case`
+    fidelity : size of the models
+    progress : called with what is being computed
+    transient : follow temperatures and clearances over the schedule and its events as well
+
+    Raises
+    ------
+    CaseError
+        A case that cannot be computed: gears that do not mesh, a loop or housing that does not close.
+    NotConvergedError
+        An iteration that does not settle, a speed the motor does not reach, a result that is NaN or infinite.
+    MissingLibraryError
+        A system library that gmsh needs.
+    """
+    say = progress or (lambda message: None)
+    clock = _Clock()
+    with solver_errors(case), threadpool_limits(limits=1):
+        subject = solve_case(case, fidelity, say, clock.lap)
+        result = _assemble(subject, clock)
+        if transient:
+            from rigdesign.run.transient import with_transient
+
+            result = with_transient(subject, result, say)
+            clock.lap("transient")
+        require_finite(result)
+        return result
+
+
+def predict(
+    case: Case,
+    settings: Iterable[Setting],
+    channels: Iterable[Channel],
+    *,
+    model: Literal["full", "reduced"] = "full",
+    fidelity: Fidelity = "quick",
+) -> Prediction:
+    """What sensors would read at single operating points; see `rigdesign.prediction.predict`."""
+    from rigdesign.prediction.full import predict as predicted
+
+    return predicted(case, settings, channels, model=model, fidelity=fidelity)
+
+
+def solve_case(
+    case: Case, fidelity: Fidelity, say: Progress = lambda message: None, lap: Progress = lambda name: None
+) -> Subject:
+    """The solved rig before its checks; ``lap`` is called with the name of every part that is done."""
+    say("building the rig")
+    wanted = build_rig(case, fidelity)
+    schedule_of(wanted)
+    rig = looping_rig(wanted)
+    for name in rig.models:
+        say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
+    lap("rig_and_mesh")
+    with MeshesBeside(wanted, rig) as meshing, one_thread():
+        settled = _settled(rig, say)
+        lap("coupling")
+        rigs = meshing.rigs()
+        lap("other_meshes")
+    wanted = rigs[-1]
+    say("response over speed, time run over the schedule")
+    with DynamicWork(rig, settled) as dynamics:
+        points = settled
+        if wanted is not rig:
+            say(f"last pass on the {fidelity} mesh")
+            with dynamics.sharing():
+                points = [on_mesh(wanted, point, rig) for point in settled]
+            lap("last_pass")
+            dynamics.result()
+            lap("dynamics")
+        with dynamics.sharing():
+            meshes = discretisation(rigs, rig, settled, points)
+            lap("discretisation")
+            thermal = [
+                heat.thermal_result(wanted, p, field) for p in points for field in p.last.fields.values()
+            ]
+            lap("alternatives")
+        run = dynamics.result()
+        lap("dynamics")
+    subject = Subject(
+        rig=wanted,
+        points=points,
+        run=run,
+        dynamics=None if run is None else dynamics_result(wanted, run),
+        thermal=thermal,
+        growth=[heat.growth_result(wanted, p, name) for p in points for name in p.last.growth],
+        cooler=[heat.cooler(wanted, point.last) for point in points],
+        discretisation=meshes.rows,
+        mesh_shifts=meshes.shifts,
+    )
+    say("errors of slices and shaft elements")
+    subject = replace(subject, discretisation=(*meshes.rows, *load_errors(subject)))
+    lap("load_errors")
+    say("assembling the result")
+    return subject
+
+
+def _settled(rig: Rig, say: Progress) -> list[PointResult]:
+    """Every held point, each from the one before."""
+    settled: list[PointResult] = []
+    for point in held_points(rig):
+        say(f"coupling loads, losses, temperatures and growth at stage {point.stage}")
+        start = settled[-1].last.feedback if settled else None
+        settled.append(solve_point(rig, point, start=start))
+    return settled
+
+
+def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
+    """Checks and records of a solved rig."""
+    case, rig, points = subject.case, subject.rig, list(subject.points)
+    checks = all_checks(subject)
+    clock.lap("checks")
+    losses = losses_by_stage(rig, points)
+    return RunResult(
+        case=_case_record(case),
+        fidelity=rig.fidelity,
+        verdict=overall(checks),
+        checks=checks,
+        dynamics=subject.dynamics,
+        losses=[row for stage, found in losses.items() for row in heat.loss_rows(stage, found)],
+        oil=[row for p in points for row in heat.oil_rows(p.point.stage, p.last.streams)],
+        cooler=[dict(row) for row in subject.cooler],
+        thermal=list(subject.thermal),
+        growth=list(subject.growth),
+        coupling=[heat.coupling_history(p) for p in points],
+        discretisation=list(subject.discretisation),
+        reference_shift=list(subject.mesh_shifts),
+        hand_checks=hand_checks(subject),
+        assumptions=_assumptions(case, checks),
+        overrides=list(case.overrides),
+        not_modelled=not_modelled(subject),
+        warnings=[*_doubts(case), *warnings_of(subject, losses), *unanswered(checks)],
+        timings_s=clock.laps,
+        fields=[field for p in points for field in heat.fields_of(rig, p)],
+    )
+
+
+def _case_record(case: Case) -> dict[str, str]:
+    """What the result says of its case; that of a schedule no rig can run says so."""
+    record = {"name": case.name, "title": case.title, "path": case.path.name, "hash": case.hash}
+    reason = case.schedule.simulation_only
+    return record if reason is None else record | {"simulation_only": reason}
+
+
+def _doubts(case: Case) -> list[Finding]:
+    """What the case says against itself."""
+    reason = case.schedule.simulation_only
+    if reason is None:
+        return []
+    text = f"the schedule is for simulation only: {reason}; the verdict does not release the rig for it"
+    return [Finding(id="simulation_only", text=text)]
+
+
+def losses_by_stage(rig: Rig, points: list[PointResult]) -> dict[str, Sequence[PlacedLoss]]:
+    """Losses at the end of every turning stage: coupled at the held ones, with their warm rig at the others."""
+    held = {point.point.stage: point for point in points}
+    test = governing_point(points)
+    losses: dict[str, Sequence[PlacedLoss]] = {}
+    for stage in rig.case.schedule.resolved():
+        if stage.name in held:
+            losses[stage.name] = held[stage.name].last.losses
+        elif stage.speed_end > 0.0:
+            point = OperatingPoint(stage=stage.name, speed=stage.speed_end, torque=stage.torque_end)
+            losses[stage.name] = stage_losses(rig, point, test, dynamic=True).losses
+    return losses
+
+
+def _assumptions(case: Case, checks: list[Check]) -> list[AssumptionRecord]:
+    """The case's assumptions with the checks that rest on them."""
+    return [
+        replace(record, decides=tuple(check.id for check in checks if record.path in check.assumptions))
+        for record in case.assumptions
+    ]
+
+
+class _Clock:
+    """Seconds of each part of the run."""
+
+    def __init__(self) -> None:
+        self.laps: dict[str, float] = {}
+        self._last = time.perf_counter()
+
+    def lap(self, name: str) -> None:
+        now = time.perf_counter()
+        self.laps[name] = round(self.laps.get(name, 0.0) + now - self._last, 3)
+        self._last = now
+
+
+def _machine_error(error: OSError | ImportError) -> RigdesignError:
+    """What the machine lacks: gmsh's libraries, another library, or room and rights for files."""
+    missing = missing_gmsh_libraries()
+    if missing or "gmsh" in str(error):
+        return MissingLibraryError(f"{gmsh_remedy(missing)} ({error})")
+    if isinstance(error, ImportError):
+        return MissingLibraryError(
+            f"{error.name or 'a library'} cannot be loaded: {error}; run: rigdesign doctor"
+        )
+    return UsageError(
+        f"the machine refuses a file: {error}; look at free space and rights of the temporary folder and of "
+        "NUMBA_CACHE_DIR"
+    )
+
+
+@contextmanager
+def solver_errors(case: Case) -> Iterator[None]:
+    """Turn what the solvers raise into the tool's errors."""
+    try:
+        yield
+    except RigdesignError:
+        raise
+    except (OSError, ImportError) as error:
+        raise _machine_error(error) from error
+    except np.linalg.LinAlgError as error:
+        raise NotConvergedError(
+            f"a linear system of the run has no solution ({error}): a stiffness of the case is far out of proportion "
+            "to the others, or a step left the flanks open; correct it or change speed and torque"
+        ) from error
+    except ValueError as error:
+        raise CaseError(str(error), str(case.path)) from error
+    except RuntimeError as error:
+        raise NotConvergedError(str(error)) from error

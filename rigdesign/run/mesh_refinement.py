@@ -1,0 +1,180 @@
+"""A settled operating point on another mesh: one more pass, with the loads and losses it settled on.
+
+At reference the loop runs on the standard mesh and this pass on the fine one ends it. The same pass on coarser
+meshes tells how far mesh and result hang together (`rigdesign.run.mesh_convergence`).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from typing import Self
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from rigdesign.base.parallel import Beside
+from rigdesign.checks import alignment, thermal
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.expansion import expand_housing
+from rigdesign.coupling.iteration import PassResult, feedback_of
+from rigdesign.coupling.loads import mesh_models
+from rigdesign.coupling.loop import PointResult, Residual
+from rigdesign.coupling.oil import oil_streams
+from rigdesign.coupling.state import Feedback, growth_change, temperature_change
+from rigdesign.coupling.temperatures import HousingField, heat_into_films, heat_into_oil, solve_housing
+from rigdesign.records import heat
+from rigdesign.records.heat_split import split_as_solved
+from rigdesign.records.solved_rig import Subject
+from rigdesign.results.result import Check, Fidelity, ThermalResult
+from rigdesign.rig.model import Rig
+from thermal.fe.mesh import MeshError, NamedMesh
+from thermal.housing.stations import GearboxModel
+
+COARSER: dict[Fidelity, tuple[Fidelity, ...]] = {
+    "quick": (),
+    "standard": ("quick",),
+    "reference": ("quick", "standard"),
+}
+"""Meshes beside that of a fidelity which tell its errors, from coarse to fine."""
+
+
+def looping_rig(rig: Rig) -> Rig:
+    """The rig on which the coupling iterates: at reference that of the standard mesh."""
+    return replace(rig, fidelity="standard") if rig.fidelity == "reference" else rig
+
+
+class MeshesBeside:
+    """Meshes the rig at all other fidelities its errors need, on another core; `rigs` waits for them.
+
+    rig : of which the errors are wanted; source : the one on which the loop runs
+    """
+
+    def __init__(self, rig: Rig, source: Rig) -> None:
+        self._rig, self._source = rig, source
+        fidelities = (*COARSER[rig.fidelity], rig.fidelity)
+        self._others = tuple(f for f in fidelities if f != source.fidelity)
+        works = [partial(_meshed, source, f, needed=f == rig.fidelity) for f in self._others]
+        self._works: Beside[dict[str, GearboxModel] | None] = Beside(works)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._works.end()
+
+    def rigs(self) -> tuple[Rig, ...]:
+        """The rigs from coarse to fine, the last that of which the errors are wanted.
+
+        Raises
+        ------
+        MeshError
+            The last one cannot be meshed; a coarser one is left out then.
+        """
+        made = {self._source.fidelity: self._source}
+        for fidelity, models in zip(self._others, self._works.results(), strict=True):
+            if models is not None:
+                made[fidelity] = replace(self._source, fidelity=fidelity).with_models(models)
+        wanted = (*COARSER[self._rig.fidelity], self._rig.fidelity)
+        return tuple(made[fidelity] for fidelity in wanted if fidelity in made)
+
+
+def _meshed(rig: Rig, fidelity: Fidelity, *, needed: bool) -> dict[str, GearboxModel] | None:
+    """Housings at one fidelity; None where one cannot be meshed that is not needed."""
+    try:
+        return rig.meshed(fidelity)
+    except MeshError:
+        if needed:
+            raise
+        return None
+
+
+def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
+    """One more pass of a settled point on the mesh of ``rig``: fields, growth, oil, warm gears and bearings.
+
+    The periodic response and the losses are those the point settled on. The residual that is added is the
+    change of this pass: the shift from mesh to mesh.
+
+    source : the rig on which the point settled
+
+    Raises
+    ------
+    NotConverged
+        A solve stalls on that mesh.
+    """
+    last = settled.last
+    fields, growth = {}, {}
+    for name, field in last.fields.items():
+        meshes = source.models[name].mesh, rig.models[name].mesh
+        same = meshes[0] is meshes[1]
+        guess = field if same and rig is source else _carried(field, *meshes)
+        fields[name] = solve_housing(rig, name, last.point, last.feedback, last.bearings, last.losses, guess)
+        if name in last.growth:
+            growth[name] = expand_housing(rig, fields[name], last.growth[name] if same else None)
+    bearing_heat = dict(last.bearing_heat)
+    wall_heat = dict(last.wall_heat)
+    for field in fields.values():
+        bearing_heat |= heat_into_films(field)
+        wall_heat |= heat_into_oil(field)
+    done = replace(
+        last,
+        fields=fields,
+        growth=growth,
+        bearing_heat=bearing_heat,
+        wall_heat=wall_heat,
+        streams=tuple(oil_streams(rig, last.losses, bearing_heat, wall_heat)),
+    )
+    after = feedback_of(rig, done)
+    change = Residual(
+        temperature=temperature_change(done.feedback, after),
+        growth=growth_change(done.feedback, after),
+        torque=0.0,
+    )
+    return replace(settled, last=_warmed(rig, done, after), residuals=(*settled.residuals, change))
+
+
+def _carried(field: HousingField, old: NamedMesh, new: NamedMesh) -> HousingField:
+    """First guess of a field on another mesh: each node is as warm as the nearest one of its body was."""
+    temperature = np.empty(len(new.points))
+    for body, cells in new.bodies.items():
+        nodes, known = np.unique(new.cells[cells]), np.unique(old.cells[old.bodies[body]])
+        _, nearest = cKDTree(old.points[known]).query(new.points[nodes])
+        temperature[nodes] = field.temperature[known[nearest]]
+    return replace(field, solution=replace(field.solution, temperature=temperature, preconditioner=None))
+
+
+def _warmed(rig: Rig, done: PassResult, after: Feedback) -> PassResult:
+    """The pass with gears and bearings at the lengths and temperatures it ended with."""
+    feedback = replace(
+        done.feedback,
+        gear_temperature=after.gear_temperature,
+        centre_distance=after.centre_distance,
+        bearing_clearance=after.bearing_clearance,
+        tooth_growth=after.tooth_growth,
+        bearing_heat=done.bearing_heat,
+    )
+    return replace(
+        done,
+        feedback=feedback,
+        models=mesh_models(rig, done.point, feedback),
+        bearings=solve_bearings(rig, done.point, feedback),
+    )
+
+
+def checked(rig: Rig, points: Sequence[PointResult]) -> dict[str, Check]:
+    """The checks that rest on temperatures, growth and oil, by id, as ``points`` on the mesh of ``rig`` have them."""
+    subject = Subject(
+        rig=rig,
+        points=points,
+        run=None,
+        dynamics=None,
+        thermal=[_temperatures(rig, p, field) for p in points for field in p.last.fields.values()],
+        growth=[heat.growth_result(rig, p, name) for p in points for name in p.last.growth],
+        cooler=[heat.cooler(rig, point.last) for point in points],
+    )
+    found = (*thermal.checks(subject), *alignment.checks(subject))
+    return {check.id: check for check in found if check.value is not None}
+
+
+def _temperatures(rig: Rig, point: PointResult, field: HousingField) -> ThermalResult:
+    split = split_as_solved(rig, point, field)
+    return replace(heat.solved_temperatures(rig, point, field), heat_split=list(split.values()))

@@ -1,0 +1,331 @@
+"""Warnings of the run: what left its range, what an audit says, each once."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from dynamics.drivetrain.modes import loop_modes, modes_above_samples, sampling_audit
+from dynamics.mesh.flank import reach_beyond
+from dynamics.response.propagator import DEFAULT_CUTOFF
+from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.base.units import show
+from rigdesign.coupling.boundary import GEAR_OIL, printed_films
+from rigdesign.coupling.flank_heat import film_of_jets, rim_surfaces
+from rigdesign.coupling.loads import laws_of
+from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.shaft_torques import torques_left_out
+from rigdesign.coupling.temperatures import HousingField
+from rigdesign.coupling.tooth_deviations import averaged_gears
+from rigdesign.records.curves import iso_factor, resolved
+from rigdesign.records.solved_rig import Subject
+from rigdesign.results.result import Check, Finding
+from rigdesign.rig.films import printed_law
+from rigdesign.rig.model import Rig
+from rigdesign.rig.oil_supply import bearing_oil, gear_oil
+from rigdesign.run.load_convergence import missing_load_errors
+from thermal.conditions.boundary import Film, Radiation
+from thermal.conduction.audit import assumed_difference, audit_conditions, radiation_too_small
+
+SETTLED = 1e-4
+"""Relative residual of a harmonic balance from which the point is named."""
+FILM_FACTOR = 3.0
+"""Between a given film on the rim of a gear and the one its jets make, from which it is named."""
+RPM = 30.0 / math.pi
+
+
+def warnings_of(subject: Subject, losses: Mapping[str, Sequence[PlacedLoss]]) -> list[Finding]:
+    """All warnings of the run in a fixed order; ``losses`` by stage."""
+    found = [
+        *(Finding(id="gear", text=text) for text in _gears(subject)),
+        *(Finding(id="iso_6336_1", text=text) for text in _iso(subject)),
+        *(Finding(id="shaft", text=t.finding) for t in subject.rig.shaft_torsions if t.finding),
+        *(Finding(id="response", text=text) for text in _response(subject)),
+        *(Finding(id="unlike_teeth", text=text) for text in _unlike(subject)),
+        *(Finding(id="time_run", text=text) for text in _time_run(subject)),
+        *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
+        *(Finding(id="oil", text=text) for text in _oils(subject)),
+        *(Finding(id="damping", text=text) for text in _damping(subject)),
+        *(Finding(id="sampling", text=text) for text in _sampling(subject)),
+        *(Finding(id="load_error", text=text) for text in _load_errors(subject)),
+        *(Finding(id="film", text=text) for text in _films(subject)),
+        *(Finding(id="not_steady", text=text) for text in _warming(subject)),
+        *(Finding(id="heat_audit", text=text) for text in _audits(subject)),
+    ]
+    return list(dict.fromkeys(found))
+
+
+def unanswered(checks: Iterable[Check]) -> list[Finding]:
+    """Limits that the case states and no verdict answers: the model lacks what they are about."""
+    return [
+        Finding(
+            id="limit_not_answered",
+            text=f"{check.id}: the case states a limit of {check.limit:.4g} {check.unit}, and no verdict answers it: "
+            f"{check.reason}",
+        )
+        for check in checks
+        if check.verdict == "not applicable" and check.limit is not None
+    ]
+
+
+def _gears(subject: Subject) -> Iterator[str]:
+    for point in subject.points:
+        for model in point.last.models:
+            for text in subject.rig.pairs[model.name].warnings:
+                yield f"{model.name}, cold: {text}"
+            for text in model.pair.warnings:
+                yield f"{model.name}, hot, stage {point.point.stage}: {text}"
+            for text in model.stiffness.warnings:
+                yield f"{model.name}: {text}"
+        if point.last.response is not None:
+            for model, approach in zip(point.last.models, point.last.response.wave.approach):
+                if text := reach_beyond(model.law, approach):
+                    yield f"{model.name}, stage {point.point.stage}: {text}"
+
+
+def _iso(subject: Subject) -> Iterator[str]:
+    for point in subject.points:
+        for model in point.last.models:
+            box, mesh = subject.rig.mesh(model.name)
+            speed = subject.rig.shaft_speed(box.gears[box.meshes[mesh].pinion].shaft, point.point.speed)
+            torque = point.last.feedback.mesh_torque[model.name]
+            for text in iso_factor(subject.rig, model.name, torque, speed).warnings:
+                yield f"{model.name}: {text}"
+
+
+def _response(subject: Subject) -> Iterator[str]:
+    """Speeds without a periodic response, states that settled loosely, curves too coarse for resonances."""
+    if subject.run is None or subject.dynamics is None:
+        return
+    for row in next(iter(subject.dynamics.gearboxes.values())).unsolved:
+        yield (
+            f"curve {row['curve']}: no periodic response at {row['speed_rpm']:.0f} rpm ({row['reason']}): a "
+            "resonance or loss of contact there is not seen; look at the time run at this speed"
+        )
+    for where, points in _states(subject).items():
+        loose = [p for p in points if p.method == "harmonic_balance" and p.residual > SETTLED]
+        if loose:
+            worst = max(loose, key=lambda point: point.residual)
+            yield (
+                f"{where}: {len(loose)} of {len(points)} periodic states settled to more than {SETTLED:.0e}, the "
+                f"worst to {worst.residual:.1e} at {worst.speed * RPM:.0f} rpm: compare with the time run there"
+            )
+    if not resolved(subject.rig):
+        speeds = subject.run.curves.response.speeds
+        yield (
+            f"K_V over speed: {len(speeds)} speeds, {np.diff(speeds).max() * RPM:.0f} rpm apart, do not resolve "
+            "narrow resonances; use standard fidelity and response_period = mesh before a verdict rests on them"
+        )
+
+
+def _unlike(subject: Subject) -> Iterator[str]:
+    """What single teeth and swinging torques add beyond the period of the periodic response."""
+    rig = subject.rig
+    if rig.drivetrain is None or not subject.points:
+        return
+    laws = laws_of(subject.points[-1].last.models)
+    missing = [f"{gear}: its teeth differ" for gear in averaged_gears(rig, laws)]
+    missing += [f"{name}: its torque swings" for name in torques_left_out(rig, laws)]
+    for what in missing:
+        yield (
+            f"{what}, which a response over response_period = {rig.case.numerics.response_period} does not show: "
+            "K_V and root stress leave it out, the time run has it; write response_period = hunting_cycle"
+        )
+
+
+def _states(subject: Subject) -> dict[str, list[CurvePoint]]:
+    """Periodic states by where they belong: a curve or a held stage."""
+    assert subject.run is not None
+    curves = subject.run.curves
+    found = {f"curve {name}": list(curve.points) for name, (_, curve) in curves.named.items()}
+    found |= {f"curve {name}": list(curve.points) for name, curve in curves.variants.items()}
+    for point in subject.points:
+        if point.last.response is not None:
+            found[f"stage {point.point.stage}"] = [point.last.response]
+    return found
+
+
+def _time_run(subject: Subject) -> Iterator[str]:
+    if subject.run is not None:
+        yield from subject.run.ramp.warnings
+
+
+def loss_warnings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[str]:
+    """What a loss says of itself at several stages is said once, with their names."""
+    stages: dict[tuple[str, str], list[str]] = {}
+    for stage, found in losses.items():
+        for placed in found:
+            for text in placed.loss.warnings:
+                stages.setdefault((placed.name, text), []).append(stage)
+    for (place, text), where in stages.items():
+        named = f"stage {where[0]}" if len(where) == 1 else f"stages {', '.join(where)}"
+        everywhere = len(where) == len(losses) > 1
+        yield f"{place}, {'all turning stages' if everywhere else named}: {text}"
+
+
+def _oils(subject: Subject) -> Iterator[str]:
+    """Every oil at the coldest and at the hottest place of its stream."""
+    for point in subject.points:
+        for stream in point.last.streams:
+            name, kind = stream.name.split(".")
+            oil = gear_oil(subject.rig, name) if kind == "gear_oil" else bearing_oil(subject.rig, name)
+            places = stream.inlet, stream.outlet, stream.chamber
+            for temperature in (min(places), max(places)):
+                for text in oil.warnings(temperature):
+                    yield f"{stream.name}, stage {point.point.stage}: {text}"
+
+
+def cold_oil(rig: Rig) -> Iterator[str]:
+    """Every oil as the rig starts: as cold as the room."""
+    room = rig.case.ambient.temperature
+    for name in rig.case.gearboxes:
+        for kind, oil in (("gear_oil", gear_oil(rig, name)), ("bearing_oil", bearing_oil(rig, name))):
+            yield from (f"{name}.{kind}, start in the cold: {text}" for text in oil.warnings(room))
+
+
+def _warming(subject: Subject) -> Iterator[str]:
+    time = subject.case.ambient.warming_time
+    if time is not None:
+        yield (
+            f"ambient.warming_time = {show(time, 'time')}: temperatures and clearances are those of a rig that still "
+            "warms up; leave it out for the steady state that the limits are meant for"
+        )
+
+
+def _damping(subject: Subject) -> Iterator[str]:
+    if subject.dynamics is not None:
+        yield from (row["warning"] for row in subject.dynamics.damping_audit if row["warning"])
+
+
+def _load_errors(subject: Subject) -> Iterator[str]:
+    missing = missing_load_errors(subject)
+    if missing:
+        yield (
+            f"{', '.join(missing)}: the error of slices and shaft elements is not known, since a rig with half of them "
+            "finds no periodic response there; state more slices or shorter elements and compare"
+        )
+
+
+def _sampling(subject: Subject) -> Iterator[str]:
+    drivetrain = subject.rig.drivetrain
+    if drivetrain is not None:
+        speed = subject.rig.drive_speed(subject.test.point.speed)
+        audits = sampling_audit(drivetrain, speed, subject.case.numerics.sample_rate)
+        yield from (audit.warning for audit in audits if audit.warning)
+        modes = loop_modes(drivetrain, laws_of(subject.test.last.models), DEFAULT_CUTOFF)
+        yield from modes_above_samples(modes, subject.case.numerics.sample_rate)
+
+
+def _films(subject: Subject) -> Iterator[str]:
+    for field in _fields(subject):
+        yield from field.solution.warnings
+
+
+def _audits(subject: Subject) -> Iterator[str]:
+    """Heat that cannot be, films taken at another temperature difference, radiation counted twice."""
+    for field in _fields(subject):
+        found = (
+            *audit_conditions(field.conditions),
+            *_radiation_bound(field),
+            *_assumed_differences(subject, field),
+            *_thin_rim_films(subject, field),
+        )
+        yield from (f"{field.gearbox}: {text}" for text in found)
+
+
+def _radiation_bound(field: HousingField) -> Iterator[str]:
+    rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
+    films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
+    for condition in field.conditions:
+        if not isinstance(condition, Radiation) or condition.surface not in films:
+            continue
+        film, own = films[condition.surface], rows[(condition.surface, condition.kind)]
+        convection = rows[(film.surface, film.kind)]
+        if convection.coefficient is None or condition.surroundings_temperature != film.fluid_temperature:
+            continue
+        text = radiation_too_small(
+            condition.surface,
+            convection=-convection.power,
+            radiation=-own.power,
+            emissivity=condition.emissivity,
+            film=convection.coefficient.value,
+            ambient=film.fluid_temperature,
+        )
+        if text is not None:
+            yield text
+
+
+def _assumed_differences(subject: Subject, field: HousingField) -> Iterator[str]:
+    rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
+    films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
+    for surface, taken in printed_films(subject.rig, field.gearbox):
+        film = films[surface]
+        text = assumed_difference(
+            surface,
+            assumed=taken.temperature_difference,
+            solved=rows[(surface, film.kind)].mean_temperature - film.fluid_temperature,
+            law=printed_law(taken),
+            fluid_temperature=film.fluid_temperature,
+        )
+        if text is not None:
+            yield text
+
+
+def _thin_rim_films(subject: Subject, field: HousingField) -> Iterator[str]:
+    """Gears whose friction heat is split by assumption under a given film far from the one their jets make."""
+    name, rig = field.gearbox, subject.rig
+    box = rig.case.gearboxes[name]
+    point = next(p.point for p in subject.points if p.last.fields.get(name) is field)
+    if box.heat_split.rule != "assumed" or point.speed == 0.0:
+        return
+    rows = {row.surface: row for row in field.solution.balance.rows if row.kind == GEAR_OIL}
+    for gear, rim in rim_surfaces(box).items():
+        row = rows.get(rim)
+        if row is None or row.coefficient is None:
+            continue
+        given, made = row.coefficient.value, film_of_jets(rig, name, gear, point, row.mean_temperature)
+        if not given * FILM_FACTOR >= made >= given / FILM_FACTOR:
+            yield (
+                f"{gear}: film on its rim = {given:.0f} W/(m2 K) with mesh_into_gears = "
+                f"{box.heat_split.mesh_into_gears:g}, its jets make {made:.0f} W/(m2 K) (fling-off): its bulk "
+                f'temperature depends on the assumption; write law = "flank_film" and give no share, or ranges'
+            )
+
+
+def _fields(subject: Subject) -> Iterable[HousingField]:
+    for point in subject.points:
+        yield from point.last.fields.values()
+
+
+def not_modelled(subject: Subject) -> list[str]:
+    """What the verdict knows nothing of."""
+    items = [
+        "bending and tilting of shafts: the drivetrain is torsional, journal stiffness does not enter the loads",
+        "static position of the journals in their films: axes run through the middle of the hot bores",
+        "gear body and web flexibility beyond the tooth, coupling of neighbouring tooth slices",
+        "temperature over time: steady states at the held stages only",
+        "oil flow distribution, aeration and sump level: films are given by surface",
+        "roughness of the tooth roots: Y_RrelT is 1, as for the test gears behind sigma_FE; flank strength (pitting, "
+        "scuffing) and its safety",
+    ]
+    without = [name for name, box in subject.case.gearboxes.items() if box.housing is None]
+    if without:
+        items.append(
+            f"housing of {', '.join(without)}: gears at the temperature of their oil outlet, all losses into the oil"
+        )
+    if subject.run is None:
+        items.append("dynamic loads: the losses are given")
+    elif len(subject.rig.pairs) > 1:
+        items.append(
+            "angle at which the gears are put on their shafts: the meshes start in the phase that "
+            "gearboxes.*.meshes.*.phase states; K_V near resonances in which both gearboxes take part hangs on it"
+        )
+    for name, box in subject.case.gearboxes.items():
+        if any(mesh.double_helical for mesh in box.meshes.values()):
+            items.append(
+                f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2"
+            )
+        single = [name for name, mesh in box.meshes.items() if mesh.helix_angle and not mesh.double_helical]
+        if single:
+            items.append(f"{name}: axial force of {', '.join(single)} and its tilting moment on the bearings")
+    return items

@@ -1,0 +1,1 @@
+"""Parameter studies: a case over a grid of values."""

@@ -1,0 +1,1 @@
+"""Assumed inputs over their ranges, and what they decide."""

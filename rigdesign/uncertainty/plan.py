@@ -1,0 +1,141 @@
+"""Which assumed inputs are moved to the ends of their ranges, and what has to be solved again for each.
+
+The table names what is known to touch only a part of the model. An input that stands in none of them is solved
+again in full and influences every check (`checks.assumptions`): a missing entry costs time, not truth.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from rigdesign.base.errors import CaseError
+from rigdesign.case.loader import changed_together
+from rigdesign.case.model import Case
+from rigdesign.checks.assumptions import is_under
+from rigdesign.results.ranges import LeftOut
+from rigdesign.results.result import AssumptionRecord, Check
+
+Part = Literal["coupling", "curves", "time run"]
+End = Literal["low", "high"]
+PARTS: tuple[Part, ...] = ("coupling", "curves", "time run")
+
+SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
+    (
+        "limits.dynamics.resonance_distance_minimum",
+        "limits.dynamics.dangerous_amplification",
+        "limits.dynamics.dangerous_force_share",
+        "limits.bearing.start_torque_limit",
+    ): ("curves",),
+    (
+        "limits",
+        "test_plan",
+        "gearboxes.*.seals.*.axial_travel",
+        "gearboxes.*.meshes.*.face_load_factor",
+        "drivetrain.couplings.*.radial_offset_maximum",
+        "drivetrain.couplings.*.angle_maximum",
+    ): (),
+    ("schedule.stages.*.duration", "drivetrain.motor.torque_limit"): ("time run",),
+    (
+        "gearboxes.*.housing",
+        "gearboxes.*.seals",
+        "gearboxes.*.gears.*.flank_roughness",
+        *(
+            f"gearboxes.*.bearings.*.{key}"
+            for key in ("width", "diametral_clearance", "feed_share", "axial_play", "locating")
+        ),
+        "losses.chamber_density",
+        "losses.squeeze_share",
+        "losses.friction",
+    ): ("coupling",),
+}
+"""Inputs -> parts of the model they touch; the first entry that holds a path counts.
+
+Heat and oil move the response over speed and the time run through drag torques and the temperature of the gears.
+Where they move gears or axes more than `ranges_point.LOADS_MOVE` the loads are solved again as well; the torque of
+the motor follows its losses (`ranges_drive`).
+"""
+
+
+ALIKE = ("diameter", "width", "diametral_clearance")
+"""What the bearings of one shaft have in common (`case.surfaces`)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RangeEnd:
+    """One assumed input at one end of its range.
+
+    value, stated : as the case writes them; case : None where that is no valid case, ``error`` then says why
+    same : the end is the stated value
+    """
+
+    path: str
+    together_with: tuple[str, ...]
+    end: End
+    value: str
+    stated: str
+    parts: tuple[Part, ...]
+    case: Case | None
+    error: str | None = None
+    same: bool = False
+
+
+def parts_of(path: str) -> tuple[Part, ...]:
+    """Parts of the model that have to be solved again when the value at ``path`` changes."""
+    return next(
+        (parts for paths, parts in SOLVED.items() if any(is_under(path, entry) for entry in paths)), PARTS
+    )
+
+
+def plan(case: Case, checks: Sequence[Check]) -> tuple[list[RangeEnd], list[LeftOut]]:
+    """Both ends of every range that decides something, in the order of the case; and the inputs left out."""
+    ends: list[RangeEnd] = []
+    left: list[LeftOut] = []
+    decisive = {path for check in checks for path in check.assumptions}
+    moved: set[str] = set()
+    for record in case.assumptions:
+        if record.range is None or record.path in moved:
+            continue
+        if record.path not in decisive:
+            left.append(LeftOut(path=record.path, reason="no check that applies depends on it"))
+            continue
+        ends += _ends(case, record, _tied(case, record))
+        moved |= {end_path for end in ends[-2:] for end_path in (end.path, *end.together_with)}
+    return ends, left
+
+
+def _tied(case: Case, record: AssumptionRecord) -> tuple[str, ...]:
+    """Paths that must have the same value as that of ``record``: the other bearings of its shaft, if so ranged."""
+    names = record.path.split(".")
+    if len(names) != 5 or names[2] != "bearings" or names[4] not in ALIKE:
+        return ()
+    bearings = case.gearboxes[names[1]].bearings
+    alike = {
+        f"gearboxes.{names[1]}.bearings.{other}.{names[4]}"
+        for other, bearing in bearings.items()
+        if bearing.shaft == bearings[names[3]].shaft and other != names[3]
+    }
+    same = (record.value, record.range)
+    return tuple(r.path for r in case.assumptions if r.path in alike and (r.value, r.range) == same)
+
+
+def _ends(case: Case, record: AssumptionRecord, tied: tuple[str, ...]) -> Iterator[RangeEnd]:
+    assert record.range is not None
+    before = case.model_dump()
+    ends: tuple[End, End] = ("low", "high")
+    for end, value in zip(ends, record.range, strict=True):
+        changed, error = None, None
+        try:
+            changed = changed_together(case, dict.fromkeys((record.path, *tied), value))
+        except CaseError as fault:
+            error = str(fault)
+        yield RangeEnd(
+            path=record.path,
+            together_with=tied,
+            end=end,
+            value=str(value),
+            stated=record.value,
+            parts=parts_of(record.path),
+            case=changed,
+            error=error,
+            same=changed is not None and changed.model_dump() == before,
+        )

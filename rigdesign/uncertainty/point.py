@@ -1,0 +1,241 @@
+"""The rig with one input at one end of its range: from the settled stated rig, only what the input touches again."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from threadpoolctl import threadpool_limits
+
+from dynamics.response.time_response import TimeResponse
+from rigdesign.base.errors import RigdesignError
+from rigdesign.case.model import Case
+from rigdesign.checks import Subject, held_checks
+from rigdesign.coupling.loads import Setting
+from rigdesign.coupling.loop import PointResult, governing_point, solve_point
+from rigdesign.coupling.state import Feedback
+from rigdesign.coupling.time_run import held_points, run_ramp
+from rigdesign.records import heat
+from rigdesign.records.curves import Curves, solve_curves
+from rigdesign.records.dynamics import DynamicRun, bracing_record, dynamics_result
+from rigdesign.results.result import Check, DynamicsResult, Fidelity, Verdict
+from rigdesign.rig.model import Rig, build_rig
+from rigdesign.run.main import solve_case, solver_errors
+from rigdesign.uncertainty.drive import Array, losses_on_motor, peaks_only, shifted_drive
+from rigdesign.uncertainty.plan import PARTS, Part, RangeEnd
+
+FIDELITY: Fidelity = "quick"
+"""Size of the models of every end."""
+DRIVE = ("drive_torque", "drive_power")
+"""Quantities of bought parts that follow the losses of the whole run."""
+ACTUATOR = ("actuator_force",)
+"""Quantities of bought parts that follow the setting of the bracing, hot."""
+LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "tooth_growth": 2e-6}
+"""Change of a field of `Feedback` [K, m] beyond which the loads are solved again: on the prototype half a
+kelvin moves a check on loads by up to 0.001 of its limit, `ranges_verdicts.LEAST_MOVE`, and 5 um do."""
+GEOMETRY = ("models", "conduction", "expansion")
+"""Cached parts of a rig that hang on geometry and materials of its housings alone."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckAtEnd:
+    """What a check says at one end, at quick fidelity."""
+
+    value: float | None
+    margin: float | None
+    utilisation: float | None
+    verdict: Verdict
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What came of one end: checks by id and the highest temperature of all housings, or the error."""
+
+    checks: dict[str, CheckAtEnd]
+    max_temperature: float | None
+    """[degC]"""
+    parts: tuple[Part, ...] = ()
+    """What was solved again."""
+    error: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reference:
+    """The settled stated rig, small enough to be handed to worker processes; they make the rest again from it."""
+
+    case: Case
+    feedbacks: tuple[Feedback, ...]
+    settings: tuple[Setting | None, ...]
+    curves: Curves | None
+    ramp: TimeResponse | None
+    motor_losses: Array | None
+    """Torque of all losses at the motor over ``ramp`` [N m], (n,)."""
+    dynamics: DynamicsResult | None
+    key: str
+
+
+def settle(case: Case) -> tuple[Reference, Outcome]:
+    """Solve the stated rig and say what its checks are."""
+    with solver_errors(case), threadpool_limits(limits=1):
+        subject = solve_case(case, FIDELITY)
+        outcome = _outcome(subject, ())
+        run = subject.run
+        ramp = None if run is None else peaks_only(run.ramp)
+        losses = None if ramp is None else losses_on_motor(subject.rig, subject.test.last, ramp)
+    reference = Reference(
+        case=case,
+        feedbacks=tuple(point.last.feedback for point in subject.points),
+        settings=tuple(point.setting for point in subject.points),
+        curves=None if run is None else run.curves,
+        ramp=ramp,
+        motor_losses=losses,
+        dynamics=subject.dynamics,
+        key=case.hash,
+    )
+    return reference, outcome
+
+
+def solve_end(end: RangeEnd, *, reference: Reference) -> Outcome:
+    """Solve one end; an error is an outcome that says what happened.
+
+    The stated rig is made once in every process.
+    """
+    assert end.case is not None
+    try:
+        with solver_errors(end.case), threadpool_limits(limits=1):
+            stated = _stated(reference)
+            subject, parts = _moved(stated, end.case, end.parts, reference.motor_losses)
+            return _outcome(subject, parts)
+    except RigdesignError as error:
+        return Outcome(checks={}, max_temperature=None, error=str(error))
+    except Exception as error:
+        return Outcome(checks={}, max_temperature=None, error=f"{type(error).__name__}: {error}")
+
+
+_made: dict[str, Subject] = {}
+"""The stated rig of this process by the hash of its case; one at a time."""
+
+
+def _stated(reference: Reference) -> Subject:
+    if reference.key not in _made:
+        _made.clear()
+        _made[reference.key] = _restored(reference)
+    return _made[reference.key]
+
+
+def _restored(reference: Reference) -> Subject:
+    """The stated rig with its fields, from its settled feedback."""
+    rig = build_rig(reference.case, FIDELITY)
+    points = [
+        solve_point(rig, point, start=feedback)
+        for point, feedback in zip(held_points(rig), reference.feedbacks, strict=True)
+    ]
+    run = None
+    if reference.curves is not None and reference.ramp is not None:
+        run = DynamicRun(points=tuple(points), curves=reference.curves, ramp=reference.ramp)
+    return _subject(rig, points, run, reference.dynamics)
+
+
+def _moved(
+    stated: Subject, case: Case, parts: tuple[Part, ...], motor_losses: Array | None
+) -> tuple[Subject, tuple[Part, ...]]:
+    """The rig of ``case`` with the named parts solved again and the others those of the stated rig."""
+    rig = _rig_like(stated.rig, case, parts)
+    points = list(stated.points)
+    if "coupling" in parts:
+        points = list(_coupled(rig, stated))
+        parts = PARTS if stated.run is not None and _loads_move(points, stated.points) else parts
+    run, dynamics = stated.run, stated.dynamics
+    if run is None:
+        return _subject(rig, points, None, None), tuple(part for part in parts if part == "coupling")
+    test = governing_point(points)
+    ramp, solved = run.ramp, list(parts)
+    if "time run" not in parts and "coupling" in parts and _asks_for(case, DRIVE):
+        assert motor_losses is not None
+        shifted = shifted_drive(rig, test.last, run.ramp, motor_losses)
+        solved += ["time run"] if shifted is None else []
+        ramp = run.ramp if shifted is None else shifted
+    if "time run" in solved:
+        assert test.setting is not None
+        ramp = run_ramp(rig, test.last, test.setting, test.last.feedback)
+    curves = solve_curves(rig, test.last) if "curves" in parts else run.curves
+    run = DynamicRun(points=tuple(points), curves=curves, ramp=ramp)
+    if "curves" in parts or "time run" in parts:
+        dynamics = dynamics_result(rig, run)
+    elif dynamics is not None and "coupling" in parts and _asks_for(case, ACTUATOR):
+        dynamics = replace(dynamics, bracing=[bracing_record(rig, point) for point in points])
+    return _subject(rig, points, run, dynamics), tuple(solved)
+
+
+def _loads_move(points: Sequence[PointResult], stated: Sequence[PointResult]) -> bool:
+    """Whether gears or axes are so much warmer or colder that the loads change."""
+    return any(
+        abs(value - getattr(before.last.feedback, name)[part]) > most
+        for point, before in zip(points, stated, strict=True)
+        for name, most in LOADS_MOVE.items()
+        for part, value in getattr(point.last.feedback, name).items()
+    )
+
+
+def _rig_like(stated: Rig, case: Case, parts: tuple[Part, ...]) -> Rig:
+    """The rig of ``case``; it takes over what the stated rig has computed and the change does not touch."""
+    rig = build_rig(case, stated.fidelity)
+    if "coupling" not in parts or _same_housings(rig, stated):
+        for name in GEOMETRY:
+            rig.__dict__[name] = getattr(stated, name)
+    return rig
+
+
+def _same_housings(rig: Rig, stated: Rig) -> bool:
+    """Whether meshes, conductivities and stiffnesses of the housings are the same."""
+    if dict(rig.geometries) != dict(stated.geometries) or dict(rig.materials) != dict(stated.materials):
+        return False
+    return all(_made_of(rig.case, name) == _made_of(stated.case, name) for name in stated.geometries)
+
+
+def _made_of(case: Case, name: str) -> tuple[str, ...]:
+    """Names of the materials of one housing with its shafts and gears."""
+    box = case.gearboxes[name]
+    assert box.housing is not None
+    shafts = (shaft.material for shaft in box.housing.shafts.values())
+    gears = (gear.material for gear in box.gears.values())
+    return (box.housing.material, box.housing.field.material, *shafts, *gears)
+
+
+def _coupled(rig: Rig, stated: Subject) -> Iterator[PointResult]:
+    """The held points from those of the stated rig; its fields are the first guess where the mesh is the same."""
+    same = all(rig.models[name] is stated.rig.models[name] for name in rig.models)
+    for point, near in zip(held_points(rig), stated.points, strict=True):
+        yield solve_point(rig, point, start=near.last.feedback, before=near.last if same else None)
+
+
+def _asks_for(case: Case, quantities: tuple[str, ...]) -> bool:
+    return any(
+        part.given is None and part.quantity in quantities for part in case.limits.bought_parts.values()
+    )
+
+
+def _subject(
+    rig: Rig, points: Sequence[PointResult], run: DynamicRun | None, dynamics: DynamicsResult | None
+) -> Subject:
+    return Subject(
+        rig=rig,
+        points=points,
+        run=run,
+        dynamics=dynamics,
+        thermal=[heat.solved_temperatures(rig, p, field) for p in points for field in p.last.fields.values()],
+        growth=[heat.growth_result(rig, p, name) for p in points for name in p.last.growth],
+        cooler=[heat.cooler(rig, point.last) for point in points],
+    )
+
+
+def _outcome(subject: Subject, parts: tuple[Part, ...]) -> Outcome:
+    return Outcome(
+        checks={check.id: _at_end(check) for check in held_checks(subject)},
+        max_temperature=max((row.max_temperature_degC for row in subject.thermal), default=None),
+        parts=parts,
+    )
+
+
+def _at_end(check: Check) -> CheckAtEnd:
+    return CheckAtEnd(
+        value=check.value, margin=check.margin, utilisation=check.utilisation, verdict=check.verdict
+    )

@@ -1,0 +1,1 @@
+"""What happens at the surfaces and between the bodies of a housing."""

@@ -1,0 +1,208 @@
+"""Grey diffuse radiation between named surfaces that see each other.
+
+Each surface has one radiosity J and one irradiation G, its emission follows the local temperature:
+
+    J_i = e_i sigma <T^4>_i + (1 - e_i) G_i,   G_i = sum_j F_ij J_j + F_i,opening sigma T_opening^4,
+    q_i = e_i (sigma T^4 - G_i) away from surface i, with <> the area mean.
+
+View factors are made exactly reciprocal and complete, so that what the surfaces give off adds up to what
+leaves through the opening. Source: Siegel, Howell, Thermal Radiation Heat Transfer, 4th ed., ch. 7.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermal.conditions.boundary import STEFAN_BOLTZMANN, ConditionError
+from thermal.fe.elements import FiniteElements, SurfaceElements
+from thermal.fe.low_rank import Column, combined
+from thermal.fe.mesh import FloatArray
+
+OPEN = 0.02
+"""Allowed gap of the sum of a surface's view factors, and of reciprocity relative to the smaller area [-]."""
+
+CLOSED = 1e-14
+"""Gap of a row sum at which the closing ends [-]."""
+
+
+class EnclosureError(ConditionError):
+    """View factors that cannot be made reciprocal and complete."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Enclosure:
+    """Surfaces that radiate at each other, and at an opening if there is one."""
+
+    name: str
+    surfaces: tuple[str, ...]
+    emissivities: tuple[float, ...]
+    """One per surface, above 0 to 1 [-]."""
+    view_factors: tuple[tuple[float, ...], ...]
+    """Row i: share of the radiation of surface i that reaches each surface; given, or from view_factors()."""
+    opening_temperature: float | None = None
+    """Surroundings that take what the rows leave to one [K]; None for a closed enclosure."""
+    kind: str = "enclosure"
+    """Row name in the heat balance."""
+
+
+def close_view_factors(
+    factors: FloatArray, areas: FloatArray, names: Sequence[str], opening: bool, tolerance: float = OPEN
+) -> FloatArray:
+    """Make view factors (n, n) reciprocal, A_i F_ij = A_j F_ji, and complete, sum_j F_ij = 1.
+
+    areas : (n,) [m2]
+    opening : True if the rows may leave a share to the surroundings; they must still not exceed one
+    tolerance : greatest allowed gap of a row sum and of reciprocity relative to the smaller area
+
+    Exchange areas A_i F_ij are averaged over both directions, then scaled by one number for each surface
+    until every row is complete, so that surfaces that do not see each other stay so. Raises EnclosureError
+    naming the surface. Source of the scaling: Sinkhorn, Knopp, Pacific J. Math. 21 (1967) 343.
+    """
+    factors = np.asarray(factors, dtype=np.float64)
+    n = len(names)
+    if factors.shape != (n, n) or len(areas) != n:
+        raise EnclosureError(
+            f"view factors of shape {factors.shape}: need ({n}, {n}), a row for each surface"
+        )
+    if not np.isfinite(factors).all() or factors.min(initial=0.0) < 0.0:
+        raise EnclosureError("view factors must be finite and not negative")
+    exchange = np.asarray(areas)[:, None] * factors
+    gap = np.abs(exchange - exchange.T) / np.minimum(areas[:, None], areas[None, :])
+    if gap.max(initial=0.0) > tolerance:
+        i, j = divmod(int(gap.argmax()), n)
+        raise EnclosureError(
+            f"{names[i]} and {names[j]}: A F = {exchange[i, j]:.5g} m2 one way and {exchange[j, i]:.5g} m2 the "
+            f"other, apart by {gap[i, j]:.3g} of the smaller area, above {tolerance:g}; correct one view factor"
+        )
+    exchange = 0.5 * (exchange + exchange.T)
+    sums = exchange.sum(axis=1) / areas
+    worst = int(np.abs(sums - 1.0).argmax()) if not opening else int(sums.argmax())
+    if sums[worst] > 1.0 + tolerance or (not opening and sums[worst] < 1.0 - tolerance):
+        remedy = (
+            "name the surface that is missing, or give an opening_temperature for the rest"
+            if sums[worst] < 1.0
+            else "remove a surface that is listed twice or hidden by another"
+        )
+        raise EnclosureError(
+            f"view factors of {names[worst]} add up to {sums[worst]:.5g} and cannot close: the limit is 1 +- "
+            f"{tolerance:g}; {remedy}"
+        )
+    target = areas * np.minimum(sums, 1.0) if opening else np.asarray(areas)
+    return _scaled(exchange, target, names) / np.asarray(areas)[:, None]
+
+
+def _scaled(exchange: FloatArray, target: FloatArray, names: Sequence[str]) -> FloatArray:
+    """Symmetric d_i S_ij d_j with row sums ``target`` by damped Sinkhorn steps."""
+    scale = np.ones(len(target))
+    goal = np.maximum(target, np.finfo(np.float64).tiny)
+    gap = np.zeros(len(target))
+    for _ in range(2000):
+        sums = scale * (exchange @ scale)
+        gap = np.abs(sums - target) / goal
+        if gap.max(initial=0.0) <= CLOSED:
+            break
+        scale *= np.sqrt(np.where(sums > 0.0, target / np.where(sums > 0.0, sums, 1.0), 1.0))
+    if gap.max(initial=0.0) > 1e-10:
+        raise EnclosureError(
+            f"view factors of {names[int(gap.argmax())]} cannot close: no scaling makes them reciprocal and "
+            "complete at once; correct the zeros among them"
+        )
+    return scale[:, None] * exchange * scale[None, :]
+
+
+def check_enclosure(enclosure: Enclosure) -> None:
+    """Check names and numbers of an enclosure (ConditionError); surfaces are checked with the others."""
+    place = f"enclosure {enclosure.name!r}"
+    if len(set(enclosure.surfaces)) != len(enclosure.surfaces) or not enclosure.surfaces:
+        raise ConditionError(f"{place}: needs at least one surface, each listed once")
+    if len(enclosure.emissivities) != len(enclosure.surfaces):
+        raise ConditionError(
+            f"{place}: {len(enclosure.emissivities)} emissivities for {len(enclosure.surfaces)} surfaces"
+        )
+    for name, value in zip(enclosure.surfaces, enclosure.emissivities, strict=True):
+        if not 0.0 < value <= 1.0:
+            raise ConditionError(f"{place}, {name}: emissivity = {value:g} is outside of 0 (excluded) to 1")
+    room = enclosure.opening_temperature
+    if room is not None and not (np.isfinite(room) and room > 0.0):
+        raise ConditionError(f"{place}: opening_temperature = {room:g} K must be above 0 K; give kelvin")
+
+
+class EnclosureTerms:
+    """Residual and Jacobian of one enclosure."""
+
+    def __init__(self, elements: FiniteElements, enclosure: Enclosure) -> None:
+        self.enclosure = enclosure
+        self.surfaces: list[SurfaceElements] = [elements.surfaces[name] for name in enclosure.surfaces]
+        self.area = np.array([surface.area for surface in self.surfaces])
+        self.emissivity = np.array(enclosure.emissivities)
+        room = enclosure.opening_temperature
+        self.factors = close_view_factors(
+            np.array(enclosure.view_factors), self.area, enclosure.surfaces, room is not None
+        )
+        """(n, n) closed view factors."""
+        self.opening = 1.0 - self.factors.sum(axis=1) if room is not None else np.zeros(len(self.area))
+        """(n,) view factor to the opening."""
+        self.opening_emission = 0.0 if room is None else STEFAN_BOLTZMANN * room**4
+        reflected = np.eye(len(self.area)) - (1.0 - self.emissivity)[:, None] * self.factors
+        solved = np.linalg.solve(
+            reflected,
+            np.column_stack([np.diag(self.emissivity), (1.0 - self.emissivity) * self.opening]),
+        )
+        arriving = self.factors @ solved
+        self.transfer = arriving[:, :-1]
+        """(n, n) irradiation of each surface per emission sigma <T^4> of each [-]."""
+        self.from_opening = arriving[:, -1] + self.opening
+        """(n,) irradiation of each surface per emission of the opening [-]."""
+
+    @property
+    def grounded(self) -> list[str]:
+        """Surfaces that the opening reaches."""
+        seen = zip(self.enclosure.surfaces, self.from_opening, strict=True)
+        return [
+            name for name, share in seen if self.enclosure.opening_temperature is not None and share > 1e-12
+        ]
+
+    @property
+    def links(self) -> list[tuple[str, str]]:
+        """Pairs of surfaces that exchange heat."""
+        names = self.enclosure.surfaces
+        at = np.argwhere(self.transfer > 1e-12)
+        return [(names[i], names[j]) for i, j in at if i != j]
+
+    def irradiation(self, temperature: FloatArray) -> FloatArray:
+        """(n,) G [W/m2]"""
+        fourth = [s.integral(s.at_points(temperature) ** 4) / s.area for s in self.surfaces]
+        emission = STEFAN_BOLTZMANN * np.array(fourth)
+        return np.asarray(self.transfer @ emission + self.from_opening * self.opening_emission)
+
+    def heat_out(self, temperature: FloatArray) -> tuple[FloatArray, float]:
+        """Heat (n_nodes,) that leaves every node; sum of the surfaces' net heats, all taken positive [W]."""
+        out = np.zeros(len(temperature))
+        turned = 0.0
+        arriving = self.irradiation(temperature)
+        for surface, e, g in zip(self.surfaces, self.emissivity, arriving, strict=True):
+            part = e * surface.load(STEFAN_BOLTZMANN * surface.at_points(temperature) ** 4 - g)
+            out += part
+            turned += abs(float(part.sum()))
+        return out, turned
+
+    def slopes(self, temperature: FloatArray) -> dict[str, FloatArray]:
+        """Surface -> (n_f, n_q) local slope 4 e sigma T^3 [W/(m2 K)]."""
+        parts = zip(self.enclosure.surfaces, self.surfaces, self.emissivity, strict=True)
+        return {
+            name: 4.0 * e * STEFAN_BOLTZMANN * surface.at_points(temperature) ** 3
+            for name, surface, e in parts
+        }
+
+    def columns(self, temperature: FloatArray) -> list[tuple[Column, Column]]:
+        """What the irradiation adds to the Jacobian: one rank a surface."""
+        emitted = []
+        for surface in self.surfaces:
+            load = surface.load(4.0 * STEFAN_BOLTZMANN * surface.at_points(temperature) ** 3)
+            emitted.append((surface.nodes, load[surface.nodes] / surface.area))
+        pairs = []
+        for i, (surface, e) in enumerate(zip(self.surfaces, self.emissivity, strict=True)):
+            left = (surface.nodes, -float(e) * surface.shares[surface.nodes])
+            pairs.append((left, combined(list(zip(self.transfer[i].tolist(), emitted, strict=True)))))
+        return pairs

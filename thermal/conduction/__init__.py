@@ -1,0 +1,1 @@
+"""Steady heat conduction: equations, Newton's method, balance."""

@@ -1,0 +1,123 @@
+"""Heat stored in the solids: the capacity matrix of both spaces, and the heat content of a body."""
+
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermal.conditions.boundary import ConditionError
+from thermal.fe import assembly
+from thermal.fe.elements import FiniteElements
+from thermal.fe.mesh import FloatArray
+from thermal.fe.reference import rules_of
+
+CHUNK = 20_000
+"""Cells taken at once."""
+
+
+class HeatCapacity:
+    """Capacity matrices of a mesh, assembled once for all time steps.
+
+    capacity : body -> density times specific heat [J/(m3 K)]
+    Raises ConditionError for missing, unknown or not positive values.
+    """
+
+    def __init__(self, elements: FiniteElements, capacity: Mapping[str, float]) -> None:
+        check_capacity(elements.mesh.bodies, capacity)
+        self.elements = elements
+        self.capacity = dict(capacity)
+        self.fine, self.coarse = _assembled(elements, elements.per_cell(self.capacity))
+        """(nnz,) values of both matrices [J/K]."""
+        self.matrix = elements.fine.matrix(self.fine)
+
+    def stored(self, rise: FloatArray, body: str) -> float:
+        """Heat [J] that a body takes up when its nodes warm by ``rise`` (n_nodes,) [K]."""
+        values, volumes = self.elements.at_points(rise, self.elements.mesh.bodies[body])
+        return self.capacity[body] * float(values @ volumes)
+
+    def root_mean_square(self, values: FloatArray, body: str) -> float:
+        """Root of the mean square of a nodal field over a body."""
+        at, volumes = self.elements.at_points(values, self.elements.mesh.bodies[body])
+        return float(np.sqrt(at**2 @ volumes / volumes.sum()))
+
+
+@dataclass(frozen=True)
+class Storage:
+    """Heat taken up per time at the end of an implicit stage: rate C (T - T_base), rate = 1/(step share)."""
+
+    capacity: HeatCapacity
+    volumes: FloatArray
+    """(m,) heat capacity of the volumes [J/K]."""
+    rate: float
+    """[1/s]"""
+    base: FloatArray
+    """(n_nodes + m,) [K]"""
+
+    def heat_out(self, field: FloatArray) -> FloatArray:
+        """(n_nodes + m,) heat per time that goes into storage [W]."""
+        rise = field - self.base
+        n = len(rise) - len(self.volumes)
+        return self.rate * np.append(self.capacity.matrix @ rise[:n], self.volumes * rise[n:])
+
+
+@dataclass(frozen=True, kw_only=True)
+class StoredHeat:
+    """Bodies that have not got steady yet: a condition on all of them beside those of the surfaces.
+
+    Every body takes up rho c (T - start)/time per volume: the whole warm-up as one implicit step. The field lies
+    between the start (no time) and the steady one (long time), with tau/(tau + time) of a rise still missing for a
+    time constant tau; the true course, exp(-time/tau), is nearer to steady. Raises ConditionError for a time that is
+    not positive.
+    """
+
+    capacity: Mapping[str, float]
+    """Body -> density times specific heat [J/(m3 K)]."""
+    start: float
+    """Temperature of all bodies at the start [K]."""
+    time: float
+    """Since then [s]."""
+    kind: str = "stored"
+    """Row name in the heat balance."""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.time) and self.time > 0.0):
+            raise ConditionError(
+                f"stored heat: time = {self.time} s must be above 0; leave it out when steady"
+            )
+        if not (math.isfinite(self.start) and self.start > 0.0):
+            raise ConditionError(f"stored heat: start = {self.start} K must be above 0 K; give kelvin")
+
+
+def check_capacity(bodies: Collection[str], capacity: Mapping[str, float]) -> None:
+    """Check that every body has a positive heat capacity [J/(m3 K)] and no other is named (ConditionError)."""
+    missing, unknown = sorted(set(bodies) - set(capacity)), sorted(set(capacity) - set(bodies))
+    if missing or unknown:
+        raise ConditionError(
+            f"heat capacity: none for body {', '.join(missing) or '-'}, unknown body {', '.join(unknown) or '-'}; "
+            "give one for every body of the mesh"
+        )
+    for name, value in capacity.items():
+        if not (math.isfinite(value) and value > 0.0):
+            raise ConditionError(f"heat capacity of body {name!r} is {value} J/(m3 K); it must be positive")
+
+
+def _assembled(elements: FiniteElements, per_cell: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values of the second-order and the linear capacity matrix, by the rule for loads (degree 5)."""
+    points = rules_of(elements.shape).load.points
+    shape = elements.shape
+    _, volumes = elements.at_points(np.zeros(len(elements.mesh.points)))
+    weights = volumes.reshape(len(per_cell), len(points)) * per_cell[:, None]
+    spaces = (
+        (elements.fine, shape.values(points)),
+        (elements.coarse, shape.corner_values(points)),
+    )
+    found = []
+    for level, values in spaces:
+        data = np.zeros(len(level.indices))
+        for start in range(0, len(weights), CHUNK):
+            part = slice(start, start + CHUNK)
+            slots = level.indptr[level.cells[part]][:, :, None] + level.offsets[part].astype(np.int32)
+            assembly.add_facet_mass(data, slots, values, weights[part])
+        found.append(data)
+    return found[0], found[1]

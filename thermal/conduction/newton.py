@@ -1,0 +1,200 @@
+"""Newton's method on the equations of thermal.conduction.terms, and the field it starts from.
+
+`newton` iterates on the residual and Jacobian of a problem with multigrid inside: conjugate gradients where the
+Jacobian is symmetric, GMRES where mean temperatures add to it. `linear_start` solves the problem on the corner
+nodes first, on which an iteration costs a tenth: what is left to the second-order space is small and nearly
+linear. Source: Deuflhard, Newton Methods for Nonlinear Problems, ch. 8.1 (nested iteration).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from thermal.conduction.terms import ConductionProblem, Linearisation, Preconditioner
+from thermal.fe.mesh import FloatArray
+from thermal.fe.solver import (
+    LinearSolution,
+    LinearSpace,
+    NotConverged,
+    conjugate_gradient,
+    gmres,
+)
+
+CONTRACTION = 0.1
+"""Fall of the residual in a Newton step of a time step below which the Jacobian is made afresh."""
+
+WORN = 14
+"""Iterations of a linear solve of a steady problem after which a preconditioner of an earlier field is replaced."""
+
+SMALLEST_STEP = 1e-2
+"""Share of a Newton step that is taken even if the residual rises."""
+
+START = 1e-3
+"""Residual on the linear space, relative to the heat turned over, with which the second-order space goes on."""
+
+START_STEPS = 8
+"""Newton steps on the linear space at most; what they have reached is only a start."""
+
+
+@dataclass(frozen=True)
+class NewtonResult:
+    """Unknowns (n_nodes + m,) with the history of the iteration and the preconditioner it ended with."""
+
+    field: FloatArray
+    residuals: tuple[float, ...]
+    linear_iterations: tuple[int, ...]
+    preconditioner: Preconditioner | None
+    linear: Linearisation | None
+
+
+def newton(
+    problem: ConductionProblem,
+    field: FloatArray,
+    tolerance: float,
+    max_steps: int = 30,
+    preconditioner: Preconditioner | None = None,
+    linear: Linearisation | None = None,
+) -> NewtonResult:
+    """Iterate on nodes and volumes from ``field`` (n_nodes + m,) until the residual is within tolerance.
+
+    preconditioner : of a problem nearby, taken as it is; made from the first Jacobian if None
+    linear : Jacobian of a time step nearby; a time step keeps its Jacobian as long as the residual falls by
+        ``CONTRACTION`` from step to step
+
+    Raises NotConverged with its history and the hottest place.
+    """
+    out, turned = problem.heat_out(field)
+    residual = problem.residual(out)
+    history: list[float] = []
+    iterations: list[int] = []
+    while True:
+        size = float(np.abs(residual).sum())
+        limit = max(tolerance * turned, problem.roundoff(field))
+        history.append(size / turned if turned > 0.0 else 0.0)
+        if size <= limit:
+            return NewtonResult(field, tuple(history), tuple(iterations), preconditioner, linear)
+        if len(iterations) == max_steps:
+            raise NotConverged(
+                f"Newton: residual {history[-1]:.3g} of the heat after {max_steps} steps is above "
+                f"{tolerance:g}; {_hottest(problem, field)}; check the film laws for jumps or start from a "
+                "nearer field",
+                tuple(history),
+            )
+        slow = len(history) > 1 and history[-1] > CONTRACTION * history[-2]
+        if problem.storage is None or slow:
+            linear = None  # its memory serves the next one
+        if linear is None:
+            linear = problem.linearise(field)
+        made = preconditioner is None
+        if preconditioner is None:
+            preconditioner = problem.preconditioner(linear, field)
+        elif problem.storage is None or linear.symmetric:
+            preconditioner.set_low_rank(linear.low_rank)
+        load = linear.load(residual)
+        step = _solved(linear, load, preconditioner, _forcing(history, limit / size))
+        iterations.append(step.iterations)
+        if step.iterations > WORN and not made and problem.storage is None:
+            preconditioner = None
+        whole = linear.whole(residual, step.values)
+        field, residual, turned = _line_search(problem, field, whole, residual, _norm)
+
+
+def linear_start(problem: ConductionProblem, field: FloatArray) -> FloatArray:
+    """A start (n_nodes + m,) for `newton`: the solution on the linear space, near to `START`, from ``field``.
+
+    The residual is that of the second-order space, weighted with the linear shape functions. Where an iteration
+    stalls the field so far is handed back.
+    """
+    n, up = problem.n_nodes, problem.elements.prolongation
+    down = sparse.csr_array(up.T)
+    fixed = problem.fixed[problem.elements.corners]
+
+    def norm(residual: FloatArray) -> float:
+        on_corners = np.where(fixed, 0.0, down @ residual[:n])
+        return float(np.abs(on_corners).sum() + np.abs(residual[n:]).sum())
+
+    out, turned = problem.heat_out(field)
+    residual = problem.residual(out)
+    space: LinearSpace | None = None
+    for _ in range(START_STEPS):
+        if norm(residual) <= START * turned:
+            break
+        matrix, parts = problem.linear_matrix(field), problem.small_parts(field)
+        if space is None:
+            space = LinearSpace(matrix, fixed, np.ones((len(fixed), 1)))
+        low_rank = None if parts.low_rank is None else parts.low_rank.under(down)
+        linear = Linearisation(low_rank, None, fixed, matrix, None)
+        space.set_low_rank(low_rank)
+        load = np.where(fixed, 0.0, down @ parts.load(residual))
+        try:
+            step = _solved(linear, load, space, START)
+        except NotConverged:
+            break
+        whole = parts.whole(residual, np.where(problem.fixed, 0.0, up @ step.values))
+        try:
+            field, residual, turned = _line_search(problem, field, whole, residual, norm)
+        except ValueError:  # of a film law
+            break
+    return field
+
+
+def _solved(
+    linear: Linearisation, load: FloatArray, preconditioner: Preconditioner, tolerance: float
+) -> LinearSolution:
+    """Conjugate gradients where the Jacobian is symmetric, GMRES where it is not."""
+    if linear.symmetric:
+        return conjugate_gradient(linear.matrix, load, preconditioner, tolerance=tolerance)
+    return gmres(linear, load, preconditioner, tolerance=tolerance)
+
+
+def _norm(residual: FloatArray) -> float:
+    return float(np.linalg.norm(residual))
+
+
+def _hottest(problem: ConductionProblem, field: FloatArray) -> str:
+    """Where the last field is hottest, in words."""
+    node = int(field[: problem.n_nodes].argmax())
+    mesh = problem.elements.mesh
+    body = next((name for name, cells in mesh.bodies.items() if (mesh.cells[cells] == node).any()), "?")
+    x, y, z = mesh.points[node]
+    return f"hottest in body {body} at x, y, z = {x:.4g}, {y:.4g}, {z:.4g} m with {field[node]:.5g} K"
+
+
+def _forcing(history: list[float], enough: float) -> float:
+    """Tolerance of the linear solve: small enough for quadratic convergence, never smaller than needed.
+
+    Source: Eisenstat, Walker, SIAM J. Sci. Comput. 17 (1996) 16, choice 2 with exponent 2.
+    """
+    fall = history[-1] / history[-2] if len(history) > 1 and history[-2] > 0.0 else 1.0
+    return max(min(1e-3, 0.5 * fall * fall), 0.1 * min(enough, 1.0), 1e-12)
+
+
+def _line_search(
+    problem: ConductionProblem,
+    temperature: FloatArray,
+    step: FloatArray,
+    residual: FloatArray,
+    norm: Callable[[FloatArray], float],
+) -> tuple[FloatArray, FloatArray, float]:
+    """Halve the step until temperatures are positive, every film law can be evaluated and the residual falls.
+
+    Return field, residual and heat turned over. What a law raises is passed on if no part of the step helps.
+    """
+    before = norm(residual)
+    share = 1.0
+    while True:
+        trial = temperature + share * step
+        last = share < SMALLEST_STEP
+        if trial.min() > 0.0:
+            try:
+                out, turned = problem.heat_out(trial)
+            except ValueError:
+                if last:
+                    raise
+            else:
+                after = problem.residual(out)
+                if last or norm(after) <= (1.0 - 1e-4 * share) * before:
+                    return trial, after, turned
+        share *= 0.5

@@ -1,0 +1,79 @@
+"""What conduction on one mesh needs whatever its conditions: matrices, joints of touching surfaces."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from thermal.conditions.boundary import Adiabatic
+from thermal.conditions.contact import Contact, Joint, covered, join
+from thermal.conduction.capacity import HeatCapacity
+from thermal.conduction.condition_checks import Condition, check_conductivity, surfaces_of
+from thermal.conduction.conductivity import Conductivity, VariableConduction
+from thermal.fe.elements import FiniteElements
+from thermal.fe.mesh import NamedMesh
+
+USUAL = 293.15
+"""Temperature [K] at which a conductivity law gives the size of its matrix entries."""
+
+
+class ConductionSetup:
+    """Conduction matrices of a mesh, assembled once and used for every stage and coupling pass.
+
+    conductivity : body -> k [W/(m K)], a number or a law of the temperature
+    elements : share the spaces of an earlier setup on the same mesh
+    Raises MeshError for a bad mesh and ConditionError for missing, unknown or impossible conductivities.
+    """
+
+    def __init__(
+        self,
+        mesh: NamedMesh,
+        conductivity: Mapping[str, Conductivity],
+        elements: FiniteElements | None = None,
+    ) -> None:
+        check_conductivity(mesh.bodies, conductivity)
+        self.mesh = mesh
+        self.conductivity = dict(conductivity)
+        self.elements = FiniteElements(mesh) if elements is None else elements
+        laws = {name: k for name, k in self.conductivity.items() if callable(k)}
+        constant = {name: 0.0 if callable(k) else float(k) for name, k in self.conductivity.items()}
+        per_cell = self.elements.per_cell(constant)
+        self.fine = self.elements.conduction(per_cell, self.elements.fine)
+        """(nnz,) values of the second-order matrix [W/K], bodies with a law left out."""
+        self.coarse = self.elements.conduction(per_cell, self.elements.coarse)
+        """Values of the linear matrix [W/K], bodies with a law left out."""
+        self.variable = VariableConduction(self.elements, laws) if laws else None
+        """The bodies with a law."""
+        size = self.fine
+        if self.variable is not None:
+            usual = np.full(len(mesh.points), USUAL)
+            size = size + self.variable.fine_values(usual)
+        self.size = self.elements.fine.row_sizes(size)
+        """(n_nodes,) sum of the sizes of each row's entries [W/K], for the rounding error of the residual."""
+        self._capacities: dict[tuple[tuple[str, float], ...], HeatCapacity] = {}
+        self._joints: dict[tuple[str, str, float | None, float], Joint] = {}
+
+    def matches(self, mesh: NamedMesh, conductivity: Mapping[str, Conductivity]) -> bool:
+        """Whether the setup was made for this mesh and these conductivities."""
+        return self.mesh is mesh and self.conductivity == dict(conductivity)
+
+    def notes(self, conditions: Sequence[Condition]) -> tuple[str, ...]:
+        """What is to be said of the joints among ``conditions``: surfaces that touch and give heat to others."""
+        others = {
+            name for c in conditions if not isinstance(c, Contact | Adiabatic) for name in surfaces_of(c)
+        }
+        contacts = (c for c in conditions if isinstance(c, Contact))
+        return tuple(text for c in contacts for text in covered(c, self.joint(c), others))
+
+    def heat_capacity(self, capacity: Mapping[str, float]) -> HeatCapacity:
+        """Capacity matrices for body -> density times specific heat [J/(m3 K)], assembled once."""
+        key = tuple(sorted(capacity.items()))
+        if key not in self._capacities:
+            self._capacities[key] = HeatCapacity(self.elements, capacity)
+        return self._capacities[key]
+
+    def joint(self, contact: Contact) -> Joint:
+        """Common part of the surfaces of a contact, found once."""
+        key = (contact.surface_a, contact.surface_b, contact.reach, contact.least_coverage)
+        if key not in self._joints:
+            self._joints[key] = join(self.elements, contact)
+        return self._joints[key]

@@ -1,0 +1,1 @@
+"""Thermal expansion of a gearbox: displacement, deformed geometry, clearances."""

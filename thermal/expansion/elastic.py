@@ -1,0 +1,202 @@
+"""Thermo-elastic displacement of a mesh: K u = int B^T D alpha (T - T0).
+
+Every connected piece must be supported; `three_two_one` gives a statically determinate support, under which a
+piece swells freely: the supports carry nothing whatever its temperature field. Such a piece is solved without
+its supports, which would strain the three nodes they hold, and then moved as a rigid body onto them.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import NamedTuple
+
+import numpy as np
+
+from thermal.expansion.supports import ElasticError, FreePieces, check_held, three_two_one
+from thermal.fe.aggregation import rigid_modes
+from thermal.fe.curved import linear_stiffness
+from thermal.fe.direct import solve_direct
+from thermal.fe.elements import FiniteElements
+from thermal.fe.mesh import FloatArray, IndexArray
+from thermal.fe.solver import (
+    BoolArray,
+    LinearSolution,
+    NotConverged,
+    TwoLevelMultigrid,
+    conjugate_gradient,
+    constrain,
+)
+
+__all__ = [
+    "Displacement",
+    "Elastic",
+    "ElasticError",
+    "ElasticSetup",
+    "check_elastic",
+    "rigid_motion",
+    "three_two_one",
+]
+
+DIRECT = 100_000
+"""Unknowns up to which a direct solution steps in where conjugate gradients stall."""
+
+
+class Elastic(NamedTuple):
+    """Isotropic elastic material."""
+
+    young: float
+    """[Pa]"""
+    poisson: float
+    expansion: float
+    """Mean coefficient of linear expansion between cold and hot [1/K]."""
+
+
+@dataclass(frozen=True)
+class Displacement:
+    """Displacement (n_nodes, 3) [m], support reactions (n_nodes, 3) [N] and residuals of the linear solve."""
+
+    values: FloatArray
+    reactions: FloatArray
+    residuals: tuple[float, ...]
+
+    @property
+    def iterations(self) -> int:
+        """Iterations of conjugate gradients."""
+        return len(self.residuals) - 1
+
+
+class ElasticSetup:
+    """Stiffness and multigrid of a supported mesh, made once and used for every temperature field.
+
+    elements : spaces on the mesh
+    elastic : body -> (Young's modulus [Pa], Poisson's ratio, expansion coefficient [1/K])
+    fixed : (n_nodes, 3) True where a displacement is held at zero; must hold every piece
+    Raises ElasticError for missing, unknown or impossible materials, and for a piece without six held
+    directions.
+    """
+
+    def __init__(
+        self, elements: FiniteElements, elastic: Mapping[str, tuple[float, float, float]], fixed: BoolArray
+    ) -> None:
+        self.elements = elements
+        self.elastic = check_elastic(elements, elastic)
+        self.fixed = fixed
+        check_held(elements, fixed)
+        young = elements.per_cell({body: m.young for body, m in self.elastic.items()})
+        poisson = elements.per_cell({body: m.poisson for body, m in self.elastic.items()})
+        alpha = elements.per_cell({body: m.expansion for body, m in self.elastic.items()})
+        self._alpha = np.empty(len(elements.mesh.points))
+        self._alpha[elements.mesh.cells] = alpha[:, None]
+        self._factor = alpha * young / (1.0 - 2.0 * poisson)
+        fine = elements.elasticity(young, poisson, elements.fine)
+        self.free = FreePieces.of(elements, fixed)
+        """Pieces on six determinate supports, solved without them."""
+        held = fixed & ~self.free.nodes[:, None]
+        self._held_rows = _rows_of(elements, fine, held)
+        self._held = held.ravel()
+        held_corners = held[elements.corners].ravel()
+        self.matrix = constrain(elements.fine.block_matrix(fine), self._held, overwrite=True)
+        coarse_matrix = constrain(linear_stiffness(elements, young, poisson), held_corners, overwrite=True)
+        modes = rigid_modes(elements.mesh.points[elements.corners])
+        self.multigrid = TwoLevelMultigrid(
+            self.matrix, coarse_matrix, elements.prolongation, self._held, held_corners, modes
+        )
+
+    def load(self, temperature: FloatArray, reference: float) -> FloatArray:
+        """Nodal forces (n_nodes, 3) [N] that free expansion from ``reference`` [K] calls for."""
+        return self.elements.expansion_load(self._factor, temperature - reference)
+
+    def free_strain(self, temperature: FloatArray, reference: float) -> FloatArray:
+        """(n_nodes,) alpha (T - T0); a node between bodies takes one of their alphas."""
+        return self._alpha * (temperature - reference)
+
+    def solve(
+        self,
+        temperature: FloatArray,
+        reference: float,
+        tolerance: float = 1e-8,
+        start: FloatArray | None = None,
+    ) -> Displacement:
+        """Displacement under a nodal temperature (n_nodes,) [K]; raises NotConverged with its residuals.
+
+        start : (n_nodes, 3) displacement of a neighbouring temperature field [m]
+        """
+        load = self.load(temperature, reference)
+        right = np.where(self._held, 0.0, load.ravel())
+        first = None if start is None else np.where(self._held, 0.0, start.ravel())
+        solution = self._solved(right, first, tolerance)
+        values = self.free.onto_supports(solution.values.reshape(-1, 3))
+        rows, columns, blocks = self._held_rows
+        forces = np.zeros_like(values)
+        np.add.at(forces, rows, np.einsum("kij,kj->ki", blocks, values[columns]))
+        reactions = np.where(self._held.reshape(-1, 3), forces - load, 0.0)
+        reactions += self.free.reactions(load)
+        return Displacement(values, reactions, solution.residuals)
+
+    def _solved(self, load: FloatArray, start: FloatArray | None, tolerance: float) -> LinearSolution:
+        """Conjugate gradients; where they stall on a small mesh, of very flat cells say, a direct solution."""
+        try:
+            return conjugate_gradient(self.matrix, load, self.multigrid, start=start, tolerance=tolerance)
+        except NotConverged as stalled:
+            if len(load) > DIRECT:
+                raise
+            held = self._held | self.free.pins.ravel()
+            right = np.where(held, 0.0, load)
+            values = solve_direct(constrain(self.matrix, held), right)
+            left = float(np.linalg.norm(load - self.matrix @ values) / np.linalg.norm(load))
+            return LinearSolution(values, (*stalled.residuals, left))
+
+
+def check_elastic(
+    elements: FiniteElements, elastic: Mapping[str, tuple[float, float, float]]
+) -> dict[str, Elastic]:
+    """Elastic data of every body, checked (ElasticError)."""
+    bodies = elements.mesh.bodies
+    for name in elastic:
+        if name not in bodies:
+            near = get_close_matches(name, bodies, n=3, cutoff=0.4) or sorted(bodies)
+            raise ElasticError(f"unknown body {name!r}; nearest: {', '.join(near)}")
+    if missing := sorted(set(bodies) - set(elastic)):
+        raise ElasticError(
+            f"no elastic data for body {', '.join(missing)}; give E, nu and alpha for every body"
+        )
+    materials = {name: Elastic(*values) for name, values in elastic.items()}
+    for name, material in materials.items():
+        if not (math.isfinite(material.young) and material.young > 0.0):
+            raise ElasticError(f"body {name!r}: Young's modulus {material.young} Pa must be positive")
+        if not -1.0 < material.poisson < 0.5:
+            raise ElasticError(f"body {name!r}: Poisson's ratio {material.poisson} is outside of -1 to 0.5")
+        if not math.isfinite(material.expansion):
+            raise ElasticError(f"body {name!r}: expansion coefficient {material.expansion} 1/K is no number")
+    return materials
+
+
+def rigid_motion(
+    points: FloatArray, displacement: FloatArray, weights: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Rigid part of a displacement: centre (3,) [m], shift (3,) [m] and rotation (3,) [rad] about the centre.
+
+    points, displacement : (n, 3) [m]; weights : (n,) of the least-squares fit.
+    """
+    centre = weights @ points / weights.sum()
+    arm = points - centre
+    basis = np.zeros((len(points), 3, 6))
+    basis[:, :, :3] = np.eye(3)
+    for axis in range(3):
+        basis[:, :, 3 + axis] = np.cross(np.eye(3)[axis], arm)
+    root = np.sqrt(weights)[:, None]
+    matrix = (basis * root[:, :, None]).reshape(-1, 6)
+    motion = np.asarray(np.linalg.lstsq(matrix, (displacement * root).ravel())[0])
+    return centre, motion[:3], motion[3:]
+
+
+def _rows_of(
+    elements: FiniteElements, blocks: FloatArray, fixed: BoolArray
+) -> tuple[IndexArray, IndexArray, FloatArray]:
+    """Rows, columns and blocks of the matrix entries whose row has a held direction."""
+    level = elements.fine
+    rows = np.repeat(np.arange(level.n_nodes, dtype=np.int32), np.diff(level.indptr))
+    held: BoolArray = np.asarray(fixed.any(axis=1))
+    chosen = np.flatnonzero(held[rows])
+    return rows[chosen], level.indices[chosen], blocks[chosen]

@@ -1,0 +1,115 @@
+"""Thermal expansion of a gearbox: displacement field, rigid placement of the shafts, clearances.
+
+Pieces that share no nodes are solved together but supported each for itself: the housing on its foot, every
+shaft at its locating bearing. The housing is then placed so that its foot does not shift or turn on average
+(in a foot joint the field is, and the foot follows its seat on average and slides on it without friction),
+and every shaft as a rigid body so that its axis passes through the displaced centres of its bearing bores and
+its locating journal sits axially in its bore. Bearing clearance and film position are not part of this: the
+axis runs through the middle of the bores.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermal.expansion.alignment import ShaftAxis
+from thermal.expansion.clearances import BearingGrowth, CentreDistance, GearGrowth, SealGrowth, ShaftGrowth
+from thermal.expansion.deformed_geometry import HotShape
+from thermal.expansion.elastic import ElasticError
+from thermal.expansion.setup import ExpansionSetup
+from thermal.fe.mesh import FloatArray
+from thermal.housing.stations import GearboxModel
+
+__all__ = ["Expansion", "ExpansionSetup", "expand"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Expansion:
+    """Hot shape of a gearbox."""
+
+    displacement: FloatArray
+    """(n_nodes, 3) [m], relative to the foot, shafts placed in their bearings."""
+    supported: FloatArray
+    """(n_nodes, 3) [m] on the supports of the solve, every piece for itself; a start for the next solve."""
+    bearings: dict[str, BearingGrowth]
+    seals: dict[str, SealGrowth]
+    shafts: dict[str, ShaftGrowth]
+    gears: dict[str, GearGrowth]
+    axes: dict[str, ShaftAxis]
+    """Hot axis of every shaft, through its bearing bores."""
+    centre_distances: tuple[CentreDistance, ...]
+    """Every two gears of different shafts whose widths overlap."""
+    largest_reaction: float
+    """Of the statically determinate supports [N]; zero but for the tolerance of the solver."""
+    iterations: int
+
+
+def expand(
+    model: GearboxModel,
+    temperature: FloatArray,
+    reference_temperature: float,
+    elastic: Mapping[str, tuple[float, float, float]],
+    *,
+    reuse: ExpansionSetup | None = None,
+    tolerance: float = 1e-8,
+    start: Expansion | None = None,
+) -> Expansion:
+    """Expand a gearbox from ``reference_temperature`` [K], at which the model's dimensions hold.
+
+    temperature : (n_nodes,) [K]
+    elastic : body -> (Young's modulus [Pa], Poisson's ratio, expansion coefficient [1/K])
+    reuse : setup of the same model and materials; tolerance : of the linear solve's residual
+    start : hot shape of a neighbouring temperature field, which saves iterations
+
+    Raises ElasticError (a ValueError) for input that cannot be computed, NotConverged (a RuntimeError with
+    its residuals) if the linear solve stalls.
+    """
+    setup = ExpansionSetup(model, elastic) if reuse is None else reuse
+    if not setup.matches(model, elastic):
+        raise ElasticError("the setup to reuse belongs to another model or other materials; make a new one")
+    if temperature.shape != (len(model.mesh.points),) or not np.isfinite(temperature).all():
+        raise ElasticError(
+            f"temperature of shape {temperature.shape}: need one finite value per node, "
+            f"({len(model.mesh.points)},)"
+        )
+    solution = setup.elastic.solve(
+        temperature, reference_temperature, tolerance, None if start is None else start.supported
+    )
+    return read_expansion(
+        setup,
+        temperature,
+        reference_temperature,
+        solution.values,
+        largest_reaction=float(np.abs(solution.reactions).max()),
+        iterations=solution.iterations,
+    )
+
+
+def read_expansion(
+    setup: ExpansionSetup,
+    temperature: FloatArray,
+    reference_temperature: float,
+    supported: FloatArray,
+    *,
+    largest_reaction: float = 0.0,
+    iterations: int = 0,
+) -> Expansion:
+    """Place the shafts and read every clearance from a displacement on the supports of the solve.
+
+    temperature : (n_nodes,) [K]; supported : (n_nodes, 3) [m], of this temperature
+    """
+    model = setup.model
+    shape = HotShape(setup, temperature, reference_temperature, supported)
+    return Expansion(
+        displacement=shape.displacement,
+        supported=supported,
+        bearings={b.name: shape.bearing(b) for b in model.bearings},
+        seals={s.name: shape.seal(s) for s in model.seals},
+        shafts={s.name: shape.shaft(s) for s in model.shafts},
+        gears={g.name: shape.gear(g) for g in model.gears},
+        axes=shape.axes,
+        centre_distances=shape.centre_distances(),
+        largest_reaction=largest_reaction,
+        iterations=iterations,
+    )

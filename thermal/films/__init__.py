@@ -1,0 +1,1 @@
+"""Film coefficients, oil films and joints: laws with source and range."""

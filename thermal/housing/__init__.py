@@ -1,0 +1,1 @@
+"""Parametric gearbox or mesh file -> mesh with named surfaces, bodies and stations."""

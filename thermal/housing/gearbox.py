@@ -1,0 +1,165 @@
+"""Parametric gearbox: geometry -> mesh of ten-node tetrahedra with named bodies, surfaces and stations.
+
+    geometry = HousingGeometry(...)
+    surface_names(geometry)                  every surface that wants a boundary condition; no gmsh needed
+    model = build_gearbox(geometry, "quick")
+
+Surfaces, with ``<s>`` the name of a shaft and ``<side>`` front or rear (low or high x):
+
+    outer_warm                    side walls and top outside, between the mid-planes of the partitions
+    outer_cold_<side>             the rest of side walls and top, and the end face
+    chamber_wall, chamber_floor, chamber_top, partition_warm_<side>           warm chamber inside
+    cold_floor_<side>, partition_cold_<side>, cold_wall_<side>                cold section inside; its wall is
+                                  sides, top, end wall, bearing bosses, shoulders and covers
+    bearing_bore_<s>_<side>       the bore of a bearing
+    seal_bore_<s>_<side>          in the partition; seal_bore_<s>_<side>_end in the end wall
+    field_top, field_sides, field_bottom                  or housing_foot for a housing without a field
+    shaft_<s>_journal_<side>, shaft_<s>_seal_<side>, shaft_<s>_seal_<side>_end, shaft_<s>_warm,
+    shaft_<s>_cold_<side>, shaft_<s>_outside_<side>, shaft_<s>_end_<side>, shaft_<s>_bore
+    gear_<s>_rim, gear_<s>_side_<side>
+
+Surfaces of parts that are not there (no overhang, no bore, no gear) do not exist. Bodies: ``housing``,
+``field``
+(shares nodes with the foot; with a foot joint ``housing_foot`` touches its ``field_seat``), ``shaft_<s>``,
+``gear_<s>`` (shares nodes with its seat). Housing and shafts share no nodes: lubricant films and seal gaps are
+not meshed, nor is the air in the chambers.
+"""
+
+import math
+from collections.abc import Mapping
+from functools import lru_cache, partial
+from types import MappingProxyType
+from typing import Literal
+
+from thermal.fe.mesh import MeshError, disjoint_union
+from thermal.housing.geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
+from thermal.housing.meshing import gmsh_session, mesh_component
+from thermal.housing.parametric_stations import (
+    bearing_stations,
+    foot_joint,
+    gear_stations,
+    seal_stations,
+    shaft_stations,
+)
+from thermal.housing.solids import (
+    MeshSizes,
+    bend_axes,
+    draw_field,
+    draw_housing,
+    draw_shaft,
+    housing_size,
+    shaft_size,
+)
+from thermal.housing.stations import GearboxModel
+from thermal.housing.surfaces import (
+    FOOT,
+    body_names,
+    exact_areas,
+    exact_volumes,
+    field_faces,
+    housing_faces,
+    shaft_faces,
+    surface_names,
+)
+
+__all__ = [
+    "ClampingField",
+    "Fidelity",
+    "GearDisc",
+    "GeometryError",
+    "HousingGeometry",
+    "MeshError",
+    "MeshSizes",
+    "ShaftGeometry",
+    "body_names",
+    "build_gearbox",
+    "exact_areas",
+    "exact_volumes",
+    "mesh_sizes",
+    "surface_names",
+]
+
+Fidelity = Literal["quick", "standard", "reference"]
+
+_SCALES: dict[Fidelity, tuple[float, float, float, int]] = {
+    "quick": (0.1, 0.3, 0.08, 7),
+    "standard": (0.04, 0.1, 0.05, 10),
+    "reference": (0.0108, 0.045, 0.024, 20),
+}
+"""Elements of walls, field and shafts relative to the root of the housing's outer area, the root of the
+field's area and the longest shaft, and elements a turn: the node count hardly depends on its size."""
+
+
+def mesh_sizes(
+    geometry: HousingGeometry, fidelity: Fidelity, zones: Mapping[str, float] = MappingProxyType({})
+) -> MeshSizes:
+    """Element sizes of one fidelity, scaled with the parts of ``geometry``.
+
+    zones : size [m] by zone (wall, field, seal, bearing, gear) at standard fidelity, in place of the usual
+        one; the other fidelities keep their ratio to it
+
+    Raises GeometryError for a fidelity that is not quick, standard or reference.
+    """
+    if fidelity not in _SCALES:
+        raise GeometryError(f"fidelity = {fidelity!r} is unknown; use one of {', '.join(_SCALES)}")
+    wall, field, shaft, circle = _SCALES[fidelity]
+    g = geometry
+    outer = math.sqrt(2.0 * (g.length * g.width + g.length * g.height + g.width * g.height))
+    plate = math.sqrt(g.field.length * g.field.width) if g.field is not None else outer
+    reach = max(g.length + s.overhang_front + s.overhang_rear for s in g.shafts)
+    ratio = wall / _SCALES["standard"][0]
+    given = {zone: ratio * size for zone, size in zones.items()}
+    return MeshSizes(
+        wall=given.get("wall", wall * outer), field=given.get("field", field * plate), shaft=shaft * reach,
+        circle=circle, seal=given.get("seal", math.inf), bearing=given.get("bearing", math.inf),
+        gear=given.get("gear", math.inf),
+    )  # fmt: skip
+
+
+def build_gearbox(geometry: HousingGeometry, fidelity: Fidelity | MeshSizes = "quick") -> GearboxModel:
+    """Mesh a gearbox and locate its bearings, seals, shafts and gears.
+
+    fidelity : quick (10 to 20 k nodes for a usual gearbox), standard (30 to 50 k), reference (350 k and
+        more), or sizes
+
+    The same input gives the same arrays in every process; a model built before is returned again from memory,
+    so do not write into it. Raises GeometryError (ValueError), MeshError (ValueError) and, where gmsh or a
+    system library it needs is missing, the loader's ImportError or OSError.
+    """
+    return _build(geometry, fidelity if isinstance(fidelity, MeshSizes) else mesh_sizes(geometry, fidelity))
+
+
+@lru_cache(maxsize=32)
+def _build(geometry: HousingGeometry, sizes: MeshSizes) -> GearboxModel:
+    with gmsh_session() as gmsh:
+        components = [
+            mesh_component(
+                gmsh, "housing", partial(draw_housing, geometry), housing_faces(geometry),
+                housing_size(geometry, sizes), sizes.circle, bend_axes(geometry),
+            ),
+            *(
+                mesh_component(
+                    gmsh, "field", partial(draw_field, geometry), field_faces(geometry),
+                    housing_size(geometry, sizes), sizes.circle, [],
+                )
+                for _ in range(geometry.foot_joint)
+            ),
+            *(
+                mesh_component(
+                    gmsh, f"shaft {shaft.name}", partial(draw_shaft, geometry, shaft),
+                    shaft_faces(geometry, shaft), shaft_size(geometry, shaft, sizes), sizes.circle,
+                    [(shaft.y, geometry.shaft_height, math.inf)],
+                )
+                for shaft in geometry.shafts
+            ),
+        ]  # fmt: skip
+    return GearboxModel(
+        mesh=disjoint_union(*components),
+        shafts=shaft_stations(geometry),
+        bearings=bearing_stations(geometry),
+        seals=seal_stations(geometry),
+        gears=gear_stations(geometry),
+        fixed_body="housing" if geometry.field is None else "field",
+        foot_surface=FOOT if geometry.field is None else "field_bottom",
+        joint=foot_joint(geometry),
+    )

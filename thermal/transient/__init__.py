@@ -1,0 +1,1 @@
+"""Temperatures over time."""

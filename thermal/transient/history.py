@@ -1,0 +1,345 @@
+"""Temperatures over a schedule: stages of given duration, each with its own conditions.
+
+The step follows the local error, the conditions may jump between stages and change smoothly inside of one.
+What the conditions give is stored to 1e-8 of the heat turned over, or the run is refused.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from thermal.conduction.balance import held_by
+from thermal.conduction.capacity import HeatCapacity
+from thermal.conduction.condition_checks import Condition, ConditionError, check_conditions
+from thermal.conduction.conductivity import Conductivity
+from thermal.conduction.steady import CLOSURE, ConductionSetup
+from thermal.conduction.terms import OFF_REST, ConductionProblem
+from thermal.fe.mesh import FloatArray, IndexArray, NamedMesh
+from thermal.fe.solver import NotConverged
+from thermal.transient.energy import EnergyAccount, EnergyBalance
+from thermal.transient.probes import Probe, Reader, reader
+from thermal.transient.time_steps import STAGE_WEIGHTS, ProblemAt, Step, Stepper, landing, next_length
+
+FIRST_STEP = 1e-2
+"""First step of a stage as a share of its duration."""
+
+LARGEST_STEP = 0.1
+"""Greatest step as a share of the stage, where none is given."""
+
+SMALLEST_STEP = 1e-10
+"""Step as a share of the stage at which the run gives up."""
+
+ConditionsAt = Callable[[float], Sequence[Condition]]
+"""Conditions at a time since the start of the stage [s], smooth in it."""
+
+Observer = Callable[[float, FloatArray, Mapping[str, float]], None]
+"""Called with time [s], field (n_nodes,) [K] and volume -> temperature [K]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThermalStage:
+    """A part of the schedule."""
+
+    name: str
+    duration: float
+    """[s]"""
+    conditions: Sequence[Condition] | ConditionsAt
+
+
+@dataclass(frozen=True, kw_only=True)
+class TransientSolution:
+    """Temperatures at the probes over time, with the energy of the whole run."""
+
+    times: FloatArray
+    """(n,) start, then the end of every step [s]."""
+    stages: IndexArray
+    """(n,) number of the stage each time ends; 0 for the start."""
+    probes: Mapping[str, FloatArray]
+    """Probe -> (n,) temperature [K]."""
+    errors: FloatArray
+    """(n,) local error of each step [K], 0 for the start."""
+    temperature: FloatArray
+    """(n_nodes,) at the end [K]."""
+    volumes: Mapping[str, float]
+    """Volume -> temperature at the end [K]."""
+    energy: EnergyBalance
+    rejected: int
+    """Steps that were repeated with a shorter length."""
+    linear_iterations: int
+    warnings: tuple[str, ...]
+    """What is to be said of joints, and what the film laws said about their range; each sentence once."""
+
+
+def solve_transient(
+    mesh: NamedMesh,
+    conductivity: Mapping[str, Conductivity],
+    capacity: Mapping[str, float],
+    stages: Sequence[ThermalStage],
+    initial: FloatArray | float,
+    *,
+    probes: Sequence[Probe] = (),
+    observe_at: Sequence[float] | None = (),
+    observer: Observer | None = None,
+    initial_volumes: Mapping[str, float] | None = None,
+    tolerance: float = 0.05,
+    first_step: float | None = None,
+    largest_step: float | None = None,
+    newton_tolerance: float = 1e-9,
+    reuse: ConductionSetup | None = None,
+) -> TransientSolution:
+    """Run through ``stages`` from an initial field.
+
+    conductivity : body -> k [W/(m K)], a number or a law
+    capacity : body -> density times specific heat [J/(m3 K)]
+    initial : (n_nodes,) field or one value [K]
+    probes : where temperatures are kept for every step
+    observe_at, observer : times [s] that are met exactly, and what is then called with the full field; None
+        calls it at the start and after every step
+    initial_volumes : volume -> temperature [K]; others start 1 K below the mean of the field they meet
+    tolerance : local error of a step [K], root mean square over any body
+    first_step : of every stage [s]; a hundredth of it if None
+    largest_step : [s]; a tenth of each stage if None
+    reuse : setup of the same mesh and conductivities
+
+    Raises ConditionError for input that cannot be computed, NotConverged if a step fails however short it is or
+    the energy does not close.
+    """
+    setup = ConductionSetup(mesh, conductivity) if reuse is None else reuse
+    if not setup.matches(mesh, conductivity):
+        raise ConditionError(
+            "the setup to reuse belongs to another mesh or other conductivities; make a new one"
+        )
+    _check(stages, observe_at or (), tolerance=tolerance, first_step=first_step, largest_step=largest_step)
+    run = _Run(
+        setup, HeatCapacity(setup.elements, capacity), initial, initial_volumes or {}, newton_tolerance
+    )
+    run.watch(probes, observe_at, observer)
+    for number, stage in enumerate(stages):
+        run.stage(number, stage, tolerance, first_step, largest_step)
+    return run.solution()
+
+
+def settling_time(times: FloatArray, values: FloatArray, final: float, band: float) -> float | None:
+    """Time [s] from which ``values`` stay within ``band`` of ``final``; None if they are outside at the end.
+
+    times, values : (n,); between the last point outside and the next the course is taken straight
+    """
+    outside = np.flatnonzero(np.abs(values - final) > band)
+    if not len(outside):
+        return float(times[0])
+    last = int(outside[-1])
+    if last == len(times) - 1:
+        return None
+    edge = final + math.copysign(band, values[last] - final)
+    share = (edge - values[last]) / (values[last + 1] - values[last])
+    return float(times[last] + min(share, 1.0) * (times[last + 1] - times[last]))
+
+
+def _check(stages: Sequence[ThermalStage], observe_at: Sequence[float], **positive: float | None) -> None:
+    if not stages:
+        raise ConditionError("schedule without a stage; give at least one")
+    for stage in stages:
+        if not (math.isfinite(stage.duration) and stage.duration > 0.0):
+            raise ConditionError(f"stage {stage.name!r}: duration = {stage.duration} s must be above 0 s")
+    for name, value in positive.items():
+        if value is not None and not value > 0.0:
+            raise ConditionError(f"{name} = {value} must be above 0")
+    end = math.fsum(stage.duration for stage in stages)
+    if any(not 0.0 <= time <= end for time in observe_at):
+        raise ConditionError(f"observe_at holds a time outside of 0 to {end:g} s, the end of the schedule")
+
+
+class _Run:
+    """State of a run: time, field, account, histories."""
+
+    def __init__(
+        self,
+        setup: ConductionSetup,
+        capacity: HeatCapacity,
+        initial: FloatArray | float,
+        volumes: Mapping[str, float],
+        newton_tolerance: float,
+    ) -> None:
+        self._setup = setup
+        self._stepper = Stepper(capacity, newton_tolerance)
+        self._account = EnergyAccount(setup.elements, capacity.capacity)
+        shape = (len(setup.mesh.points),)
+        self._temperature = np.broadcast_to(np.asarray(initial, dtype=np.float64), shape).copy()
+        if not (np.isfinite(self._temperature).all() and self._temperature.min() > 0.0):
+            raise ConditionError(
+                "initial temperature must be finite and above 0 K at every node; give kelvin"
+            )
+        self._volumes = dict(volumes)
+        self._time = self._begin = 0.0
+        self._readers: dict[str, Reader] = {}
+        self._due: list[float] = []
+        self._observer: Observer | None = None
+        self._always = False
+        self._times: list[float] = []
+        self._numbers: list[int] = []
+        self._read: dict[str, list[float]] = {}
+        self._errors: list[float] = []
+        self._rejected = self._iterations = 0
+        self._warnings: dict[str, None] = {}
+
+    def watch(self, probes: Sequence[Probe], at: Sequence[float] | None, observer: Observer | None) -> None:
+        """Set what is kept and called."""
+        self._readers = {probe.name: reader(self._setup.elements, probe) for probe in probes}
+        if len(self._readers) < len(probes):
+            raise ConditionError("two probes have the same name; give each its own")
+        self._read = {name: [] for name in self._readers}
+        self._due = sorted(set(at or ())) if observer is not None else []
+        self._always = at is None
+        self._observer = observer
+
+    def stage(
+        self, number: int, stage: ThermalStage, tolerance: float, first: float | None, largest: float | None
+    ) -> None:
+        """Run through one stage."""
+        problems = _Problems(self._setup, stage, self._begin)
+        problem = problems(self._begin)
+        self._enter(problem)
+        self._warnings |= dict.fromkeys(problems.notes)
+        if not self._times:
+            self._record(0, 0.0)
+        self._stepper.forget()
+        end = self._begin + stage.duration
+        longest = LARGEST_STEP * stage.duration if largest is None else largest
+        dt = min(FIRST_STEP * stage.duration if first is None else first, longest)
+        slope: FloatArray | None = None
+        while self._time < end:
+            goal = min([end, *(due for due in self._due if due > self._time)])
+            length = landing(dt, goal - self._time)
+            field = np.append(self._temperature, list(self._volumes.values()))
+            made = self._try(problems, length, field, slope, SMALLEST_STEP * stage.duration)
+            if made is None or made.error > tolerance:
+                self._rejected += 1
+                dt = (
+                    0.25 * length
+                    if made is None
+                    else min(next_length(length, made.error, tolerance), 0.7 * length)
+                )
+                if dt < SMALLEST_STEP * stage.duration:
+                    raise NotConverged(
+                        f"stage {stage.name!r} at {self._time:.6g} s: a step of {length:.3g} s is still off by more "
+                        f"than {tolerance:g} K; check the conditions for jumps inside of the stage",
+                        (),
+                    )
+                continue
+            self._accept(number, problem, length, goal, made, field)
+            slope = made.slope
+            proposed = min(next_length(length, made.error, tolerance), longest)
+            dt = max(proposed, dt) if length < dt and made.error <= tolerance else proposed
+        self._begin = end
+
+    def _try(
+        self, problems: "ProblemAt", dt: float, field: FloatArray, slope: FloatArray | None, smallest: float
+    ) -> Step | None:
+        try:
+            return self._stepper.step(problems, self._time, dt, field, slope)
+        except NotConverged:
+            if dt <= 8.0 * smallest:
+                raise
+            self._stepper.forget()
+            return None
+
+    def _enter(self, problem: ConductionProblem) -> None:
+        """Take over the volumes of a stage, new ones start fresh; put prescribed nodes to their temperature."""
+        mean = float(self._temperature.mean())
+        self._volumes = {name: self._volumes.get(name, mean - OFF_REST) for name in problem.volumes.index}
+        self._jump(problem)
+        problem.check_paths(np.append(self._temperature, list(self._volumes.values())), storing=True)
+
+    def _jump(self, problem: ConductionProblem) -> None:
+        """What a prescribed temperature that jumps gives at once, the free nodes unchanged."""
+        rise = np.where(problem.fixed, problem.held - self._temperature, 0.0)
+        if not rise.any():
+            return
+        given = self._stepper.capacity.matrix.sum(axis=0) * rise
+        elements = self._setup.elements
+        held = held_by(elements, problem.conditions)
+        for condition in problem.prescribed:
+            surface = elements.surfaces[condition.surface]
+            energy = float((given[surface.nodes] / held[surface.nodes]).sum())
+            self._account.give(condition.surface, condition.kind, surface.piece, energy)
+        self._account.store(rise, {})
+        self._temperature = self._temperature + rise
+
+    def _accept(
+        self, number: int, problem: ConductionProblem, dt: float, goal: float, made: Step, before: FloatArray
+    ) -> None:
+        n = problem.n_nodes
+        for share, balance in zip(STAGE_WEIGHTS, made.balances, strict=True):
+            self._account.book(balance, share * dt)
+            self._warnings |= dict.fromkeys(balance.warnings)
+        rise = made.field - before
+        energies = problem.volumes.capacity * rise[n:]
+        self._account.store(rise[:n], dict(zip(problem.volumes.index, energies.tolist(), strict=True)))
+        self._temperature = made.field[:n]
+        self._volumes = dict(zip(problem.volumes.index, made.field[n:].tolist(), strict=True))
+        self._time = goal if dt == goal - self._time else self._time + dt
+        self._iterations += made.linear_iterations
+        self._record(number, made.error)
+
+    def _record(self, number: int, error: float) -> None:
+        self._times.append(self._time)
+        self._numbers.append(number)
+        self._errors.append(error)
+        for name, read in self._readers.items():
+            self._read[name].append(read(self._temperature, self._volumes))
+        due = bool(self._due) and self._due[0] <= self._time
+        if due:
+            self._due.pop(0)
+        if self._observer is not None and (due or self._always):
+            self._observer(self._time, self._temperature.copy(), dict(self._volumes))
+
+    def solution(self) -> TransientSolution:
+        """What was kept; NotConverged if the energy does not close."""
+        energy = self._account.balance
+        if energy.closure > CLOSURE:
+            raise NotConverged(
+                f"energy open by {energy.closure:.3g} of the heat turned over, above {CLOSURE:g}; lower the "
+                "tolerance of Newton's method",
+                (),
+            )
+        return TransientSolution(
+            times=np.array(self._times),
+            stages=np.array(self._numbers, dtype=np.int32),
+            probes={name: np.array(values) for name, values in self._read.items()},
+            errors=np.array(self._errors),
+            temperature=self._temperature,
+            volumes=dict(self._volumes),
+            energy=energy,
+            rejected=self._rejected,
+            linear_iterations=self._iterations,
+            warnings=tuple(self._warnings),
+        )
+
+
+class _Problems:
+    """The conduction problem of a stage at any time; made once if the conditions do not change."""
+
+    def __init__(self, setup: ConductionSetup, stage: ThermalStage, begin: float) -> None:
+        self._setup, self._stage, self._begin = setup, stage, begin
+        self._fixed = None if callable(stage.conditions) else self._made(stage.conditions)
+
+    def __call__(self, time: float) -> ConductionProblem:
+        if self._fixed is not None:
+            return self._fixed
+        assert callable(self._stage.conditions)
+        return self._made(self._stage.conditions(time - self._begin))
+
+    def _made(self, conditions: Sequence[Condition]) -> ConductionProblem:
+        try:
+            check_conditions(self._setup.elements, conditions)
+        except ConditionError as error:
+            raise ConditionError(f"stage {self._stage.name!r}: {error}") from error
+        return ConductionProblem(self._setup, conditions)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is to be said of the joints at the start of the stage."""
+        conditions = self._stage.conditions
+        return self._setup.notes(conditions(0.0) if callable(conditions) else conditions)
