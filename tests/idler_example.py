@@ -1,6 +1,7 @@
 """Two gearboxes with a pinion between two wheels each; two wheel shafts close the loop, the pinions idle."""
 
-from dynamics.drivetrain.graph import Coupling, Drivetrain, GearBody, MeshConnection, Motor
+from dynamics.drivetrain.graph import Drivetrain
+from dynamics.drivetrain.parts import Coupling, GearBody, MeshConnection, Motor
 from dynamics.drivetrain.shaft import Section, Shaft
 from dynamics.mesh.law import MeshLaw
 from tests.rig_example import synthetic_law

@@ -4,16 +4,9 @@ import math
 
 import numpy as np
 
-from dynamics.drivetrain.graph import (
-    Coupling,
-    Disc,
-    Drivetrain,
-    GearBody,
-    JournalBearing,
-    MeshConnection,
-    Motor,
-)
-from dynamics.drivetrain.shaft import Section, Shaft
+from dynamics.drivetrain.graph import Drivetrain
+from dynamics.drivetrain.parts import Coupling, GearBody, JournalBearing, MeshConnection, Motor
+from dynamics.drivetrain.shaft import Disc, Section, Shaft
 from dynamics.mesh.law import MeshLaw
 
 TABLE_2 = {

@@ -4,11 +4,16 @@ import json
 import os
 import time
 from dataclasses import dataclass, field, replace
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 
 from rigdesign.base.errors import CaseError, NotConvergedError
+from rigdesign.report.pages.study import write_study
+from rigdesign.study import run as study
 from tests.report_example import make_check, make_result
+
+run_study = partial(study.run_study, write=write_study)
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,12 @@ from thermal.conditions.boundary import (
     BoundaryCondition,
     Exchange,
     Film,
-    FilmCoefficient,
-    FilmLaw,
     PrescribedTemperature,
     Radiation,
     SurfaceSource,
 )
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union
+from thermal.films.law import FilmCoefficient, FilmLaw
 
 CONDUCTIVITY = {"hot": 40.0, "cold": 15.0}
 

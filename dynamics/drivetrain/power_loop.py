@@ -7,39 +7,55 @@ given centre distances.
 
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import TYPE_CHECKING
+from typing import Protocol
 
+from dynamics.drivetrain.parts import GearBody, MeshConnection, Motor
 from dynamics.drivetrain.shaft import DrivetrainError
-
-if TYPE_CHECKING:
-    from dynamics.drivetrain.graph import Drivetrain, MeshConnection
 
 RADIUS_TOLERANCE = 1e-6
 """Allowed relative difference between the ratio of base radii and that of tooth numbers [-]."""
 DISTANCE_TOLERANCE = 1e-6
 """Allowed difference of the centre distances of meshes between the same two lines [m]."""
 
-Edge = tuple[int, int, "MeshConnection"]
+Edge = tuple[int, int, MeshConnection]
 
 
-def speed_ratios(drivetrain: "Drivetrain") -> dict[str, float]:
+class PowerCircuit(Protocol):
+    """What of a drivetrain decides whether its loops close."""
+
+    @property
+    def meshes(self) -> tuple[MeshConnection, ...]:
+        """Every mesh."""
+
+    @property
+    def motor(self) -> Motor:
+        """The motor, on whose shaft the walk begins."""
+
+    def lines(self) -> dict[str, int]:
+        """Line of every shaft: those that couplings join turn as one."""
+
+    def gear(self, name: str) -> GearBody:
+        """A gear by name."""
+
+
+def speed_ratios(circuit: PowerCircuit) -> dict[str, float]:
     """Speed of every shaft relative to the motor's shaft, each positive in its own running direction.
 
     Raises DrivetrainError if a line is not driven at all.
     """
-    lines = drivetrain.lines()
-    ratios = _spread(drivetrain)[0]
-    start = lines[drivetrain.motor.shaft]
+    lines = circuit.lines()
+    ratios = _spread(circuit)[0]
+    start = lines[circuit.motor.shaft]
     return {name: float(ratios[line] / ratios[start]) for name, line in lines.items()}
 
 
-def check_loops(drivetrain: "Drivetrain") -> None:
+def check_loops(circuit: PowerCircuit) -> None:
     """Raise DrivetrainError, naming mesh, value, limit and remedy, when a loop cannot close."""
-    for mesh in drivetrain.meshes:
+    for mesh in circuit.meshes:
         _check_mesh(mesh)
-    ratios, directions = _spread(drivetrain)
+    ratios, directions = _spread(circuit)
     distances: dict[frozenset[int], tuple[str, float]] = {}
-    for a, b, mesh in _edges(drivetrain):
+    for a, b, mesh in _edges(circuit):
         here = ratios[b] / ratios[a]
         asked = Fraction(mesh.teeth[0], mesh.teeth[1])
         if here != asked:
@@ -60,10 +76,10 @@ def check_loops(drivetrain: "Drivetrain") -> None:
                 f"mesh {mesh.name!r}: centre distance = {mesh.centre_distance:.6g} m: {known[0]!r} holds "
                 f"the same two lines at {known[1]:.6g} m, the shafts cannot be parallel; make the two equal"
             )
-    _check_polygons(drivetrain, {pair: distance for pair, (_, distance) in distances.items()})
+    _check_polygons(circuit, {pair: distance for pair, (_, distance) in distances.items()})
 
 
-def _check_mesh(mesh: "MeshConnection") -> None:
+def _check_mesh(mesh: MeshConnection) -> None:
     r_1, r_2 = mesh.base_radii
     z_1, z_2 = mesh.teeth
     if min(r_1, r_2) <= 0.0 or min(z_1, z_2) < 1:
@@ -87,10 +103,10 @@ def _check_mesh(mesh: "MeshConnection") -> None:
         )
 
 
-def _edges(drivetrain: "Drivetrain") -> Iterator[Edge]:
-    lines = drivetrain.lines()
-    for mesh in drivetrain.meshes:
-        a, b = (lines[drivetrain.gear(name).shaft] for name in (mesh.pinion, mesh.wheel))
+def _edges(circuit: PowerCircuit) -> Iterator[Edge]:
+    lines = circuit.lines()
+    for mesh in circuit.meshes:
+        a, b = (lines[circuit.gear(name).shaft] for name in (mesh.pinion, mesh.wheel))
         if a == b:
             raise DrivetrainError(
                 f"mesh {mesh.name!r}: pinion and wheel sit on the same shaft line and cannot turn; "
@@ -99,11 +115,11 @@ def _edges(drivetrain: "Drivetrain") -> Iterator[Edge]:
         yield a, b, mesh
 
 
-def _spread(drivetrain: "Drivetrain") -> tuple[dict[int, Fraction], dict[int, int]]:
+def _spread(circuit: PowerCircuit) -> tuple[dict[int, Fraction], dict[int, int]]:
     """Relative speed and direction of every line, walking through the meshes from the motor."""
-    edges = list(_edges(drivetrain))
-    lines = drivetrain.lines()
-    start = lines[drivetrain.motor.shaft]
+    edges = list(_edges(circuit))
+    lines = circuit.lines()
+    start = lines[circuit.motor.shaft]
     ratios, directions = {start: Fraction(1)}, {start: 1}
     waiting = [start]
     while waiting:
@@ -119,15 +135,15 @@ def _spread(drivetrain: "Drivetrain") -> tuple[dict[int, Fraction], dict[int, in
     loose = [name for name, line in lines.items() if line not in ratios]
     if loose:
         raise DrivetrainError(
-            f"shaft {loose[0]!r} is not connected to the motor's shaft {drivetrain.motor.shaft!r} by "
+            f"shaft {loose[0]!r} is not connected to the motor's shaft {circuit.motor.shaft!r} by "
             "couplings or meshes; add the missing joint or leave the shaft out"
         )
     return ratios, directions
 
 
-def _check_polygons(drivetrain: "Drivetrain", distances: dict[frozenset[int], float]) -> None:
+def _check_polygons(circuit: PowerCircuit, distances: dict[frozenset[int], float]) -> None:
     """Each direct distance may not exceed the shortest way round: else the axes cannot stand there."""
-    names = {line: shaft for shaft, line in reversed(drivetrain.lines().items())}
+    names = {line: shaft for shaft, line in reversed(circuit.lines().items())}
     for pair, direct in distances.items():
         start, goal = sorted(pair)
         around = _shortest_way(start, goal, {p: d for p, d in distances.items() if p != pair})

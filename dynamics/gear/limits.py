@@ -1,11 +1,7 @@
 """What a gear pair must respect to be makeable and to mesh, and what is worth a warning."""
 
-from typing import TYPE_CHECKING
-
 from dynamics.gear.cylindrical_gear import GearGeometryError
-
-if TYPE_CHECKING:
-    from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import PairGeometry
 
 NAMES = ("pinion", "wheel")
 FILLET_OVERLAP_LIMIT = 0.02
@@ -19,7 +15,7 @@ THIN_TIP = 0.2
 """Tip thickness in normal modules below which a hardened tip is likely to break."""
 
 
-def require_sizes(pair: "GearPair") -> None:
+def require_sizes(pair: PairGeometry) -> None:
     """Raise GearGeometryError for numbers that describe no gear."""
     positive = {
         "normal_module": (pair.normal_module, "m"),
@@ -58,7 +54,7 @@ def require_sizes(pair: "GearPair") -> None:
         )
 
 
-def require_meshing(pair: "GearPair") -> None:
+def require_meshing(pair: PairGeometry) -> None:
     """Raise GearGeometryError for a cold pair that cannot run."""
     for name, gear in zip(NAMES, pair.gears, strict=True):
         if not gear.tip_thickness > 0.0:
@@ -89,13 +85,13 @@ def require_meshing(pair: "GearPair") -> None:
         )
 
 
-def rim_in_tooth_heights(pair: "GearPair", index: int) -> float:
+def rim_in_tooth_heights(pair: PairGeometry, index: int) -> float:
     """Rim between bore and root circle of a gear, per height of its teeth [-]."""
     rim = pair.root_radii[index] - 0.5 * pair.bore_diameters[index]
     return rim / (pair.tip_radii[index] - pair.root_radii[index])
 
 
-def unusual(pair: "GearPair") -> tuple[str, ...]:
+def unusual(pair: PairGeometry) -> tuple[str, ...]:
     """Warnings about a pair that can run: name, value, limit, remedy."""
     found: list[str] = []
     for name, gear, overlap in zip(NAMES, pair.gears, pair.fillet_overlaps, strict=True):

@@ -33,11 +33,6 @@ def load_case(path: str | Path) -> Case:
     return _build(read_tree(file), file)
 
 
-def changed(case: Case, path: str, value: object) -> Case:
-    """A copy of ``case`` with the value at ``path`` replaced; see ``Case.with_value``."""
-    return changed_together(case, {path: value})
-
-
 def changed_together(case: Case, values: Mapping[str, object]) -> Case:
     """A copy of ``case`` with several values replaced by path, validated once: they may have to agree.
 
@@ -80,7 +75,7 @@ def _build(tree: Mapping[str, Any], file: Path) -> Case:
     faults += broken_rules(case)
     if faults:
         raise CaseError(faults, str(file))
-    case._origin = Origin(file, tree, marks)
+    case._origin = Origin(file, tree, marks, changed_together)
     return case
 
 

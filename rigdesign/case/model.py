@@ -2,17 +2,17 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr
 
+from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
 from rigdesign.case.drivetrain import Drivetrain
 from rigdesign.case.fields import Name, Part, Text
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.implied import implied_assumptions
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
 from rigdesign.case.numerics import Numerics
@@ -20,7 +20,6 @@ from rigdesign.case.provenance import Mark
 from rigdesign.case.schedule import Schedule, TestPlan
 from rigdesign.case.substances import Ambient, CustomMaterial, CustomOil
 from rigdesign.case.transient import Transient
-from rigdesign.results.result import AssumptionRecord
 
 
 @dataclass(frozen=True)
@@ -30,6 +29,8 @@ class Origin:
     path: Path
     tree: Mapping[str, Any]
     marks: tuple[Mark, ...]
+    change: Callable[["Case", Mapping[str, object]], "Case"]
+    """Reads the case again with values replaced by path."""
 
 
 class Case(Part):
@@ -76,7 +77,7 @@ class Case(Part):
             for mark in self._origin.marks
             if mark.assumed is not None
         )
-        return (*marked, *implied_assumptions(self))
+        return (*marked, *implied_assumptions(self.gearboxes))
 
     @property
     def overrides(self) -> tuple[dict[str, str], ...]:
@@ -126,9 +127,7 @@ class Case(Part):
         CaseError
             The path does not exist (the nearest ones are named), or the changed case has faults.
         """
-        from rigdesign.case.loader import changed
-
-        return changed(self, path, value)
+        return self._origin.change(self, {path: value})
 
 
 def _rounded(content: Any) -> Any:

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from rigdesign.base.finite import finite
-from rigdesign.results.result import Check, Role, Verdict
+from rigdesign.results.result import Check, Role
+from rigdesign.results.verdict import Verdict
 
 WARN_UTILISATION = 0.95
 """A rule that holds with more than this share of its limit used is a warning."""

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from rigdesign.case.model import Case
 from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.results.result import Check
-from rigdesign.results.transient import Soak, TransientResult, WorstMoment
+from rigdesign.results.transient import TransientResult, WorstMoment
+from rigdesign.transient.warm_up import Soak
 
 TITLES = {
     "seal_gap": "smallest radial gap of a seal over time",

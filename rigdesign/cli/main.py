@@ -113,14 +113,15 @@ def study(
     """
     from rigdesign.case import load_case
     from rigdesign.cli.terminal import Progress, print_study
+    from rigdesign.report.pages.study import write_study
     from rigdesign.study.run import parse_variation, run_study
 
     loaded = load_case(case)
     variations = [parse_variation(text) for text in vary]
     with Progress() as progress:
         outcome = run_study(
-            loaded, variations, out, fidelity=fidelity, workers=workers, retry=retry, progress=progress,
-            note=progress.note,
+            loaded, variations, out, write=write_study, fidelity=fidelity, workers=workers, retry=retry,
+            progress=progress, note=progress.note,
         )  # fmt: skip
     print_study(outcome, out)
     return 0

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from rigdesign.base.errors import UsageError
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.output_folder import staged
 from rigdesign.case.model import Case
-from rigdesign.results.result import Fidelity
 from rigdesign.rig.model import build_rig
 from rigdesign.run.main import solver_errors
 from thermal.housing.export import write_mesh

@@ -20,7 +20,6 @@ from thermal.conditions.boundary import (
     BoundaryCondition,
     Exchange,
     Film,
-    FilmLaw,
     PrescribedTemperature,
     Radiation,
     SurfaceSource,
@@ -28,6 +27,7 @@ from thermal.conditions.boundary import (
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
+from thermal.films.law import FilmLaw
 from thermal.housing.geometry import SIDES, HousingGeometry, ShaftGeometry
 
 GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"

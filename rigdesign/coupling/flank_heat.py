@@ -21,7 +21,7 @@ from rigdesign.coupling.state import Feedback, OperatingPoint
 from rigdesign.properties.materials import Material
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_oil, jet_velocity, wetted_width, wetting_flow
-from thermal.conditions.boundary import Film, FilmLaw
+from thermal.conditions.boundary import Film
 from thermal.films.convection import constant
 from thermal.films.flank import (
     FilmOil,
@@ -32,6 +32,7 @@ from thermal.films.flank import (
     jet_renewal,
     on_rim,
 )
+from thermal.films.law import FilmLaw
 
 JET_HALVES = 0.5
 """Of the oil injected at a mesh, the part that wets each of its two gears."""

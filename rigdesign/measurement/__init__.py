@@ -6,8 +6,9 @@
 ``document`` is the table of contents of measurement.toml.
 """
 
+from rigdesign.measurement.data import Data
 from rigdesign.measurement.loader import load_measurement
-from rigdesign.measurement.processing.features import Data, features
+from rigdesign.measurement.processing.features import features
 from rigdesign.measurement.reading.measurement_set import (
     Finding,
     MeasuredChannel,

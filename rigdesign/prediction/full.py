@@ -1,12 +1,12 @@
 """What the sensors of a rig would read: the solve of a check at single operating points."""
 
 from collections.abc import Iterable, Sequence
-from typing import Literal
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rigdesign.base.errors import UsageError
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.coupling.iteration import PassResult
 from rigdesign.coupling.loop import solve_point
@@ -19,49 +19,16 @@ from rigdesign.prediction.model import (
 )
 from rigdesign.prediction.operating import operating_point, rig_at
 from rigdesign.prediction.readings import Settled, readings
-from rigdesign.results.result import Fidelity
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.main import solver_errors
 from rigdesign.run.mesh_refinement import looping_rig, on_mesh
 from thermal.fe.kernels import one_thread
 
-Thermal = Literal["full", "reduced"]
-"""Temperature fields by the finite-element model of a check, or by its projection on a few shapes."""
 
-
-def predict(
-    case: Case,
-    settings: Iterable[Setting],
-    channels: Iterable[Channel],
-    *,
-    model: Thermal = "full",
-    fidelity: Fidelity = "quick",
+def predict_full(
+    case: Case, settings: Sequence[Setting], channels: Sequence[Channel], fidelity: Fidelity
 ) -> Prediction:
-    """What the channels would read at the operating points of a measurement.
-
-    The solve of a point is that of ``run_case``: the full model at a dwell of the schedule gives what a check
-    gives. Every point starts from the one before, as in a check.
-
-    Parameters
-    ----------
-    case : from `load_case`
-    settings, channels : operating points as run, sensors as the model sees them; see `rigdesign.prediction.model`
-    model : the full thermal model, or the reduced one of `Predictor` with its stated error
-    fidelity : size of the models
-
-    Raises
-    ------
-    UsageError
-        A place, stream or quantity the case does not have; two settings or channels of one name.
-    CaseError, NotConvergedError, MissingLibraryError
-        As ``run_case``.
-    """
-    settings, channels = tuple(settings), tuple(channels)
-    if model == "reduced":
-        from rigdesign.prediction.predictor import Predictor
-
-        predictor = Predictor(case, settings, channels, fidelity=fidelity)
-        return Prediction(features=predictor.features, values=predictor.base, error=predictor.error)
+    """What the channels would read by the full thermal model; see `rigdesign.prediction.predict.predict`."""
     check_names(settings, channels)
     with solver_errors(case), threadpool_limits(limits=1), one_thread():
         rig = build_rig(case, fidelity)

@@ -16,6 +16,7 @@ from threadpoolctl import threadpool_limits
 
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.errors import UsageError
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.parallel import Beside
 from rigdesign.case.model import Case
 from rigdesign.coupling.initial_state import cold_feedback
@@ -35,7 +36,6 @@ from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
 from rigdesign.prediction.sensitivities import Directions, Named, PointSlopes, SlopeNumbers, directions_of
 from rigdesign.prediction.static_tests import standing_modes
-from rigdesign.results.result import Fidelity
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.main import solver_errors
 from thermal.conduction.condition_checks import Condition

@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from rigdesign.base.errors import NonFiniteResultError, OutputError
+from rigdesign.base.json_text import to_text
 from rigdesign.base.output_folder import prepare_output, remove_published, staged, write_whole
-from rigdesign.report.results_json import results_document, to_text
+from rigdesign.report.results_json import results_document
 from rigdesign.results.result import RunResult
 
 __all__ = [

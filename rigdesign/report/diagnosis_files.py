@@ -3,13 +3,13 @@
 import json
 from pathlib import Path
 
+from rigdesign.base.json_text import to_plain, to_text
 from rigdesign.base.output_folder import remove_published, staged
 from rigdesign.diagnosis.decision.patch import case_patch, variant_text
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
 from rigdesign.diagnosis.document.outcome import Outcome
 from rigdesign.diagnosis.run import Calibrated
 from rigdesign.report.pages.diagnosis import diagnosis_page
-from rigdesign.report.results_json import to_plain, to_text
 
 PATCHES = ["case.patch.json", "patched/case.toml", "measurement.patch.json"]
 """Files that a verdict may leave out; those of an earlier run are removed then."""

@@ -1,13 +1,11 @@
 """Curves and tables as .csv: a header line with units in square brackets, dot as decimal sign."""
 
-import csv
-import io
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
+from rigdesign.report.csv_text import csv_text
 from rigdesign.report.fields import file_stem
 from rigdesign.report.pages.transient_section import transient_tables
-from rigdesign.report.results_json import SIGNIFICANT_DIGITS
 from rigdesign.results.result import (
     DynamicFactorPoint,
     DynamicsResult,
@@ -16,21 +14,6 @@ from rigdesign.results.result import (
     RampHistory,
     RunResult,
 )
-
-Row = Sequence[Any]
-
-
-def csv_text(header: Row, rows: Iterable[Row]) -> str:
-    """One table as CSV text; floats keep ten significant digits, None is an empty cell."""
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows([_cell(value) for value in row] for row in rows)
-    return buffer.getvalue()
-
-
-def _cell(value: Any) -> Any:
-    return f"{value:.{SIGNIFICANT_DIGITS}g}" if isinstance(value, float) else value
 
 
 def curve_tables(result: RunResult) -> dict[str, str]:

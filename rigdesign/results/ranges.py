@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from rigdesign.results.result import Verdict
+from rigdesign.results.verdict import Verdict
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,20 +1,18 @@
 """What a run returns: immutable records, named as they stand in results.json."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.case.assumptions import AssumptionRecord
+from rigdesign.results.ranges import RangesResult
 from rigdesign.results.transient import TransientResult
+from rigdesign.results.verdict import Verdict
 from thermal.fe.mesh import NamedMesh
 
-if TYPE_CHECKING:
-    from rigdesign.results.ranges import RangesResult
-
-Verdict = Literal["pass", "warn", "fail", "not applicable"]
 Role = Literal["specimen", "rig"]
-Fidelity = Literal["quick", "standard", "reference"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -309,18 +307,6 @@ class CouplingHistory:
 
 
 @dataclass(frozen=True, kw_only=True)
-class AssumptionRecord:
-    """An input marked as assumed in the case file, or left out and replaced by an idealisation."""
-
-    path: str
-    value: str
-    reason: str
-    range: tuple[str, str] | None = None
-    decides: tuple[str, ...] = ()
-    """Ids of the checks that rest on it."""
-
-
-@dataclass(frozen=True, kw_only=True)
 class Finding:
     """A warning of the tool's own: a result, never a Python warning."""
 
@@ -374,6 +360,6 @@ class RunResult:
     timings_s: dict[str, float]
     transient: TransientResult | None = None
     """With ``--transient``."""
-    ranges: "RangesResult | None" = None
+    ranges: RangesResult | None = None
     """With `--ranges`: verdicts and margins over the ranges of the assumed inputs."""
     fields: list[TemperatureField] = field(repr=False)

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+from rigdesign.transient.warm_up import Soak
+
 
 @dataclass(frozen=True, kw_only=True)
 class TransientCurve:
@@ -70,17 +72,6 @@ class Settling:
     start: float
     end: float
     unit: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class Soak:
-    """Warm-up a gearbox needs before it may run up to full torque."""
-
-    gearbox: str
-    stage: str
-    soak_time_s: float | None
-    """Shortest warm-up after which every clearance limit holds up to the end of the dwell; None if none does."""
-    reason: str
 
 
 @dataclass(frozen=True, kw_only=True)

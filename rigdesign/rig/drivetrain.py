@@ -3,20 +3,31 @@
 import math
 from collections.abc import Mapping, Sequence
 
-from dynamics.drivetrain import graph as dyn
+from dynamics.drivetrain.graph import Drivetrain
+from dynamics.drivetrain.parts import (
+    Coupling,
+    DragPlace,
+    End,
+    GearBody,
+    JournalBearing,
+    MeshConnection,
+    Motor,
+)
+from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
+from dynamics.drivetrain.shaft_torque import ShaftTorque
 from dynamics.gear.pair import GearPair
 from rigdesign.case.drivetrain import HarmonicTorque
 from rigdesign.case.model import Case
 from rigdesign.properties.materials import Material
 
-ENDS: dict[str, dyn.End] = {"start": "left", "end": "right"}
+ENDS: dict[str, End] = {"start": "left", "end": "right"}
 RIGID_SEAT = 1e8
 """Torsional stiffness [N m/rad] of a gear that is rigid with its shaft: far above any spline."""
 
 
 def build_drivetrain(
     case: Case, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
-) -> dyn.Drivetrain:
+) -> Drivetrain:
     """Shafts, gears, couplings, bearings and meshes of the loop; the shafts divided as `resolution.with_elements` says.
 
     pairs : ``gearbox.mesh`` -> gear pair. Gears are called ``gearbox.gear``, bearings ``gearbox.bearing``,
@@ -29,13 +40,13 @@ def build_drivetrain(
     """
     power = case.drivetrain
     assert power is not None
-    return dyn.Drivetrain(
+    return Drivetrain(
         shafts=tuple(_shaft(name, case, materials) for name in power.shafts),
         gears=tuple(_gear_bodies(case, pairs, materials)),
         meshes=tuple(_meshes(case, pairs)),
         motor=_motor(case),
         couplings=tuple(
-            dyn.Coupling(
+            Coupling(
                 name=name,
                 shafts=coupling.shafts,
                 ends=(ENDS[coupling.ends[0]], ENDS[coupling.ends[1]]),
@@ -51,14 +62,14 @@ def build_drivetrain(
     )
 
 
-def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> dyn.Shaft:
+def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> Shaft:
     assert case.drivetrain is not None
     shaft = case.drivetrain.shafts[name]
     material = materials[shaft.material]
-    return dyn.Shaft(
+    return Shaft(
         name=name,
         sections=tuple(
-            dyn.Section(
+            Section(
                 length=section.length,
                 outer_diameter=section.outer_diameter,
                 inner_diameter=section.inner_diameter,
@@ -66,7 +77,7 @@ def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> dyn.Shaf
             for section in shaft.sections
         ),
         discs=tuple(
-            dyn.Disc(name=disc, position=entry.position, inertia=entry.inertia)
+            Disc(name=disc, position=entry.position, inertia=entry.inertia)
             for disc, entry in shaft.discs.items()
         ),
         shear_modulus=material.elastic_modulus / (2.0 * (1.0 + material.poisson_ratio)),
@@ -76,7 +87,7 @@ def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> dyn.Shaf
 
 def _gear_bodies(
     case: Case, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
-) -> list[dyn.GearBody]:
+) -> list[GearBody]:
     bodies = []
     for box_name, box in case.gearboxes.items():
         for name, gear in box.gears.items():
@@ -87,7 +98,7 @@ def _gear_bodies(
                 inertia = disc_inertia(2.0 * radius, gear.bore_diameter, box.body_width(name), density)
             assert gear.position is not None
             bodies.append(
-                dyn.GearBody(
+                GearBody(
                     name=f"{box_name}.{name}",
                     shaft=gear.shaft,
                     position=gear.position,
@@ -109,16 +120,16 @@ def _reference_radius(gear: str, box: str, case: Case, pairs: Mapping[str, GearP
         for member, name in enumerate((mesh.pinion, mesh.wheel)):
             if name == gear:
                 return pairs[f"{box}.{mesh_name}"].gears[member].reference_radius
-    raise dyn.DrivetrainError(f"gear {box}.{gear} is in no mesh; state its inertia or remove it")
+    raise DrivetrainError(f"gear {box}.{gear} is in no mesh; state its inertia or remove it")
 
 
-def _meshes(case: Case, pairs: Mapping[str, GearPair]) -> list[dyn.MeshConnection]:
+def _meshes(case: Case, pairs: Mapping[str, GearPair]) -> list[MeshConnection]:
     meshes = []
     for full, pair in pairs.items():
         box_name, name = full.split(".")
         mesh = case.gearboxes[box_name].meshes[name]
         meshes.append(
-            dyn.MeshConnection(
+            MeshConnection(
                 name=full,
                 pinion=f"{box_name}.{mesh.pinion}",
                 wheel=f"{box_name}.{mesh.wheel}",
@@ -130,11 +141,11 @@ def _meshes(case: Case, pairs: Mapping[str, GearPair]) -> list[dyn.MeshConnectio
     return meshes
 
 
-def _motor(case: Case) -> dyn.Motor:
+def _motor(case: Case) -> Motor:
     assert case.drivetrain is not None
     motor = case.drivetrain.motor
     length = math.fsum(section.length for section in case.drivetrain.shafts[motor.shaft].sections)
-    return dyn.Motor(
+    return Motor(
         shaft=motor.shaft,
         position=0.0 if motor.end == "start" else length,
         inertia=motor.inertia,
@@ -142,13 +153,13 @@ def _motor(case: Case) -> dyn.Motor:
     )
 
 
-def _swinging(torques: Sequence[HarmonicTorque]) -> tuple[dyn.ShaftTorque, ...]:
+def _swinging(torques: Sequence[HarmonicTorque]) -> tuple[ShaftTorque, ...]:
     return tuple(
-        dyn.ShaftTorque(order=torque.order, torque=torque.torque, phase=torque.phase) for torque in torques
+        ShaftTorque(order=torque.order, torque=torque.torque, phase=torque.phase) for torque in torques
     )
 
 
-def _bearings(case: Case) -> list[dyn.JournalBearing]:
+def _bearings(case: Case) -> list[JournalBearing]:
     """Constant drag enters the damping matrix; the drag of a computed film acts as a load."""
     constant = case.losses.bearing_drag == "constant"
     bearings = []
@@ -156,7 +167,7 @@ def _bearings(case: Case) -> list[dyn.JournalBearing]:
         for name, bearing in box.bearings.items():
             assert bearing.position is not None
             bearings.append(
-                dyn.JournalBearing(
+                JournalBearing(
                     name=f"{box_name}.{name}",
                     shaft=bearing.shaft,
                     position=bearing.position,
@@ -168,12 +179,12 @@ def _bearings(case: Case) -> list[dyn.JournalBearing]:
     return bearings
 
 
-def _seals(case: Case) -> list[dyn.DragPlace]:
+def _seals(case: Case) -> list[DragPlace]:
     """All seals of a shaft brake halfway between its bearings."""
     places = []
     for box_name, box in case.gearboxes.items():
         for name, seals in box.seals.items():
             stations = [b.position for b in box.bearings.values() if b.shaft == seals.shaft]
             middle = math.fsum(position or 0.0 for position in stations) / len(stations)
-            places.append(dyn.DragPlace(name=f"{box_name}.seals.{name}", shaft=seals.shaft, position=middle))
+            places.append(DragPlace(name=f"{box_name}.seals.{name}", shaft=seals.shaft, position=middle))
     return places

@@ -1,8 +1,8 @@
 """Film laws of the case by name, each with the numbers of its place: height, diameter, speed, mist."""
 
 from rigdesign.case import housing as laws
-from thermal.conditions.boundary import FilmLaw
 from thermal.films import convection
+from thermal.films.law import FilmLaw
 
 
 def plate_film(condition: laws.PlateFilm, height: float) -> FilmLaw:

@@ -2,7 +2,9 @@
 
 from collections.abc import Mapping
 
-from dynamics.gear.pair import GearBodies, GearPair, Rack
+from dynamics.gear.cylindrical_gear import Rack
+from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import GearBodies
 from rigdesign.base.errors import named
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import GearMesh

@@ -6,12 +6,13 @@ from dataclasses import replace
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.joint import PressedJoint
 from rigdesign.rig.model import Rig
-from thermal.conditions.boundary import ExchangeLaw, Film, FilmCoefficient, FilmLaw
+from thermal.conditions.boundary import Film
 from thermal.conditions.contact import Contact
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
 from thermal.films.air import air
 from thermal.films.joint_conductance import pressed_joint
+from thermal.films.law import ExchangeLaw, FilmCoefficient, FilmLaw
 from thermal.housing.surfaces import FOOT, SEAT
 
 FOOT_CONTACT = "foot_contact"

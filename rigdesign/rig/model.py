@@ -9,13 +9,13 @@ from dynamics.drivetrain.graph import Drivetrain, Joint, assemble, joints
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.gear.pair import GearPair
 from dynamics.response.propagator import DEFAULT_CUTOFF
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.gearbox import Gearbox, JournalBearing
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.model import Case
 from rigdesign.properties.materials import MATERIALS, Material
 from rigdesign.properties.oil import OILS, Oil
-from rigdesign.results.result import Fidelity
 from rigdesign.rig.drivetrain import build_drivetrain
 from rigdesign.rig.gears import build_pairs
 from rigdesign.rig.loop_forces import gearbox_forces, loop_forces

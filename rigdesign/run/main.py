@@ -5,10 +5,9 @@ they give and make the last digits of a result depend on the machine's load.
 """
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -20,8 +19,10 @@ from rigdesign.base.errors import (
     RigdesignError,
     UsageError,
 )
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.finite import require_finite
 from rigdesign.base.system import gmsh_remedy, missing_gmsh_libraries
+from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.model import Case
 from rigdesign.checks import Subject, all_checks
 from rigdesign.checks.rules import overall
@@ -30,11 +31,10 @@ from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.time_run import held_points, schedule_of
-from rigdesign.prediction.model import Channel, Prediction, Setting
 from rigdesign.records import heat
 from rigdesign.records.dynamics import dynamics_result
 from rigdesign.records.hand import hand_checks
-from rigdesign.results.result import AssumptionRecord, Check, Fidelity, Finding, RunResult
+from rigdesign.results.result import Check, Finding, RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.dynamic_work import DynamicWork
 from rigdesign.run.load_convergence import load_errors
@@ -83,20 +83,6 @@ def run_case(
             clock.lap("transient")
         require_finite(result)
         return result
-
-
-def predict(
-    case: Case,
-    settings: Iterable[Setting],
-    channels: Iterable[Channel],
-    *,
-    model: Literal["full", "reduced"] = "full",
-    fidelity: Fidelity = "quick",
-) -> Prediction:
-    """What sensors would read at single operating points; see `rigdesign.prediction.predict`."""
-    from rigdesign.prediction.full import predict as predicted
-
-    return predicted(case, settings, channels, model=model, fidelity=fidelity)
 
 
 def solve_case(

@@ -12,6 +12,7 @@ from typing import Self
 import numpy as np
 from scipy.spatial import cKDTree
 
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.parallel import Beside
 from rigdesign.checks import alignment, thermal
 from rigdesign.coupling.bearing_films import solve_bearings
@@ -25,7 +26,7 @@ from rigdesign.coupling.temperatures import HousingField, heat_into_films, heat_
 from rigdesign.records import heat
 from rigdesign.records.heat_split import split_as_solved
 from rigdesign.records.solved_rig import Subject
-from rigdesign.results.result import Check, Fidelity, ThermalResult
+from rigdesign.results.result import Check, ThermalResult
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import MeshError, NamedMesh
 from thermal.housing.stations import GearboxModel

@@ -17,8 +17,9 @@ from rigdesign.rig.model import Rig
 from rigdesign.run.transient_alignment import UNITS, misalignments, worst_misalignments
 from rigdesign.run.transient_oil import oil_power_curve, worst_powers
 from rigdesign.run.warnings import cold_oil
-from rigdesign.transient import Branch, TransientRun, run_transient
+from rigdesign.transient.branch import Branch
 from rigdesign.transient.clearances import QUANTITIES, Quantity, smallest
+from rigdesign.transient.course import TransientRun, run_transient
 from rigdesign.transient.limits import clearance_limits
 from rigdesign.transient.phases import SCHEDULE
 from rigdesign.transient.soak import hours

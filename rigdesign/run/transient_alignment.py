@@ -12,7 +12,7 @@ from rigdesign.coupling.alignment import ALIGNMENT, CouplingEnd, CouplingPlace, 
 from rigdesign.records.solved_rig import Subject
 from rigdesign.results.transient import WorstMoment
 from rigdesign.rig.model import Rig
-from rigdesign.transient import Branch
+from rigdesign.transient.branch import Branch
 
 FloatArray = NDArray[np.float64]
 Misalignment = Literal[

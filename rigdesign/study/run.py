@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from rigdesign.base.errors import CaseError, OutputError, RigdesignError
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.file_lock import FileLock, HeldError
+from rigdesign.base.json_text import to_plain
 from rigdesign.base.output_folder import prepare_output
 from rigdesign.base.worker_pool import compute_all, worker_count
-from rigdesign.report.pages.study import write_study
-from rigdesign.report.results_json import to_plain
-from rigdesign.results.result import Fidelity, RunResult
+from rigdesign.results.result import RunResult
 from rigdesign.study.grid import Variation, grid, parse_variation
 from rigdesign.study.ledger import Ledger, Record, point_key
 
@@ -26,6 +26,20 @@ __all__ = ["StudyOutcome", "StudyPoint", "Variation", "parse_variation", "run_st
 LEDGER_NAME = "ledger.sqlite"
 LOCK_NAME = ".rigdesign-study.lock"
 CHECK_KEYS = ("id", "title", "value", "limit", "upper_limit", "unit", "margin", "utilisation", "verdict")
+
+
+class Writer(Protocol):
+    """What writes the files of a study from its settled points; `rigdesign.report.pages.study.write_study`."""
+
+    def __call__(
+        self,
+        case: "Case",
+        variations: Sequence[Variation],
+        points: "Sequence[StudyPoint]",
+        fidelity: str,
+        out: Path,
+    ) -> None:
+        """Write them to ``out``."""
 
 
 class Run(Protocol):
@@ -79,6 +93,7 @@ def run_study(
     variations: Sequence[Variation],
     out: Path,
     *,
+    write: Writer,
     fidelity: Fidelity = "standard",
     workers: int | None = None,
     retry: bool = False,
@@ -86,7 +101,7 @@ def run_study(
     note: Callable[[str], None] | None = None,
     run: Run | None = None,
 ) -> StudyOutcome:
-    """Run a case over the grid of ``variations`` and write results.csv, study.svg and study.html to ``out``.
+    """Run a case over the grid of ``variations`` and write its files to ``out``.
 
     A point goes to ``out/ledger.sqlite`` the moment it is finished; the same call again computes only what
     is missing. Points are the same when resolved case, tool version and fidelity
@@ -95,6 +110,7 @@ def run_study(
     Parameters
     ----------
     case : base case; ``with_value(path, value)`` makes a point of it
+    write : writes the files while the folder is still locked
     workers : processes, one thread each; None for one per core
     retry : compute points again that failed before
     progress : called with one line per finished point
@@ -146,7 +162,7 @@ def run_study(
             else StudyPoint(values=values, failed=stored[task.key][0], record=stored[task.key][1])
             for values, task, error in zip(points, tasks, invalid, strict=True)
         ]
-        write_study(case, variations, settled, fidelity, out)
+        write(case, variations, settled, fidelity, out)
     reused = sum(task is not None for task in tasks) - len(missing)
     return StudyOutcome(points=settled, completed=len(missing), reused=reused)
 

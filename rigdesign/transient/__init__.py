@@ -1,5 +1,1 @@
-"""The thermal course of a schedule: what heats the housings over time, their temperatures, their clearances."""
-
-from rigdesign.transient.course import Branch, TransientRun, run_transient
-
-__all__ = ["Branch", "TransientRun", "run_transient"]
+"""Thermal history: what heats the housings over the schedule, their temperatures, their clearances."""

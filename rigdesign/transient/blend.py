@@ -4,9 +4,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
-from thermal.conditions.boundary import BodySource, Exchange, Film, FilmCoefficient, FilmLaw, SurfaceSource
+from thermal.conditions.boundary import BodySource, Exchange, Film, SurfaceSource
 from thermal.conditions.streams import Stream, StreamNetwork
 from thermal.conduction.condition_checks import Condition, surfaces_of
+from thermal.films.law import FilmCoefficient, FilmLaw
 
 Item = TypeVar("Item")
 

@@ -9,13 +9,15 @@ from numpy.typing import NDArray
 from rigdesign.coupling.alignment import Alignment, alignment
 from rigdesign.coupling.boundary import BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.loop import PointResult
-from rigdesign.results.transient import Soak
 from rigdesign.rig.model import Rig
+from rigdesign.transient.branch import Branch
 from rigdesign.transient.clearances import Clearances, clearances
 from rigdesign.transient.heating import Heating
 from rigdesign.transient.oil_power import OilHistory, OilPower, oil_power
-from rigdesign.transient.phases import SCHEDULE, Phase, Timeline, event_phases, schedule_phases
+from rigdesign.transient.phases import SCHEDULE, Phase, event_phases, schedule_phases
 from rigdesign.transient.places import probes_of
+from rigdesign.transient.soak import first_broken, soak_of
+from rigdesign.transient.warm_up import Soak
 from thermal.expansion.alignment import ShaftAxis
 from thermal.expansion.many_fields import ExpansionCourse
 from thermal.transient.history import TransientSolution, solve_transient
@@ -25,27 +27,6 @@ FIRST_STEP = 0.5
 """First time step of a phase [s]."""
 UNBOUND = 1e12
 """No limit of the time step [s] but its error."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Branch(Timeline):
-    """One course of one housing: that of the schedule, or what an event makes of it."""
-
-    temperatures: Mapping[str, FloatArray]
-    """Probe -> (n,) [K]."""
-    clearances: tuple[Clearances, ...]
-    """At every time."""
-    alignment: tuple[Alignment, ...]
-    """At every time."""
-    axes: tuple[Mapping[str, ShaftAxis], ...]
-    """Hot axis of every shaft at every time."""
-    energy_closure: float
-    warnings: tuple[str, ...]
-
-    def ends(self, name: str) -> int:
-        """Number of the last time of a phase."""
-        number = [phase.name for phase in self.phases].index(name)
-        return int(np.flatnonzero(self.phase == number)[-1])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,8 +74,6 @@ def run_transient(
     NotConverged
         A time step or an expansion that does not settle.
     """
-    from rigdesign.transient.soak import first_broken, soak_of
-
     heating = Heating(rig, points)
     branches: list[Branch] = []
     soaks: list[Soak] = []

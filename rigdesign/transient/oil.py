@@ -21,10 +21,11 @@ from rigdesign.coupling.stage_losses import StageLosses
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil, injected_flow, wall_flow
 from rigdesign.transient.still_air import at_least, still
-from thermal.conditions.boundary import Film, FilmCoefficient, FilmLaw
+from thermal.conditions.boundary import Film
 from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
+from thermal.films.law import FilmCoefficient, FilmLaw
 
 OIL_ONLY = ("oil_acceleration", "squeeze")
 """Losses that end with the oil."""

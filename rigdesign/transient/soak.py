@@ -7,9 +7,9 @@ while; a warm-up at standstill with the oil on brings the box along.
 from collections.abc import Callable, Sequence
 
 from rigdesign.case.model import Case
-from rigdesign.results.transient import Soak
-from rigdesign.transient.course import Branch
+from rigdesign.transient.branch import Branch
 from rigdesign.transient.limits import broken, clearance_limits
+from rigdesign.transient.warm_up import Soak
 
 TRIALS = 4
 """Runs between a warm-up that is too short and one that is long enough."""

@@ -1,6 +1,6 @@
 """Films of surfaces in air that hardly moves: a floor under laws that vanish at standstill."""
 
-from thermal.conditions.boundary import FilmCoefficient, FilmLaw
+from thermal.films.law import FilmCoefficient, FilmLaw
 
 SOURCE = "transient.still_film"
 

@@ -7,6 +7,7 @@ from threadpoolctl import threadpool_limits
 
 from dynamics.response.time_response import TimeResponse
 from rigdesign.base.errors import RigdesignError
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.checks import Subject, held_checks
 from rigdesign.coupling.loads import Setting
@@ -16,7 +17,8 @@ from rigdesign.coupling.time_run import held_points, run_ramp
 from rigdesign.records import heat
 from rigdesign.records.curves import Curves, solve_curves
 from rigdesign.records.dynamics import DynamicRun, bracing_record, dynamics_result
-from rigdesign.results.result import Check, DynamicsResult, Fidelity, Verdict
+from rigdesign.results.result import Check, DynamicsResult
+from rigdesign.results.verdict import Verdict
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.main import solve_case, solver_errors
 from rigdesign.uncertainty.drive import Array, losses_on_motor, peaks_only, shifted_drive

@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from rigdesign.results.ranges import CheckRange, RangeMargin
-from rigdesign.results.result import Check, Verdict
+from rigdesign.results.result import Check
+from rigdesign.results.verdict import Verdict
 from rigdesign.uncertainty.plan import RangeEnd
 from rigdesign.uncertainty.point import CheckAtEnd, Outcome
 

@@ -8,7 +8,8 @@ with unrounded tips the last printed digits are missed.
 from collections.abc import Iterator
 from math import pi, radians
 
-from dynamics.gear.pair import GearPair, Rack
+from dynamics.gear.cylindrical_gear import Rack
+from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, mesh_data
 from rigdesign.validation.rows import ValidationRow, compare_printed, not_modelled
 

@@ -16,18 +16,12 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from thermal.conditions.boundary import (
-    Adiabatic,
-    BoundaryCondition,
-    Film,
-    FilmCoefficient,
-    FilmLaw,
-    Radiation,
-)
+from thermal.conditions.boundary import Adiabatic, BoundaryCondition, Film, Radiation
 from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.expansion.elastic import ElasticSetup
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh
+from thermal.films.law import FilmCoefficient, FilmLaw
 from thermal.housing.mesh_file import read_mesh
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.diagnosis.run import diagnose_measurement
-from rigdesign.prediction import predict
+from rigdesign.prediction.predict import predict
 
 CASES = Path(__file__).parents[2] / "cases"
 RIGS = {"uhcf_prototype": ("set_2", "set_3"), "loop_1to1": ("set_1",)}

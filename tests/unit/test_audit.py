@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermal.conditions.boundary import STEFAN_BOLTZMANN, Adiabatic, Film, FilmLaw, Radiation
+from thermal.conditions.boundary import Adiabatic, Film, Radiation
 from thermal.conduction.audit import (
     assumed_difference,
     audit_conditions,
@@ -12,6 +12,7 @@ from thermal.conduction.audit import (
     radiation_too_small,
 )
 from thermal.films import convection as films
+from thermal.films.law import STEFAN_BOLTZMANN, FilmLaw
 
 AMBIENT = 293.15
 

@@ -15,7 +15,8 @@ from rigdesign.coupling.losses import PlacedLoss, rotating_losses
 from rigdesign.coupling.oil import oil_streams
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
-from thermal.conditions.boundary import Exchange, Film, FilmCoefficient, SurfaceSource
+from thermal.conditions.boundary import Exchange, Film, SurfaceSource
+from thermal.films.law import FilmCoefficient
 from thermal.housing.parametric_stations import seal_stations
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"

@@ -14,7 +14,6 @@ from thermal.conditions.boundary import (
     BoundaryCondition,
     Exchange,
     Film,
-    FilmCoefficient,
     PrescribedTemperature,
     Radiation,
     SurfaceSource,
@@ -24,6 +23,7 @@ from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.conduction.terms import ConductionProblem
 from thermal.fe.mesh import NamedMesh
 from thermal.fe.solver import NotConverged
+from thermal.films.law import FilmCoefficient
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 import pytest
 
-from thermal.conditions.boundary import FilmLaw
 from thermal.films import convection as films
 from thermal.films.air import AirRangeError, air
+from thermal.films.law import FilmLaw
 
 WALL, FLUID = 360.0, 293.15
 LAWS: dict[str, Callable[[], FilmLaw]] = {

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from tests.coupled_blocks import CONDUCTIVITY, conditions, contact, coupled_blocks, enclosure, network
 from tests.two_blocks import law
-from thermal.conditions.boundary import Adiabatic, Film, FilmLaw
+from thermal.conditions.boundary import Adiabatic, Film
 from thermal.conditions.contact import Contact
 from thermal.conditions.enclosure import Enclosure, EnclosureTerms
 from thermal.conditions.streams import StreamNetwork
@@ -22,6 +22,7 @@ from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolut
 from thermal.conduction.stream_terms import VolumeTerms
 from thermal.conduction.terms import ConductionProblem
 from thermal.fe.solver import NotConverged
+from thermal.films.law import FilmLaw
 
 
 def base_law(temperature: np.ndarray) -> np.ndarray:

@@ -20,8 +20,9 @@ from rigdesign.diagnosis.library.library import Response
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.evidence import Hypothesis, weigh
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
-from rigdesign.prediction import Channel, Setting, predict
+from rigdesign.prediction import Channel, Setting
 from rigdesign.prediction.changes import changed_case
+from rigdesign.prediction.predict import predict
 from rigdesign.report.pages.diagnosis import diagnosis_page
 from tests.diagnosis_example import DESIGN, Rig, rerun, result_of, story, the_case, write_set
 

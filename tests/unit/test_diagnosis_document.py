@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import UsageError
+from rigdesign.base.json_text import to_text
 from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.waiting import WAITING
@@ -19,7 +20,6 @@ from rigdesign.diagnosis.document.outcome import check_pick, outcome
 from rigdesign.diagnosis.effects_page import effects_page
 from rigdesign.diagnosis.run import Result
 from rigdesign.diagnosis.statistics.next_measurement import Ranked
-from rigdesign.report.results_json import to_text
 from tests.diagnosis_example import story, the_case
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -4,16 +4,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import (
-    Coupling,
-    DragPlace,
-    Drivetrain,
-    GearBody,
-    MeshConnection,
-    Motor,
-    assemble,
-    joints,
-)
+from dynamics.drivetrain.graph import Drivetrain, assemble, joints
+from dynamics.drivetrain.parts import Coupling, DragPlace, GearBody, MeshConnection, Motor
 from dynamics.drivetrain.power_loop import speed_ratios
 from dynamics.drivetrain.shaft import DrivetrainError, Section, Shaft
 from tests.rig_example import CENTRE_DISTANCE, mesh, prototype

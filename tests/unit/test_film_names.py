@@ -15,8 +15,9 @@ from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import cold_feedback
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
-from thermal.conditions.boundary import Exchange, Film, FilmCoefficient, FilmLaw
+from thermal.conditions.boundary import Exchange, Film
 from thermal.films import convection
+from thermal.films.law import FilmCoefficient, FilmLaw
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype" / "case.toml"
 BOUNDARY = "gearboxes.test.housing.boundary"

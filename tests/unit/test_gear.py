@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dynamics.gear.cylindrical_gear import CylindricalGear, involute
-from dynamics.gear.pair import GearGeometryError, GearPair, Rack
+from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError, Rack, involute
+from dynamics.gear.pair import GearPair
 from dynamics.rating import iso_rating
 
 UHCF = {

@@ -4,9 +4,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.graph import Motor, assemble
+from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.modal_form import modal_form
+from dynamics.drivetrain.parts import Motor
 from dynamics.drivetrain.static_loop import NotConverged, port_model
 from dynamics.mesh.law import MeshLaw
 from dynamics.response import harmonic_balance

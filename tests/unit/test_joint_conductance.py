@@ -2,9 +2,9 @@
 
 import pytest
 
-from thermal.conditions.boundary import ExchangeLaw
 from thermal.films.inputs import FilmError
 from thermal.films.joint_conductance import pressed_joint
+from thermal.films.law import ExchangeLaw
 
 
 def foot(pressure: float = 5e6, **changes: float) -> ExchangeLaw:

@@ -5,8 +5,8 @@ import pytest
 from rigdesign.base.errors import CaseError
 from rigdesign.rig.joints import FOOT_CONTACT
 from tests.warm_prototype import base, case_with, heat_by_kind, lost, open_share, outlet, settled
-from thermal.conditions.boundary import STEFAN_BOLTZMANN
 from thermal.conduction.steady import CLOSURE
+from thermal.films.law import STEFAN_BOLTZMANN
 
 BOX = "gearboxes.test"
 

@@ -8,8 +8,9 @@ import pytest
 
 from rigdesign.base.errors import UsageError
 from rigdesign.case.loader import load_case
-from rigdesign.prediction import Channel, Setting, features_of, predict
+from rigdesign.prediction import Channel, Setting, features_of
 from rigdesign.prediction.places import place_weights
+from rigdesign.prediction.predict import predict
 from rigdesign.prediction.readings import readings
 from rigdesign.rig.model import build_rig
 from rigdesign.run.main import run_case

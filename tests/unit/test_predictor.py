@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from rigdesign.case.loader import changed_together, load_case
-from rigdesign.prediction import Channel, Predictor, Setting, predict
+from rigdesign.prediction import Channel, Setting
+from rigdesign.prediction.predict import predict
+from rigdesign.prediction.predictor import Predictor
 
 CASES = Path(__file__).parents[2] / "cases"
 CASE = load_case(CASES / "uhcf_prototype")

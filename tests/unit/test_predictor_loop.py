@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from rigdesign.case.loader import load_case
-from rigdesign.prediction import Channel, Predictor, Setting
+from rigdesign.prediction import Channel, Setting
 from rigdesign.prediction.changes import changed_case
 from rigdesign.prediction.memoisation import Memory
 from rigdesign.prediction.operating import like, operating_point, rig_at
+from rigdesign.prediction.predictor import Predictor
 
 CASE = load_case(Path(__file__).parents[2] / "cases" / "loop_1to1")
 SETTINGS = (

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.drivetrain.graph import Coupling, Drivetrain
+from dynamics.drivetrain.graph import Drivetrain
+from dynamics.drivetrain.parts import Coupling
 from dynamics.drivetrain.shaft import Section, Shaft
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case, load_case

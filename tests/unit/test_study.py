@@ -18,8 +18,8 @@ from rigdesign.base.errors import CaseError, OutputError, UsageError
 from rigdesign.study import ledger as study_ledger
 from rigdesign.study.grid import Variation, grid
 from rigdesign.study.ledger import Ledger, point_key
-from rigdesign.study.run import parse_variation, run_study
-from tests.study_example import ExampleCase, run_example
+from rigdesign.study.run import parse_variation
+from tests.study_example import ExampleCase, run_example, run_study
 
 ROOT = Path(__file__).parents[2]
 
@@ -230,7 +230,8 @@ DRIVER = """
 import sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from rigdesign.study.run import parse_variation, run_study
+from rigdesign.study.run import parse_variation
+from tests.study_example import run_study
 from tests.study_example import ExampleCase, run_example
 
 if __name__ == "__main__":

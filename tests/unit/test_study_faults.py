@@ -14,9 +14,9 @@ from rigdesign.base.errors import OutputError
 from rigdesign.base.file_lock import FileLock, HeldError
 from rigdesign.base.output_folder import staged
 from rigdesign.study import run as study
-from rigdesign.study.run import LEDGER_NAME, LOCK_NAME, parse_variation, run_study
+from rigdesign.study.run import LEDGER_NAME, LOCK_NAME, parse_variation
 from tests.ledger_damage import DAMAGE, POINTS, ROWS, copy_ledger, harm_file, harm_rows, resumed, write_ledger
-from tests.study_example import ExampleCase, run_example
+from tests.study_example import ExampleCase, run_example, run_study
 
 ROOT = Path(__file__).parents[2]
 VARIED = [parse_variation("oil.inlet=90 degC,100 degC,110 degC")]

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from tests.coupled_blocks import CAPACITY, CONDUCTIVITY, conditions, coupled_blocks, network
 from tests.two_blocks import law, renamed
-from thermal.conditions.boundary import Adiabatic, BodySource, Film, FilmCoefficient, PrescribedTemperature
+from thermal.conditions.boundary import Adiabatic, BodySource, Film, PrescribedTemperature
 from thermal.conditions.contact import Contact
 from thermal.conditions.streams import Stream, StreamNetwork
 from thermal.conduction.capacity import Storage
@@ -18,6 +18,7 @@ from thermal.conduction.conductivity import Conductivity
 from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.fe.mesh import box_mesh, disjoint_union
 from thermal.fe.solver import NotConverged
+from thermal.films.law import FilmCoefficient
 from thermal.transient.history import ThermalStage, TransientSolution, settling_time, solve_transient
 from thermal.transient.probes import Probe
 

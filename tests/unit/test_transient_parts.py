@@ -13,11 +13,12 @@ from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.checks.transient import transient_checks
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.results.transient import Soak, TransientResult, WorstMoment
+from rigdesign.results.transient import TransientResult, WorstMoment
 from rigdesign.transient.blend import blended
 from rigdesign.transient.phases import Phase, event_phases, running_phases, schedule_phases
 from rigdesign.transient.soak import first_broken, shortest, soak_of
 from rigdesign.transient.still_air import at_least
+from rigdesign.transient.warm_up import Soak
 from tests.two_blocks import law
 from thermal.conditions.boundary import BodySource, Film, SurfaceSource
 from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm, check_networks

@@ -10,17 +10,16 @@ import numpy as np
 import pytest
 
 from thermal.conditions.boundary import (
-    STEFAN_BOLTZMANN,
     Adiabatic,
     BodySource,
     Exchange,
     Film,
-    FilmCoefficient,
     PrescribedTemperature,
     Radiation,
 )
 from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union
+from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient
 
 ZERO = 273.15
 

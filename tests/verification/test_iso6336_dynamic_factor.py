@@ -11,7 +11,8 @@ from math import log, pi, radians, sin, sqrt
 
 import pytest
 
-from dynamics.gear.pair import GearPair, Rack
+from dynamics.gear.cylindrical_gear import Rack
+from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, dynamic_factor_curve, mesh_data
 from dynamics.standards import iso6336_1_2006 as iso
 

@@ -9,8 +9,8 @@ from rigdesign.validation.heat_benchmarks import (
     t3_temperature,
     t4_temperature,
 )
-from thermal.conditions.boundary import STEFAN_BOLTZMANN
 from thermal.fe.mesh import CellName
+from thermal.films.law import STEFAN_BOLTZMANN
 
 both = pytest.mark.parametrize("cell", ["tetra10", "hexahedron20"])
 

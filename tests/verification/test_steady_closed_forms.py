@@ -10,12 +10,13 @@ from scipy.optimize import brentq
 
 from tests.curved_blocks import cylinder_sector
 from tests.two_blocks import law
-from thermal.conditions.boundary import STEFAN_BOLTZMANN, Adiabatic, Film, PrescribedTemperature
+from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature
 from thermal.conditions.enclosure import Enclosure
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, box_mesh, disjoint_union
+from thermal.films.law import STEFAN_BOLTZMANN
 
 both = pytest.mark.parametrize("cell", ["tetra10", "hexahedron20"])
 

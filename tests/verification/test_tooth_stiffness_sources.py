@@ -10,7 +10,8 @@ from math import cos, radians
 import numpy as np
 import pytest
 
-from dynamics.gear.pair import GearPair, Rack
+from dynamics.gear.cylindrical_gear import Rack
+from dynamics.gear.pair import GearPair
 from dynamics.mesh.stiffness import pair_stiffness, single_pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 

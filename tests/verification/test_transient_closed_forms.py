@@ -14,13 +14,14 @@ from scipy.optimize import brentq
 from scipy.special import erfc, erfcx
 
 from tests.two_blocks import law
-from thermal.conditions.boundary import STEFAN_BOLTZMANN, Adiabatic, BodySource, Film, Radiation
+from thermal.conditions.boundary import Adiabatic, BodySource, Film, Radiation
 from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
 from thermal.conduction.capacity import HeatCapacity
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.steady import ConductionSetup
 from thermal.conduction.terms import ConductionProblem
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
+from thermal.films.law import STEFAN_BOLTZMANN
 from thermal.transient.history import ThermalStage, solve_transient
 from thermal.transient.probes import Probe
 from thermal.transient.time_steps import Stepper

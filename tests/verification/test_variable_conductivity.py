@@ -12,16 +12,10 @@ import numpy as np
 import pytest
 
 from tests.two_blocks import law
-from thermal.conditions.boundary import (
-    STEFAN_BOLTZMANN,
-    Adiabatic,
-    BodySource,
-    Film,
-    PrescribedTemperature,
-    Radiation,
-)
+from thermal.conditions.boundary import Adiabatic, BodySource, Film, PrescribedTemperature, Radiation
 from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
+from thermal.films.law import STEFAN_BOLTZMANN
 
 K0, SLOPE, REFERENCE = 20.0, 8e-4, 500.0
 

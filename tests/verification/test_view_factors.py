@@ -12,12 +12,13 @@ from numpy.testing import assert_allclose
 
 from tests.curved_blocks import cylinder_sector
 from tests.two_blocks import renamed
-from thermal.conditions.boundary import STEFAN_BOLTZMANN, Adiabatic, ConditionError, PrescribedTemperature
+from thermal.conditions.boundary import Adiabatic, ConditionError, PrescribedTemperature
 from thermal.conditions.enclosure import Enclosure, EnclosureError, close_view_factors
 from thermal.conditions.view_factors import view_factors
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.steady import solve_steady
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh, disjoint_union
+from thermal.films.law import STEFAN_BOLTZMANN
 
 
 def parallel(x: float, y: float) -> float:

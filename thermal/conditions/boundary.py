@@ -5,40 +5,13 @@ at least one, ``Adiabatic`` included: `conduction.solve_steady` refuses a mesh w
 All temperatures in kelvin, all powers in watt, positive into the solid.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
-STEFAN_BOLTZMANN = 5.670374419e-8
-"""Stefan-Boltzmann constant [W/(m2 K4)], CODATA 2018."""
+from thermal.films.law import ExchangeLaw, FilmLaw
 
 
 class ConditionError(ValueError):
     """A condition that cannot be computed; the message names place, value, limit and remedy."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class FilmCoefficient:
-    """A heat transfer coefficient with its provenance; what the report prints beside every film."""
-
-    value: float
-    """[W/(m2 K)] at the temperatures given in ``inputs``."""
-    formula: str
-    """Name of the correlation, e.g. ``niemann_winter``."""
-    inputs: dict[str, float]
-    """Every number that entered, SI, by field name."""
-    valid_range: str
-    """Range of the correlation in words, e.g. ``800 < Re < 4e5``."""
-    source: str
-    """Document and equation."""
-    warnings: tuple[str, ...] = ()
-    """One sentence per input outside the range: name, value, limit, remedy."""
-
-
-FilmLaw = Callable[[float, float], FilmCoefficient]
-"""Coefficient from (area-mean wall temperature [K], fluid temperature [K])."""
-
-ExchangeLaw = Callable[[float, float], FilmCoefficient]
-"""Coefficient from the area-mean temperatures of the two surfaces [K]; refers to the area of the first."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,12 +17,13 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import cKDTree
 
-from thermal.conditions.boundary import ConditionError, ExchangeLaw
+from thermal.conditions.boundary import ConditionError
 from thermal.conditions.clipping import cross, fan, intersect
 from thermal.conditions.facet_triangles import SIDES, FacetTriangles
 from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.mesh import FloatArray, IndexArray
 from thermal.fe.reference import TRIANGLE_7
+from thermal.films.law import ExchangeLaw
 
 OPPOSED = -0.5
 """Greatest product of the normals of two facets that are taken to face each other."""

@@ -14,10 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermal.conditions.boundary import STEFAN_BOLTZMANN, ConditionError
+from thermal.conditions.boundary import ConditionError
 from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.low_rank import Column, combined
 from thermal.fe.mesh import FloatArray
+from thermal.films.law import STEFAN_BOLTZMANN
 
 OPEN = 0.02
 """Allowed gap of the sum of a surface's view factors, and of reciprocity relative to the smaller area [-]."""

@@ -15,7 +15,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from thermal.conditions.boundary import ConditionError, FilmLaw
+from thermal.conditions.boundary import ConditionError
+from thermal.films.law import FilmLaw
 
 BALANCED = 1e-9
 """Allowed gap between mass flows in and out of a volume, relative to the greater."""

@@ -6,9 +6,10 @@ judge solved fields and published numbers alike (thermal sheet, seed thermal cas
 
 from collections.abc import Iterable
 
-from thermal.conditions.boundary import STEFAN_BOLTZMANN, Film, FilmLaw, Radiation
+from thermal.conditions.boundary import Film, Radiation
 from thermal.conduction.condition_checks import Condition
 from thermal.films.inputs import not_negative, positive
+from thermal.films.law import STEFAN_BOLTZMANN, FilmLaw
 
 RADIATION_INCLUDED = ("niemann_winter",)
 """Beginnings of the names of film formulas whose coefficient contains radiation already."""

@@ -6,9 +6,9 @@ import numpy as np
 from scipy import sparse
 
 from thermal.conditions.contact import Contact, Joint
+from thermal.conduction.law_values import checked_value
 from thermal.fe.low_rank import DIFFERENCE, Column
 from thermal.fe.mesh import FloatArray
-from thermal.films.law_values import checked_value
 
 
 class ContactTerms:

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from thermal.conditions.boundary import STEFAN_BOLTZMANN
 from thermal.conditions.contact import Contact
 from thermal.conditions.enclosure import Enclosure, close_view_factors
 from thermal.conditions.streams import StreamNetwork, inlet_share
@@ -16,6 +15,7 @@ from thermal.conduction.heat_rows import HeatRow, surface_row
 from thermal.conduction.setup import ConductionSetup
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray
+from thermal.films.law import STEFAN_BOLTZMANN
 
 
 def contact_rows(setup: ConductionSetup, contact: Contact, temperature: FloatArray) -> list[HeatRow]:

@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
-from thermal.conditions.boundary import STEFAN_BOLTZMANN, Exchange, Film, FilmCoefficient, Radiation
+from thermal.conditions.boundary import Exchange, Film, Radiation
 from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.mesh import FloatArray
+from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient
 
 
 @dataclass(frozen=True, kw_only=True)

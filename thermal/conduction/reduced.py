@@ -19,12 +19,10 @@ from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
 from thermal.conditions.boundary import (
-    STEFAN_BOLTZMANN,
     Adiabatic,
     BodySource,
     Exchange,
     Film,
-    FilmCoefficient,
     PrescribedTemperature,
     Radiation,
     SurfaceSource,
@@ -38,6 +36,7 @@ from thermal.conduction.setup import ConductionSetup
 from thermal.fe.low_rank import DIFFERENCE
 from thermal.fe.mesh import FloatArray
 from thermal.fe.solver import NotConverged
+from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient
 
 STEPS = 30
 """Newton steps at most."""

@@ -11,12 +11,12 @@ from functools import cached_property
 
 import numpy as np
 
-from thermal.conditions.boundary import FilmLaw
 from thermal.conditions.streams import StreamNetwork, VolumeFilm, inlet_share, inlet_share_slope
+from thermal.conduction.law_values import checked_value
 from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.low_rank import DIFFERENCE, Column, combined, mean_of
 from thermal.fe.mesh import FloatArray
-from thermal.films.law_values import checked_value
+from thermal.films.law import FilmLaw
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from thermal.conditions.boundary import STEFAN_BOLTZMANN, Exchange, Film, Radiation
+from thermal.conditions.boundary import Exchange, Film, Radiation
+from thermal.conduction.law_values import checked_value
 from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.low_rank import DIFFERENCE, Column, combined, mean_of
 from thermal.fe.mesh import FloatArray
-from thermal.films.law_values import checked_value
+from thermal.films.law import STEFAN_BOLTZMANN
 
 
 class SurfaceTerms:

@@ -8,8 +8,8 @@ This module holds the laws that are a number or a sum of others; correlations li
 
 from dataclasses import replace
 
-from thermal.conditions.boundary import FilmCoefficient, FilmLaw
 from thermal.films.inputs import FilmError, not_negative, outside, positive
+from thermal.films.law import FilmCoefficient, FilmLaw
 from thermal.films.rotating import (
     narrow_gap_jungnickel,
     narrow_gap_taylor,

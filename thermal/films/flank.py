@@ -34,8 +34,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from thermal.conditions.boundary import FilmCoefficient, FilmLaw
 from thermal.films.inputs import FilmError, not_negative, outside, positive
+from thermal.films.law import FilmCoefficient, FilmLaw
 
 GRAVITY = 9.81
 LIQUID = (233.15, 673.15)

@@ -3,8 +3,8 @@
 Laws of the convection modules serve as well: `constant` for a measured joint, `bearing_film` for an oil film.
 """
 
-from thermal.conditions.boundary import ExchangeLaw, FilmCoefficient
 from thermal.films.inputs import not_negative, outside, positive
+from thermal.films.law import ExchangeLaw, FilmCoefficient
 
 LEAST_RELATIVE_PRESSURE, GREATEST_RELATIVE_PRESSURE = 1e-5, 2e-2
 """Range of pressure over hardness of the correlation of the gap thickness."""

@@ -14,9 +14,9 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from thermal.conditions.boundary import FilmCoefficient, FilmLaw
 from thermal.films.air import Air, air
 from thermal.films.inputs import not_negative, outside, positive
+from thermal.films.law import FilmCoefficient, FilmLaw
 from thermal.films.still import GRAVITY
 
 JUNGNICKEL = "Jungnickel/Grossmann 2010 (P2 Ref. 18)"

@@ -8,9 +8,9 @@ temperature difference: a wall colder than the air gets the coefficient of one a
 from dataclasses import replace
 from typing import Literal, Protocol
 
-from thermal.conditions.boundary import STEFAN_BOLTZMANN, FilmCoefficient, FilmLaw
 from thermal.films.air import Air, air
 from thermal.films.inputs import FilmError, not_negative, outside, positive
+from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient, FilmLaw
 
 GRAVITY = 9.80665
 """[m/s2]"""

@@ -22,8 +22,8 @@ from rigdesign.diagnosis.residual.residual_problem import Comparison
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.heldout import Gap, gap
-from rigdesign.prediction import predict
 from rigdesign.prediction.model import Channel, Feature, Setting
+from rigdesign.prediction.predict import predict
 
 Sizes = Mapping[str, tuple[float, ...]]
 """Explanation, with tooth or order -> coordinates."""

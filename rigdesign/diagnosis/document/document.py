@@ -9,6 +9,7 @@ import numpy as np
 
 from rigdesign import __version__
 from rigdesign.base import units
+from rigdesign.base.json_text import to_plain
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.naming import Names, Sized, Value, from_evidence, parameter_of, size_value
 from rigdesign.diagnosis.document.advice import certainty, headline, steps
@@ -19,7 +20,6 @@ from rigdesign.measurement import MeasurementSet
 from rigdesign.measurement.comparison.compare import sentence, significant
 from rigdesign.measurement.comparison.locate import Located
 from rigdesign.measurement.quantities import CHANNELS
-from rigdesign.report.results_json import to_plain
 
 SCHEMA = 1
 

@@ -13,8 +13,8 @@ from rigdesign.diagnosis.catalogue.effects import DYNAMIC, Effect
 from rigdesign.diagnosis.library.cache import Parts
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.statistics.columns import Array
-from rigdesign.prediction import Predictor
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Setting
+from rigdesign.prediction.predictor import Predictor
 
 Progress = Callable[[str], None]
 

@@ -1,8 +1,8 @@
 """How the numbers of one rig, its sensors and points answer to everything that may be off: computed once, then kept.
 
-A library holds runs of the real model (`rigdesign.prediction.Predictor`) and derivatives of it, no formula of its
-own. It belongs to a case, a set of channels and a plan of operating points; a later set of the same rig whose points
-lie near the plan is served by the derivatives by its settings.
+A library holds runs of the real model (`rigdesign.prediction.predictor.Predictor`) and derivatives of it, no formula
+of its own. It belongs to a case, a set of channels and a plan of operating points; a later set of the same rig whose
+points lie near the plan is served by the derivatives by its settings.
 """
 
 from collections.abc import Callable, Mapping, Sequence

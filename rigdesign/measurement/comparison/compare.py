@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 
 from rigdesign import __version__
 from rigdesign.base import units
+from rigdesign.base.json_text import to_plain
 from rigdesign.measurement.comparison.bands import Bands
 from rigdesign.measurement.comparison.locate import VARIABLES, Located, locate
 from rigdesign.measurement.comparison.suspects import swap_findings, unit_findings
+from rigdesign.measurement.data import Data
 from rigdesign.measurement.processing.baseline import Foretold, HealthySet, foretold
-from rigdesign.measurement.processing.features import Data
 from rigdesign.measurement.processing.propagation import setting_spread
 from rigdesign.measurement.quantities import CHANNELS
 from rigdesign.measurement.reading.measurement_set import Finding, MeasurementSet
 from rigdesign.prediction.model import Feature, Prediction, Setting
-from rigdesign.report.results_json import to_plain
 
 Array = NDArray[np.float64]
 BY_CHANCE = 1e-3

@@ -3,15 +3,15 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.case import Case
 from rigdesign.measurement.comparison.compare import Comparison, compare
+from rigdesign.measurement.data import Data
 from rigdesign.measurement.loader import load_measurement
 from rigdesign.measurement.processing.baseline import HealthySet, at_all, shared_channels
-from rigdesign.measurement.processing.features import Data, features
-from rigdesign.prediction import predict
-from rigdesign.prediction.full import Thermal
+from rigdesign.measurement.processing.features import features
 from rigdesign.prediction.model import Channel, Prediction
-from rigdesign.results.result import Fidelity
+from rigdesign.prediction.predict import Thermal, predict
 
 Progress = Callable[[str], None]
 

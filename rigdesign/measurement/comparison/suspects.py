@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from rigdesign.base import units
 from rigdesign.base.quantity_kinds import KINDS
-from rigdesign.measurement.processing.features import Data
+from rigdesign.measurement.data import Data
 from rigdesign.measurement.quantities import CHANNELS
 from rigdesign.measurement.reading.measurement_set import Finding
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.measurement.processing.features import Data
+from rigdesign.measurement.data import Data
 from rigdesign.measurement.processing.propagation import setting_spread
 from rigdesign.measurement.reading.measurement_set import MeasurementSet
 from rigdesign.prediction.met_again import met_again

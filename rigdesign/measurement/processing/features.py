@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.errors import MeasurementError
+from rigdesign.measurement.data import Data
 from rigdesign.measurement.processing.repeats import pooled_noise, without_outliers
 from rigdesign.measurement.processing.transfer import gain
 from rigdesign.measurement.quality.checks import data_findings
@@ -21,38 +21,10 @@ from rigdesign.measurement.reading.measurement_set import (
 )
 from rigdesign.prediction.model import Feature, Setting, features_of
 
-Strength = Literal["proven", "indicative"]
-
 THERMAL = frozenset(("temperature", "oil_outlet_temperature", "seal_gap"))
 """Quantities that mean nothing before temperatures have settled."""
 LEAST_GAIN = 0.1
 """What a sensor must let through of an order to be corrected for."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Data:
-    """Numbers of a measurement set in the order of ``features_of(settings, channels)``, SI.
-
-    features, values, noise, usable, repeats : one entry per feature; NaN and infinity where not usable
-    """
-
-    features: tuple[Feature, ...]
-    values: NDArray[np.float64]
-    """Means over repeats, corrected for the transfer function of the sensor."""
-    noise: NDArray[np.float64]
-    """1 sigma of the mean: repeats pooled over the operating points, or the declared uncertainty."""
-    usable: NDArray[np.bool_]
-    repeats: NDArray[np.int64]
-    """Readings behind each number."""
-    settings: tuple[Setting, ...]
-    setting_noise: tuple[Mapping[tuple[str, str], float], ...]
-    """Per setting, 1 sigma of the mean of each measured setting by (quantity, place) [SI; K]."""
-    assembly: tuple[int, ...]
-    """Per setting, how often the rig has been put together anew before it."""
-    channels: Mapping[str, MeasuredChannel]
-    findings: tuple[Finding, ...]
-    strength: Strength
-    """indicative: without repeats, noise is what the set declares."""
 
 
 def features(measurement: MeasurementSet) -> Data:

@@ -9,7 +9,7 @@ temperatures around it one to one.
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.measurement.processing.features import Data
+from rigdesign.measurement.data import Data
 from rigdesign.measurement.quantities import CHANNELS
 from rigdesign.prediction.model import Setting
 

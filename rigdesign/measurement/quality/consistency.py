@@ -18,7 +18,7 @@ from rigdesign.properties.oil import MIL_PRF_23699, OILS, ZERO_CELSIUS
 from thermal.housing.surfaces import exact_areas
 
 if TYPE_CHECKING:
-    from rigdesign.measurement.processing.features import Data
+    from rigdesign.measurement.data import Data
 
 SAME = 3.0
 """Standard deviations within which two settings are the same."""

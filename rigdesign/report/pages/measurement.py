@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rigdesign import __version__
+from rigdesign.base.json_text import to_text
 from rigdesign.base.output_folder import staged
 from rigdesign.measurement.comparison.compare import Comparison, comparison_document, headline, significant
 from rigdesign.report.figures.drawing import drawing_style, inline_svg
-from rigdesign.report.results_json import to_text
 
 if TYPE_CHECKING:
     from markupsafe import Markup

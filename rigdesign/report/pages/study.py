@@ -6,18 +6,18 @@ from typing import TYPE_CHECKING, Any
 
 from rigdesign import __version__
 from rigdesign.base.output_folder import staged
+from rigdesign.report.csv_text import csv_text
 from rigdesign.report.figures.drawing import drawing_style, inline_svg
 from rigdesign.report.numbers import margin_unit
-from rigdesign.report.tables import csv_text
+from rigdesign.study.grid import Variation
+from rigdesign.study.run import StudyPoint
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
-    from rigdesign.study.grid import Variation
-    from rigdesign.study.run import StudyPoint
 
 
 def write_study(
-    case: "Case", variations: "Sequence[Variation]", points: "Sequence[StudyPoint]", fidelity: str, out: Path
+    case: "Case", variations: Sequence[Variation], points: Sequence[StudyPoint], fidelity: str, out: Path
 ) -> None:
     """Write the three files whole; they depend on the points alone, so an interrupted study ends the same.
 
@@ -40,7 +40,7 @@ def write_study(
         (scratch / "study.html").write_text(page, encoding="utf-8", newline="\n")
 
 
-def study_csv(variations: "Sequence[Variation]", points: "Sequence[StudyPoint]") -> str:
+def study_csv(variations: Sequence[Variation], points: Sequence[StudyPoint]) -> str:
     """One row per point in the order of the grid.
 
     Columns: varied values; status; verdict; first failing check (of the failing ones the most used-up);
@@ -56,7 +56,7 @@ def study_csv(variations: "Sequence[Variation]", points: "Sequence[StudyPoint]")
     return csv_text([*header, "error"], (_row(point, checks) for point in points))
 
 
-def _all_checks(points: "Sequence[StudyPoint]") -> dict[str, str]:
+def _all_checks(points: Sequence[StudyPoint]) -> dict[str, str]:
     """Id -> unit of every check that some point has, in the order of their appearance."""
     return {
         check["id"]: check["unit"] for point in points if not point.failed for check in point.record["checks"]
@@ -84,8 +84,8 @@ def first_failing(point: "StudyPoint") -> str:
 
 def _page(
     case: "Case",
-    variations: "Sequence[Variation]",
-    points: "Sequence[StudyPoint]",
+    variations: Sequence[Variation],
+    points: Sequence[StudyPoint],
     fidelity: str,
     svg: str | None,
 ) -> str:

@@ -46,7 +46,7 @@ def oil_power_figures(
 
 def transient_tables(result: TransientResult | None) -> Iterator[tuple[str, str]]:
     """File name and CSV text of every course."""
-    from rigdesign.report.tables import csv_text
+    from rigdesign.report.csv_text import csv_text
 
     for curve in () if result is None else result.curves:
         columns = _columns(curve)

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
+from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.report.numbers import unit_text
-from rigdesign.results.result import AssumptionRecord, Check, LossRow, RunResult
+from rigdesign.results.result import Check, LossRow, RunResult
 
 VERDICT_ORDER = ("fail", "warn", "pass", "not applicable")
 BAR_END = 1.5

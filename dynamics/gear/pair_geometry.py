@@ -1,0 +1,319 @@
+"""Geometry of a cylindrical gear pair, cold or warm (ISO 21771:2007)."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import acos, cos, pi, radians, tan
+from typing import Literal, Self, TypedDict, Unpack
+
+from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError, Rack, involute
+from dynamics.gear.line_of_action import (
+    PathOfContact,
+    TipCut,
+    path_between,
+    shift_sum,
+    tip_cut_for_contact_ratio,
+)
+
+Pair = tuple[float, float]
+
+
+class GearBodies(TypedDict, total=False):
+    """The optional fields of :class:`PairGeometry` that ``from_centre_distance`` hands on."""
+
+    pressure_angle: float
+    helix_angle: float
+    racks: tuple[Rack, Rack]
+    bore_diameters: Pair
+    thickness_allowances: Pair
+    youngs_moduli: Pair
+    poisson_ratios: Pair
+    densities: Pair
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairGeometry:
+    """Two external cylindrical gears on a fixed centre distance. Lengths [m], angles [rad], pinion first.
+
+    Tip diameters, shifts, widths, bores and allowances are those of the cold gears; ``growth`` is the
+    relative linear growth of each gear body, set by :meth:`warm`, and every property includes it.
+    Whether they can mesh is asked by `dynamics.gear.pair.GearPair`.
+    """
+
+    normal_module: float
+    pressure_angle: float = radians(20.0)
+    helix_angle: float = 0.0
+    teeth: tuple[int, int]
+    centre_distance: float
+    face_widths: Pair
+    profile_shifts: Pair
+    tip_diameters: Pair
+    racks: tuple[Rack, Rack] = (Rack(), Rack())
+    bore_diameters: Pair = (0.0, 0.0)
+    thickness_allowances: Pair = (0.0, 0.0)
+    youngs_moduli: Pair = (206e9, 206e9)
+    poisson_ratios: Pair = (0.3, 0.3)
+    densities: Pair = (7830.0, 7830.0)
+    growth: Pair = (0.0, 0.0)
+
+    @classmethod
+    def from_centre_distance(
+        cls,
+        *,
+        normal_module: float,
+        teeth: tuple[int, int],
+        centre_distance: float,
+        face_widths: Pair,
+        profile_shift_1: float | None = None,
+        split: Literal["equal"] | None = None,
+        tip_shortening: Pair = (0.0, 0.0),
+        contact_ratio: float | None = None,
+        tip_cut: TipCut = "both",
+        **bodies: Unpack[GearBodies],
+    ) -> Self:
+        """Pair whose profile-shift sum meshes without backlash on the centre distance (before allowances).
+
+        Give either ``profile_shift_1`` or ``split="equal"``. Tips are at d + 2 m_n (h_aP + x), shortened on
+        the radius by ``tip_shortening`` [m] and then as far as the transverse ``contact_ratio`` wants,
+        equally on both gears or on one (``tip_cut``). Raises GearGeometryError.
+        """
+        if (profile_shift_1 is None) == (split is None):
+            raise GearGeometryError(
+                f"profile_shift_1 = {profile_shift_1} and split = {split!r}: give exactly one of them"
+            )
+        pressure_angle = bodies.setdefault("pressure_angle", radians(20.0))
+        helix_angle = bodies.setdefault("helix_angle", 0.0)
+        racks = bodies.setdefault("racks", (Rack(), Rack()))
+        total = shift_sum(normal_module, pressure_angle, helix_angle, teeth, centre_distance)
+        first = 0.5 * total if profile_shift_1 is None else profile_shift_1
+        shifts = (first, total - first)
+        allowances = bodies.get("thickness_allowances", (0.0, 0.0))
+        pinion, wheel = (
+            CylindricalGear(
+                normal_module=normal_module,
+                pressure_angle=pressure_angle,
+                helix_angle=helix_angle,
+                teeth=teeth[i],
+                profile_shift=shifts[i],
+                tip_diameter=normal_module
+                * (teeth[i] / cos(helix_angle) + 2.0 * (racks[i].addendum + shifts[i]))
+                - 2.0 * tip_shortening[i],
+                rack=racks[i],
+                thickness_allowance=allowances[i],
+            )
+            for i in (0, 1)
+        )
+        cut = (0.0, 0.0)
+        if contact_ratio is not None:
+            cut = tip_cut_for_contact_ratio((pinion, wheel), centre_distance, contact_ratio, tip_cut)
+        return cls(
+            normal_module=normal_module,
+            teeth=teeth,
+            centre_distance=centre_distance,
+            face_widths=face_widths,
+            profile_shifts=shifts,
+            tip_diameters=(pinion.tip_diameter - 2.0 * cut[0], wheel.tip_diameter - 2.0 * cut[1]),
+            **bodies,
+        )
+
+    @cached_property
+    def gears(self) -> tuple[CylindricalGear, CylindricalGear]:
+        """Pinion and wheel at their present size."""
+        first, second = (
+            CylindricalGear(
+                normal_module=self.normal_module * (1.0 + self.growth[i]),
+                pressure_angle=self.pressure_angle,
+                helix_angle=self.helix_angle,
+                teeth=self.teeth[i],
+                profile_shift=self.profile_shifts[i],
+                tip_diameter=self.tip_diameters[i] * (1.0 + self.growth[i]),
+                rack=self.racks[i],
+                thickness_allowance=self.thickness_allowances[i] * (1.0 + self.growth[i]),
+            )
+            for i in (0, 1)
+        )
+        return first, second
+
+    @property
+    def gear_ratio(self) -> float:
+        """u = z2 / z1 [-]."""
+        return self.teeth[1] / self.teeth[0]
+
+    @property
+    def face_width(self) -> float:
+        """Common face width: that of the narrower gear [m]."""
+        return min(self.face_widths)
+
+    @property
+    def base_radii(self) -> Pair:
+        """Base radii r_b1, r_b2 [m]."""
+        return self.gears[0].base_radius, self.gears[1].base_radius
+
+    @property
+    def reference_radii(self) -> Pair:
+        """Reference radii d/2 [m]."""
+        return self.gears[0].reference_radius, self.gears[1].reference_radius
+
+    @property
+    def working_radii(self) -> Pair:
+        """Radii of the working pitch circles [m]."""
+        first, second = self.base_radii
+        return (
+            self.centre_distance * first / (first + second),
+            self.centre_distance * second / (first + second),
+        )
+
+    @property
+    def tip_radii(self) -> Pair:
+        """Tip radii [m]."""
+        return self.gears[0].tip_radius, self.gears[1].tip_radius
+
+    @property
+    def root_radii(self) -> Pair:
+        """Nominal root radii [m]."""
+        return self.gears[0].root_radius, self.gears[1].root_radius
+
+    @property
+    def form_radii(self) -> Pair:
+        """Radii of the generated root form circles [m]."""
+        return self.gears[0].form_radius, self.gears[1].form_radius
+
+    @property
+    def transverse_pressure_angle(self) -> float:
+        """alpha_t [rad]."""
+        return self.gears[0].transverse_pressure_angle
+
+    @property
+    def working_pressure_angle(self) -> float:
+        """alpha_wt from cos alpha_wt = (r_b1 + r_b2) / a [rad]."""
+        return acos(sum(self.base_radii) / self.centre_distance)
+
+    @property
+    def base_helix_angle(self) -> float:
+        """beta_b [rad]."""
+        return self.gears[0].base_helix_angle
+
+    @property
+    def base_pitch(self) -> float:
+        """Transverse base pitch p_bt, mean of both gears when they differ by growth [m]."""
+        return 0.5 * (self.gears[0].base_pitch + self.gears[1].base_pitch)
+
+    @property
+    def base_pitch_difference(self) -> float:
+        """Base pitch of the wheel less that of the pinion [m]; gears of unequal temperature have one."""
+        return self.gears[1].base_pitch - self.gears[0].base_pitch
+
+    @property
+    def rolling_radii(self) -> Pair:
+        """Distances of the pitch point from the base tangent points, T1C and T2C [m]."""
+        slope = tan(self.working_pressure_angle)
+        return self.base_radii[0] * slope, self.base_radii[1] * slope
+
+    @cached_property
+    def path(self) -> PathOfContact:
+        """Path of contact from tip circles and generated form circles."""
+        return path_between(*self.gears, self.centre_distance)
+
+    @property
+    def transverse_contact_ratio(self) -> float:
+        """eps_alpha on the active flanks, form circles respected [-]."""
+        return self.path.length / self.base_pitch
+
+    @property
+    def tip_contact_ratio(self) -> float:
+        """eps_alpha that the tip circles alone would give [-]."""
+        return (self.path.tip_end - self.path.tip_start) / self.base_pitch
+
+    @property
+    def overlap_ratio(self) -> float:
+        """eps_beta over the common face width [-]."""
+        return self.face_width * tan(self.base_helix_angle) / self.base_pitch
+
+    @property
+    def total_contact_ratio(self) -> float:
+        """eps_gamma = eps_alpha + eps_beta [-]."""
+        return self.transverse_contact_ratio + self.overlap_ratio
+
+    @property
+    def tip_clearances(self) -> Pair:
+        """Clearance between each tip and the root of the other gear [m]."""
+        (tip_1, tip_2), (root_1, root_2) = self.tip_radii, self.root_radii
+        return self.centre_distance - tip_1 - root_2, self.centre_distance - tip_2 - root_1
+
+    @property
+    def working_thicknesses(self) -> Pair:
+        """Transverse tooth thicknesses on the working pitch circles [m]."""
+        first, second = (
+            2.0 * radius * (gear.base_half_angle - involute(self.working_pressure_angle))
+            for gear, radius in zip(self.gears, self.working_radii, strict=True)
+        )
+        return first, second
+
+    @property
+    def transverse_backlash(self) -> float:
+        """Circumferential backlash on the working pitch circles [m]; negative jams."""
+        pitch = self.base_pitch / cos(self.working_pressure_angle)
+        return pitch - sum(self.working_thicknesses)
+
+    @property
+    def backlash_along_path(self) -> float:
+        """Backlash along the transverse line of action [m]."""
+        return self.transverse_backlash * cos(self.working_pressure_angle)
+
+    @property
+    def masses(self) -> Pair:
+        """Masses of the bored bodies with the mean tooth diameter as outside [kg]."""
+        return self._body(0)[0], self._body(1)[0]
+
+    @property
+    def inertias(self) -> Pair:
+        """Polar moments of inertia of the same bodies [kg m2]."""
+        return self._body(0)[1], self._body(1)[1]
+
+    def _body(self, index: int) -> Pair:
+        outer, bore = self.gears[index].mean_radius, 0.5 * self.bore_diameters[index]
+        mass = pi * self.densities[index] * self.face_widths[index] * (outer**2 - bore**2)
+        return mass, 0.5 * mass * (outer**2 + bore**2)
+
+    @property
+    def fillet_overlaps(self) -> Pair:
+        """Overlap of the mating tip with the fillet of pinion and wheel along the line of action [m]."""
+        reach_1, reach_2 = self.rolling_radii
+        return (
+            self.gears[0].fillet_overlap(reach_1 + self.path.tip_start),
+            self.gears[1].fillet_overlap(reach_2 - self.path.tip_end),
+        )
+
+    def warm(
+        self,
+        temperature_1: float,
+        temperature_2: float,
+        centre_distance: float,
+        *,
+        reference_temperature: float = 293.15,
+        expansion_coefficients: Pair = (11.5e-6, 11.5e-6),
+        speed: float = 0.0,
+    ) -> Self:
+        """The cold gears at body temperatures [K], on a hot centre distance [m], at pinion ``speed`` [rad/s].
+
+        Growth is that of the free body: thermal strain plus the centrifugal strain of the reference circle.
+        Calling it on a warm pair starts again from the cold gears.
+        """
+        speeds = (speed, speed / self.gear_ratio)
+        growth_1, growth_2 = (
+            expansion_coefficients[i] * ((temperature_1, temperature_2)[i] - reference_temperature)
+            + self.centrifugal_strain(i, speeds[i])
+            for i in (0, 1)
+        )
+        return replace(self, growth=(growth_1, growth_2), centre_distance=centre_distance)
+
+    def centrifugal_strain(self, index: int, speed: float) -> float:
+        """Relative growth of the reference circle of gear ``index`` spinning at ``speed`` [rad/s].
+
+        Source: rotating disc of constant thickness with a free bore, plane stress (Timoshenko and Goodier,
+        Theory of Elasticity, section 32): u/R = rho w^2 [(1 - nu) R^2 + (3 + nu) r_i^2] / (4 E).
+        """
+        outer = 0.5 * self.normal_module / cos(self.helix_angle) * self.teeth[index]
+        bore = 0.5 * self.bore_diameters[index]
+        nu = self.poisson_ratios[index]
+        shape = (1.0 - nu) * outer**2 + (3.0 + nu) * bore**2
+        return self.densities[index] * speed**2 * shape / (4.0 * self.youngs_moduli[index])

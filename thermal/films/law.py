@@ -1,0 +1,32 @@
+"""What a film law is: a coefficient with its provenance, from the temperatures on both sides."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+STEFAN_BOLTZMANN = 5.670374419e-8
+"""Stefan-Boltzmann constant [W/(m2 K4)], CODATA 2018."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilmCoefficient:
+    """A heat transfer coefficient with its provenance; what the report prints beside every film."""
+
+    value: float
+    """[W/(m2 K)] at the temperatures given in ``inputs``."""
+    formula: str
+    """Name of the correlation, e.g. ``niemann_winter``."""
+    inputs: dict[str, float]
+    """Every number that entered, SI, by field name."""
+    valid_range: str
+    """Range of the correlation in words, e.g. ``800 < Re < 4e5``."""
+    source: str
+    """Document and equation."""
+    warnings: tuple[str, ...] = ()
+    """One sentence per input outside the range: name, value, limit, remedy."""
+
+
+FilmLaw = Callable[[float, float], FilmCoefficient]
+"""Coefficient from (area-mean wall temperature [K], fluid temperature [K])."""
+
+ExchangeLaw = Callable[[float, float], FilmCoefficient]
+"""Coefficient from the area-mean temperatures of the two surfaces [K]; refers to the area of the first."""
