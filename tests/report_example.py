@@ -4,6 +4,7 @@ from functools import cache
 
 import numpy as np
 
+from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.results import result as r
 from thermal.fe.mesh import NamedMesh
 
@@ -509,7 +510,7 @@ def make_result(**changes):
             }
         ],
         "assumptions": [
-            r.AssumptionRecord(
+            AssumptionRecord(
                 path="gearboxes.test.seals.gap",
                 value="0.6 mm",
                 reason="main rig, P2 text",
