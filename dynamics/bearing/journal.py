@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from scipy.optimize import brentq
 
 from dynamics.bearing.journal_characteristic import Characteristic, characteristic
+from dynamics.errors import DynamicsInputError, NotConverged
 from dynamics.kernels.journal import HIGHEST_ECCENTRICITY
 
 TAYLOR_LIMIT = 41.3
@@ -28,11 +29,11 @@ MAXIMUM_FILM_DROP = 60.0
 """Film temperature below the inlet at which cold bodies would have stiffened the oil [K]."""
 
 
-class BearingError(ValueError):
+class BearingError(DynamicsInputError):
     """An impossible journal bearing; the message names value, limit and remedy."""
 
 
-class BearingNotConvergedError(RuntimeError):
+class BearingNotConvergedError(NotConverged):
     """No film temperature balances friction and oil flow."""
 
 

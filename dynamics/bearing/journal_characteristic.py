@@ -15,6 +15,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from dynamics.bearing.journal_film import FilmSolution, solve_film
+from dynamics.errors import DynamicsInputError
 from dynamics.kernels.journal import (
     HIGHEST_ECCENTRICITY,
     load,
@@ -82,7 +83,7 @@ def characteristic(width_ratio: float) -> Characteristic:
     ValueError : B/D outside 0.1 to 2, where a plain bearing of this kind is not built
     """
     if not 0.1 <= width_ratio <= 2.0:
-        raise ValueError(
+        raise DynamicsInputError(
             f"width ratio B/D = {width_ratio:.4g}: must lie within 0.1 to 2; change width or diameter"
         )
     return _solved(round(width_ratio / WIDTH_RATIO_STEP))

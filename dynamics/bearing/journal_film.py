@@ -15,13 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
+from dynamics.errors import DynamicsInputError, NotConverged
+
 Array = NDArray[np.float64]
 
 FILM_END = 1.5 * math.pi
 """Angle behind the widest gap at which the grid ends [rad]: beyond any break-up of the film (257 deg)."""
 
 
-class FilmNotConvergedError(RuntimeError):
+class FilmNotConvergedError(NotConverged):
     """The cavitated region of a bearing film did not settle."""
 
 
@@ -73,9 +75,11 @@ def solve_film(
     Source: O. Reynolds 1886; H. W. Swift 1932 and W. Stieber 1933 for the break-up of the film.
     """
     if not 0.0 < eccentricity < 1.0:
-        raise ValueError(f"eccentricity = {eccentricity}: must lie between 0 and 1; the journal touches at 1")
+        raise DynamicsInputError(
+            f"eccentricity = {eccentricity}: must lie between 0 and 1; the journal touches at 1"
+        )
     if not width_ratio > 0.0:
-        raise ValueError(f"width ratio B/D = {width_ratio}: must be above 0; give a positive width")
+        raise DynamicsInputError(f"width ratio B/D = {width_ratio}: must be above 0; give a positive width")
     theta = _clustered_angles(eccentricity, n_theta)
     zeta = np.sin(np.linspace(0.0, 0.5 * math.pi, n_zeta + 1))
     start = np.broadcast_to((theta[1:-1] < 1.2 * math.pi)[:, None], (n_theta - 1, n_zeta))

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import NotConverged, StaticState, loaded_share, port_model, solve_static
+from dynamics.drivetrain.static_loop import StaticState, loaded_share, port_model, solve_static
+from dynamics.errors import DynamicsInputError, NotConverged
 from dynamics.mesh.law import MeshLaw
 
 Array = NDArray[np.float64]
@@ -47,9 +48,11 @@ class ShiftedGear:
 
     def __post_init__(self) -> None:
         if self.helix_angle == 0.0:
-            raise ValueError("shifted gear: helix_angle = 0 rad: a spur gear braces nothing; use the twist")
+            raise DynamicsInputError(
+                "shifted gear: helix_angle = 0 rad: a spur gear braces nothing; use the twist"
+            )
         if self.halves not in (1, 2):
-            raise ValueError(f"shifted gear: halves = {self.halves}: must be 1 or 2; correct it")
+            raise DynamicsInputError(f"shifted gear: halves = {self.halves}: must be 1 or 2; correct it")
 
     @property
     def approach_per_shift(self) -> float:
@@ -125,7 +128,7 @@ def brace(
     Raises ValueError if a held shift has no gear, NotConverged if no setting makes the torque.
     """
     if gear is None and mode == "shift_held":
-        raise ValueError(
+        raise DynamicsInputError(
             f"bracing mode {mode!r}: needs the shifted helical gear; give it or use 'twist_held'"
         )
     if gear is None or mode == "twist_held":

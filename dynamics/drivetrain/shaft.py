@@ -7,6 +7,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.errors import DynamicsInputError
+
 Array = NDArray[np.float64]
 
 STEEL_SHEAR_MODULUS = 79.3e9
@@ -15,7 +17,7 @@ STEEL_DENSITY = 7850.0
 """Density of steel [kg/m3]."""
 
 
-class DrivetrainError(ValueError):
+class DrivetrainError(DynamicsInputError):
     """A drivetrain that cannot be built; the message names part, value, limit and remedy."""
 
 

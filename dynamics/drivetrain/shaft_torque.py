@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.errors import DynamicsInputError
+
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
@@ -26,7 +28,9 @@ class ShaftTorque:
 
     def __post_init__(self) -> None:
         if not self.order > 0.0:
-            raise ValueError(f"order = {self.order} of a torque must be above 0; a mean torque is none")
+            raise DynamicsInputError(
+                f"order = {self.order} of a torque must be above 0; a mean torque is none"
+            )
 
 
 @dataclass(frozen=True, kw_only=True)

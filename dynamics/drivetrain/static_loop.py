@@ -12,15 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.errors import DynamicsInputError, NotConverged
 from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.tables import undamped
 
 Array = NDArray[np.float64]
-
-
-class NotConverged(RuntimeError):  # noqa: N818
-    """A solver ended without a solution; the message names residual, limit and remedy."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,7 +67,7 @@ class PortModel:
         load = self.drag_per_speed * speed
         for name, torque in (torques or {}).items():
             if name not in self.drags:
-                raise ValueError(
+                raise DynamicsInputError(
                     f"drag torque {name!r} has no place in the drivetrain: known are {', '.join(self.drags)}"
                 )
             load = load + self.drags[name] * torque
@@ -96,7 +93,7 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
     Raises ValueError if the number of laws is not the number of meshes.
     """
     if len(laws) != len(system.mesh_ports):
-        raise ValueError(
+        raise DynamicsInputError(
             f"{len(laws)} mesh laws for {len(system.mesh_ports)} meshes: give one per mesh, in order"
         )
     bodies = np.array(list(dict.fromkeys(system.mesh_ports.ravel().tolist())), dtype=np.int64)
@@ -106,7 +103,9 @@ def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
     )
     kept = np.append(bodies, system.drive_dof)
     if system.drive_dof in bodies:
-        raise ValueError("the motor acts on a gear body that also meshes: place it on a shaft station")
+        raise DynamicsInputError(
+            "the motor acts on a gear body that also meshes: place it on a shaft station"
+        )
     inner = np.setdiff1d(np.arange(system.inertia.size), kept)
     coupling = system.stiffness[np.ix_(kept, inner)]
     carry = np.linalg.solve(system.stiffness[np.ix_(inner, inner)], coupling.T).T
@@ -193,7 +192,7 @@ def solve_static(
         If Newton's method does not settle, for instance because the twist leaves the flanks open.
     """
     if (torque is None) == (twist is None):
-        raise ValueError("give either the torque or the twist of the loop, not both and not neither")
+        raise DynamicsInputError("give either the torque or the twist of the loop, not both and not neither")
     where = mesh_angles(model) if angles is None else angles
     drag = model.drag(speed, drag_torques)
     if start is None:

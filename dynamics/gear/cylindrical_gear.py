@@ -6,8 +6,10 @@ from math import acos, asin, atan, cos, degrees, hypot, inf, pi, sin, sqrt, tan
 
 from scipy.optimize import brentq
 
+from dynamics.errors import DynamicsInputError
 
-class GearGeometryError(ValueError):
+
+class GearGeometryError(DynamicsInputError):
     """A gear or gear pair that cannot be made or cannot mesh; the message names value, limit and remedy."""
 
 

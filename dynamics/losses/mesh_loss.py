@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.errors import DynamicsInputError
 from dynamics.mesh.friction import FrictionCoefficient
 from dynamics.mesh.sliding import PairStiffness, ToothPath, sliding_speed, tooth_loss_factor
 
@@ -27,7 +28,7 @@ __all__ = [
 Array = NDArray[np.float64]
 
 
-class LossError(ValueError):
+class LossError(DynamicsInputError):
     """Impossible input of a loss; the message names value, limit and remedy."""
 
 

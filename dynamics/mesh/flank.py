@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.law import DampedRate, MeshLaw
 from dynamics.mesh.stiffness import PairStiffness
@@ -124,7 +125,7 @@ def mesh_law(
         _check(gear, teeth)
     slices = default_slices(pair, micro, misalignment) if n_slices is None else n_slices
     if slices < 1 or n_path < 16:
-        raise ValueError(f"n_slices = {slices} and n_path = {n_path} must be at least 1 and 16")
+        raise DynamicsInputError(f"n_slices = {slices} and n_path = {n_path} must be at least 1 and 16")
     width = pair.face_width
     face = ((np.arange(slices) + 0.5) / slices - 0.5) * width
     wanted = min(max(0.15 * pair.normal_module, 1e-4), 3e-4) if reach is None else reach
@@ -316,16 +317,16 @@ def _check(gear: Microgeometry, teeth: int) -> None:
     for name in ("pitch_deviations", "profile_slopes", "tooth_stiffness"):
         values = getattr(gear, name)
         if values and len(values) != teeth:
-            raise ValueError(
+            raise DynamicsInputError(
                 f"{name} has {len(values)} values for {teeth} teeth; give one for each tooth or none"
             )
     if gear.tip_relief and not gear.tip_relief_length > 0.0:
-        raise ValueError(
+        raise DynamicsInputError(
             f"tip_relief_length = {gear.tip_relief_length} m must be positive with tip_relief = "
             f"{gear.tip_relief} m; give the path length of the relief"
         )
     scales = gear.tooth_stiffness
     if scales and not (min(scales) >= 0.0 and max(scales) > 0.0):
-        raise ValueError(
+        raise DynamicsInputError(
             "tooth_stiffness must not be negative for any tooth and not be zero for all; use 0 for a missing tooth"
         )

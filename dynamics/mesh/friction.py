@@ -7,10 +7,11 @@ Schlenk (ISO/TR 14179-2, default), Michaelis, Doleschel and a given value.
 import math
 from dataclasses import dataclass
 
+from dynamics.errors import DynamicsInputError
 from dynamics.standards import iso_tr_14179_2_2001 as tr14179
 
 
-class FrictionError(ValueError):
+class FrictionError(DynamicsInputError):
     """Impossible input of a friction law; the message names value, limit and remedy."""
 
 

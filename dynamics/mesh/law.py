@@ -34,6 +34,8 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.errors import DynamicsInputError
+
 Array = NDArray[np.float64]
 DampedRate = Literal["relative_rotation", "contact_closing_rate"]
 
@@ -125,7 +127,7 @@ def check_mesh_law(law: MeshLaw) -> None:
     }
     for name, value in positive.items():
         if not (value > 0.0 and np.isfinite(value)):
-            raise ValueError(f"mesh law: {name} = {value} must be positive and finite")
+            raise DynamicsInputError(f"mesh law: {name} = {value} must be positive and finite")
     not_negative = {
         "backlash": law.backlash,
         "damping": law.damping,
@@ -137,9 +139,9 @@ def check_mesh_law(law: MeshLaw) -> None:
     }
     for name, value in not_negative.items():
         if not (value >= 0.0 and np.isfinite(value)):
-            raise ValueError(f"mesh law: {name} = {value} must not be negative")
+            raise DynamicsInputError(f"mesh law: {name} = {value} must not be negative")
     if law.damping_acts_on not in get_args(DampedRate):
-        raise ValueError(
+        raise DynamicsInputError(
             f"mesh law: damping_acts_on = {law.damping_acts_on!r} must be {' or '.join(get_args(DampedRate))}"
         )
     back_1, back_2 = back_deviations(law)
@@ -163,6 +165,6 @@ def check_mesh_law(law: MeshLaw) -> None:
     if not all(
         np.all(np.isfinite(table)) for table in (law.gap, law.deviation_1, law.deviation_2, back_1, back_2)
     ):
-        raise ValueError(
+        raise DynamicsInputError(
             "mesh law: gap and deviations must be finite; let the gap grow outside the active path"
         )

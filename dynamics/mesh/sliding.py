@@ -13,6 +13,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.friction import ToothContact
 from dynamics.standards import iso_tr_14179_2_2001 as tr14179
@@ -27,7 +28,7 @@ GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
 STIFFNESS_POINTS = 4001
 
 
-class ToothPathError(ValueError):
+class ToothPathError(DynamicsInputError):
     """A path of contact that cannot be; the message names value, limit and remedy."""
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 
+from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
 from dynamics.gear.tooth_outline import ToothOutline, tooth_outline
 
@@ -51,7 +52,9 @@ class PairStiffness:
     def scaled(self, factor: float) -> Self:
         """The same course with every value times ``factor`` (0.8: usual ratio of measured to calculated)."""
         if not factor > 0.0:
-            raise ValueError(f"stiffness factor = {factor} must be positive; 1 leaves the stiffness as it is")
+            raise DynamicsInputError(
+                f"stiffness factor = {factor} must be positive; 1 leaves the stiffness as it is"
+            )
         return replace(self, value=self.value * factor)
 
     def scaled_to(self, c_gamma_alpha: float) -> Self:
@@ -89,12 +92,14 @@ def single_pair_stiffness(
     plane with cos(beta_b).
     """
     if not line_load > 0.0:
-        raise ValueError(f"line load = {line_load} N/m must be positive; the flattening depends on it")
+        raise DynamicsInputError(
+            f"line load = {line_load} N/m must be positive; the flattening depends on it"
+        )
     cos_base = cos(pair.base_helix_angle)
     roll_1 = (path + pair.rolling_radii[0]) / cos_base
     roll_2 = (pair.rolling_radii[1] - path) / cos_base
     if not (np.all(roll_1 > 0.0) and np.all(roll_2 > 0.0)):
-        raise ValueError(
+        raise DynamicsInputError(
             f"path positions {path.min():.6f}..{path.max():.6f} m must lie between the base tangent points "
             f"{-pair.rolling_radii[0]:.6f} and {pair.rolling_radii[1]:.6f} m; stay near the active path"
         )
@@ -155,7 +160,7 @@ def _ring_shape(pair: GearPair, index: int) -> tuple[float, float]:
     """Root-to-bore ratio h and half root angle theta_f (of the 30 degree section) of one gear [-, rad]."""
     bore = 0.5 * pair.bore_diameters[index]
     if not bore > 0.0:
-        raise ValueError(
+        raise DynamicsInputError(
             f"bore_diameters[{index}] = {pair.bore_diameters[index]} m must be positive for the ring body; "
             'give the bore or use body="half_plane"'
         )

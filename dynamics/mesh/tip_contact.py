@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
 
 Array = NDArray[np.float64]
@@ -131,7 +132,9 @@ def path_reach(pair: GearPair, gap: float) -> tuple[float, float]:
     At most two base pitches beyond each end, and short of the base tangent points.
     """
     if not gap > 0.0:
-        raise ValueError(f"gap = {gap} m must be positive; give the largest approach that the teeth may see")
+        raise DynamicsInputError(
+            f"gap = {gap} m must be positive; give the largest approach that the teeth may see"
+        )
     path, steps = pair.path, np.linspace(0.0, 2.0 * pair.base_pitch, 801)[1:]
     inner = path.tangent_1 * 0.999 - path.start
     before = _before(pair).open_by(path.start + np.maximum(-steps, inner), gap)

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.errors import DynamicsInputError
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
 from dynamics.orders.hill_system import SAME_CLASS, HillSystem, MeshPeriodic
@@ -104,12 +105,14 @@ class DeviationResponse:
         loop = self.loop
         wanted = [float(order) for order in orders]
         if min(wanted, default=0.0) < 0.0 or any(not torque.order > 0.0 for torque in torques):
-            raise ValueError("orders must not be negative, those of torques above 0; turn the phase instead")
+            raise DynamicsInputError(
+                "orders must not be negative, those of torques above 0; turn the phase instead"
+            )
         highest = max((round(order / loop.cell_order) for order in wanted), default=0)
         reach = max(LEAST_HARMONICS, ceil(highest) + MARGIN)
         most = (loop.samples - 1) // 4
         if highest > most:
-            raise ValueError(
+            raise DynamicsInputError(
                 f"order {max(wanted):g}: above {most} mesh orders of {loop.cell_order:g}, the most that "
                 f"{loop.samples} samples of a mesh hold; ask for less"
             )

@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.signal import find_peaks
 
+from dynamics.errors import DynamicsInputError
+
 Array = NDArray[np.float64]
 
 
@@ -99,11 +101,11 @@ def factor_curve(
     speeds = np.asarray(speed, float)
     shares = np.asarray(lift_off_share, float)
     if speeds.ndim != 1 or len(speeds) != len(torques) or len(speeds) != len(shares):
-        raise ValueError(
+        raise DynamicsInputError(
             f"{speeds.size} speeds, {len(torques)} torques, {len(shares)} lift-off shares: must agree"
         )
     if np.any(np.diff(speeds) <= 0.0):
-        raise ValueError("speeds must increase; sort the responses, one branch of a jump at a time")
+        raise DynamicsInputError("speeds must increase; sort the responses, one branch of a jump at a time")
     waves = [np.atleast_2d(np.asarray(torque, float)) for torque in torques]
     amplitude = np.array([0.5 * np.ptp(wave, axis=1) for wave in waves]).T
     return DynamicFactorCurve(
@@ -155,7 +157,7 @@ def _rise_at_end(values: Array) -> float:
 def _mean(values: Array) -> Array:
     mean: Array = np.asarray(values.mean(axis=-1))
     if np.any(mean == 0.0):
-        raise ValueError(
+        raise DynamicsInputError(
             "dynamic factor: mean torque is 0 N m, the mesh carries no load; leave this speed out"
         )
     return mean

@@ -12,6 +12,7 @@ from math import cos
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import MM, root_width, tooth_root
 from dynamics.standards import iso6336_3_2006
@@ -54,7 +55,7 @@ def root_influence(pair: GearPair, index: int, *, n_path: int = 161) -> RootInfl
     loaded = iso6336_3_2006.loaded_root(root, iso6336_3_2006.root_section(root), diameters)
     above = np.flatnonzero((loaded.h_Fe > 0.0) & (roll > 0.0))
     if not len(above):
-        raise ValueError(
+        raise DynamicsInputError(
             f"gear {index}: no load point lies above its 30 degree section, so it has no bending lever; "
             "check addendum and root of both gears"
         )
@@ -78,11 +79,13 @@ def root_stress_history(influence: RootInfluence, force: ArrayLike, path: ArrayL
     """
     loads, places = np.asarray(force, dtype=float), np.asarray(path, dtype=float)
     if loads.shape != places.shape:
-        raise ValueError(
+        raise DynamicsInputError(
             f"force {loads.shape} and path {places.shape} must have one shape; pair them by time"
         )
     if np.any(loads < 0.0):
-        raise ValueError(f"force = {loads.min():.3g} N must not be negative; a tooth contact cannot pull")
+        raise DynamicsInputError(
+            f"force = {loads.min():.3g} N must not be negative; a tooth contact cannot pull"
+        )
     stress = loads / influence.width * influence.at(places)
     return stress.sum(axis=-1) if stress.ndim == 2 else stress
 
@@ -100,7 +103,7 @@ def root_stress_over_face(
     loads = np.asarray(slice_forces, dtype=float)
     shift = np.asarray(slice_shift, dtype=float)
     if loads.ndim != 2 or loads.shape != (len(np.atleast_1d(path)), len(shift)):
-        raise ValueError(
+        raise DynamicsInputError(
             f"slice_forces {loads.shape} must have a row for each of the {len(np.atleast_1d(path))} path "
             f"positions and a column for each of the {len(shift)} slices"
         )

@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.modal_form import ModalForm
 from dynamics.drivetrain.shaft_torque import ShaftTorques, harmonic_loads
-from dynamics.drivetrain.static_loop import NotConverged, PortModel
+from dynamics.drivetrain.static_loop import PortModel
+from dynamics.errors import NotConverged
 from dynamics.mesh.force import evaluate_mesh
 
 STALL_LIMIT = 2e-3

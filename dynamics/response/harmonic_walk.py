@@ -10,7 +10,8 @@ from functools import partial
 import numpy as np
 
 from dynamics.drivetrain.modal_form import ModalForm
-from dynamics.drivetrain.static_loop import NotConverged, PortModel, solve_static
+from dynamics.drivetrain.static_loop import PortModel, solve_static
+from dynamics.errors import DynamicsInputError, NotConverged
 from dynamics.response.harmonic_balance import (
     HarmonicGrid,
     HarmonicSolution,
@@ -126,7 +127,7 @@ def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int
     ]  # fmt: skip
     for value, m in zip(pitch, model.laws):
         if value.denominator > 200:
-            raise ValueError(
+            raise DynamicsInputError(
                 f"mesh frequencies have no common period: {m.teeth_1} teeth give {float(value):.6g} of "
                 "the frequency of the control mesh; integrate in time"
             )

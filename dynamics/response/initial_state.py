@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import NotConverged, line_ratios
+from dynamics.drivetrain.static_loop import line_ratios
+from dynamics.errors import DynamicsInputError, NotConverged
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.time_march import DriveState
@@ -22,13 +23,13 @@ def pinion_ratios(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
     try:
         ratios = line_ratios(system, laws)
     except KeyError as missing:
-        raise ValueError(
+        raise DynamicsInputError(
             f"line {missing} is joined to the drive by no mesh; every line must turn with it"
         ) from None
     for mesh, (law, (pinion, wheel)) in enumerate(zip(laws, system.mesh_ports)):
         slip = ratios[pinion] * law.base_radius_1 - ratios[wheel] * law.base_radius_2
         if abs(slip) > 1e-9 * abs(ratios[pinion] * law.base_radius_1):
-            raise ValueError(
+            raise DynamicsInputError(
                 f"mesh {mesh} cannot turn with the others: r_b1 omega_1 - r_b2 omega_2 = {slip:.3e} m/s "
                 "per rad/s of the drive, limit 0; correct tooth numbers or base radii"
             )
@@ -60,7 +61,7 @@ def wound_state(
         If the static state is not found, for instance because the twist leaves the flanks open.
     """
     if (torque is None) == (twist is None):
-        raise ValueError("give either the torque of the first mesh or the bracing twist")
+        raise DynamicsInputError("give either the torque of the first mesh or the bracing twist")
     ratios = pinion_ratios(system, laws)
     winding = _Winding(system, laws, ratios, speed, drag_torques or {})
     unknowns = winding.solve(torque, twist)
@@ -153,7 +154,7 @@ class _Winding:
         try:
             solution = np.asarray(np.linalg.solve(matrix, right), float)
         except np.linalg.LinAlgError:
-            raise ValueError(
+            raise DynamicsInputError(
                 "the bracing twist does not load the first mesh; give a twist_load that winds it"
             ) from None
         return solution

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.shaft_torque import waves_within
+from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.initial_state import pinion_ratios, wound_state
 from dynamics.response.propagator import DEFAULT_CUTOFF, ModalModel, modal_model
@@ -106,7 +107,7 @@ def period_length(laws: Sequence[MeshLaw], ratios: Sequence[float], kind: Period
     if kind == "mesh":
         for mesh, (law, ratio) in enumerate(zip(laws, ratios)):
             if abs(law.teeth_1 * abs(ratio) / first - 1.0) > 1e-9:
-                raise ValueError(
+                raise DynamicsInputError(
                     f"period 'mesh': mesh {mesh} has {law.teeth_1 * abs(ratio) / first:.6g} times the mesh "
                     "frequency of the first, limit 1; use 'revolution' or 'hunting_cycle'"
                 )
@@ -115,7 +116,7 @@ def period_length(laws: Sequence[MeshLaw], ratios: Sequence[float], kind: Period
         for mesh, (law, ratio) in enumerate(zip(laws, ratios)):
             teeth = law.teeth_1 * abs(ratio)
             if abs(teeth - round(teeth)) > 1e-6:
-                raise ValueError(
+                raise DynamicsInputError(
                     f"period 'revolution': mesh {mesh} passes {teeth:.6g} teeth in it, must be whole; "
                     "use 'hunting_cycle'"
                 )
@@ -126,7 +127,7 @@ def period_length(laws: Sequence[MeshLaw], ratios: Sequence[float], kind: Period
         turned = cycle / abs(ratio)
         whole = next((k for k in range(1, 1000) if abs(k * turned - round(k * turned)) < 1e-6), None)
         if whole is None:
-            raise ValueError(
+            raise DynamicsInputError(
                 "period 'hunting_cycle': the pinions have no common cycle below 1000 turns; use 'mesh'"
             )
         turns = lcm(turns, round(whole * turned))
@@ -169,11 +170,11 @@ def periodic_by_time(
         For impossible input, see ``period_length`` and ``wound_state``.
     """
     if not speed > 0.0:
-        raise ValueError(
+        raise DynamicsInputError(
             f"speed = {speed} rad/s must be positive; turn the direction of all freedoms instead"
         )
     if (torque is None) == (twist is None):
-        raise ValueError("give either the mean torque of the first mesh or the bracing twist")
+        raise DynamicsInputError("give either the mean torque of the first mesh or the bracing twist")
     drags = dict(drag_torques or {})
     ratios = pinion_ratios(system, laws)
     turns = period_length(laws, [ratios[p] for p in system.mesh_ports[:, 0]], period)

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.errors import DynamicsInputError, NotConverged
 from dynamics.kernels import FOUR, WIDTH, DiscreteModes, DragModes
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.modal_layout import Layout, branch_layout, port_blocks
@@ -36,7 +37,7 @@ DEFAULT_CUTOFF = 50e3
 """Modes above this frequency [Hz] keep their static effect only."""
 
 
-class DefectiveModes(RuntimeError):  # noqa: N818
+class DefectiveModes(NotConverged):
     """The complex modes of the drivetrain are no basis (two of them coincide)."""
 
 
@@ -183,7 +184,7 @@ def discretise(model: ModalModel, step: float, *, substeps: int = 1, with_losses
     The slow inputs are linear over ``substeps`` steps; ``with_losses=False`` leaves out the joint losses.
     """
     if not step > 0.0:
-        raise ValueError(f"step = {step} s must be positive")
+        raise DynamicsInputError(f"step = {step} s must be positive")
     scaled = model.eigenvalues * step
     decay = np.exp(scaled)
     phi_1, phi_2, phi_3 = (_phi(k, scaled)[:, None] for k in (1, 2, 3))
@@ -308,12 +309,14 @@ def _check(system: LinearSystem, laws: Sequence[MeshLaw], loads: Array) -> None:
         raise ValueError(f"loads has shape {loads.shape}, expected ({n}, number of slow inputs)")
     if not np.all(system.inertia > 0.0):
         worst = int(np.argmin(system.inertia))
-        raise ValueError(
+        raise DynamicsInputError(
             f"inertia of {system.dofs[worst]} is {system.inertia[worst]} kg m2, must be positive"
         )
     scale = max(float(np.abs(system.damping).max()), 1e-300)
     if np.abs(system.damping - system.damping.T).max() > 1e-9 * scale:
-        raise ValueError("damping matrix is not symmetric; joints and bearings act equally on both sides")
+        raise DynamicsInputError(
+            "damping matrix is not symmetric; joints and bearings act equally on both sides"
+        )
 
 
 def _line_modes(system: LinearSystem) -> tuple[Array, Array, int]:
@@ -329,9 +332,13 @@ def _line_modes(system: LinearSystem) -> tuple[Array, Array, int]:
         stiffness = system.stiffness[np.ix_(members, members)]
         largest = max(float(np.abs(stiffness).max()), 1e-300)
         if others.size and np.abs(system.stiffness[np.ix_(members, others)]).max() > 0.0:
-            raise ValueError(f"stiffness couples line {line} to another line; only meshes may do that")
+            raise DynamicsInputError(
+                f"stiffness couples line {line} to another line; only meshes may do that"
+            )
         if np.abs(stiffness.sum(axis=1)).max() > 1e-8 * largest:
-            raise ValueError(f"line {line} is not free to rotate: its stiffness rows sum to more than 1e-8")
+            raise DynamicsInputError(
+                f"line {line} is not free to rotate: its stiffness rows sum to more than 1e-8"
+            )
         root = np.sqrt(system.inertia[members])
         uniform = root / np.linalg.norm(root)
         rigid[members, column] = uniform / root
@@ -342,7 +349,7 @@ def _line_modes(system: LinearSystem) -> tuple[Array, Array, int]:
         reduced = basis.T @ (stiffness / np.outer(root, root)) @ basis
         squares, vectors = scipy.linalg.eigh(0.5 * (reduced + reduced.T))
         if squares[0] <= 0.0:
-            raise ValueError(
+            raise DynamicsInputError(
                 f"line {line} is torn: a part of it is held by no stiffness; join it or make it a line"
             )
         block = np.zeros((n, len(members) - 1))
@@ -401,7 +408,7 @@ def _drag_branches(shapes: Array, branch_of: NDArray[np.int64], drags: Array) ->
         own = moved[:, FOUR * four : FOUR * (four + 1)].max(axis=1)
         found = np.unique(branch_of[own > 1e-9 * own.max()])
         if len(found) > 1:
-            raise ValueError(
+            raise DynamicsInputError(
                 f"drag torques {FOUR * four} to {FOUR * four + 3} act on {len(found)} shaft lines that only a mesh "
                 "ties together, limit 1: let each line begin a new four"
             )

@@ -12,12 +12,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from dynamics.errors import DynamicsInputError
+
 Array = NDArray[np.float64]
 Kind = Literal["hold", "speed", "torque"]
 Direction = Literal["constant", "rising", "falling"]
 
 
-class ScheduleError(ValueError):
+class ScheduleError(DynamicsInputError):
     """A schedule that contradicts itself; the message names stage, value, limit and remedy."""
 
 

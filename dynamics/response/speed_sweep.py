@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import NotConverged, PortModel, port_model
+from dynamics.drivetrain.static_loop import PortModel, port_model
+from dynamics.errors import DynamicsInputError, NotConverged
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_balance import HarmonicSolution, Problem
 from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk
@@ -74,7 +75,7 @@ class CurvePoint:
 
     def _loaded_mean(self) -> Array:
         if not np.all(self.mean > 0.0):
-            raise ValueError(
+            raise DynamicsInputError(
                 f"mesh {int(np.argmin(self.mean))} carries no mean torque ({self.mean.min():.3g} N m) at "
                 f"{self.speed:.4g} rad/s: K_V does not exist; brace the loop with more torque"
             )
@@ -132,13 +133,13 @@ def periodic_response(
         the meshes have no common period.
     """
     if any(not speed > 0.0 for speed in speeds):
-        raise ValueError(
+        raise DynamicsInputError(
             f"speeds: {min(speeds)} rad/s: must be above 0; leave standstill to the static state"
         )
     if (torque is None) == (twist is None):
-        raise ValueError("give either the torque or the twist of the loop, not both and not neither")
+        raise DynamicsInputError("give either the torque or the twist of the loop, not both and not neither")
     if "time_integration" in methods and control_mesh != 0:
-        raise ValueError(
+        raise DynamicsInputError(
             f"control_mesh = {control_mesh}: time integration controls mesh 0; use harmonic balance alone"
         )
     ratios = pinion_ratios(system, laws)

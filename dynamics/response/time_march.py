@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from dynamics import kernels
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.errors import DynamicsInputError, NotConverged
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.propagator import (
@@ -65,7 +66,7 @@ class TorqueControl:
     time_constant: float = 0.02
 
 
-class MarchDiverged(RuntimeError):  # noqa: N818
+class MarchDiverged(NotConverged):
     """A march left the finite numbers; the message names mesh, time, speed and the slowest mode."""
 
 
@@ -395,7 +396,7 @@ def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]
     """
     unknown = [name for name in drags if name not in system.drag_loads]
     if unknown:
-        raise ValueError(
+        raise DynamicsInputError(
             f"no drag load named {', '.join(unknown)}; known: {', '.join(system.drag_loads) or 'none'}"
         )
     lines = [system.lines[np.argmax(np.abs(system.drag_loads[name]))] for name in drags]

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.envelopes import LiftOff, Slots, SlotStatistics
 from dynamics.response.initial_state import pinion_ratios, wound_state
@@ -375,19 +376,19 @@ class LowPass:
 def _check(command: Command, n_meshes: int, substeps: int, sample_rate: float) -> None:
     n = len(command.time)
     if n < 2 or np.any(np.diff(command.time) <= 0.0):
-        raise ValueError("command: time must have two points at least and increase")
+        raise DynamicsInputError("command: time must have two points at least and increase")
     if (command.torque is None) == (command.twist is None):
-        raise ValueError("command: give either torque or twist")
+        raise DynamicsInputError("command: give either torque or twist")
     for name in ("speed", "torque", "twist"):
         values = getattr(command, name)
         if values is not None and (len(values) != n or not np.all(np.isfinite(values))):
-            raise ValueError(
+            raise DynamicsInputError(
                 f"command: {name} has {len(values)} values, needs {n} finite ones, one for each time"
             )
     if command.offsets is not None and command.offsets.shape != (n, n_meshes):
         raise ValueError(f"command: offsets has shape {command.offsets.shape}, expected {(n, n_meshes)}")
     if substeps < 8:
-        raise ValueError(
+        raise DynamicsInputError(
             f"substeps = {substeps}, limit 8: the sample rate of {sample_rate:g} Hz is no integration step"
         )
 
@@ -402,7 +403,9 @@ def _twists(system: LinearSystem, laws: Sequence[MeshLaw], torque: Array) -> tup
 def _drag_speed(system: LinearSystem, ratios: Array, name: str) -> float:
     """Speed of the place of a drag per speed of the first pinion."""
     if name not in system.drag_loads:
-        raise ValueError(f"no drag load named {name}; known: {', '.join(system.drag_loads) or 'none'}")
+        raise DynamicsInputError(
+            f"no drag load named {name}; known: {', '.join(system.drag_loads) or 'none'}"
+        )
     return abs(float(system.drag_loads[name] @ ratios))
 
 
@@ -412,6 +415,8 @@ def _drag_tables(curves: Mapping[str, DragCurve]) -> tuple[Array, Array]:
     rows = []
     for name, curve in curves.items():
         if curve.speed[0] != 0.0 or np.any(np.diff(curve.speed) <= 0.0) or np.any(curve.torque < 0.0):
-            raise ValueError(f"drag {name}: speed must start at 0 and increase, torque must not be negative")
+            raise DynamicsInputError(
+                f"drag {name}: speed must start at 0 and increase, torque must not be negative"
+            )
         rows.append(np.interp(np.linspace(0.0, curve.speed[-1], 513), curve.speed, curve.torque))
     return np.array(rows, float).reshape(len(rows), 513), ends

@@ -6,6 +6,8 @@ Tolerance values follow clause 5.3; each grows with sqrt(2) per grade A from gra
 from dataclasses import dataclass
 from math import floor, sqrt
 
+from dynamics.errors import DynamicsInputError
+
 GRADES = range(1, 12)
 
 
@@ -17,7 +19,9 @@ def rounded(value: float) -> float:
 
 def _graded(value: float, A: int) -> float:
     if A not in GRADES:
-        raise ValueError(f"tolerance grade A = {A} must lie in 1..11 (ISO 1328-1:2013, 5.1); choose a grade")
+        raise DynamicsInputError(
+            f"tolerance grade A = {A} must lie in 1..11 (ISO 1328-1:2013, 5.1); choose a grade"
+        )
     return rounded(value * sqrt(2.0) ** (A - 5))
 
 

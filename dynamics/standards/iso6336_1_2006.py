@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from math import cos, exp, log, pi, radians, sin, sqrt
 from typing import Literal
 
+from dynamics.errors import DynamicsInputError
+
 RunIn = Literal["case_hardened", "nitrided", "through_hardened"]
 Range = Literal["subcritical", "main resonance", "intermediate", "supercritical"]
 
@@ -148,7 +150,7 @@ def stiffness(
     warnings = list(_regression_warnings(data))
     q = q_prime(data.z_n1, data.z_n2, data.x_1, data.x_2)
     if not q > 0.0:
-        raise ValueError(
+        raise DynamicsInputError(
             f"q' = {q:.5f} mm um/N must be positive: the stiffness regression fails for x1 = {data.x_1:.3f}, "
             f"x2 = {data.x_2:.3f}; use measured or finite-element stiffness"
         )
@@ -204,7 +206,7 @@ def run_in(f: float, v: float, run_in_class: RunIn, sigma_Hlim: float | None) ->
     if run_in_class != "through_hardened":
         return min(0.075 * f, 3.0)
     if sigma_Hlim is None or not sigma_Hlim > 0.0:
-        raise ValueError(
+        raise DynamicsInputError(
             f"sigma_Hlim = {sigma_Hlim} must be positive for a through-hardened gear; give N/mm2"
         )
     y = 160.0 * f / sigma_Hlim
@@ -303,9 +305,9 @@ def dynamic_factor(
     """
     for name, value, unit in (("F_t", F_t, "N"), ("K_A", K_A, "")):
         if not value > 0.0:
-            raise ValueError(f"{name} = {value} {unit} must be positive; method B needs a load")
+            raise DynamicsInputError(f"{name} = {value} {unit} must be positive; method B needs a load")
     if n_1 < 0.0:
-        raise ValueError(f"n_1 = {n_1} 1/min must not be negative; give the amount of the speed")
+        raise DynamicsInputError(f"n_1 = {n_1} 1/min must not be negative; give the amount of the speed")
     load = F_t * K_A / data.b
     tooth = stiffness(data, load, low_load_factor=low_load_factor, C_M=C_M)
     warnings = list(tooth.warnings)

@@ -10,6 +10,8 @@ from math import asin, cos, inf, log, pi, radians, sin, sqrt, tan
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.errors import DynamicsInputError
+
 Array = NDArray[np.float64]
 
 
@@ -96,7 +98,7 @@ def root_section(root: ToothRoot) -> RootSection:
         if abs(step) < 1e-14:
             break
     else:
-        raise ValueError(
+        raise DynamicsInputError(
             f"30 degree tangent not found for z_n = {root.z_n:.2f}, x = {root.x:.3f}, h_fP = "
             f"{root.h_fP:.3f}, rho_fP = {root.rho_fP:.3f}; check the rack"
         )
@@ -163,7 +165,7 @@ def Y_B(s_R: float, h_t: float) -> float:
     if ratio >= 1.2:
         return 1.0
     if ratio <= 0.5:
-        raise ValueError(
+        raise DynamicsInputError(
             f"rim thickness s_R / h_t = {ratio:.3f} must exceed 0.5 (ISO 6336-3:2006, 9); thicken the rim"
         )
     return 1.6 * log(2.242 / ratio)

@@ -7,6 +7,8 @@ textbooks (Schlenk 1994; Niemann/Winter II) and should be compared with a copy b
 
 import math
 
+from dynamics.errors import DynamicsInputError
+
 LINE_LOAD_MINIMUM = 150.0
 """F_bt/b [N/mm] below which the value at 150 is used."""
 SPEED_MAXIMUM = 50.0
@@ -64,12 +66,12 @@ def H_V(z_1: int, u: float, beta_b: float, eps_1: float, eps_2: float) -> float:
     """
     eps_alpha = eps_1 + eps_2
     if eps_1 < 0.0 or eps_2 < 0.0:
-        raise ValueError(
+        raise DynamicsInputError(
             f"addendum contact ratios {eps_1:.4g}, {eps_2:.4g}: must not be negative, the pitch point lies "
             "outside the path of contact; use the integrated tooth-loss factor"
         )
     if not 1.0 <= eps_alpha <= 2.0:
-        raise ValueError(
+        raise DynamicsInputError(
             f"transverse contact ratio {eps_alpha:.4g}: must lie within 1 to 2 for Ohlendorf's formula; use "
             "the integrated tooth-loss factor"
         )

@@ -10,14 +10,18 @@
     │   └── NonFiniteResultError 3  a result is NaN or infinite
     └── MissingLibraryError     4   a system library is missing
 
-A message states name, value, limit and remedy. The solvers raise ValueError and RuntimeError of their own;
-``rigdesign.run.main`` turns them into this tree.
+A message states name, value, limit and remedy. The solvers have roots of their own, `thermal.errors` and
+`dynamics.errors`; `rigdesign.run.solver_errors` turns them into this tree. Anything else is a defect: exit status 70.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any
+
+from dynamics.errors import DynamicsError
+from thermal.errors import ThermalError
 
 WIDEST = 120
 """Characters of a text of the user that a message repeats."""
@@ -108,9 +112,19 @@ class OutputError(UsageError):
 
 
 class NotConvergedError(RigdesignError):
-    """An iteration that did not settle within its limit; the message carries the residuals."""
+    """An iteration that did not settle within its limit.
+
+    Parameters
+    ----------
+    message : with the last residuals
+    history : all there is to look at, by name: residuals, traces over time; numbers, lists and texts
+    """
 
     exit_code = 3
+
+    def __init__(self, message: str, history: Mapping[str, Any] | None = None) -> None:
+        super().__init__(message)
+        self.history: Mapping[str, Any] = history or {}
 
 
 class NonFiniteResultError(NotConvergedError):
@@ -134,7 +148,6 @@ def named(path: str) -> Iterator[None]:
     """Put the case path of a part before what a solver says of it; the kind of the error stays."""
     try:
         yield
-    except RigdesignError:
+    except (ThermalError, DynamicsError) as error:
+        error.args = (f"{path}: {error}", *error.args[1:])
         raise
-    except (ValueError, RuntimeError) as error:
-        raise type(error)(f"{path}: {error}") from error

@@ -2,7 +2,8 @@
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; validate: no gate missed), 1 a
 check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is missing, 5 measured
-data cannot be used, 130 stopped by Ctrl-C. Heavy imports happen inside the commands, so that `--help` answers at once.
+data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy imports happen inside the commands, so that
+`--help` answers at once.
 """
 
 import json
@@ -67,7 +68,7 @@ def check(
     loaded = load_case(case)
     if out is not None:
         prepare_output(out)
-    with Progress() as progress, _interrupted(NOTHING_KEPT):
+    with Progress() as progress, _interrupted(NOTHING_KEPT), _failure_kept(out):
         result = run_case(loaded, fidelity=fidelity, progress=progress, transient=transient)
         if ranges:
             from rigdesign.uncertainty.run import with_ranges
@@ -365,6 +366,22 @@ def _interrupted(remains: str) -> Iterator[None]:
         raise
 
 
+@contextmanager
+def _failure_kept(out: Path | None) -> Iterator[None]:
+    """Write what a run without convergence leaves, and say where it is."""
+    from rigdesign.base.errors import NotConvergedError
+
+    try:
+        yield
+    except NotConvergedError as error:
+        from rigdesign.report import write_failure
+
+        file = None if out is None else write_failure(error, out)
+        if file is not None:
+            error.args = (f"{error}; its history is in {file}", *error.args[1:])
+        raise
+
+
 def main() -> None:
     """Entry point of the `rigdesign` command."""
     sys.exit(_exit_status(lambda: app(result_action="return_value")))
@@ -389,7 +406,36 @@ def _exit_status(command: Callable[[], object]) -> int:
     except KeyboardInterrupt as stop:
         print("; ".join(["rigdesign: interrupted", *getattr(stop, "__notes__", [])]), file=sys.stderr)
         return 130
+    except Exception as error:
+        print(_defect(error), file=sys.stderr)
+        return 70
     return status if isinstance(status, int) else 0
+
+
+def _defect(error: Exception) -> str:
+    """One line on an error that nobody raised on purpose; its traceback goes to a file."""
+    import platform
+    import tempfile
+    import traceback
+
+    from rigdesign.base.errors import WIDEST_PLACE, shortened
+
+    text = (
+        f"rigdesign {__version__}, Python {platform.python_version()}, {platform.platform()}\n"
+        f"{sys.argv!r}\n\n{''.join(traceback.format_exception(error))}"
+    )
+    what = shortened(f"{type(error).__name__}: {error}".replace("\n", " "), WIDEST_PLACE)
+    try:
+        with tempfile.NamedTemporaryFile(
+            "w", prefix="rigdesign-defect-", suffix=".txt", delete=False, encoding="utf-8"
+        ) as file:
+            file.write(text)
+    except OSError:
+        return f"{text}\nrigdesign: internal error, a defect of rigdesign and not of your files: {what}"
+    return (
+        f"rigdesign: internal error, a defect of rigdesign and not of your files: {what}; "
+        f"please report it with the traceback in {file.name}"
+    )
 
 
 def _print_json(document: object) -> None:

@@ -7,7 +7,7 @@ from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.output_folder import staged
 from rigdesign.case.model import Case
 from rigdesign.rig.model import build_rig
-from rigdesign.run.main import solver_errors
+from rigdesign.run.solver_errors import solver_errors
 from thermal.housing.export import write_mesh
 from thermal.housing.gearbox import build_gearbox, mesh_sizes
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.drivetrain.bracing import Mode, ShiftedGear, brace
-from dynamics.drivetrain.static_loop import NotConverged
+from dynamics.errors import NotConverged
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import (

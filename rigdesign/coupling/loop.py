@@ -93,7 +93,14 @@ def solve_point(
         feedback = after
         if fine and _settled(residuals[-1], rig):
             return PointResult(point=point, last=done, setting=setting, residuals=tuple(residuals))
-    raise NotConvergedError(_history(point, residuals, rig))
+    history = {
+        "stage": point.stage,
+        "residuals": [
+            {"temperature_K": r.temperature, "growth_um": 1e6 * r.growth, "torque_relative": r.torque}
+            for r in residuals
+        ],
+    }
+    raise NotConvergedError(_history(point, residuals, rig), history)
 
 
 def _settled(residual: Residual, rig: Rig) -> bool:

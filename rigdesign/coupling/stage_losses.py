@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.bearing.journal import BearingState
-from dynamics.drivetrain.static_loop import NotConverged
+from dynamics.errors import NotConverged
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_torques

@@ -167,8 +167,20 @@ def require_speeds(rig: Rig, schedule: Schedule, response: TimeResponse) -> None
             raise NotConvergedError(
                 f"stage {stage.name!r} {_missed(stage, excess)}: {mean / RPM:.0f} rpm against "
                 f"{stage.speed[1] / RPM:.0f} rpm at {end:.2f} s, limit {limit / RPM:.0f} rpm. "
-                f"{_balance(rig, response, at)}; {_remedy(float(response.drive_torque[at]), float(most))}"
+                f"{_balance(rig, response, at)}; {_remedy(float(response.drive_torque[at]), float(most))}",
+                {"stage": stage.name, "traces": _traces(response)},
             )
+
+
+def _traces(response: TimeResponse) -> dict[str, list[float]]:
+    """Speed and motor torque over the schedule, at 2000 times at most."""
+    every = slice(None, None, max(1, len(response.time) // 2000))
+    return {
+        "time_s": response.time[every].tolist(),
+        "speed_rpm": (response.speed[every] / RPM).tolist(),
+        "speed_command_rpm": (response.speed_command[every] / RPM).tolist(),
+        "drive_torque_Nm": response.drive_torque[every].tolist(),
+    }
 
 
 def mesh_synchronous_window(rig: Rig, speed: float, duration: float) -> float:

@@ -24,7 +24,7 @@ from rigdesign.diagnosis.statistics.next_measurement import Ranked
 from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
 from rigdesign.measurement.places import Places
 from rigdesign.prediction.model import Channel, Setting
-from rigdesign.run.main import solver_errors
+from rigdesign.run.solver_errors import solver_errors
 
 Progress = Callable[[str], None]
 

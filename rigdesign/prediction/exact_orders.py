@@ -7,7 +7,8 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.static_loop import NotConverged, port_model
+from dynamics.drivetrain.static_loop import port_model
+from dynamics.errors import NotConverged
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.orders.deviation_response import OrderLoads

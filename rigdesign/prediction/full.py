@@ -20,8 +20,8 @@ from rigdesign.prediction.model import (
 from rigdesign.prediction.operating import operating_point, rig_at
 from rigdesign.prediction.readings import Settled, readings
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.main import solver_errors
 from rigdesign.run.mesh_refinement import looping_rig, on_mesh
+from rigdesign.run.solver_errors import solver_errors
 from thermal.fe.kernels import one_thread
 
 

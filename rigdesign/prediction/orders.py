@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.static_loop import NotConverged
+from dynamics.errors import NotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.orders.deviation_response import (
     CYCLE_STEPS,

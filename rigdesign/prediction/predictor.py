@@ -37,7 +37,7 @@ from rigdesign.prediction.readings import readings
 from rigdesign.prediction.sensitivities import Directions, Named, PointSlopes, SlopeNumbers, directions_of
 from rigdesign.prediction.static_tests import standing_modes
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.main import solver_errors
+from rigdesign.run.solver_errors import solver_errors
 from thermal.conduction.condition_checks import Condition
 from thermal.fe.kernels import one_thread
 from thermal.fe.mesh import FloatArray

@@ -7,6 +7,7 @@ from typing import Any
 from rigdesign.base.errors import NonFiniteResultError, OutputError
 from rigdesign.base.json_text import to_text
 from rigdesign.base.output_folder import prepare_output, remove_published, staged, write_whole
+from rigdesign.report.failure import FAILURE, write_failure
 from rigdesign.report.results_json import results_document
 from rigdesign.results.result import RunResult
 
@@ -15,6 +16,7 @@ __all__ = [
     "OutputError",
     "prepare_output",
     "results_document",
+    "write_failure",
     "write_results",
     "write_whole",
 ]
@@ -42,7 +44,7 @@ def write_results(result: RunResult, out: Path) -> None:
         files = [path.relative_to(scratch).as_posix() for path in scratch.rglob("*") if path.is_file()]
         document["files"] = sorted([*files, "results.json"])
         (scratch / "results.json").write_text(to_text(document), encoding="utf-8", newline="\n")
-    remove_published(out, sorted(set(earlier) - set(document["files"])))
+    remove_published(out, sorted({*earlier, FAILURE} - set(document["files"])))
 
 
 def _write_fields(result: RunResult, folder: Path) -> list[dict[str, Any]]:

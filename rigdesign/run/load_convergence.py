@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from dynamics.drivetrain.static_loop import NotConverged
+from dynamics.errors import NotConverged
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.checks.dynamics import loaded_stages
 from rigdesign.coupling.loads import Setting, mesh_models, respond

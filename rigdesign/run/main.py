@@ -5,23 +5,13 @@ they give and make the last digits of a result depend on the machine's load.
 """
 
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
-from rigdesign.base.errors import (
-    CaseError,
-    MissingLibraryError,
-    NotConvergedError,
-    RigdesignError,
-    UsageError,
-)
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.finite import require_finite
-from rigdesign.base.system import gmsh_remedy, missing_gmsh_libraries
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.model import Case
 from rigdesign.checks import Subject, all_checks
@@ -40,6 +30,7 @@ from rigdesign.run.dynamic_work import DynamicWork
 from rigdesign.run.load_convergence import load_errors
 from rigdesign.run.mesh_convergence import discretisation
 from rigdesign.run.mesh_refinement import MeshesBeside, looping_rig, on_mesh
+from rigdesign.run.solver_errors import solver_errors
 from rigdesign.run.warnings import not_modelled, unanswered, warnings_of
 from thermal.fe.kernels import one_thread
 
@@ -228,38 +219,3 @@ class _Clock:
         now = time.perf_counter()
         self.laps[name] = round(self.laps.get(name, 0.0) + now - self._last, 3)
         self._last = now
-
-
-def _machine_error(error: OSError | ImportError) -> RigdesignError:
-    """What the machine lacks: gmsh's libraries, another library, or room and rights for files."""
-    missing = missing_gmsh_libraries()
-    if missing or "gmsh" in str(error):
-        return MissingLibraryError(f"{gmsh_remedy(missing)} ({error})")
-    if isinstance(error, ImportError):
-        return MissingLibraryError(
-            f"{error.name or 'a library'} cannot be loaded: {error}; run: rigdesign doctor"
-        )
-    return UsageError(
-        f"the machine refuses a file: {error}; look at free space and rights of the temporary folder and of "
-        "NUMBA_CACHE_DIR"
-    )
-
-
-@contextmanager
-def solver_errors(case: Case) -> Iterator[None]:
-    """Turn what the solvers raise into the tool's errors."""
-    try:
-        yield
-    except RigdesignError:
-        raise
-    except (OSError, ImportError) as error:
-        raise _machine_error(error) from error
-    except np.linalg.LinAlgError as error:
-        raise NotConvergedError(
-            f"a linear system of the run has no solution ({error}): a stiffness of the case is far out of proportion "
-            "to the others, or a step left the flanks open; correct it or change speed and torque"
-        ) from error
-    except ValueError as error:
-        raise CaseError(str(error), str(case.path)) from error
-    except RuntimeError as error:
-        raise NotConvergedError(str(error)) from error

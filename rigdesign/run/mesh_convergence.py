@@ -18,12 +18,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from dynamics.errors import DynamicsError
+from rigdesign.base.errors import RigdesignError
 from rigdesign.coupling.expansion import HousingGrowth
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.temperatures import HousingField, body_mean
 from rigdesign.results.result import Check, DiscretisationRow, MeshShift
 from rigdesign.rig.model import Rig
 from rigdesign.run.mesh_refinement import checked, on_mesh
+from thermal.errors import ThermalError
 from thermal.fe.recovery import energy_error
 
 ZERO = 273.15
@@ -74,7 +77,7 @@ def discretisation(
             continue
         try:
             meshes.append(numbers(other, [on_mesh(other, point, source) for point in settled], governing))
-        except (ValueError, RuntimeError) as error:
+        except (ThermalError, DynamicsError, RigdesignError) as error:
             lost = f"; no result on the mesh of {other.fidelity} fidelity: {error}"
     # after a last pass on a finer mesh the points come from one more pass, as those of the coarser meshes do
     ours = points if rig is not source or not meshes else [on_mesh(rig, point, rig) for point in settled]

@@ -20,7 +20,8 @@ from rigdesign.records.dynamics import DynamicRun, bracing_record, dynamics_resu
 from rigdesign.results.result import Check, DynamicsResult
 from rigdesign.results.verdict import Verdict
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.main import solve_case, solver_errors
+from rigdesign.run.main import solve_case
+from rigdesign.run.solver_errors import solver_errors
 from rigdesign.uncertainty.drive import Array, losses_on_motor, peaks_only, shifted_drive
 from rigdesign.uncertainty.plan import PARTS, Part, RangeEnd
 

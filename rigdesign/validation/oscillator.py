@@ -12,7 +12,8 @@ import numpy as np
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.modal_form import modal_form
-from dynamics.drivetrain.static_loop import NotConverged, port_model
+from dynamics.drivetrain.static_loop import port_model
+from dynamics.errors import NotConverged
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_balance import HarmonicGrid, HarmonicSolution, Problem, solve_periodic
 from dynamics.response.waveform import waveform

@@ -31,7 +31,10 @@ def jobs(checkout: Path) -> Iterator[tuple[str, list[str]]]:
     yield "check_standard", ["check", "cases/uhcf_prototype", "--fidelity", "standard"]
     for measured in sorted(checkout.glob("cases/*/measured/*")):
         case = measured.parents[1].name
-        yield f"diagnose_{case}_{measured.name}", ["diagnose", f"cases/{case}", str(measured.relative_to(checkout))]
+        yield (
+            f"diagnose_{case}_{measured.name}",
+            ["diagnose", f"cases/{case}", str(measured.relative_to(checkout))],
+        )
 
 
 def run(checkout: Path, out: Path) -> None:
@@ -44,7 +47,9 @@ def run(checkout: Path, out: Path) -> None:
         if folder.is_dir():
             continue
         line = [sys.executable, "-c", command, *arguments, "--out", str(folder)]
-        done = subprocess.run(line, cwd=checkout, env=environment, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            line, cwd=checkout, env=environment, capture_output=True, text=True, check=False
+        )
         print(f"{name}: exit {done.returncode}", flush=True)
         if done.returncode not in (0, 1):
             print(done.stderr[-2000:], flush=True)

@@ -5,7 +5,7 @@ import pytest
 from dynamics.drivetrain import bracing
 from dynamics.drivetrain.bracing import ShiftedGear, brace, drift
 from dynamics.drivetrain.graph import assemble
-from dynamics.drivetrain.static_loop import NotConverged
+from dynamics.errors import NotConverged
 from tests.rig_example import TRANSVERSE_ANGLE, prototype, prototype_laws
 
 HELIX = math.radians(18.0)

@@ -12,6 +12,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -158,7 +159,7 @@ def test_help_of_check_lists_its_options() -> None:
 
 HELP = (
     "import sys, time, contextlib, io\n"
-    "from rigdesign import cli\n"
+    "from rigdesign.cli import main as cli\n"
     "sys.argv = ['rigdesign', '--help']\n"
     "with contextlib.redirect_stdout(io.StringIO()), contextlib.suppress(SystemExit):\n"
     "    cli.main()\n"
@@ -241,7 +242,41 @@ def test_status_3_where_the_loop_does_not_settle(rigdesign: Rigdesign, write: Wr
     ended = rigdesign("check", case, "--fidelity", "quick", "--out", tmp_path / "out")
     assert ended.status == 3
     assert "did not settle in 1 passes" in ended.err and "limits 0.05 K" in ended.err
-    assert not (tmp_path / "out").exists()
+    failure = json.loads((tmp_path / "out" / "failure.json").read_text(encoding="utf-8"))
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["failure.json"]
+    assert str(tmp_path / "out" / "failure.json") in ended.err
+    assert failure["history"]["stage"] == "test"
+    assert [set(row) for row in failure["history"]["residuals"]] == [
+        {"temperature_K", "growth_um", "torque_relative"}
+    ]
+
+
+def test_a_run_that_ends_well_removes_what_a_failed_one_left(
+    rigdesign: Rigdesign, write: Write, tmp_path: Path
+) -> None:
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "failure.json").write_text("{}", encoding="utf-8")
+    assert rigdesign("check", write(SMALL), "--fidelity", "quick", "--out", tmp_path / "out").status == 0
+    assert not (tmp_path / "out" / "failure.json").exists()
+
+
+def test_a_defect_ends_with_70_in_one_line(
+    rigdesign: Rigdesign, write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Never 1, which says that a check fails; the traceback is in a file that the line names."""
+
+    def broken(*_: object, **__: object) -> None:
+        raise ValueError("operands could not be broadcast together\nwith shapes (3,) (4,)")
+
+    monkeypatch.setattr("rigdesign.run.main.run_case", broken)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    ended = rigdesign("check", write(SMALL), "--fidelity", "quick")
+    assert ended.status == 70 and ended.out == ""
+    (line,) = (line for line in ended.err.splitlines() if "internal error" in line)
+    (file,) = tmp_path.glob("rigdesign-defect-*.txt")
+    assert str(file) in line and "could not be broadcast together with shapes" in line
+    text = file.read_text(encoding="utf-8")
+    assert "Traceback" in text and "in broken" in text
 
 
 def test_status_3_with_the_torque_balance_where_the_motor_is_too_weak(
@@ -252,7 +287,11 @@ def test_status_3_with_the_torque_balance_where_the_motor_is_too_weak(
     assert "stage 'slow' does not reach its speed" in ended.err
     assert "Torque balance: motor 4.00 N m (drivetrain.motor.torque_limit 4.00 N m), drag of" in ended.err
     assert "raise the limit or give the stage more time" in ended.err
-    assert not (tmp_path / "out").exists()
+    failure = json.loads((tmp_path / "out" / "failure.json").read_text(encoding="utf-8"))
+    traces = failure["history"]["traces"]
+    assert failure["history"]["stage"] == "slow"
+    assert max(traces["drive_torque_Nm"]) == pytest.approx(4.0, rel=1e-3)
+    assert 100 < len(traces["time_s"]) == len(traces["speed_rpm"]) <= 4000
 
 
 @pytest.fixture

@@ -21,8 +21,8 @@ from thermal.conditions.boundary import (
 from thermal.conduction.condition_checks import ConditionError
 from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.conduction.terms import ConductionProblem
+from thermal.errors import NotConverged
 from thermal.fe.mesh import NamedMesh
-from thermal.fe.solver import NotConverged
 from thermal.films.law import FilmCoefficient
 
 

@@ -21,7 +21,7 @@ from thermal.conduction.newton import newton
 from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
 from thermal.conduction.stream_terms import VolumeTerms
 from thermal.conduction.terms import ConductionProblem
-from thermal.fe.solver import NotConverged
+from thermal.errors import NotConverged
 from thermal.films.law import FilmLaw
 
 

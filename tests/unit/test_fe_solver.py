@@ -8,21 +8,14 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy import sparse
 from scipy.spatial import Delaunay
 
+from thermal.errors import NotConverged
 from thermal.fe import direct
 from thermal.fe.aggregation import rigid_modes
 from thermal.fe.direct import Backend, DirectError, available_backend
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union, second_order
 from thermal.fe.smoothing import Scaling
-from thermal.fe.solver import (
-    LowRank,
-    NotConverged,
-    TwoLevelMultigrid,
-    conjugate_gradient,
-    constrain,
-    gmres,
-    solve_direct,
-)
+from thermal.fe.solver import LowRank, TwoLevelMultigrid, conjugate_gradient, constrain, gmres, solve_direct
 
 
 def heat_problem(divisions: int, held: bool = False):

@@ -8,7 +8,8 @@ from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.modal_form import modal_form
 from dynamics.drivetrain.parts import Motor
-from dynamics.drivetrain.static_loop import NotConverged, port_model
+from dynamics.drivetrain.static_loop import port_model
+from dynamics.errors import NotConverged
 from dynamics.mesh.law import MeshLaw
 from dynamics.response import harmonic_balance
 from dynamics.response.harmonic_balance import HarmonicGrid, Problem, resample, solve_periodic

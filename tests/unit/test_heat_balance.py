@@ -18,7 +18,7 @@ from thermal.conditions.boundary import SurfaceSource as Source
 from thermal.conduction.balance import heat_balance
 from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
 from thermal.conduction.terms import ConductionProblem
-from thermal.fe.solver import NotConverged
+from thermal.errors import NotConverged
 
 PLACES = [(type(c).__name__, getattr(c, "kind", "")) for c in conditions() if hasattr(c, "kind")]
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.drivetrain.static_loop import NotConverged
+from dynamics.errors import NotConverged
 from rigdesign.coupling.drag_torques import drag_torques
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import PlacedLoss, oil_jets

@@ -16,8 +16,8 @@ from thermal.conduction.capacity import Storage
 from thermal.conduction.condition_checks import Condition, ConditionError
 from thermal.conduction.conductivity import Conductivity
 from thermal.conduction.steady import ConductionSetup, solve_steady
+from thermal.errors import NotConverged
 from thermal.fe.mesh import box_mesh, disjoint_union
-from thermal.fe.solver import NotConverged
 from thermal.films.law import FilmCoefficient
 from thermal.transient.history import ThermalStage, TransientSolution, settling_time, solve_transient
 from thermal.transient.probes import Probe

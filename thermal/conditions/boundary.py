@@ -7,10 +7,11 @@ All temperatures in kelvin, all powers in watt, positive into the solid.
 
 from dataclasses import dataclass
 
+from thermal.errors import ThermalInputError
 from thermal.films.law import ExchangeLaw, FilmLaw
 
 
-class ConditionError(ValueError):
+class ConditionError(ThermalInputError):
     """A condition that cannot be computed; the message names place, value, limit and remedy."""
 
 

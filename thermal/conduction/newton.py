@@ -13,14 +13,9 @@ import numpy as np
 from scipy import sparse
 
 from thermal.conduction.terms import ConductionProblem, Linearisation, Preconditioner
+from thermal.errors import NotConverged, ThermalInputError
 from thermal.fe.mesh import FloatArray
-from thermal.fe.solver import (
-    LinearSolution,
-    LinearSpace,
-    NotConverged,
-    conjugate_gradient,
-    gmres,
-)
+from thermal.fe.solver import LinearSolution, LinearSpace, conjugate_gradient, gmres
 
 CONTRACTION = 0.1
 """Fall of the residual in a Newton step of a time step below which the Jacobian is made afresh."""
@@ -135,7 +130,7 @@ def linear_start(problem: ConductionProblem, field: FloatArray) -> FloatArray:
         whole = parts.whole(residual, np.where(problem.fixed, 0.0, up @ step.values))
         try:
             field, residual, turned = _line_search(problem, field, whole, residual, norm)
-        except ValueError:  # of a film law
+        except ThermalInputError:  # of a film law
             break
     return field
 
@@ -190,7 +185,7 @@ def _line_search(
         if trial.min() > 0.0:
             try:
                 out, turned = problem.heat_out(trial)
-            except ValueError:
+            except ThermalInputError:
                 if last:
                     raise
             else:

@@ -33,9 +33,9 @@ from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition, ConditionError
 from thermal.conduction.heat_rows import HeatRow
 from thermal.conduction.setup import ConductionSetup
+from thermal.errors import NotConverged
 from thermal.fe.low_rank import DIFFERENCE
 from thermal.fe.mesh import FloatArray
-from thermal.fe.solver import NotConverged
 from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient
 
 STEPS = 30

@@ -13,8 +13,8 @@ from thermal.conduction.conductivity import Conductivity
 from thermal.conduction.newton import linear_start, newton
 from thermal.conduction.setup import ConductionSetup as ConductionSetup
 from thermal.conduction.terms import ConductionProblem, Preconditioner
+from thermal.errors import NotConverged
 from thermal.fe.mesh import FloatArray, NamedMesh
-from thermal.fe.solver import NotConverged
 
 CLOSURE = 1e-8
 """Greatest allowed gap of the heat balance relative to the heat turned over."""

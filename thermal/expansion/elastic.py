@@ -13,20 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from thermal.errors import NotConverged
 from thermal.expansion.supports import ElasticError, FreePieces, check_held, three_two_one
 from thermal.fe.aggregation import rigid_modes
 from thermal.fe.curved import linear_stiffness
 from thermal.fe.direct import solve_direct
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray, IndexArray
-from thermal.fe.solver import (
-    BoolArray,
-    LinearSolution,
-    NotConverged,
-    TwoLevelMultigrid,
-    conjugate_gradient,
-    constrain,
-)
+from thermal.fe.solver import BoolArray, LinearSolution, TwoLevelMultigrid, conjugate_gradient, constrain
 
 __all__ = [
     "Displacement",

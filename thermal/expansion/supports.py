@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from thermal.errors import ThermalInputError
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray, IndexArray
 from thermal.fe.solver import BoolArray
@@ -17,7 +18,7 @@ DETERMINATE = 1e-6
 """Least over largest singular value of what six supports say about a rigid motion."""
 
 
-class ElasticError(ValueError):
+class ElasticError(ThermalInputError):
     """Elastic data or supports that cannot be computed; the message names body, value, limit and remedy."""
 
 

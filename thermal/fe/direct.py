@@ -12,12 +12,13 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
+from thermal.errors import ThermalInputError
 from thermal.fe.shapes import FloatArray
 
 Backend = Literal["pardiso", "superlu"]
 
 
-class DirectError(ValueError):
+class DirectError(ThermalInputError):
     """A direct solver that is not there; the message names it and what to install."""
 
 

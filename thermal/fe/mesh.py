@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from thermal.errors import ThermalInputError
 from thermal.fe.numbering import Numbering
 from thermal.fe.shapes import (
     CELLS,
@@ -48,7 +49,7 @@ GMSH_NODE_ORDER = TETRAHEDRON_10.gmsh_order
 CellName = Literal["tetra10", "hexahedron20", "hexahedron27"]
 
 
-class MeshError(ValueError):
+class MeshError(ThermalInputError):
     """A mesh that cannot be computed with; the message names body or surface, the fault and the remedy."""
 
 

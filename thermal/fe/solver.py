@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 from scipy import sparse
 
+from thermal.errors import NotConverged
 from thermal.fe import kernels
 from thermal.fe.direct import solve_direct
 from thermal.fe.multigrid import LinearSpace, TwoLevelMultigrid
@@ -22,7 +23,6 @@ __all__ = [
     "LinearSpace",
     "LowRank",
     "Matrix",
-    "NotConverged",
     "Operator",
     "Product",
     "TwoLevelMultigrid",
@@ -34,14 +34,6 @@ __all__ = [
 
 M = TypeVar("M", sparse.csr_array, sparse.bsr_array)
 Operator = Callable[[FloatArray], FloatArray]
-
-
-class NotConverged(RuntimeError):  # noqa: N818
-    """An iteration that did not reach its tolerance; ``residuals`` holds its history."""
-
-    def __init__(self, message: str, residuals: tuple[float, ...]) -> None:
-        super().__init__(message)
-        self.residuals = residuals
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,15 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
+from thermal.errors import ThermalInputError
+
 ATMOSPHERE = 101325.0
 """[Pa]"""
 LOWEST, HIGHEST = 200.0, 1000.0
 """Temperatures [K] between which properties are given."""
 
 
-class AirRangeError(ValueError):
+class AirRangeError(ThermalInputError):
     """An air temperature at which no correlation of this package holds."""
 
 

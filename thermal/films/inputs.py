@@ -2,8 +2,10 @@
 
 import math
 
+from thermal.errors import ThermalInputError
 
-class FilmError(ValueError):
+
+class FilmError(ThermalInputError):
     """An input no film law can take; the message names quantity, value, limit and remedy."""
 
 

@@ -21,6 +21,8 @@ from dataclasses import dataclass, fields
 from itertools import combinations
 from typing import Literal
 
+from thermal.errors import ThermalInputError
+
 Side = Literal["front", "rear"]
 SIDES: tuple[Side, Side] = ("front", "rear")
 MINIMUM_LAND = 1e-3
@@ -29,7 +31,7 @@ SMALLEST_STEP = 1e-6
 """Protrusion [m] below which a bearing counts as flush with its wall."""
 
 
-class GeometryError(ValueError):
+class GeometryError(ThermalInputError):
     """A gearbox that cannot be built; the message names the quantity, its value, the limit and the remedy."""
 
 
@@ -249,7 +251,7 @@ class HousingGeometry:
     def gear_limits(self, shaft: ShaftGeometry) -> tuple[float, float]:
         """x of the two sides of the gear of ``shaft`` [m]; ValueError for a shaft without a gear."""
         if shaft.gear is None:
-            raise ValueError(f"shaft {shaft.name} carries no gear")
+            raise ThermalInputError(f"shaft {shaft.name} carries no gear")
         middle = (self.partition_front[1] + self.partition_rear[0]) / 2.0 + shaft.gear.offset
         return middle - shaft.gear.width / 2.0, middle + shaft.gear.width / 2.0
 

@@ -16,8 +16,8 @@ from thermal.conduction.condition_checks import Condition, ConditionError, check
 from thermal.conduction.conductivity import Conductivity
 from thermal.conduction.steady import CLOSURE, ConductionSetup
 from thermal.conduction.terms import OFF_REST, ConductionProblem
+from thermal.errors import NotConverged
 from thermal.fe.mesh import FloatArray, IndexArray, NamedMesh
-from thermal.fe.solver import NotConverged
 from thermal.transient.energy import EnergyAccount, EnergyBalance
 from thermal.transient.probes import Probe, Reader, reader
 from thermal.transient.time_steps import STAGE_WEIGHTS, ProblemAt, Step, Stepper, landing, next_length

@@ -118,13 +118,14 @@ def _profile_shifts(at: str, mesh: "GearMesh", pinion: "Gear", wheel: "Gear") ->
         )  # fmt: skip
     if len(given) < 2 or mesh.profile_shift_split is not None:
         return
+    from dynamics.gear.cylindrical_gear import GearGeometryError
     from dynamics.gear.line_of_action import shift_sum
 
     try:
         total = shift_sum(
             mesh.normal_module, mesh.pressure_angle, mesh.helix_angle, (pinion.teeth, wheel.teeth), mesh.centre_distance
         )  # fmt: skip
-    except ValueError:
+    except GearGeometryError:
         return  # gears that cannot mesh are another fault
     if abs(sum(given) - total) > SHIFT_TOLERANCE:
         yield Fault(

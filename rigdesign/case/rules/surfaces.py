@@ -21,6 +21,7 @@ from rigdesign.case.housing import (
 )
 from rigdesign.case.paths import nearest
 from rigdesign.case.rules.flanks import GEAR_RIMS, flank_faults
+from thermal.errors import ThermalInputError
 from thermal.housing.surfaces import surface_names
 
 POSITION_TOLERANCE = 1e-4
@@ -38,7 +39,7 @@ def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
         return faults
     try:
         names = tuple(surface_names(housing_geometry(gearbox)))
-    except ValueError as error:
+    except ThermalInputError as error:
         return [Fault(f"{at}.housing", "", str(error), "correct the measures of the housing")]
     if housing.mesh_file is None:
         return boundary_faults(name, gearbox, names)
