@@ -23,7 +23,7 @@ from rigdesign.diagnosis.residual.residual_problem import compare
 from rigdesign.diagnosis.run import Result, mesh_orders, stated_settings, teeth_a_turn
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.measurement import features, load_measurement
-from rigdesign.prediction.model import Feature, Setting, features_of
+from rigdesign.prediction.model import Feature, OperatingCondition, features_of
 
 CASE = Path(__file__).parents[1] / "cases" / "loop_1to1"
 RPM = np.pi / 30.0
@@ -94,10 +94,10 @@ def the_case():
     return load_case(CASE)
 
 
-def settings(count: int) -> tuple[Setting, ...]:
+def settings(count: int) -> tuple[OperatingCondition, ...]:
     pairs = [(speed, torque) for speed in SPEEDS for torque in TORQUES][:count]
     return tuple(
-        Setting(
+        OperatingCondition(
             name=f"P{number:02d}",
             speed=speed * RPM,
             torque=torque,
@@ -107,12 +107,12 @@ def settings(count: int) -> tuple[Setting, ...]:
     )
 
 
-def mesh_loss(run: Setting) -> float:
+def mesh_loss(run: OperatingCondition) -> float:
     """No law that an anonymous source has [W]."""
     return 0.12 * run.speed**0.6 * run.torque**1.15
 
 
-def base(feature: Feature, run: Setting) -> float:
+def base(feature: Feature, run: OperatingCondition) -> float:
     """The rig as its model has it [SI]."""
     mesh, bearing = mesh_loss(run), 0.006 * run.speed**2
     inlet = run.inlet_temperature["test.gear_oil"]
@@ -131,7 +131,7 @@ def base(feature: Feature, run: Setting) -> float:
     return size * (0.8 if feature.part == "real" else 0.6)
 
 
-def answer(effect: str, at: Sequence[float], feature: Feature, run: Setting) -> float:
+def answer(effect: str, at: Sequence[float], feature: Feature, run: OperatingCondition) -> float:
     """Change that an effect makes [SI]."""
     mesh, bearing = mesh_loss(run), 0.006 * run.speed**2
     if effect.startswith("run_out") and feature.order in (1.0, 27.0, 29.0):
@@ -167,7 +167,7 @@ MODELLED = (
 )  # fmt: skip
 
 
-def library(runs: Sequence[Setting], channels, *, without: Sequence[str] = ()) -> Library:
+def library(runs: Sequence[OperatingCondition], channels, *, without: Sequence[str] = ()) -> Library:
     names = features_of(runs, channels)
     by_name = {run.name: run for run in runs}
 
@@ -221,7 +221,7 @@ def write_set(folder: Path, rig: Rig, *, title: str = "trial", baseline: str = "
     orders = ["point,repeat,channel,order,real,imaginary"]
     shift = {"P": 0.0, "T_gear": 273.15, "T_bearing": 273.15, "M_wheel": 0.0}
 
-    def read(channel: str, run: Setting, order: float = 0.0, part: str = "value") -> float:
+    def read(channel: str, run: OperatingCondition, order: float = 0.0, part: str = "value") -> float:
         feature = Feature(channel, run.name, order, part)
         value = base(feature, run) + sum(answer(name, at, feature, run) for name, at in rig.hidden.items())
         return value - shift[channel] + NOISE[channel] * rng.normal()
@@ -273,7 +273,7 @@ def result_of(folder: Path, *, without: Sequence[str] = (), calibration: Calibra
     )  # fmt: skip
 
 
-def rerun(runs: Sequence[Setting]):
+def rerun(runs: Sequence[OperatingCondition]):
     """The formulas with effects in them, as `rigdesign.diagnosis.decision.proof.FullRun` runs the model."""
     by_name = {run.name: run for run in runs}
 

@@ -6,8 +6,8 @@ from math import pi
 
 from rigdesign import load_case
 from rigdesign.case import Case
-from rigdesign.coupling.initial_state import cold_feedback
-from rigdesign.coupling.loads import MeshModel, Setting, brace_cold, mesh_models
+from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.loads import BracingState, MeshModel, brace_cold, mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig, build_rig
@@ -33,7 +33,7 @@ class Settled:
     rig: Rig
     point: OperatingPoint
     models: tuple[MeshModel, ...]
-    setting: Setting
+    setting: BracingState
 
     @property
     def arguments(self):
@@ -43,7 +43,7 @@ class Settled:
 def settled(case: Case, rpm: float, torque: float) -> Settled:
     rig = build_rig(case, "quick")
     point = OperatingPoint(stage="test", speed=rpm * pi / 30.0, torque=torque)
-    cold = cold_feedback(rig, point)
+    cold = initial_state(rig, point)
     return Settled(rig, point, mesh_models(rig, point, cold), brace_cold(rig, point, cold))
 
 

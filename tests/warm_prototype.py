@@ -4,14 +4,14 @@ import math
 from functools import cache
 
 from rigdesign.case import Case, load_case
-from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.heat import cooler
 from rigdesign.rig.model import Rig, build_rig
 
 Changes = tuple[tuple[str, object], ...]
-Settled = tuple[Rig, PassResult]
+Settled = tuple[Rig, IterationResult]
 
 
 @cache
@@ -40,38 +40,40 @@ def settled(*changes: tuple[str, object], remesh: bool = False) -> Settled:
         return rig, result.last
     changed = build_rig(case_with(changes), "quick")
     if remesh:
-        return changed, solve_point(changed, result.point, start=result.last.feedback).last
+        return changed, solve_point(changed, result.point, start=result.last.coupling_state).last
     changed = changed.with_models(rig.models)
-    return changed, solve_point(changed, result.point, start=result.last.feedback, before=result.last).last
+    return changed, solve_point(
+        changed, result.point, start=result.last.coupling_state, before=result.last
+    ).last
 
 
-def lost(last: PassResult, kind: str, gearbox: str = "test") -> float:
+def lost(last: IterationResult, kind: str, gearbox: str = "test") -> float:
     """Sum of the losses of a kind in a gearbox [W]."""
     return math.fsum(p.loss.power for p in last.losses if (p.loss.kind, p.gearbox) == (kind, gearbox))
 
 
-def lost_in_all(last: PassResult) -> float:
+def lost_in_all(last: IterationResult) -> float:
     """Sum of all losses [W]."""
     return math.fsum(placed.loss.power for placed in last.losses)
 
 
-def drive_power(rig: Rig, last: PassResult) -> float:
+def drive_power(rig: Rig, last: IterationResult) -> float:
     """What the motor gives [W]."""
     assert last.response is not None
     return last.response.drive_torque * rig.drive_speed(last.point.speed)
 
 
-def outlet(last: PassResult, stream: str) -> float:
+def outlet(last: IterationResult, stream: str) -> float:
     """Temperature with which an oil stream comes back [K]."""
     return next(entry.outlet for entry in last.streams if entry.name == stream)
 
 
-def heat_by_kind(last: PassResult) -> dict[str, float]:
+def heat_by_kind(last: IterationResult) -> dict[str, float]:
     """Heat balance of the test housing by kind [W], positive into the solids."""
     return last.fields["test"].solution.balance.by_kind()
 
 
-def open_share(rig: Rig, last: PassResult) -> float:
+def open_share(rig: Rig, last: IterationResult) -> float:
     """What losses and heaters put in beyond what cooler and room take out, over the losses."""
     parts = cooler(rig, last)
     return abs(float(parts["open_W"])) / float(parts["losses_W"])

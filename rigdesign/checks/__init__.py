@@ -4,27 +4,27 @@ from rigdesign.checks import alignment, dynamics, ramp, strength, thermal
 from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.rules import with_error, with_omissions
-from rigdesign.records.solved_rig import Subject
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check
 
-__all__ = ["Subject", "all_checks", "held_checks"]
+__all__ = ["all_checks", "held_checks"]
 
 
-def all_checks(subject: Subject) -> list[Check]:
+def all_checks(solved: SolvedRig) -> list[Check]:
     """Every check in the order of the report, each with its discretisation error and the assumed inputs it rests on."""
     return [
-        with_error(with_assumptions(subject.case, check), subject.mesh_errors.get(check.id))
-        for check in held_checks(subject)
+        with_error(with_assumptions(solved.case, check), solved.mesh_errors.get(check.id))
+        for check in held_checks(solved)
     ]
 
 
-def held_checks(subject: Subject) -> list[Check]:
+def held_checks(solved: SolvedRig) -> list[Check]:
     """Every check in the order of the report with what its value leaves out, without its assumed inputs."""
     held = (
-        *dynamics.checks(subject),
-        *strength.checks(subject),
-        *thermal.checks(subject),
-        *alignment.checks(subject),
-        *ramp.checks(subject),
+        *dynamics.checks(solved),
+        *strength.checks(solved),
+        *thermal.checks(solved),
+        *alignment.checks(solved),
+        *ramp.checks(solved),
     )
-    return [with_omissions(check, omissions(subject, check)) for check in held]
+    return [with_omissions(check, omissions(solved, check)) for check in held]

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from rigdesign.case.drivetrain import Coupling
 from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.coupling.alignment import AlignmentQuantity
-from rigdesign.records.solved_rig import NO_LIMIT, Subject, worst
+from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig, worst
 from rigdesign.results.result import Check
 
 GROUP = "alignment"
@@ -43,26 +43,26 @@ KINDS: dict[AlignmentQuantity, Kind] = {
 """Every quantity whose limit stands under ``limits.alignment``; its key is the quantity with ``_maximum``."""
 
 
-def checks(subject: Subject) -> Iterator[Check]:
+def checks(solved: SolvedRig) -> Iterator[Check]:
     """One check for every quantity, two for every coupling."""
     for quantity, kind in KINDS.items():
         values = (
             (abs(row[kind.entry]), f"{row[kind.place]}, stage {growth.stage}")
-            for growth in subject.growth
+            for growth in solved.growth
             for row in getattr(growth, kind.rows)
         )
-        limit = getattr(subject.case.limits.alignment, f"{quantity}_maximum")
+        limit = getattr(solved.case.limits.alignment, f"{quantity}_maximum")
         rule = Rule(
             id=f"alignment.{quantity}", title=kind.title, unit=kind.unit, group=GROUP,
             source=f"limits.alignment.{quantity}_maximum", limit=None if limit is None else kind.scale * limit,
         )  # fmt: skip
-        yield _held(rule, list(values), subject.no_clearances)
-    train = subject.case.drivetrain
+        yield _held(rule, list(values), solved.no_clearances)
+    train = solved.case.drivetrain
     for name, coupling in () if train is None else train.couplings.items():
-        yield from _coupling(subject, name, coupling)
+        yield from _coupling(solved, name, coupling)
 
 
-def _coupling(subject: Subject, name: str, coupling: Coupling) -> Iterator[Check]:
+def _coupling(solved: SolvedRig, name: str, coupling: Coupling) -> Iterator[Check]:
     """Offset and angle of a coupling, the larger of cold and hot."""
     for key, words, unit, limit, attribute in (
         ("offset", "radial offset", "mm", coupling.radial_offset_maximum, "radial_offset_maximum"),
@@ -75,12 +75,12 @@ def _coupling(subject: Subject, name: str, coupling: Coupling) -> Iterator[Check
         )  # fmt: skip
         values = [
             (float(row[f"{key}_{state}_{unit}"]), _where(row, state, growth.stage))
-            for growth in subject.growth
+            for growth in solved.growth
             for row in growth.couplings
             if row["coupling"] == name
             for state in ("hot", "cold")
         ]
-        yield _held(rule, values, subject.no_clearances if not subject.growth else NO_END)
+        yield _held(rule, values, solved.no_clearances if not solved.growth else NO_END)
 
 
 def _where(row: dict[str, object], state: str, stage: str) -> str:

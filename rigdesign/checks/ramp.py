@@ -8,7 +8,7 @@ from rigdesign.checks.component_limits import bought_parts
 from rigdesign.checks.rules import Rule, exact, hold, not_applicable
 from rigdesign.checks.thermal import transition_speed_rpm
 from rigdesign.coupling.time_run import schedule_of
-from rigdesign.records.solved_rig import NO_LIMIT, Subject
+from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig
 from rigdesign.results.result import Check
 
 RPM = 30.0 / math.pi
@@ -20,18 +20,18 @@ SOURCES = {
 }
 
 
-def checks(subject: Subject) -> list[Check]:
+def checks(solved: SolvedRig) -> list[Check]:
     """Ramp rules of the paper, the transition speed they rest on, then the bought parts."""
     return [
-        *_ramp(subject),
-        _transition(subject),
-        *bought_parts(subject),
+        *_ramp(solved),
+        _transition(solved),
+        *bought_parts(solved),
     ]
 
 
-def _ramp(subject: Subject) -> Iterator[Check]:
+def _ramp(solved: SolvedRig) -> Iterator[Check]:
     """The rules of the paper, each where the case states what it needs."""
-    case, limits = subject.case, subject.case.limits
+    case, limits = solved.case, solved.case.limits
     start, share = limits.bearing.start_torque_limit, limits.ramp.run_up_torque_share_maximum
     floating = limits.ramp.transition_speed
     stated = {
@@ -40,7 +40,7 @@ def _ramp(subject: Subject) -> Iterator[Check]:
         "ramp.run_up_torque": share is not None and floating is not None,
         "ramp.test_torque": True,
     }
-    rig = subject.rig
+    rig = solved.rig
     rules = ramp_rules(
         schedule_of(rig),
         RampLimits(
@@ -65,16 +65,16 @@ def _ramp(subject: Subject) -> Iterator[Check]:
             yield exact(hold(rule, entry.value, f"stage {entry.stage} at {entry.time:.2f} s"))
 
 
-def _transition(subject: Subject) -> Check:
+def _transition(solved: SolvedRig) -> Check:
     """The computed transition speed under the start torque against the one the ramp relies on."""
-    limit = subject.case.limits.ramp.transition_speed
+    limit = solved.case.limits.ramp.transition_speed
     rule = Rule(
         id="bearing.transition_speed", title="transition speed of the bearings under the start torque", unit="rpm",
         source="Vogelpohl, against limits.ramp.transition_speed", group="bearings",
         limit=None if limit is None else limit * RPM,
     )  # fmt: skip
-    start = subject.case.limits.bearing.start_torque_limit
-    if limit is None or start is None or not any(point.point.torque for point in subject.points):
+    start = solved.case.limits.bearing.start_torque_limit
+    if limit is None or start is None or not any(point.point.torque for point in solved.points):
         return not_applicable(rule, NO_LIMIT)
-    value, where = transition_speed_rpm(subject, start)
+    value, where = transition_speed_rpm(solved, start)
     return hold(rule, value, f"{where}, load of the start torque")

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dynamics.rating.iso_rating import permissible_factors, root_stress, transverse_load_factor
 from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.records.curves import iso_factor
-from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, Subject, worst
+from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.result import Check
 
 SOURCES = {
@@ -19,61 +19,61 @@ REVERSED = 0.7
 RPM = 30.0 / math.pi
 
 
-def checks(subject: Subject) -> list[Check]:
+def checks(solved: SolvedRig) -> list[Check]:
     """Root stress of every gear of every mesh, then the load cycles of the specimens."""
-    found = [check for mesh in range(len(subject.rig.mesh_names)) for check in _of_mesh(subject, mesh)]
-    return [*found, _load_cycles(subject)]
+    found = [check for mesh in range(len(solved.rig.mesh_names)) for check in _of_mesh(solved, mesh)]
+    return [*found, _load_cycles(solved)]
 
 
-def _of_mesh(subject: Subject, mesh: int) -> Iterator[Check]:
+def _of_mesh(solved: SolvedRig, mesh: int) -> Iterator[Check]:
     """A window for specimens, a safety for the rig's own gears."""
-    check = _window if subject.role(mesh) == "specimen" else _safety
+    check = _window if solved.role(mesh) == "specimen" else _safety
     for index in (0, 1):
         for kind in ("iso", "path"):
-            yield check(subject, mesh, index, kind)
+            yield check(solved, mesh, index, kind)
 
 
-def _window(subject: Subject, mesh: int, index: int, kind: str) -> Check:
-    window = subject.case.limits.specimen
+def _window(solved: SolvedRig, mesh: int, index: int, kind: str) -> Check:
+    window = solved.case.limits.specimen
     low, high = window.root_stress_minimum, window.root_stress_maximum
-    label, gear = subject.label(mesh), subject.rig.mesh_gear_name(mesh, index)
+    label, gear = solved.label(mesh), solved.rig.mesh_gear_name(mesh, index)
     rule = Rule(
         id=f"specimen.root_stress_{kind}.{label}.{gear}",
         title=f"root stress of specimen {label} {gear}, {TITLES[kind]}", unit="MPa", source=SOURCES[kind],
         group="specimen", role="specimen", limit=None if low is None else 1e-6 * low,
         upper_limit=None if high is None else 1e-6 * high, comparison="within",
     )  # fmt: skip
-    if subject.run is None or low is None:
-        return not_applicable(rule, NO_LOADS if subject.run is None else NO_LIMIT)
-    return hold(rule, *_stress(subject, mesh, index, kind))
+    if solved.run is None or low is None:
+        return not_applicable(rule, NO_LOADS if solved.run is None else NO_LIMIT)
+    return hold(rule, *_stress(solved, mesh, index, kind))
 
 
-def _safety(subject: Subject, mesh: int, index: int, kind: str) -> Check:
-    limit = subject.case.limits.strength.root_safety_minimum
-    label, gear = subject.label(mesh), subject.rig.mesh_gear_name(mesh, index)
+def _safety(solved: SolvedRig, mesh: int, index: int, kind: str) -> Check:
+    limit = solved.case.limits.strength.root_safety_minimum
+    label, gear = solved.label(mesh), solved.rig.mesh_gear_name(mesh, index)
     rule = Rule(
         id=f"strength.root_safety_{kind}.{label}.{gear}", title=f"root safety of {label} {gear}, {TITLES[kind]}",
         unit="-", source=f"{SOURCES[kind]}; sigma_FE of the material, ISO 6336-3:2006 clauses 12, 13, 15",
         group="dynamics", limit=limit, comparison=">=",
     )  # fmt: skip
-    material = subject.rig.materials[subject.rig.mesh_gear(mesh, index).material]
-    if subject.run is None or limit is None:
-        return not_applicable(rule, NO_LOADS if subject.run is None else NO_LIMIT)
+    material = solved.rig.materials[solved.rig.mesh_gear(mesh, index).material]
+    if solved.run is None or limit is None:
+        return not_applicable(rule, NO_LOADS if solved.run is None else NO_LIMIT)
     if material.root_strength is None:
         return not_applicable(rule, f"material {material.title} has no root strength")
-    stress, how = _stress(subject, mesh, index, kind)
-    share, factors = _strength_share(subject, mesh, index)
+    stress, how = _stress(solved, mesh, index, kind)
+    share, factors = _strength_share(solved, mesh, index)
     strength = 1e-6 * share * material.root_strength
     reason = f"{how}; sigma_F {stress:.0f} MPa of {strength:.0f} MPa = sigma_FE {factors}"
     return hold(rule, strength / stress, reason)
 
 
-def _stress(subject: Subject, mesh: int, index: int, kind: str) -> tuple[float, str]:
+def _stress(solved: SolvedRig, mesh: int, index: int, kind: str) -> tuple[float, str]:
     """Highest root stress [MPa] of one gear over the held stages and how it came about."""
     if kind == "iso":
-        return worst(_iso_stresses(subject, mesh, index))
-    assert subject.dynamics is not None
-    history = subject.dynamics.gearboxes[subject.label(mesh)].root_stress[index]
+        return worst(_iso_stresses(solved, mesh, index))
+    assert solved.dynamics is not None
+    history = solved.dynamics.gearboxes[solved.label(mesh)].root_stress[index]
     dynamic, static = max(history.dynamic_MPa), max(history.quasi_static_MPa)
     return (
         dynamic,
@@ -81,14 +81,14 @@ def _stress(subject: Subject, mesh: int, index: int, kind: str) -> tuple[float, 
     )
 
 
-def _iso_stresses(subject: Subject, mesh: int, index: int) -> Iterator[tuple[float, str]]:
+def _iso_stresses(solved: SolvedRig, mesh: int, index: int) -> Iterator[tuple[float, str]]:
     """sigma_F [MPa] of ISO 6336-3 at every held stage, with the simulated K_V in K_Falpha too."""
-    rig = subject.rig
+    rig = solved.rig
     name = rig.mesh_names[mesh]
     pair, gear = rig.pairs[name], rig.mesh_gear(mesh, index)
     box, own = rig.mesh(name)
     entry = box.meshes[own]
-    for point in subject.points:
+    for point in solved.points:
         response = point.last.response
         assert response is not None
         torque, factor = float(response.mean[mesh]), float(response.dynamic_factor[mesh])
@@ -107,11 +107,11 @@ def _iso_stresses(subject: Subject, mesh: int, index: int) -> Iterator[tuple[flo
         )
 
 
-def _strength_share(subject: Subject, mesh: int, index: int) -> tuple[float, str]:
+def _strength_share(solved: SolvedRig, mesh: int, index: int) -> tuple[float, str]:
     """Share of sigma_FE that the planned cycles, notch, size and reversed bending leave, and its factors."""
-    rig = subject.rig
+    rig = solved.rig
     gear = rig.mesh_gear(mesh, index)
-    cycles = _cycles(subject, gear.shaft) * subject.case.test_plan.specimens
+    cycles = _cycles(solved, gear.shaft) * solved.case.test_plan.specimens
     factors = permissible_factors(rig.pairs[rig.mesh_names[mesh]], index, cycles)
     share = math.prod(factors.values())
     words = " ".join(f"{symbol} {value:.3f}" for symbol, value in factors.items())
@@ -123,18 +123,18 @@ def _strength_share(subject: Subject, mesh: int, index: int) -> tuple[float, str
     return share, words
 
 
-def _cycles(subject: Subject, shaft: str) -> float:
+def _cycles(solved: SolvedRig, shaft: str) -> float:
     """Turns of a shaft in the planned time at test speed.
 
     A tooth is loaded once a turn; an idler's two meshes load opposite flanks, one cycle of reversed bending.
     """
-    speed = subject.rig.shaft_speed(shaft, subject.case.schedule.test_speed)
-    return subject.case.test_plan.time * speed / (2.0 * math.pi)
+    speed = solved.rig.shaft_speed(shaft, solved.case.schedule.test_speed)
+    return solved.case.test_plan.time * speed / (2.0 * math.pi)
 
 
-def _load_cycles(subject: Subject) -> Check:
+def _load_cycles(solved: SolvedRig) -> Check:
     """The slowest specimen gear has to get its cycles."""
-    limit = subject.case.limits.specimen.load_cycles_minimum
+    limit = solved.case.limits.specimen.load_cycles_minimum
     rule = Rule(
         id="specimen.load_cycles", title="load cycles of a specimen tooth in the planned time", unit="-",
         source="limits.specimen.load_cycles_minimum; test_plan.time at test speed", group="specimen", role="specimen",
@@ -143,16 +143,16 @@ def _load_cycles(subject: Subject) -> Check:
     if limit is None:
         return not_applicable(rule, NO_LIMIT)
     specimens = [
-        (_cycles(subject, gear.shaft), f"{name}.{key} at {_gear_rpm(subject, gear.shaft):.0f} rpm")
-        for name, box in subject.case.gearboxes.items()
+        (_cycles(solved, gear.shaft), f"{name}.{key} at {_gear_rpm(solved, gear.shaft):.0f} rpm")
+        for name, box in solved.case.gearboxes.items()
         if box.role == "specimen"
         for key, gear in box.gears.items()
     ]
     if not specimens:
         return not_applicable(rule, "no gearbox is a specimen")
     value, where = worst(specimens, smallest=True)
-    return hold(rule, value, f"{subject.case.test_plan.time / 3600.0:.0f} h of {where}")
+    return hold(rule, value, f"{solved.case.test_plan.time / 3600.0:.0f} h of {where}")
 
 
-def _gear_rpm(subject: Subject, shaft: str) -> float:
-    return subject.rig.shaft_speed(shaft, subject.case.schedule.test_speed) * RPM
+def _gear_rpm(solved: SolvedRig, shaft: str) -> float:
+    return solved.rig.shaft_speed(shaft, solved.case.schedule.test_speed) * RPM

@@ -9,7 +9,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gearbox import JournalBearing as CaseBearing
 from rigdesign.case.gears import GearMesh
 from rigdesign.coupling.given_losses import given_power
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil
 
@@ -19,7 +19,7 @@ GRAVITY = 9.81
 def solve_bearings(
     rig: Rig,
     point: OperatingPoint,
-    feedback: Feedback,
+    coupling_state: CouplingState,
     solve: Callable[..., BearingState] = solve_bearing,
 ) -> dict[str, BearingState]:
     """Film of every journal bearing by ``gearbox.bearing``.
@@ -36,7 +36,7 @@ def solve_bearings(
         No film temperature balances friction and oil flow.
     """
     states = {}
-    loads = bearing_loads(rig, feedback)
+    loads = bearing_loads(rig, coupling_state)
     for name, box, entry in rig.bearings():
         box_name, part = name.split(".")
         oil, inlet = bearing_oil(rig, box_name), box.bearing_oil.inlet_temperature
@@ -45,7 +45,7 @@ def solve_bearings(
                 JournalBearing(
                     diameter=entry.diameter,
                     width=entry.width,
-                    diametral_clearance=feedback.bearing_clearance[name],
+                    diametral_clearance=coupling_state.bearing_clearance[name],
                     feed_share=entry.feed_share,
                 ),
                 loads[name],
@@ -55,7 +55,7 @@ def solve_bearings(
                 oil.dynamic_viscosity,
                 oil.density(inlet),
                 oil.heat_capacity(inlet),
-                feedback.bearing_heat[name],
+                coupling_state.bearing_heat[name],
                 friction_heat=_imposed_heat(rig, name, entry, point),
                 friction_factor=box.loss_factors.bearing,
             )
@@ -79,7 +79,7 @@ def constant_drag(rig: Rig, box: str, entry: CaseBearing, point: OperatingPoint)
     return factor * entry.torsional_damping * rig.shaft_speed(entry.shaft, point.speed) ** 2
 
 
-def bearing_loads(rig: Rig, feedback: Feedback) -> dict[str, float]:
+def bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, float]:
     """Radial load of every bearing [N]: tooth forces and weight by the lever rule on its shaft.
 
     Tooth forces add as vectors where the housing says where the axes stand: at an idler between two wheels the
@@ -88,14 +88,16 @@ def bearing_loads(rig: Rig, feedback: Feedback) -> dict[str, float]:
     cancel; those of a single-helical one and their tilting moment are left out.
     """
     return {
-        name: _radial_load(rig, name, box, entry, feedback)
+        name: _radial_load(rig, name, box, entry, coupling_state)
         if entry.radial_load is None
         else entry.radial_load
         for name, box, entry in rig.bearings()
     }
 
 
-def _radial_load(rig: Rig, name: str, box: Gearbox, entry: CaseBearing, feedback: Feedback) -> float:
+def _radial_load(
+    rig: Rig, name: str, box: Gearbox, entry: CaseBearing, coupling_state: CouplingState
+) -> float:
     box_name = name.split(".")[0]
     tangential, separating, weight = 0.0, 0.0, 0.5 * GRAVITY * rig.shaft_mass(entry.shaft)
     first = box.first_meshes()
@@ -108,9 +110,9 @@ def _radial_load(rig: Rig, name: str, box: Gearbox, entry: CaseBearing, feedback
         for mesh_name, mesh in box.meshes.items():
             if gear_name in (mesh.pinion, mesh.wheel):
                 full = f"{box_name}.{mesh_name}"
-                towards, drives = _direction(box, mesh, gear_name, feedback.mesh_torque[full])
+                towards, drives = _direction(box, mesh, gear_name, coupling_state.mesh_torque[full])
                 pair = rig.pairs[full]
-                force = share * abs(feedback.mesh_torque[full]) / pair.base_radii[0]
+                force = share * abs(coupling_state.mesh_torque[full]) / pair.base_radii[0]
                 tangential += towards * drives * force * math.cos(pair.working_pressure_angle)
                 separating += towards * force * math.sin(pair.working_pressure_angle)
     return math.hypot(abs(tangential) + weight, separating)

@@ -9,7 +9,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, partner_of
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.coupling.losses import PlacedLoss
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.films import plate_film, shaft_film
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
@@ -44,7 +44,7 @@ class _Context:
     rig: Rig
     name: str
     point: OperatingPoint
-    feedback: Feedback
+    coupling_state: CouplingState
     bearings: Mapping[str, BearingState]
 
     @property
@@ -77,7 +77,7 @@ class _Context:
             return AIR, self.rig.case.ambient.temperature
         kind, _, which = name.rpartition("_")
         entry = self.box.oil if kind == GEAR_OIL else self.box.bearing_oil
-        inlet, outlet = entry.inlet_temperature, self.feedback.oil_outlet[f"{self.name}.{kind}"]
+        inlet, outlet = entry.inlet_temperature, self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
         return kind, {"inlet": inlet, "outlet": outlet, "mean": 0.5 * (inlet + outlet)}[which]
 
     def wetting(self, fluid: laws.Fluid, surface: str) -> float:
@@ -116,7 +116,7 @@ def boundary_conditions(
     rig: Rig,
     name: str,
     point: OperatingPoint,
-    feedback: Feedback,
+    coupling_state: CouplingState,
     bearings: Mapping[str, BearingState],
     losses: Sequence[PlacedLoss],
     *,
@@ -126,7 +126,7 @@ def boundary_conditions(
 
     radiation_included : leave out explicit radiation where the film to room air contains it already
     """
-    context = _Context(rig, name, point, feedback, bearings)
+    context = _Context(rig, name, point, coupling_state, bearings)
     housing = context.box.housing
     assert housing is not None
     rows = conditions_of(housing, rig.surface_names(name))

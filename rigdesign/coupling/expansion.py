@@ -16,7 +16,7 @@ TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True)
-class HousingGrowth:
+class HousingExpansion:
     """Hot shape of one housing, read by the names of the case."""
 
     gearbox: str
@@ -27,7 +27,7 @@ class HousingGrowth:
     """Axial travel of the pinion of a helical mesh against its wheel, by ``gearbox.mesh`` [m]."""
 
 
-def expand_housing(rig: Rig, field: HousingField, start: HousingGrowth | None = None) -> HousingGrowth:
+def expand_housing(rig: Rig, field: HousingField, start: HousingExpansion | None = None) -> HousingExpansion:
     """Expand one housing from the temperature its drawing holds at; ``start`` is the growth of an earlier pass.
 
     Raises
@@ -49,7 +49,7 @@ def expand_housing(rig: Rig, field: HousingField, start: HousingGrowth | None = 
     return read_growth(rig, name, shape)
 
 
-def read_growth(rig: Rig, name: str, shape: Expansion) -> HousingGrowth:
+def read_growth(rig: Rig, name: str, shape: Expansion) -> HousingExpansion:
     """A hot shape read by the names of the case."""
     box = rig.case.gearboxes[name]
     distances, travels = {}, {}
@@ -61,7 +61,7 @@ def read_growth(rig: Rig, name: str, shape: Expansion) -> HousingGrowth:
         if mesh.helix_angle and not mesh.double_helical:
             travel = _axial(rig, name, shape, shafts[0]) - _axial(rig, name, shape, shafts[1])
         travels[full] = travel
-    return HousingGrowth(gearbox=name, expansion=shape, centre_distance=distances, tooth_growth=travels)
+    return HousingExpansion(gearbox=name, expansion=shape, centre_distance=distances, tooth_growth=travels)
 
 
 def axes_of(rig: Rig, name: str, shape: Expansion, shafts: tuple[str, str]) -> CentreDistance:
@@ -81,7 +81,7 @@ def bearing_growth(rig: Rig, name: str, shape: Expansion, entry: JournalBearing)
     return shape.bearings[station.name]
 
 
-def hot_clearances(rig: Rig, speed: float, growth: Mapping[str, HousingGrowth]) -> dict[str, float]:
+def hot_clearances(rig: Rig, speed: float, growth: Mapping[str, HousingExpansion]) -> dict[str, float]:
     """Hot diametral clearance of every bearing [m]: thermal growth of bore and journal, spin of the journal.
 
     A gearbox without a housing has journal and shell at one temperature: only the spin counts.

@@ -17,7 +17,7 @@ from dynamics.losses.oil_jet import JET_ANGLES
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import conditions_of
 from rigdesign.case.housing import FlankFilm
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.properties.materials import Material
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_oil, jet_velocity, wetted_width, wetting_flow
@@ -190,10 +190,12 @@ def pinion_share(pair: GearPair, materials: tuple[Material, Material]) -> float:
     return float(np.sum(weight * first / (first + second)) / np.sum(weight))
 
 
-def mesh_split(rig: Rig, full_name: str, point: OperatingPoint, feedback: Feedback | None) -> MeshSplit:
+def mesh_split(
+    rig: Rig, full_name: str, point: OperatingPoint, coupling_state: CouplingState | None
+) -> MeshSplit:
     """How the friction heat of the mesh ``gearbox.mesh`` divides, by the rule of the case.
 
-    feedback : bulk temperatures of the gears, for the viscosity of the film; oil temperature when left out
+    coupling_state : bulk temperatures of the gears, for the viscosity of the film; oil temperature when left out
     """
     name, own = full_name.split(".")
     box = rig.case.gearboxes[name]
@@ -212,6 +214,6 @@ def mesh_split(rig: Rig, full_name: str, point: OperatingPoint, feedback: Feedba
     kept = []
     for gear in gears:
         flanks = gear_flanks(rig, name, gear, point, conditions[gear])
-        walls = {} if feedback is None else feedback.gear_temperature
+        walls = {} if coupling_state is None else coupling_state.gear_temperature
         kept.append(flanks.kept(walls.get(f"{name}.{gear}", flanks.oil_temperature)))
     return MeshSplit(pinion=share, kept=(kept[0], kept[1]))

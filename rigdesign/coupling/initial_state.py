@@ -2,11 +2,11 @@
 
 from rigdesign.coupling.expansion import uniform_growth
 from rigdesign.coupling.loads import first_torques
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
 
-def cold_feedback(rig: Rig, point: OperatingPoint) -> Feedback:
+def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
     """All of the rig at room temperature, no heat from bodies, oil as fed; mesh torques without losses."""
     case = rig.case
     gears = (f"{box}.{gear}" for box, entry in case.gearboxes.items() for gear in entry.gears)
@@ -14,7 +14,7 @@ def cold_feedback(rig: Rig, point: OperatingPoint) -> Feedback:
     for name, box in case.gearboxes.items():
         streams[f"{name}.gear_oil"] = box.oil.inlet_temperature
         streams[f"{name}.bearing_oil"] = box.bearing_oil.inlet_temperature
-    return Feedback(
+    return CouplingState(
         gear_temperature=dict.fromkeys(gears, case.ambient.temperature),
         centre_distance={
             mesh: distance

@@ -8,11 +8,11 @@ from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.finite import finite
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_torques
-from rigdesign.coupling.expansion import HousingGrowth, expand_housing, hot_clearances, uniform_growth
-from rigdesign.coupling.loads import MeshModel, Setting, mesh_models, respond
+from rigdesign.coupling.expansion import HousingExpansion, expand_housing, hot_clearances, uniform_growth
+from rigdesign.coupling.loads import BracingState, MeshModel, mesh_models, respond
 from rigdesign.coupling.losses import PlacedLoss, mesh_losses, rotating_losses
 from rigdesign.coupling.oil import OilStream, oil_streams
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.temperatures import (
     TOLERANCE,
     HousingField,
@@ -29,11 +29,11 @@ ROUGH = 1e-5
 
 
 @dataclass(frozen=True, kw_only=True)
-class PassResult:
-    """Everything one pass computed from one feedback."""
+class IterationResult:
+    """Everything one pass computed from one coupling state."""
 
     point: OperatingPoint
-    feedback: Feedback
+    coupling_state: CouplingState
     """What the pass started from."""
     models: tuple[MeshModel, ...]
     bearings: Mapping[str, BearingState]
@@ -42,7 +42,7 @@ class PassResult:
     losses: tuple[PlacedLoss, ...]
     streams: tuple[OilStream, ...]
     fields: Mapping[str, HousingField]
-    growth: Mapping[str, HousingGrowth]
+    growth: Mapping[str, HousingExpansion]
     bearing_heat: Mapping[str, float]
     """Heat the solids gave to each film in this pass [W], before relaxation."""
     wall_heat: Mapping[str, float]
@@ -50,7 +50,7 @@ class PassResult:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Parts:
+class IterationParts:
     """The dear parts of a pass, each as the function that computes it.
 
     `rigdesign.prediction` puts others in their place: what is known already, fields and growth projected on few
@@ -61,24 +61,24 @@ class Parts:
     bearings: Callable[..., dict[str, BearingState]] = solve_bearings
     response: Callable[..., CurvePoint] = respond
     field: Callable[..., HousingField] = solve_housing
-    growth: Callable[..., HousingGrowth] = expand_housing
+    growth: Callable[..., HousingExpansion] = expand_housing
     bulk: Callable[[Rig, HousingField, str], float] = body_mean
 
 
-SOLVED = Parts()
+SOLVED = IterationParts()
 """Every part solved in full."""
 
 
-def one_pass(
+def run_iteration(
     rig: Rig,
     point: OperatingPoint,
-    feedback: Feedback,
-    setting: Setting | None,
-    before: PassResult | None = None,
+    coupling_state: CouplingState,
+    setting: BracingState | None,
+    before: IterationResult | None = None,
     *,
     fine: bool = True,
-    parts: Parts = SOLVED,
-) -> PassResult:
+    parts: IterationParts = SOLVED,
+) -> IterationResult:
     """Compute one pass; ``before`` gives the fields to start from.
 
     parts : what computes its dear parts
@@ -91,34 +91,36 @@ def one_pass(
     NonFiniteResultError
         A loss that is NaN or infinite.
     """
-    models = parts.models(rig, point, feedback)
-    bearings = parts.bearings(rig, point, feedback)
-    turning = rotating_losses(rig, point, feedback, models, bearings)
+    models = parts.models(rig, point, coupling_state)
+    bearings = parts.bearings(rig, point, coupling_state)
+    turning = rotating_losses(rig, point, coupling_state, models, bearings)
     drags = drag_torques(turning, rig, point.speed)
     response = None if setting is None else parts.response(rig, point, models, drags, setting)
-    losses = (*turning, *mesh_losses(rig, point, models, response, feedback))
+    losses = (*turning, *mesh_losses(rig, point, models, response, coupling_state))
     for placed in losses:
         finite(f"stage {point.stage}: {placed.loss.kind} loss of {placed.name}", placed.loss.power)
     starts: Mapping[str, HousingField] = {} if before is None else before.fields
     tolerance = TOLERANCE if fine else ROUGH
     fields = {
-        name: parts.field(rig, name, point, feedback, bearings, losses, starts.get(name), tolerance=tolerance)
+        name: parts.field(
+            rig, name, point, coupling_state, bearings, losses, starts.get(name), tolerance=tolerance
+        )
         for name in rig.models
     }
     bearing_heat = dict.fromkeys(bearings, 0.0)
-    wall_heat = dict.fromkeys(feedback.wall_heat, 0.0)
+    wall_heat = dict.fromkeys(coupling_state.wall_heat, 0.0)
     for field in fields.values():
         bearing_heat |= heat_into_films(field)
         wall_heat |= heat_into_oil(field)
-    return PassResult(
+    return IterationResult(
         point=point,
-        feedback=feedback,
+        coupling_state=coupling_state,
         models=models,
         bearings=bearings,
         drags=drags,
         response=response,
         losses=losses,
-        streams=tuple(oil_streams(rig, losses, feedback.bearing_heat, feedback.wall_heat)),
+        streams=tuple(oil_streams(rig, losses, coupling_state.bearing_heat, coupling_state.wall_heat)),
         fields=fields,
         growth=_growth(rig, fields, before, fine, parts),
         bearing_heat=bearing_heat,
@@ -127,8 +129,12 @@ def one_pass(
 
 
 def _growth(
-    rig: Rig, fields: Mapping[str, HousingField], before: PassResult | None, fine: bool, parts: Parts
-) -> dict[str, HousingGrowth]:
+    rig: Rig,
+    fields: Mapping[str, HousingField],
+    before: IterationResult | None,
+    fine: bool,
+    parts: IterationParts,
+) -> dict[str, HousingExpansion]:
     if before is not None and not fine:
         return dict(before.growth)
     return {
@@ -138,9 +144,9 @@ def _growth(
     }
 
 
-def feedback_of(rig: Rig, done: PassResult, parts: Parts = SOLVED) -> Feedback:
+def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) -> CouplingState:
     """What a pass hands to the next; heats are relaxed by what the oil can take up (`relaxed_heat`)."""
-    old = done.feedback
+    old = done.coupling_state
     gear_temperature: dict[str, float] = {}
     centre_distance: dict[str, float] = {}
     clearance: dict[str, float] = {}
@@ -165,7 +171,7 @@ def feedback_of(rig: Rig, done: PassResult, parts: Parts = SOLVED) -> Feedback:
     if done.response is not None:
         signed = done.response.flank * done.response.mean
         torque = dict(zip(rig.mesh_names, map(float, signed)))
-    return Feedback(
+    return CouplingState(
         gear_temperature=gear_temperature,
         centre_distance=centre_distance,
         bearing_clearance=clearance,
@@ -192,9 +198,9 @@ def relaxed(old: float, new: float, slope: float) -> float:
     return old + (new - old) / (1.0 + slope)
 
 
-def heat_residual(rig: Rig, done: PassResult) -> float:
+def heat_residual(rig: Rig, done: IterationResult) -> float:
     """Largest temperature error [K] that the heats of the last pass would still make in an oil stream or film."""
-    old = done.feedback
+    old = done.coupling_state
     films = (
         0.5 * abs(heat - old.bearing_heat[name]) / _bearing_capacity(rig, name)
         for name, heat in done.bearing_heat.items()
@@ -225,17 +231,17 @@ def _stream_capacity(rig: Rig, name: str) -> float:
     return oil.density(inlet) * oil.heat_capacity(inlet) * flow
 
 
-def _film_slope(rig: Rig, done: PassResult, name: str) -> float:
+def _film_slope(rig: Rig, done: IterationResult, name: str) -> float:
     box, part = name.split(".")
     return _conductance(done, box, f"bearing_film:{part}") / _bearing_capacity(rig, name)
 
 
-def _stream_slope(rig: Rig, done: PassResult, name: str) -> float:
+def _stream_slope(rig: Rig, done: IterationResult, name: str) -> float:
     box, kind = name.split(".")
     return _conductance(done, box, kind) / _stream_capacity(rig, name)
 
 
-def _conductance(done: PassResult, box: str, kind: str) -> float:
+def _conductance(done: IterationResult, box: str, kind: str) -> float:
     """Sum of h A over the films of one kind [W/K]."""
     if box not in done.fields:
         return 0.0

@@ -30,7 +30,7 @@ from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.response.speed_sweep import CurvePoint, periodic_response
 from rigdesign.case.gears import FlankModification, Gear
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.properties.oil import Oil
 from rigdesign.rig.model import Rig
@@ -52,16 +52,16 @@ class MeshModel:
 
 
 def mesh_models(
-    rig: Rig, point: OperatingPoint, feedback: Feedback, stiffness: str | None = None
+    rig: Rig, point: OperatingPoint, coupling_state: CouplingState, stiffness: str | None = None
 ) -> tuple[MeshModel, ...]:
     """Warm gears and mesh laws of the whole rig.
 
     stiffness : ``iso_6336_scaled`` or ``weber_banaschek_0.8``; that of the case when left out
     """
-    return tuple(mesh_model(rig, name, point, feedback, stiffness) for name in rig.mesh_names)
+    return tuple(mesh_model(rig, name, point, coupling_state, stiffness) for name in rig.mesh_names)
 
 
-def warm_pair(rig: Rig, name: str, speed: float, feedback: Feedback) -> GearPair:
+def warm_pair(rig: Rig, name: str, speed: float, coupling_state: CouplingState) -> GearPair:
     """Gear pair at the bulk temperatures, centre distance and speed [rad/s] of this pass."""
     box, mesh = rig.mesh(name)
     pinion, wheel = rig.mesh_gears(name)
@@ -69,9 +69,9 @@ def warm_pair(rig: Rig, name: str, speed: float, feedback: Feedback) -> GearPair
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
     first, second = (rig.materials[gear.material].expansion_coefficient for gear in gears)
     return rig.pairs[name].warm(
-        feedback.gear_temperature[pinion],
-        feedback.gear_temperature[wheel],
-        feedback.centre_distance[name],
+        coupling_state.gear_temperature[pinion],
+        coupling_state.gear_temperature[wheel],
+        coupling_state.centre_distance[name],
         reference_temperature=rig.case.ambient.reference_temperature,
         expansion_coefficients=(first, second),
         speed=rig.shaft_speed(gears[0].shaft, speed),
@@ -79,16 +79,16 @@ def warm_pair(rig: Rig, name: str, speed: float, feedback: Feedback) -> GearPair
 
 
 def mesh_model(
-    rig: Rig, name: str, point: OperatingPoint, feedback: Feedback, stiffness: str | None = None
+    rig: Rig, name: str, point: OperatingPoint, coupling_state: CouplingState, stiffness: str | None = None
 ) -> MeshModel:
     """One warm mesh and its law; ``stiffness`` as in `mesh_models`."""
     kind = stiffness or (rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else "iso_6336_scaled")
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
-    pair = warm_pair(rig, name, point.speed, feedback)
-    torque = max(abs(feedback.mesh_torque[name]), LEAST_TORQUE)
-    friction = mesh_friction(rig, name, pair, point, feedback)
+    pair = warm_pair(rig, name, point.speed, coupling_state)
+    torque = max(abs(coupling_state.mesh_torque[name]), LEAST_TORQUE)
+    friction = mesh_friction(rig, name, pair, point, coupling_state)
     shape = pair_stiffness(pair, torque / pair.base_radii[0] / pair.face_width)
     if kind == "iso_6336_scaled":
         options = RatingOptions(
@@ -108,7 +108,7 @@ def mesh_model(
         damping=entry.damping,
         damping_acts_on=entry.damping_acts_on,
         friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
-        offset=feedback.tooth_growth[name] * math.tan(pair.base_helix_angle)
+        offset=coupling_state.tooth_growth[name] * math.tan(pair.base_helix_angle)
         + flank_growth(rig.pairs[name], pair),
         phase=mesh_phase(rig, name),
         tooth_offset_2=entry.tooth_offset % gears[1].teeth,
@@ -150,7 +150,7 @@ def flank_growth(cold: GearPair, warm: GearPair) -> float:
 
 
 def mesh_friction(
-    rig: Rig, name: str, pair: GearPair, point: OperatingPoint, feedback: Feedback
+    rig: Rig, name: str, pair: GearPair, point: OperatingPoint, coupling_state: CouplingState
 ) -> FrictionCoefficient:
     """Friction coefficient of a mesh: one source for the torque in the loop and the heat in the box."""
     box, mesh = rig.mesh(name)
@@ -158,9 +158,9 @@ def mesh_friction(
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
     oil = gear_oil(rig, name.split(".")[0])
     stream = f"{name.split('.')[0]}.gear_oil"
-    temperature = 0.5 * (box.oil.inlet_temperature + feedback.oil_outlet[stream])
+    temperature = 0.5 * (box.oil.inlet_temperature + coupling_state.oil_outlet[stream])
     contact = ToothPath.of_pair(pair).contact(
-        max(abs(feedback.mesh_torque[name]), LEAST_TORQUE),
+        max(abs(coupling_state.mesh_torque[name]), LEAST_TORQUE),
         rig.shaft_speed(gears[0].shaft, point.speed),
         reference_diameter_1=2.0 * pair.reference_radii[0],
         roughness=0.5 * (gears[0].flank_roughness + gears[1].flank_roughness),
@@ -268,7 +268,7 @@ def first_torques(rig: Rig, point: OperatingPoint) -> Mapping[str, float]:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Setting:
+class BracingState:
     """How the loop is braced: the torque that is controlled, or the twist [rad] or shift [m] that is held."""
 
     mode: Mode
@@ -305,9 +305,9 @@ def shifted_gear(rig: Rig) -> ShiftedGear | None:
 
 
 def brace_cold(
-    rig: Rig, point: OperatingPoint, cold: Feedback, models: Sequence[MeshModel] | None = None
-) -> Setting:
-    """Setting that makes the asked torque in the cold loop; held ever after in the held modes.
+    rig: Rig, point: OperatingPoint, cold: CouplingState, models: Sequence[MeshModel] | None = None
+) -> BracingState:
+    """BracingState that makes the asked torque in the cold loop; held ever after in the held modes.
 
     The torque is the mean over all places where teeth that are not alike may come to rest.
 
@@ -316,11 +316,11 @@ def brace_cold(
     assert rig.case.drivetrain is not None and rig.system is not None
     mode = rig.case.drivetrain.bracing.mode
     if mode == "torque_controlled":
-        return Setting(mode=mode)
+        return BracingState(mode=mode)
     met = mesh_models(rig, point, cold) if models is None else models
     laws = [alike_teeth(law) for law in laws_of(met)]
     state = brace(rig.system, laws, signed_torque(rig, point), mode, gear=shifted_gear(rig))
-    return Setting(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
+    return BracingState(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
 
 
 def respond(
@@ -328,7 +328,7 @@ def respond(
     point: OperatingPoint,
     models: Sequence[MeshModel],
     drags: Mapping[str, float],
-    setting: Setting,
+    setting: BracingState,
 ) -> CurvePoint:
     """Periodic response at one operating point.
 
@@ -354,7 +354,7 @@ def respond(
     return curve.points[0]
 
 
-def shifted_laws(rig: Rig, models: Sequence[MeshModel], setting: Setting) -> list[MeshLaw]:
+def shifted_laws(rig: Rig, models: Sequence[MeshModel], setting: BracingState) -> list[MeshLaw]:
     """Mesh laws with the held axial shift in the mesh of the shifted gear."""
     laws = laws_of(models)
     gear = shifted_gear(rig)

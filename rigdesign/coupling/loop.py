@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.base.finite import require_finite
-from rigdesign.coupling.initial_state import cold_feedback
-from rigdesign.coupling.iteration import PassResult, feedback_of, heat_residual, one_pass
-from rigdesign.coupling.loads import Setting, brace_cold
+from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import IterationResult, heat_residual, next_state, run_iteration
+from rigdesign.coupling.loads import BracingState, brace_cold
 from rigdesign.coupling.state import (
-    Feedback,
+    CouplingState,
     OperatingPoint,
     growth_change,
     temperature_change,
@@ -35,8 +35,8 @@ class PointResult:
     """The settled state of one operating point."""
 
     point: OperatingPoint
-    last: PassResult
-    setting: Setting | None
+    last: IterationResult
+    setting: BracingState | None
     residuals: tuple[Residual, ...]
 
 
@@ -52,17 +52,17 @@ def solve_point(
     rig: Rig,
     point: OperatingPoint,
     *,
-    start: Feedback | None = None,
-    before: PassResult | None = None,
-    hold: frozenset[str] = frozenset(),
+    start: CouplingState | None = None,
+    before: IterationResult | None = None,
+    freeze: frozenset[str] = frozenset(),
 ) -> PointResult:
     """Repeat the pass until temperatures, lengths and torques stay within the tolerances of the case.
 
     Parameters
     ----------
-    start : feedback of a neighbouring point; the cold rig when left out
+    start : coupling state of a neighbouring point; the cold rig when left out
     before : last pass of a neighbouring point on the same meshes: first guess of fields and growth
-    hold : arrows of the loop that are cut, by field of `Feedback`: they keep their cold values
+    freeze : arrows of the loop that are cut, by field of `CouplingState`: they keep their initial values
 
     Raises
     ------
@@ -72,25 +72,25 @@ def solve_point(
         A loss, temperature, length or torque of a pass is NaN or infinite.
     """
     numerics = rig.case.numerics
-    cold = cold_feedback(rig, point)
+    cold = initial_state(rig, point)
     setting = None if rig.case.drivetrain is None else brace_cold(rig, point, cold)
-    feedback = cold if start is None else start.hold(hold, cold)
+    coupling_state = cold if start is None else start.freeze(freeze, cold)
     residuals: list[Residual] = []
     done = before
     for _ in range(numerics.coupling_passes):
         fine = not residuals or residuals[-1].temperature < GROWTH_FROM
-        done = one_pass(rig, point, feedback, setting, done, fine=fine)
-        after = feedback_of(rig, done).hold(hold, cold)
+        done = run_iteration(rig, point, coupling_state, setting, done, fine=fine)
+        after = next_state(rig, done).freeze(freeze, cold)
         require_finite(after, f"stage {point.stage}")
-        heat = 0.0 if {"bearing_heat", "wall_heat"} & hold else heat_residual(rig, done)
+        heat = 0.0 if {"bearing_heat", "wall_heat"} & freeze else heat_residual(rig, done)
         residuals.append(
             Residual(
-                temperature=max(temperature_change(feedback, after), heat),
-                growth=growth_change(feedback, after),
-                torque=torque_change(feedback, after),
+                temperature=max(temperature_change(coupling_state, after), heat),
+                growth=growth_change(coupling_state, after),
+                torque=torque_change(coupling_state, after),
             )
         )
-        feedback = after
+        coupling_state = after
         if fine and _settled(residuals[-1], rig):
             return PointResult(point=point, last=done, setting=setting, residuals=tuple(residuals))
     history = {

@@ -16,7 +16,7 @@ from rigdesign.coupling.bearing_films import constant_drag
 from rigdesign.coupling.flank_heat import MeshSplit, mesh_split
 from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.loads import MeshModel, first_torques
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_oil, injected_flow, jet_velocity
 from rigdesign.rig.shaft_seals import ShaftSeal, shaft_seals
@@ -69,7 +69,7 @@ class PlacedLoss:
 def rotating_losses(
     rig: Rig,
     point: OperatingPoint,
-    feedback: Feedback,
+    coupling_state: CouplingState,
     models: Sequence[MeshModel],
     bearings: Mapping[str, BearingState],
 ) -> list[PlacedLoss]:
@@ -85,8 +85,8 @@ def rotating_losses(
         losses.append(_bearing_loss(rig, box_name, part, point, state))
     computed = {} if _bearings_alone(rig) else rig.case.gearboxes
     for box_name, box in computed.items():
-        losses += _windage(rig, box_name, box, point, feedback, pairs)
-        losses += _seals(rig, box_name, box, point, feedback)
+        losses += _windage(rig, box_name, box, point, coupling_state, pairs)
+        losses += _seals(rig, box_name, box, point, coupling_state)
     if computed:
         losses += _squeezing(rig, point, models)
     counted = [taken for loss in losses for taken in _taken(rig, point, _scaled(rig, loss))]
@@ -116,13 +116,13 @@ def mesh_losses(
     point: OperatingPoint,
     models: Sequence[MeshModel],
     response: CurvePoint | None = None,
-    feedback: Feedback | None = None,
+    coupling_state: CouplingState | None = None,
 ) -> list[PlacedLoss]:
     """Sliding and damping of every mesh.
 
     response : gives mu F_N v_g of the dynamic tooth forces and the damping work; without it the sliding is
         integrated over the path of contact at the mean load
-    feedback : bulk temperatures of the gears under the oil films on their flanks; oil temperature when left out
+    coupling_state : bulk temperatures of the gears under the oil films on their flanks; oil temperature when left out
     """
     losses = []
     for index, model in enumerate(models):
@@ -135,7 +135,7 @@ def mesh_losses(
                 details=loss.details | {"static_power": loss.power, "source": source},
             )
         box_name, mesh = model.name.split(".")
-        split = mesh_split(rig, model.name, point, feedback)
+        split = mesh_split(rig, model.name, point, coupling_state)
         into_body = math.fsum(split.into_rims) * loss.power
         placed = PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=into_body, split=split)
         losses += _taken(rig, point, placed)
@@ -222,12 +222,14 @@ def _windage(
     box_name: str,
     box: Gearbox,
     point: OperatingPoint,
-    feedback: Feedback,
+    coupling_state: CouplingState,
     pairs: Mapping[str, GearPair],
 ) -> Iterator[PlacedLoss]:
     """Windage of every gear, once however many meshes it is in; a double-helical gear has both its halves."""
-    mist = chamber_mist(rig, box_name, feedback)
-    oil_viscosity = gear_oil(rig, box_name).dynamic_viscosity(_chamber_temperature(box_name, box, feedback))
+    mist = chamber_mist(rig, box_name, coupling_state)
+    oil_viscosity = gear_oil(rig, box_name).dynamic_viscosity(
+        _chamber_temperature(box_name, box, coupling_state)
+    )
     share = body_split(rig, box_name).windage_into_gears
     for gear_name, (mesh_name, index) in box.first_meshes().items():
         rotor = GearRotor.of_pair(pairs[f"{box_name}.{mesh_name}"], index)
@@ -239,16 +241,16 @@ def _windage(
         yield PlacedLoss(gearbox=box_name, part=gear_name, loss=loss, into_body=share * loss.power)
 
 
-def chamber_mist(rig: Rig, box_name: str, feedback: Feedback) -> Mist:
+def chamber_mist(rig: Rig, box_name: str, coupling_state: CouplingState) -> Mist:
     """What the gears and seals turn in: density of the case, viscosity of air at the oil temperature."""
-    gas = air(_chamber_temperature(box_name, rig.case.gearboxes[box_name], feedback))
+    gas = air(_chamber_temperature(box_name, rig.case.gearboxes[box_name], coupling_state))
     density = rig.case.losses.chamber_density
     return Mist(density=gas.density if density is None else density, viscosity=gas.viscosity)
 
 
-def _chamber_temperature(box_name: str, box: Gearbox, feedback: Feedback) -> float:
+def _chamber_temperature(box_name: str, box: Gearbox, coupling_state: CouplingState) -> float:
     """Of what fills the chamber: the mean of its oil [K]."""
-    return 0.5 * (box.oil.inlet_temperature + feedback.oil_outlet[f"{box_name}.gear_oil"])
+    return 0.5 * (box.oil.inlet_temperature + coupling_state.oil_outlet[f"{box_name}.gear_oil"])
 
 
 def _oil_jets(
@@ -271,7 +273,7 @@ def _oil_jets(
 
 
 def _seals(
-    rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, feedback: Feedback
+    rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, coupling_state: CouplingState
 ) -> Iterator[PlacedLoss]:
     """Seals of each shaft: gaps in the walls of the chamber, and what seals the shaft where it leaves the gearbox."""
     split = body_split(rig, box_name)
@@ -279,7 +281,7 @@ def _seals(
     for name, seals in box.seals.items():
         omega = rig.shaft_speed(seals.shaft, point.speed)
         place = f"{box_name}.{name}"
-        parts = _seal_losses(rig, box_name, place, seals, omega, feedback)
+        parts = _seal_losses(rig, box_name, place, seals, omega, coupling_state)
         rubbing = seals.rubbing_torque * omega
         if not parts and not rubbing:
             continue
@@ -302,14 +304,14 @@ def _seals(
 
 
 def _seal_losses(
-    rig: Rig, box_name: str, place: str, seals: Seals, omega: float, feedback: Feedback
+    rig: Rig, box_name: str, place: str, seals: Seals, omega: float, coupling_state: CouplingState
 ) -> list[tuple[ShaftSeal, Loss]]:
     """Every seal of a shaft with its loss, those in the walls of the chamber first.
 
     The shaft passes the walls of a chamber in a gap; lips sit only where it leaves the gearbox, one a side. A gap
     without a stated wall has no length and is left out.
     """
-    mist = chamber_mist(rig, box_name, feedback)
+    mist = chamber_mist(rig, box_name, coupling_state)
     found = []
     for seal in shaft_seals(rig, box_name, seals.shaft):
         if seal.leaves and seals.kind == "radial_lip":

@@ -8,10 +8,10 @@ from dynamics.errors import NotConverged
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_torques
-from rigdesign.coupling.loads import MeshModel, Setting, mesh_models, respond
+from rigdesign.coupling.loads import BracingState, MeshModel, mesh_models, respond
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import PlacedLoss, mesh_losses, oil_jets, rotating_losses
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
 
@@ -20,7 +20,7 @@ class StageLosses:
     """What heats a rig at an operating point, and the state it follows from."""
 
     point: OperatingPoint
-    feedback: Feedback
+    coupling_state: CouplingState
     bearings: Mapping[str, BearingState]
     losses: tuple[PlacedLoss, ...]
 
@@ -35,23 +35,23 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic:
         the mean load alone. Where no response is found it is the mean load as well, and the mesh losses warn of it
     """
     share = point.torque / test.point.torque if test.point.torque else 0.0
-    feedback = replace(
-        test.last.feedback,
-        mesh_torque={name: share * torque for name, torque in test.last.feedback.mesh_torque.items()},
-        bearing_heat=dict.fromkeys(test.last.feedback.bearing_heat, 0.0),
+    coupling_state = replace(
+        test.last.coupling_state,
+        mesh_torque={name: share * torque for name, torque in test.last.coupling_state.mesh_torque.items()},
+        bearing_heat=dict.fromkeys(test.last.coupling_state.bearing_heat, 0.0),
     )
-    bearings = solve_bearings(rig, point, feedback)
+    bearings = solve_bearings(rig, point, coupling_state)
     if point.speed == 0.0:
         jets = tuple(oil_jets(rig, point, rig.pairs))
-        return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=jets)
-    models = mesh_models(rig, point, feedback)
-    turning = rotating_losses(rig, point, feedback, models, bearings)
+        return StageLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=jets)
+    models = mesh_models(rig, point, coupling_state)
+    turning = rotating_losses(rig, point, coupling_state, models, bearings)
     response = _response(rig, point, models, turning) if dynamic and rig.system is not None else None
-    meshes = mesh_losses(rig, point, models, response, feedback)
+    meshes = mesh_losses(rig, point, models, response, coupling_state)
     if dynamic and rig.system is not None and response is None:
         meshes = [_without_response(placed) for placed in meshes]
     losses = (*turning, *meshes)
-    return StageLosses(point=point, feedback=feedback, bearings=bearings, losses=losses)
+    return StageLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=losses)
 
 
 def _response(
@@ -60,7 +60,7 @@ def _response(
     """Periodic response with the bracing that makes the torque of this point; None where none is found."""
     drags = drag_torques(turning, rig, point.speed)
     try:
-        return respond(rig, point, models, drags, Setting(mode="torque_controlled"))
+        return respond(rig, point, models, drags, BracingState(mode="torque_controlled"))
     except NotConverged:
         return None
 

@@ -20,7 +20,7 @@ class OperatingPoint:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Feedback:
+class CouplingState:
     """What a pass takes from the one before: the arrows of the loop, one field each."""
 
     gear_temperature: Values
@@ -40,15 +40,15 @@ class Feedback:
     tooth_growth: Values
     """Axial growth that shifts a helical gear against its partner, by mesh [m]: it changes the bracing."""
 
-    def hold(self, arrows: frozenset[str], cold: "Feedback") -> "Feedback":
-        """This feedback with the named arrows cut: those fields stay as in ``cold``.
+    def freeze(self, arrows: frozenset[str], cold: "CouplingState") -> "CouplingState":
+        """This coupling state with the named arrows cut: those fields stay as in ``cold``.
 
         Raises KeyError for a name that is no field.
         """
         unknown = arrows - {entry.name for entry in fields(self)}
         if unknown:
             raise KeyError(f"no such arrow: {', '.join(sorted(unknown))}")
-        return Feedback(
+        return CouplingState(
             **{
                 entry.name: getattr(cold if entry.name in arrows else self, entry.name)
                 for entry in fields(self)
@@ -60,17 +60,17 @@ TEMPERATURES = ("gear_temperature", "oil_outlet")
 LENGTHS = ("centre_distance", "bearing_clearance", "tooth_growth")
 
 
-def temperature_change(old: Feedback, new: Feedback) -> float:
+def temperature_change(old: CouplingState, new: CouplingState) -> float:
     """Largest change of a temperature between two passes [K]."""
     return _largest_change(old, new, TEMPERATURES)
 
 
-def growth_change(old: Feedback, new: Feedback) -> float:
+def growth_change(old: CouplingState, new: CouplingState) -> float:
     """Largest change of a length between two passes [m]."""
     return _largest_change(old, new, LENGTHS)
 
 
-def torque_change(old: Feedback, new: Feedback) -> float:
+def torque_change(old: CouplingState, new: CouplingState) -> float:
     """Largest relative change of a mean mesh torque between two passes [-]."""
     changes = (
         abs(new.mesh_torque[name] - value) / max(abs(value), 1e-9) for name, value in old.mesh_torque.items()
@@ -78,7 +78,7 @@ def torque_change(old: Feedback, new: Feedback) -> float:
     return max(changes, default=0.0)
 
 
-def _largest_change(old: Feedback, new: Feedback, names: tuple[str, ...]) -> float:
+def _largest_change(old: CouplingState, new: CouplingState, names: tuple[str, ...]) -> float:
     changes = (
         abs(getattr(new, name)[part] - value) for name in names for part, value in getattr(old, name).items()
     )

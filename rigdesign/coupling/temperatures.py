@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dynamics.bearing.journal import BearingState
 from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, STORED, boundary_conditions
 from rigdesign.coupling.losses import PlacedLoss
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.steady import TemperatureSolution, solve_steady
@@ -37,7 +37,7 @@ def solve_housing(
     rig: Rig,
     name: str,
     point: OperatingPoint,
-    feedback: Feedback,
+    coupling_state: CouplingState,
     bearings: Mapping[str, BearingState],
     losses: Sequence[PlacedLoss],
     start: HousingField | None = None,
@@ -62,7 +62,7 @@ def solve_housing(
     assert housing is not None
     included = housing.radiation_included if radiation_included is None else radiation_included
     conditions = boundary_conditions(
-        rig, name, point, feedback, bearings, losses, radiation_included=included
+        rig, name, point, coupling_state, bearings, losses, radiation_included=included
     )
     setup = rig.conduction[name]
     solution = solve_steady(

@@ -14,10 +14,10 @@ from rigdesign.base.errors import NotConvergedError
 from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_shafts, drag_torques
-from rigdesign.coupling.iteration import PassResult
-from rigdesign.coupling.loads import Setting, locked_share, shifted_laws
+from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.loads import BracingState, locked_share, shifted_laws
 from rigdesign.coupling.losses import rotating_losses
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
 KINDS: Mapping[str, Kind] = {
@@ -63,7 +63,9 @@ def _stage(rig: Rig, stage: StageValues) -> Stage:
     )
 
 
-def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -> TimeResponse:
+def run_ramp(
+    rig: Rig, warm: IterationResult, setting: BracingState, coupling_state: CouplingState
+) -> TimeResponse:
     """March over the schedule with the warm gears and films of ``warm``.
 
     Raises
@@ -87,7 +89,7 @@ def run_ramp(rig: Rig, warm: PassResult, setting: Setting, feedback: Feedback) -
             twist=None if controlled else np.full_like(command.time, setting.twist),
         ),
         torque_limit=torque_limits(rig)[command.stage],
-        drags=drag_curves(rig, warm, feedback),
+        drags=drag_curves(rig, warm, coupling_state),
         sample_rate=numerics.sample_rate,
         substeps=numerics.internal_steps,
         slot=SLOT,
@@ -127,14 +129,14 @@ def _speed_command(rig: Rig, schedule: Schedule, command: Command) -> NDArray[np
     return speed
 
 
-def drag_curves(rig: Rig, warm: PassResult, feedback: Feedback) -> dict[str, DragCurve]:
+def drag_curves(rig: Rig, warm: IterationResult, coupling_state: CouplingState) -> dict[str, DragCurve]:
     """Drag torque over speed of every place that brakes, with the films at their own balance at each speed.
 
     A jet that is faster than the teeth at low speed pushes them; that help is left out of the run.
     """
     top = max(stage.speed_end for stage in rig.case.schedule.resolved())
     speeds = [share * top for share in DRAG_SHARES]
-    tables = [drags_at(rig, warm, feedback, speed) for speed in speeds]
+    tables = [drags_at(rig, warm, coupling_state, speed) for speed in speeds]
     assert rig.drivetrain is not None
     shafts = drag_shafts(rig.drivetrain)
     curves = {}
@@ -145,11 +147,13 @@ def drag_curves(rig: Rig, warm: PassResult, feedback: Feedback) -> dict[str, Dra
     return curves
 
 
-def drags_at(rig: Rig, warm: PassResult, feedback: Feedback, speed: float) -> dict[str, float]:
+def drags_at(
+    rig: Rig, warm: IterationResult, coupling_state: CouplingState, speed: float
+) -> dict[str, float]:
     """Drag torques at one speed [N m] under the load of the warm point."""
     point = replace(warm.point, speed=speed)
-    bearings = solve_bearings(rig, point, feedback)
-    return drag_torques(rotating_losses(rig, point, feedback, warm.models, bearings), rig, speed)
+    bearings = solve_bearings(rig, point, coupling_state)
+    return drag_torques(rotating_losses(rig, point, coupling_state, warm.models, bearings), rig, speed)
 
 
 def require_speeds(rig: Rig, schedule: Schedule, response: TimeResponse) -> None:

@@ -18,12 +18,12 @@ from rigdesign.diagnosis.library.build import build_library
 from rigdesign.diagnosis.library.cache import library_of, stored_library
 from rigdesign.diagnosis.library.candidates import spare_channels
 from rigdesign.diagnosis.library.library import Library
-from rigdesign.diagnosis.residual.residual_problem import Comparison, compare, plain
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, compare, plain
 from rigdesign.diagnosis.residual.sensors import Stated
 from rigdesign.diagnosis.statistics.next_measurement import Ranked
 from rigdesign.measurement import Data, MeasurementSet, features, load_measurement
 from rigdesign.measurement.places import Places
-from rigdesign.prediction.model import Channel, Setting
+from rigdesign.prediction.model import Channel, OperatingCondition
 from rigdesign.run.solver_errors import solver_errors
 
 Progress = Callable[[str], None]
@@ -136,7 +136,9 @@ def calibrate_case(
     )
 
 
-def candidates_of(case: Case, measurement: MeasurementSet, settings: tuple[Setting, ...]) -> Library | None:
+def candidates_of(
+    case: Case, measurement: MeasurementSet, settings: tuple[OperatingCondition, ...]
+) -> Library | None:
     """The library of the rig with the points and sensors that could be added; None if the stored one has none."""
     channels, spare = _channels(case, measurement)
     extras = tuple(extra.setting for extra in extras_of(case, settings))
@@ -155,7 +157,7 @@ def read_subject(
     measurement: MeasurementSet,
     effects: tuple[Effect, ...],
     say: Progress = lambda message: None,
-) -> tuple[Data, Comparison]:
+) -> tuple[Data, ResidualProblem]:
     """Readings of a set held against the library of its rig, which is made where none is kept."""
     data = features(measurement)
     channels, spare = _channels(case, measurement)

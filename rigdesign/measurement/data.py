@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.measurement.reading.measurement_set import Finding, MeasuredChannel
-from rigdesign.prediction.model import Feature, Setting
+from rigdesign.prediction.model import Feature, OperatingCondition
 
 Strength = Literal["proven", "indicative"]
 
@@ -28,7 +28,7 @@ class Data:
     usable: NDArray[np.bool_]
     repeats: NDArray[np.int64]
     """Readings behind each number."""
-    settings: tuple[Setting, ...]
+    settings: tuple[OperatingCondition, ...]
     setting_noise: tuple[Mapping[tuple[str, str], float], ...]
     """Per setting, 1 sigma of the mean of each measured setting by (quantity, place) [SI; K]."""
     assembly: tuple[int, ...]

@@ -15,7 +15,7 @@ from dynamics.orders.deviation_response import OrderLoads
 from dynamics.response.harmonic_walk import mesh_cells
 from dynamics.response.periodic_response import periodic_by_time
 from dynamics.response.speed_sweep import periodic_response
-from rigdesign.coupling.loads import Setting, signed_torque
+from rigdesign.coupling.loads import BracingState, signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 
@@ -60,7 +60,7 @@ def exact_motion(
     point: OperatingPoint,
     laws: Sequence[MeshLaw],
     drags: Mapping[str, float],
-    setting: Setting,
+    setting: BracingState,
     *,
     march: bool | None = None,
 ) -> ExactMotion:

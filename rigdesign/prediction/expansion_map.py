@@ -9,8 +9,8 @@ from functools import partial
 
 import numpy as np
 
-from rigdesign.coupling.expansion import HousingGrowth, read_growth
-from rigdesign.prediction.parallel_fields import fields_beside
+from rigdesign.coupling.expansion import HousingExpansion, read_growth
+from rigdesign.prediction.parallel_fields import fields_in_parallel
 from rigdesign.rig.model import Rig
 from thermal.expansion.expansion import read_expansion
 from thermal.fe.mesh import FloatArray
@@ -25,7 +25,7 @@ LEAST = 0.1
 """Temperature [K] a shape has to reach to be expanded: 0.1 K moves a clearance by a tenth of a micrometre."""
 
 
-class GrowthMap:
+class ExpansionMap:
     """Clearances of one housing by the coefficients of its temperature shapes.
 
     shapes : (n_nodes, m); sizes : (m,) temperature [K] that each reaches, strongest first; base : (m,)
@@ -38,7 +38,7 @@ class GrowthMap:
         field = shapes @ base
         start = setup.elastic.solve(field, cold, EXACT, None).values
 
-        def read(temperature: FloatArray, supported: FloatArray) -> HousingGrowth:
+        def read(temperature: FloatArray, supported: FloatArray) -> HousingExpansion:
             return read_growth(rig, name, read_expansion(setup, temperature, cold, supported))
 
         self.growth = read(field, start)
@@ -53,15 +53,15 @@ class GrowthMap:
             return np.asarray((numbers_of(moved) - first) / AMPLITUDE)
 
         works = [partial(follows, shape, size) for shape, size in zip(shapes.T, sizes.tolist())]
-        self.first, self.slope = first, np.array(fields_beside(len(field), works)).T
+        self.first, self.slope = first, np.array(fields_in_parallel(len(field), works)).T
         """Numbers of the growth at the base, and (k, m) how they follow the coefficients [m/K]."""
 
-    def at(self, coefficients: FloatArray) -> HousingGrowth:
+    def at(self, coefficients: FloatArray) -> HousingExpansion:
         """Growth of the field with these coefficients (m,)."""
         return with_numbers(self.growth, self.first + self.slope @ (coefficients - self._base))
 
 
-def numbers_of(growth: HousingGrowth) -> FloatArray:
+def numbers_of(growth: HousingExpansion) -> FloatArray:
     """Bores and journals, seal gaps, centre distances, axial travels, in this order [m]."""
     shape = growth.expansion
     parts = [np.array([(b.bore_growth, b.journal_growth) for b in shape.bearings.values()]).ravel()]
@@ -70,7 +70,7 @@ def numbers_of(growth: HousingGrowth) -> FloatArray:
     return np.concatenate(parts)
 
 
-def with_numbers(growth: HousingGrowth, numbers: FloatArray) -> HousingGrowth:
+def with_numbers(growth: HousingExpansion, numbers: FloatArray) -> HousingExpansion:
     """The growth with other numbers; displacements and what else hangs on them stay those of the base."""
     left = numbers
 

@@ -1,7 +1,7 @@
 """Settling a point of the coupling loop in few passes: steps from differences of passes already made.
 
 The passes are those of `rigdesign.coupling.loop`; only the way to the point where nothing moves is another. The next
-feedback takes the directions in which earlier passes moved into account (Anderson acceleration, a multi-secant
+coupling state takes the directions in which earlier passes moved into account (Anderson acceleration, a multi-secant
 quasi-Newton method). Differences of a neighbouring case serve as well, so that a changed case needs two or three
 passes from the settled one.
 Source: Walker, Ni, SIAM J. Numer. Anal. 49 (2011) 1715.
@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.errors import NotConvergedError
-from rigdesign.coupling.initial_state import cold_feedback
-from rigdesign.coupling.iteration import Parts, PassResult, feedback_of, one_pass
+from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import IterationParts, IterationResult, next_state, run_iteration
 from rigdesign.coupling.loads import brace_cold
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.prediction.readings import Settled
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import FloatArray
@@ -48,7 +48,7 @@ class SettledPoint(Settled):
     """A settled point with what its neighbours may use."""
 
     steps: FloatArray
-    """(n, k) differences of the feedback that passes started from."""
+    """(n, k) differences of the coupling state that passes started from."""
     answers: FloatArray
     """(n, k) differences of what came of it."""
     left: FloatArray
@@ -56,17 +56,17 @@ class SettledPoint(Settled):
     passes: int
 
 
-def flat(feedback: Feedback) -> FloatArray:
-    """(n,) the feedback in sizes of `SCALES`."""
+def flat(coupling_state: CouplingState) -> FloatArray:
+    """(n,) the coupling state in sizes of `SCALES`."""
     parts = [
-        np.fromiter(getattr(feedback, entry.name).values(), dtype=np.float64) / SCALES[entry.name]
-        for entry in fields(feedback)
+        np.fromiter(getattr(coupling_state, entry.name).values(), dtype=np.float64) / SCALES[entry.name]
+        for entry in fields(coupling_state)
     ]
     return np.concatenate(parts)
 
 
-def unflat(values: FloatArray, like: Feedback) -> Feedback:
-    """The feedback of (n,) values, with the names of another."""
+def unflat(values: FloatArray, like: CouplingState) -> CouplingState:
+    """The coupling state of (n,) values, with the names of another."""
     found: dict[str, dict[str, float]] = {}
     start = 0
     for entry in fields(like):
@@ -74,40 +74,42 @@ def unflat(values: FloatArray, like: Feedback) -> Feedback:
         part = values[start : start + len(names)] * SCALES[entry.name]
         found[entry.name] = dict(zip(names, part.tolist()))
         start += len(names)
-    return Feedback(**found)
+    return CouplingState(**found)
 
 
-def ordered(feedback: Feedback, like: Feedback) -> Feedback:
-    """The feedback with its names in the order of another."""
-    return Feedback(
+def ordered(coupling_state: CouplingState, like: CouplingState) -> CouplingState:
+    """The coupling state with its names in the order of another."""
+    return CouplingState(
         **{
-            entry.name: {name: getattr(feedback, entry.name)[name] for name in getattr(like, entry.name)}
+            entry.name: {
+                name: getattr(coupling_state, entry.name)[name] for name in getattr(like, entry.name)
+            }
             for entry in fields(like)
         }
     )
 
 
-def raw(rig: Rig, done: PassResult, parts: Parts, like: Feedback) -> Feedback:
+def raw(rig: Rig, done: IterationResult, parts: IterationParts, like: CouplingState) -> CouplingState:
     """What a pass hands on, heats not relaxed, names in the order of ``like``."""
-    after = feedback_of(rig, done, parts)
+    after = next_state(rig, done, parts)
     after = replace(after, bearing_heat=done.bearing_heat, wall_heat=done.wall_heat)
     return ordered(after, like)
 
 
-def settle(
+def solve_fixed_point(
     rig: Rig,
     point: OperatingPoint,
-    parts: Parts,
+    parts: IterationParts,
     near: SettledPoint | None = None,
     inverse: NDArray[np.floating] | None = None,
     *,
     close: float = CLOSE,
-    start: Feedback | None = None,
+    start: CouplingState | None = None,
 ) -> SettledPoint:
     """Passes until none of them moves anything by more than ``close``.
 
     near : a settled point nearby, to start from; the cold rig when left out
-    start : feedback to start from where there is no point nearby
+    start : coupling state to start from where there is no point nearby
     inverse : (n, n) of `PointSlopes` at that point: then each pass is followed by a step of Newton's method with it
 
     Raises
@@ -115,21 +117,21 @@ def settle(
     NotConvergedError
         `PASSES` are used up.
     """
-    cold = cold_feedback(rig, point)
+    cold = initial_state(rig, point)
     bracing = None if rig.case.drivetrain is None else brace_cold(rig, point, cold)
-    given = start if near is None else near.last.feedback
-    feedback = cold if given is None else ordered(given, cold)
+    given = start if near is None else near.last.coupling_state
+    coupling_state = cold if given is None else ordered(given, cold)
     done = None if near is None else near.last
     steps: list[FloatArray] = []
     answers: list[FloatArray] = []
     if near is not None and inverse is None:
         steps, answers = list(near.steps.T), list(near.answers.T)
     before: tuple[FloatArray, FloatArray] | None = None
-    x = flat(feedback)
+    x = flat(coupling_state)
     for count in range(1, PASSES + 1):
-        done = one_pass(rig, point, feedback, bracing, done, parts=parts)
+        done = run_iteration(rig, point, coupling_state, bracing, done, parts=parts)
         handed = flat(raw(rig, done, parts, cold)) - x
-        relaxed = flat(ordered(feedback_of(rig, done, parts), cold)) - x
+        relaxed = flat(ordered(next_state(rig, done, parts), cold)) - x
         left = relaxed if inverse is None else inverse @ handed
         after = x + left
         if before is not None:
@@ -142,9 +144,9 @@ def settle(
             )
         before = x, after
         x = _next(x, after, steps, answers)
-        feedback = unflat(x, cold)
+        coupling_state = unflat(x, cold)
     raise NotConvergedError(
-        f"coupling at {point.stage!r} did not settle in {PASSES} passes: the last one still moved the feedback by "
+        f"coupling at {point.stage!r} did not converge in {PASSES} passes: the last one still moved the state by "
         f"{float(np.abs(left).max()):.3g} (limit {close:g}; kelvin, micrometres, 10 W); feed more oil if a film or "
         "stream swings"
     )

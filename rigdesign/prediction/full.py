@@ -8,13 +8,13 @@ from threadpoolctl import threadpool_limits
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
-from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import solve_point
 from rigdesign.prediction.model import (
     STANDING_QUANTITIES,
     Channel,
+    OperatingCondition,
     Prediction,
-    Setting,
     features_of,
 )
 from rigdesign.prediction.operating import operating_point, rig_at
@@ -26,7 +26,7 @@ from thermal.fe.kernels import one_thread
 
 
 def predict_full(
-    case: Case, settings: Sequence[Setting], channels: Sequence[Channel], fidelity: Fidelity
+    case: Case, settings: Sequence[OperatingCondition], channels: Sequence[Channel], fidelity: Fidelity
 ) -> Prediction:
     """What the channels would read by the full thermal model; see `rigdesign.prediction.predict.predict`."""
     check_names(settings, channels)
@@ -36,14 +36,14 @@ def predict_full(
     return Prediction(features=features_of(settings, channels), values=np.array(values, dtype=np.float64))
 
 
-def _at_points(rig: Rig, settings: Sequence[Setting], channels: Sequence[Channel]) -> list[float]:
+def _at_points(rig: Rig, settings: Sequence[OperatingCondition], channels: Sequence[Channel]) -> list[float]:
     reads = readings(rig, channels)
     looping = looping_rig(rig)
-    before: PassResult | None = None
+    before: IterationResult | None = None
     values: list[float] = []
     for setting in settings if reads else ():
         here = rig_at(looping, setting)
-        start = None if before is None else before.feedback
+        start = None if before is None else before.coupling_state
         result = solve_point(here, operating_point(setting), start=start)
         before = result.last
         if looping is not rig:
@@ -67,7 +67,7 @@ def standing_values(rig: Rig, channels: Iterable[Channel]) -> list[float]:
     return [standing_value(rig, channel, modes) for channel in standing]
 
 
-def check_names(settings: Sequence[Setting], channels: Sequence[Channel]) -> None:
+def check_names(settings: Sequence[OperatingCondition], channels: Sequence[Channel]) -> None:
     """Check that settings and channels can be told apart by name (UsageError)."""
     for kind, names in (("settings", [s.name for s in settings]), ("channels", [c.name for c in channels])):
         twice = sorted({name for name in names if names.count(name) > 1})

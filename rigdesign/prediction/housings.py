@@ -8,12 +8,12 @@ import numpy as np
 
 from dynamics.bearing.journal import BearingState
 from rigdesign.coupling.boundary import boundary_conditions
-from rigdesign.coupling.expansion import HousingGrowth
-from rigdesign.coupling.iteration import Parts
+from rigdesign.coupling.expansion import HousingExpansion
+from rigdesign.coupling.iteration import IterationParts
 from rigdesign.coupling.losses import PlacedLoss
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.temperatures import HousingField
-from rigdesign.prediction.expansion_map import GrowthMap
+from rigdesign.prediction.expansion_map import ExpansionMap
 from rigdesign.prediction.places import Weights
 from rigdesign.prediction.reduced_basis import Basis, build_basis
 from rigdesign.rig.model import Rig
@@ -46,7 +46,7 @@ class ReducedHousings:
         readers: Mapping[str, Sequence[Weights]],
     ) -> None:
         self.bases: dict[str, Basis] = {}
-        self.growths: dict[str, GrowthMap] = {}
+        self.growths: dict[str, ExpansionMap] = {}
         self._start: dict[str, FloatArray] = {}
         for name, conditions in states.items():
             basis = build_basis(rig.conduction[name], conditions, readers.get(name, ()))
@@ -55,9 +55,9 @@ class ReducedHousings:
             start = basis.reduced.solve(conditions[0], start).coefficients
             self.bases[name], self._start[name] = basis, start
             if not rig.models[name].no_expansion:
-                self.growths[name] = GrowthMap(rig, name, basis.reduced.shapes, basis.sizes, start)
+                self.growths[name] = ExpansionMap(rig, name, basis.reduced.shapes, basis.sizes, start)
 
-    def numbers(self) -> dict[str, tuple[FloatArray, FloatArray, float, GrowthMap | None, FloatArray]]:
+    def numbers(self) -> dict[str, tuple[FloatArray, FloatArray, float, ExpansionMap | None, FloatArray]]:
         """Shapes, their sizes, error, growth and start by gearbox: what another process needs."""
         return {
             name: (basis.reduced.shapes, basis.sizes, basis.error, self.growths.get(name), self._start[name])
@@ -68,7 +68,7 @@ class ReducedHousings:
     def of_numbers(
         cls,
         rig: Rig,
-        numbers: Mapping[str, tuple[FloatArray, FloatArray, float, GrowthMap | None, FloatArray]],
+        numbers: Mapping[str, tuple[FloatArray, FloatArray, float, ExpansionMap | None, FloatArray]],
     ) -> "ReducedHousings":
         """The housings of the same rig from their numbers."""
         made = cls(rig, {}, {})
@@ -89,7 +89,7 @@ class ReducedHousings:
         rig: Rig,
         name: str,
         point: OperatingPoint,
-        feedback: Feedback,
+        coupling_state: CouplingState,
         bearings: Mapping[str, BearingState],
         losses: Sequence[PlacedLoss],
         start: HousingField | None = None,
@@ -100,7 +100,13 @@ class ReducedHousings:
         assert housing is not None
         conditions = tuple(
             boundary_conditions(
-                rig, name, point, feedback, bearings, losses, radiation_included=housing.radiation_included
+                rig,
+                name,
+                point,
+                coupling_state,
+                bearings,
+                losses,
+                radiation_included=housing.radiation_included,
             )
         )
         return self.solved(name, conditions, start if isinstance(start, ReducedField) else None)
@@ -125,7 +131,7 @@ class ReducedHousings:
         )
         return ReducedField(name, conditions, solution, found.coefficients, found.factor)
 
-    def growth(self, _: Rig, field: HousingField, start: HousingGrowth | None = None) -> HousingGrowth:
+    def growth(self, _: Rig, field: HousingField, start: HousingExpansion | None = None) -> HousingExpansion:
         """Growth of a projected field; ``start`` is not needed."""
         assert isinstance(field, ReducedField)
         return self.growths[field.gearbox].at(field.coefficients)
@@ -135,6 +141,6 @@ class ReducedHousings:
         assert isinstance(field, ReducedField)
         return float(self.bases[field.gearbox].reduced.body(body) @ field.coefficients)
 
-    def parts(self, others: Parts) -> Parts:
-        """Parts of a pass with the fields and growth of these housings."""
+    def parts(self, others: IterationParts) -> IterationParts:
+        """IterationParts of a pass with the fields and growth of these housings."""
         return replace(others, field=self.field, growth=self.growth, bulk=self.bulk)

@@ -12,8 +12,8 @@ import numpy as np
 
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import CurvePoint
-from rigdesign.coupling.iteration import Parts
-from rigdesign.coupling.loads import MeshModel, Setting, signed_torque
+from rigdesign.coupling.iteration import IterationParts
+from rigdesign.coupling.loads import BracingState, MeshModel, signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.readings import Reading, Settled
@@ -33,7 +33,7 @@ Cause = tuple[str, str]
 """``drag`` and a place of the drivetrain, or ``friction`` and a mesh."""
 
 
-class NearLoop:
+class LinearisedDrag:
     """Torques, losses and orders of a settled point under other drags and frictions.
 
     orders : channels of orders with their readings; slopes : answers by cause that are known
@@ -44,7 +44,7 @@ class NearLoop:
         self,
         rig: Rig,
         settled: Settled,
-        parts: Parts,
+        parts: IterationParts,
         reads: Sequence[tuple[Channel, Reading]],
         slopes: Mapping[Cause, FloatArray] | None = None,
     ) -> None:
@@ -58,7 +58,7 @@ class NearLoop:
         point: OperatingPoint,
         models: Sequence[MeshModel],
         drags: Mapping[str, float],
-        setting: Setting,
+        setting: BracingState,
     ) -> dict[Cause, float] | None:
         """By how much drags [N m] and frictions differ; None where more than they do."""
         last = self.settled.last
@@ -154,7 +154,7 @@ def _rubbed(models: tuple[MeshModel, ...], number: int, friction: float) -> tupl
     return (*models[:number], changed, *models[number + 1 :])
 
 
-def _same_bracing(setting: Setting, own: Setting | None) -> bool:
+def _same_bracing(setting: BracingState, own: BracingState | None) -> bool:
     """Whether two settings are the same but for rounding."""
     if own is None or setting.mode != own.mode:
         return False

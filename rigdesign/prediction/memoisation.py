@@ -1,4 +1,4 @@
-"""Parts of a pass that remember: bearing films, meshes, responses and bracing whose inputs were met before.
+"""IterationParts of a pass that remember: bearing films, meshes, responses and bracing whose inputs were met before.
 
 A remembered part is the same numbers, only not computed twice. Each is known by all numbers that enter it and by
 nothing else of the case, so that a change finds again whatever it leaves alone. Gaps of the teeth count as the same
@@ -18,11 +18,11 @@ from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.initial_state import cold_feedback
-from rigdesign.coupling.iteration import Parts
+from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import IterationParts
 from rigdesign.coupling.loads import (
+    BracingState,
     MeshModel,
-    Setting,
     brace_cold,
     laws_of,
     mesh_friction,
@@ -32,7 +32,7 @@ from rigdesign.coupling.loads import (
     shifted_laws,
     signed_torque,
 )
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.rig.model import Rig
 
@@ -42,20 +42,22 @@ SAME_GAP = 13
 """Decimal places of a gap [m] that count."""
 
 
-class Memory:
+class Memoisation:
     """What passes of one rig and its variants found out."""
 
     def __init__(self) -> None:
         self._known: dict[str, dict[Any, Any]] = {kind: {} for kind in MOST}
 
     @property
-    def parts(self) -> Parts:
+    def parts(self) -> IterationParts:
         """The parts of a pass that remember."""
-        return Parts(models=self.models, bearings=self.bearings, response=self.response)
+        return IterationParts(models=self.models, bearings=self.bearings, response=self.response)
 
-    def bearings(self, rig: Rig, point: OperatingPoint, feedback: Feedback) -> dict[str, BearingState]:
+    def bearings(
+        self, rig: Rig, point: OperatingPoint, coupling_state: CouplingState
+    ) -> dict[str, BearingState]:
         """As `solve_bearings`."""
-        return solve_bearings(rig, point, feedback, self._film)
+        return solve_bearings(rig, point, coupling_state, self._film)
 
     def _film(self, *given: Any, **named: Any) -> BearingState:
         key = (given, tuple(named.items()))
@@ -65,17 +67,17 @@ class Memory:
         found: BearingState = known[key]
         return found
 
-    def models(self, rig: Rig, point: OperatingPoint, feedback: Feedback) -> tuple[MeshModel, ...]:
+    def models(self, rig: Rig, point: OperatingPoint, coupling_state: CouplingState) -> tuple[MeshModel, ...]:
         """As `mesh_models`; of a mesh that differs in friction and damping alone all arrays are shared."""
-        return tuple(self._model(rig, name, point, feedback) for name in rig.mesh_names)
+        return tuple(self._model(rig, name, point, coupling_state) for name in rig.mesh_names)
 
-    def _model(self, rig: Rig, name: str, point: OperatingPoint, feedback: Feedback) -> MeshModel:
-        key = _shape_key(rig, name, point, feedback)
+    def _model(self, rig: Rig, name: str, point: OperatingPoint, coupling_state: CouplingState) -> MeshModel:
+        key = _shape_key(rig, name, point, coupling_state)
         known = self._room("meshes")
         if key not in known:
-            known[key] = mesh_model(rig, name, point, feedback)
+            known[key] = mesh_model(rig, name, point, coupling_state)
         model: MeshModel = known[key]
-        friction = mesh_friction(rig, name, model.pair, point, feedback)
+        friction = mesh_friction(rig, name, model.pair, point, coupling_state)
         box, mesh = rig.mesh(name)
         entry, law = box.meshes[mesh], model.law
         damped = entry.damping, entry.damping_acts_on
@@ -85,11 +87,11 @@ class Memory:
         law = law._replace(friction=along, damping=damped[0], damping_acts_on=damped[1])
         return replace(model, friction=friction, law=law)
 
-    def bracing(self, rig: Rig, point: OperatingPoint) -> Setting | None:
+    def bracing(self, rig: Rig, point: OperatingPoint) -> BracingState | None:
         """As `brace_cold`; None without a drivetrain."""
         if rig.case.drivetrain is None:
             return None
-        cold = cold_feedback(rig, point)
+        cold = initial_state(rig, point)
         assert rig.system is not None
         models = self.models(rig, point, cold)
         at_rest = [alike_teeth(law)._replace(friction=0.0, damping=0.0) for law in laws_of(models)]
@@ -103,7 +105,7 @@ class Memory:
         known = self._room("bracings")
         if key not in known:
             known[key] = brace_cold(rig, point, cold, models)
-        found: Setting = known[key]
+        found: BracingState = known[key]
         return found
 
     def response(
@@ -112,7 +114,7 @@ class Memory:
         point: OperatingPoint,
         models: Sequence[MeshModel],
         drags: Mapping[str, float],
-        setting: Setting,
+        setting: BracingState,
     ) -> CurvePoint:
         """As `respond`."""
         laws = periodic_laws(rig, shifted_laws(rig, models, setting))
@@ -139,7 +141,9 @@ class Memory:
         return known
 
 
-def _shape_key(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback) -> tuple[object, ...]:
+def _shape_key(
+    rig: Rig, name: str, point: OperatingPoint, coupling_state: CouplingState
+) -> tuple[object, ...]:
     """All that enters a mesh but its friction and damping."""
     box, own = rig.mesh(name)
     mesh, power, numerics = box.meshes[own], rig.case.drivetrain, rig.case.numerics
@@ -157,11 +161,11 @@ def _shape_key(rig: Rig, name: str, point: OperatingPoint, feedback: Feedback) -
         (mesh.application_factor, mesh.low_load_factor, mesh.stiffness_factor, mesh.tooth_offset),
         mesh_phase(rig, name),
         rig.shaft_speed(gears[0].shaft, point.speed),
-        feedback.gear_temperature[pinion],
-        feedback.gear_temperature[wheel],
-        feedback.centre_distance[name],
-        feedback.tooth_growth[name],
-        feedback.mesh_torque[name],
+        coupling_state.gear_temperature[pinion],
+        coupling_state.gear_temperature[wheel],
+        coupling_state.centre_distance[name],
+        coupling_state.tooth_growth[name],
+        coupling_state.mesh_torque[name],
     )
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from rigdesign.prediction.model import Setting
+from rigdesign.prediction.model import OperatingCondition
 
 NEAR = {"speed": 0.05, "torque": 0.05, "flow": 0.15, "temperature": 8.0}
 """How far a point may lie from the plan for derivatives to carry it over: relative, temperatures in kelvin."""
@@ -26,7 +26,7 @@ def nearest_of(
     return found
 
 
-def apart(planned: Setting, run: Setting) -> float:
+def apart(planned: OperatingCondition, run: OperatingCondition) -> float:
     """Distance of a point from one of a plan, at most one where derivatives serve; infinite where they state
     different things."""
     if dict(planned.tooth_offset) != dict(run.tooth_offset):
@@ -46,7 +46,7 @@ def apart(planned: Setting, run: Setting) -> float:
     return max(*shares, *(abs(step) / NEAR["temperature"] for step in warmer))
 
 
-def met_again(now: Sequence[Setting], before: Sequence[Setting]) -> dict[str, str]:
+def met_again(now: Sequence[OperatingCondition], before: Sequence[OperatingCondition]) -> dict[str, str]:
     """Operating point -> that of the other set it is; the rig at rest is one of them."""
     pairs = nearest_of(now, before, apart, AGAIN)
     return {"": ""} | {now[here].name: before[there].name for here, there in pairs.items()}

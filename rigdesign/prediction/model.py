@@ -28,7 +28,7 @@ STANDING_QUANTITIES = frozenset({"natural_frequency", "backlash"})
 
 
 @dataclass(frozen=True, kw_only=True)
-class Setting:
+class OperatingCondition:
     """One operating point as it was run. What is left out is as in the case. SI, kelvin."""
 
     name: str
@@ -91,7 +91,7 @@ class Prediction:
     """Stated error of temperatures against the full model [K]."""
 
 
-def features_of(settings: Iterable[Setting], channels: Iterable[Channel]) -> tuple[Feature, ...]:
+def features_of(settings: Iterable[OperatingCondition], channels: Iterable[Channel]) -> tuple[Feature, ...]:
     """Features in their fixed order: settings, then channels, then orders; standing quantities at the end."""
     channels = tuple(channels)
     found = [

@@ -8,7 +8,7 @@ from rigdesign.base.errors import UsageError
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.prediction.model import Setting
+from rigdesign.prediction.model import OperatingCondition
 from rigdesign.rig.model import Rig, build_rig
 
 STREAMS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
@@ -19,12 +19,12 @@ UNMOVED = (*HOUSINGS, "geometries", "speed_ratios", "drivetrain", "mesh_forces",
 """Cached parts of a rig that no setting of an operating point touches."""
 
 
-def operating_point(setting: Setting) -> OperatingPoint:
+def operating_point(setting: OperatingCondition) -> OperatingPoint:
     """Speed and torque of a setting; its name stands where a stage of the schedule would."""
     return OperatingPoint(stage=setting.name, speed=setting.speed, torque=setting.torque)
 
 
-def rig_at(rig: Rig, setting: Setting) -> Rig:
+def rig_at(rig: Rig, setting: OperatingCondition) -> Rig:
     """The rig with inlet temperatures, flows, room and tooth offsets of a setting; meshes and matrices shared.
 
     Raises
@@ -39,7 +39,7 @@ def rig_at(rig: Rig, setting: Setting) -> Rig:
     return _sharing(placed, rig, UNMOVED)
 
 
-def case_at(case: Case, setting: Setting) -> Case:
+def case_at(case: Case, setting: OperatingCondition) -> Case:
     """The case with the numbers of a setting; see `rig_at`."""
     boxes = dict(case.gearboxes)
     for stream, value in setting.inlet_temperature.items():

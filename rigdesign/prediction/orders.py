@@ -29,7 +29,7 @@ from dynamics.orders.deviation_response import (
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.speed_sweep import CurvePoint, periodic_response
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.loads import MeshModel, Setting, shifted_laws, signed_torque
+from rigdesign.coupling.loads import BracingState, MeshModel, shifted_laws, signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.exact_orders import ExactMotion, exact_motion
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
@@ -51,7 +51,7 @@ def shaft_orders(
     point: OperatingPoint,
     models: Sequence[MeshModel],
     drags: Mapping[str, float],
-    setting: Setting,
+    setting: BracingState,
     channels: Sequence[Channel],
     *,
     base: CurvePoint | None = None,
@@ -79,7 +79,7 @@ class PointOrders:
         point: OperatingPoint,
         models: Sequence[MeshModel],
         drags: Mapping[str, float],
-        setting: Setting,
+        setting: BracingState,
         *,
         base: CurvePoint | None = None,
         exact: bool | None = None,
@@ -202,7 +202,11 @@ def numbers(channel: Channel, orders: Orders) -> list[float]:
 
 
 def ideal_response(
-    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], drags: Mapping[str, float], setting: Setting
+    rig: Rig,
+    point: OperatingPoint,
+    models: Sequence[MeshModel],
+    drags: Mapping[str, float],
+    setting: BracingState,
 ) -> CurvePoint:
     """Response with all teeth of a gear alike and no torque that swings, over one mesh period.
 

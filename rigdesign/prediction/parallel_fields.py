@@ -9,7 +9,7 @@ from thermal.fe.kernels import THREADED
 T = TypeVar("T")
 
 
-def fields_beside(nodes: int, works: Sequence[Callable[[], T]]) -> list[T]:
+def fields_in_parallel(nodes: int, works: Sequence[Callable[[], T]]) -> list[T]:
     """Results of works on fields of so many nodes, in their order; the same bits on any number of cores."""
     if nodes >= THREADED:
         return [work() for work in works]

@@ -6,7 +6,7 @@ from typing import Literal
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.prediction.full import predict_full
-from rigdesign.prediction.model import Channel, Prediction, Setting
+from rigdesign.prediction.model import Channel, OperatingCondition, Prediction
 from rigdesign.prediction.predictor import Predictor
 
 Thermal = Literal["full", "reduced"]
@@ -15,7 +15,7 @@ Thermal = Literal["full", "reduced"]
 
 def predict(
     case: Case,
-    settings: Iterable[Setting],
+    settings: Iterable[OperatingCondition],
     channels: Iterable[Channel],
     *,
     model: Thermal = "full",

@@ -19,22 +19,28 @@ from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.parallel import Beside
 from rigdesign.case.model import Case
-from rigdesign.coupling.initial_state import cold_feedback
-from rigdesign.coupling.iteration import Parts, feedback_of, one_pass
-from rigdesign.coupling.loads import Setting as Bracing
+from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import IterationParts, next_state, run_iteration
+from rigdesign.coupling.loads import BracingState as Bracing
 from rigdesign.coupling.loads import brace_cold
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.changes import Changes, changed_case
-from rigdesign.prediction.fixed_point import CLOSE, SettledPoint, settle
+from rigdesign.prediction.fixed_point import CLOSE, SettledPoint, solve_fixed_point
 from rigdesign.prediction.full import check_names, standing_values
 from rigdesign.prediction.housings import ReducedHousings
-from rigdesign.prediction.memoisation import Memory
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Setting, features_of
+from rigdesign.prediction.memoisation import Memoisation
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, OperatingCondition, features_of
 from rigdesign.prediction.operating import like, operating_point, rig_at
 from rigdesign.prediction.orders import ideal_response, is_ideal, shaft_orders
 from rigdesign.prediction.places import Weights, place_weights
 from rigdesign.prediction.readings import readings
-from rigdesign.prediction.sensitivities import Directions, Named, PointSlopes, SlopeNumbers, directions_of
+from rigdesign.prediction.sensitivities import (
+    Directions,
+    Named,
+    PointSensitivities,
+    SensitivityNumbers,
+    directions_of,
+)
 from rigdesign.prediction.static_tests import standing_modes
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.solver_errors import solver_errors
@@ -43,7 +49,7 @@ from thermal.fe.kernels import one_thread
 from thermal.fe.mesh import FloatArray
 
 NEAR = 0.1
-"""Last step of the loop, in sizes of `settle.SCALES`, that is answered to first order: 0.1 K, 0.1 um, 1 W."""
+"""Last step of the loop, in sizes of `fixed_point.SCALES`, that is answered to first order: 0.1 K, 0.1 um, 1 W."""
 STEP_SHARE = 2e-3
 """Share of a speed, torque or flow by which it is moved for a derivative."""
 STEP_KELVIN = 0.2
@@ -78,7 +84,7 @@ class Predictor:
     def __init__(
         self,
         case: Case,
-        settings: Iterable[Setting],
+        settings: Iterable[OperatingCondition],
         channels: Iterable[Channel],
         *,
         fidelity: Fidelity = "quick",
@@ -89,14 +95,14 @@ class Predictor:
         self.features = features_of(self.settings, self.channels)
         if not self.settings:
             raise UsageError("no operating points; give one setting at least")
-        self._made_slopes: list[PointSlopes] | None = None
+        self._made_slopes: list[PointSensitivities] | None = None
         self._known_swings: dict[int, FloatArray] = {}
         self._ideal: dict[int, CurvePoint] = {}
         with self._calm():
             self._rig = build_rig(case, fidelity)
             self._reads = readings(self._rig, self.channels)
             self._housings = ReducedHousings(self._rig, self._states(), self._sensors())
-            self._memory = Memory()
+            self._memory = Memoisation()
             self._parts = self._housings.parts(self._memory.parts)
             self._rigs = [rig_at(self._rig, setting) for setting in self.settings]
             self._points = self._settled_base()
@@ -114,13 +120,13 @@ class Predictor:
         CaseError
             A path that does not exist, a value the case refuses.
         NotConvergedError
-            A point that does not settle.
+            A point that does not converge.
         """
         made = self._changed_rigs(changes)
         with self._calm():
             known = self._made_slopes
             points = [
-                settle(
+                solve_fixed_point(
                     rig_at(rig, setting),
                     operating_point(setting),
                     self._parts,
@@ -146,7 +152,7 @@ class Predictor:
         CaseError
             As `values`.
         NotConvergedError
-            A pass that does not settle, or teeth so unlike that their contacts have to be followed exactly, as
+            A pass that does not converge, or teeth so unlike that their contacts have to be followed exactly, as
             `values` does.
         """
         made = self._changed_rigs(changes)
@@ -193,7 +199,7 @@ class Predictor:
             self._ideal[number] = ideal or ideal_response(
                 self._rigs[number], last.point, last.models, last.drags, point.bracing
             )
-        models = self._memory.models(rig, last.point, last.feedback)
+        models = self._memory.models(rig, last.point, last.coupling_state)
         assert point.bracing is not None
         orders = shaft_orders(
             rig,
@@ -293,7 +299,7 @@ class Predictor:
             for name in names
         }
 
-    def _slopes(self) -> list[PointSlopes]:
+    def _slopes(self) -> list[PointSensitivities]:
         """First-order answers of all points, made when they are first asked for."""
         if self._made_slopes is None:
             directions = (
@@ -310,7 +316,7 @@ class Predictor:
             ]
         return self._made_slopes
 
-    def _posed(self, rig: Rig, setting: Setting) -> tuple[Rig, OperatingPoint, Bracing | None]:
+    def _posed(self, rig: Rig, setting: OperatingCondition) -> tuple[Rig, OperatingPoint, Bracing | None]:
         """A rig at a setting, braced."""
         here, point = rig_at(rig, setting), operating_point(setting)
         return here, point, self._memory.bracing(here, point)
@@ -324,7 +330,7 @@ class Predictor:
             "fidelity": self.fidelity,
             "base": self.base,
             "housings": self._housings.numbers(),
-            "feedbacks": [point.last.feedback for point in self._points],
+            "feedbacks": [point.last.coupling_state for point in self._points],
         }
 
     def __setstate__(self, state: Mapping[str, Any]) -> None:
@@ -334,7 +340,7 @@ class Predictor:
         self.features = features_of(self.settings, self.channels)
         self._made_slopes = None
         self._known_swings, self._ideal = {}, {}
-        self._memory = Memory()
+        self._memory = Memoisation()
         with self._calm():
             self._rig = build_rig(self.case, self.fidelity)
             self._reads = readings(self._rig, self.channels)
@@ -342,8 +348,8 @@ class Predictor:
             self._parts = self._housings.parts(self._memory.parts)
             self._rigs = [rig_at(self._rig, setting) for setting in self.settings]
             self._points = [
-                settle(rig, operating_point(setting), self._parts, start=feedback)
-                for rig, setting, feedback in zip(self._rigs, self.settings, state["feedbacks"])
+                solve_fixed_point(rig, operating_point(setting), self._parts, start=coupling_state)
+                for rig, setting, coupling_state in zip(self._rigs, self.settings, state["feedbacks"])
             ]
         self.error = self._housings.error
 
@@ -381,10 +387,10 @@ class Predictor:
         found: dict[str, list[Sequence[Condition]]] = {name: [] for name in self._rig.models}
         for setting in _apart(self.settings, STATES) if found else ():
             rig, point = rig_at(self._rig, setting), operating_point(setting)
-            feedback = cold_feedback(rig, point)
-            bracing = None if rig.case.drivetrain is None else brace_cold(rig, point, feedback)
-            done = one_pass(rig, point, feedback, bracing)
-            done = one_pass(rig, point, feedback_of(rig, done), bracing, done, fine=False)
+            coupling_state = initial_state(rig, point)
+            bracing = None if rig.case.drivetrain is None else brace_cold(rig, point, coupling_state)
+            done = run_iteration(rig, point, coupling_state, bracing)
+            done = run_iteration(rig, point, next_state(rig, done), bracing, done, fine=False)
             for name, field in done.fields.items():
                 found[name].append(field.conditions)
         return found
@@ -395,7 +401,7 @@ class Predictor:
         for index, setting in enumerate(self.settings):
             near = min(range(index), key=lambda i: _distance(self.settings[i], setting), default=None)
             start = None if near is None else points[near]
-            points.append(settle(self._rigs[index], operating_point(setting), self._parts, start))
+            points.append(solve_fixed_point(self._rigs[index], operating_point(setting), self._parts, start))
         return points
 
     def _values(
@@ -412,25 +418,27 @@ class Predictor:
 
 def _slopes_at(
     housings: ReducedHousings,
-    parts: Parts,
+    parts: IterationParts,
     reads: Named,
     directions: Mapping[str, Directions],
     rig: Rig,
     point: SettledPoint,
-    known: SlopeNumbers | None = None,
-) -> PointSlopes:
-    return PointSlopes(rig, point, housings, parts, reads, directions, known)
+    known: SensitivityNumbers | None = None,
+) -> PointSensitivities:
+    return PointSensitivities(rig, point, housings, parts, reads, directions, known)
 
 
 def _numbers_at(
-    made: Callable[[Rig, SettledPoint], PointSlopes], rig: Rig, point: SettledPoint
-) -> SlopeNumbers:
+    made: Callable[[Rig, SettledPoint], PointSensitivities], rig: Rig, point: SettledPoint
+) -> SensitivityNumbers:
     return made(rig, point).numbers
 
 
-def _moved_settings(case: Case, setting: Setting) -> dict[tuple[str, str], tuple[Setting, float]]:
+def _moved_settings(
+    case: Case, setting: OperatingCondition
+) -> dict[tuple[str, str], tuple[OperatingCondition, float]]:
     """(kind, place) -> the setting with that value moved a little, and by how much."""
-    moved: dict[tuple[str, str], tuple[Setting, float]] = {}
+    moved: dict[tuple[str, str], tuple[OperatingCondition, float]] = {}
     for kind in ("speed", "torque"):
         step = STEP_SHARE * max(abs(getattr(setting, kind)), 1.0)
         moved[kind, ""] = replace(setting, **{kind: getattr(setting, kind) + step}), step
@@ -448,7 +456,7 @@ def _moved_settings(case: Case, setting: Setting) -> dict[tuple[str, str], tuple
     return moved
 
 
-def _distance(first: Setting, second: Setting) -> float:
+def _distance(first: OperatingCondition, second: OperatingCondition) -> float:
     """How far two operating points lie apart, for a choice among neighbours."""
     speed = abs(first.speed - second.speed) / max(first.speed, second.speed, 1e-9)
     torque = abs(first.torque - second.torque) / max(abs(first.torque), abs(second.torque), 1e-9)
@@ -459,7 +467,7 @@ def _distance(first: Setting, second: Setting) -> float:
     return float(speed + 0.5 * torque + 3.0 * oil)
 
 
-def _apart(settings: Sequence[Setting], count: int) -> list[Setting]:
+def _apart(settings: Sequence[OperatingCondition], count: int) -> list[OperatingCondition]:
     """The most severe operating point and those that lie furthest from all chosen before."""
     if not settings:
         return []

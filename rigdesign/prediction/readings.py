@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.iteration import PassResult
-from rigdesign.coupling.loads import Setting as Bracing
+from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.loads import BracingState as Bracing
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
 from rigdesign.prediction.orders import is_ideal, shaft_orders
@@ -24,7 +24,7 @@ class Settled:
     """What channels read: a settled operating point."""
 
     point: OperatingPoint
-    last: PassResult
+    last: IterationResult
     bracing: Bracing | None
     """How the loop is braced; None without a drivetrain."""
 

@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 from scipy import sparse
 
-from rigdesign.prediction.parallel_fields import fields_beside
+from rigdesign.prediction.parallel_fields import fields_in_parallel
 from rigdesign.prediction.places import Weights
 from thermal.conditions.boundary import (
     BodySource,
@@ -218,7 +218,7 @@ def _missed(
         return float(np.abs(read @ (exact - found)).max()), exact
 
     drawn_ones = [drawn(states[int(random.integers(len(states)))], random) for _ in range(count)]
-    return fields_beside(read.shape[1], [partial(under, conditions) for conditions in drawn_ones])
+    return fields_in_parallel(read.shape[1], [partial(under, conditions) for conditions in drawn_ones])
 
 
 def drawn(conditions: Sequence[Condition], random: np.random.Generator) -> list[Condition]:

@@ -1,8 +1,8 @@
 """First-order answers of a settled point: what a small change anywhere does once the loop has followed.
 
-With the feedback x of a point, the passes x -> g(x) and the readings y(x), a change that moves g by dg and the
+With the coupling state x of a point, the passes x -> g(x) and the readings y(x), a change that moves g by dg and the
 readings by dy at a fixed x moves the settled readings by dy + Y (1 - G)^-1 dg, G and Y the slopes of g and y by x.
-These come from one pass per number of the feedback; what is changed in the housings (conductances, sources) is
+These come from one pass per number of the coupling state; what is changed in the housings (conductances, sources) is
 answered on the temperature shapes.
 """
 
@@ -15,14 +15,14 @@ import numpy as np
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.flank_heat import rim_surfaces
-from rigdesign.coupling.iteration import Parts, PassResult, one_pass
+from rigdesign.coupling.iteration import IterationParts, IterationResult, run_iteration
+from rigdesign.coupling.loads import BracingState as Bracing
 from rigdesign.coupling.loads import MeshModel
-from rigdesign.coupling.loads import Setting as Bracing
-from rigdesign.coupling.state import Feedback, OperatingPoint
-from rigdesign.prediction.expansion_map import GrowthMap
+from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.prediction.expansion_map import ExpansionMap
 from rigdesign.prediction.fixed_point import SCALES, SettledPoint, flat, raw, unflat
 from rigdesign.prediction.housings import ReducedField, ReducedHousings
-from rigdesign.prediction.linearised_drag import Cause, NearLoop
+from rigdesign.prediction.linearised_drag import Cause, LinearisedDrag
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.orders import Orders, is_ideal, shaft_orders
 from rigdesign.prediction.orders import numbers as order_numbers
@@ -35,26 +35,27 @@ from thermal.conduction.reduced import Link, Projection
 from thermal.fe.mesh import FloatArray
 
 STEP = 0.3
-"""Step of a difference in the sizes of the feedback: 0.3 K, 0.3 um, 3 W, 0.3 N m."""
+"""Step of a difference in the sizes of the coupling state: 0.3 K, 0.3 um, 3 W, 0.3 N m."""
 
 Named = Sequence[tuple[Channel, Reading]]
 
 
 @dataclass(frozen=True)
 class Directions:
-    """How feedback and readings follow the temperature shapes of a housing, the same at all points."""
+    """How coupling state and readings follow the temperature shapes of a housing, the same at all points."""
 
-    feedback: FloatArray
+    coupling_state: FloatArray
     """(n, m)"""
     readings: FloatArray
     """(f, m)"""
 
 
 @dataclass(frozen=True)
-class SlopeNumbers:
+class SensitivityNumbers:
     """What the passes of a point found out: plain numbers, so that another process can send them.
 
-    loop : (n, n) slope of a pass by its feedback; follow : (f, n) of the readings; near : answers of `NearLoop`
+    loop : (n, n) slope of a pass by its coupling state; follow : (f, n) of the readings; near : answers of
+    `LinearisedDrag`
     """
 
     loop: FloatArray
@@ -75,7 +76,7 @@ class Answer:
     same_loop: bool
 
 
-class PointSlopes:
+class PointSensitivities:
     """First-order answers of one settled point.
 
     reads : readings of the channels; directions : by gearbox, see `directions_of`; known : the slopes, where they
@@ -87,10 +88,10 @@ class PointSlopes:
         rig: Rig,
         settled: SettledPoint,
         housings: ReducedHousings,
-        parts: Parts,
+        parts: IterationParts,
         reads: Named,
         directions: Mapping[str, Directions],
-        known: SlopeNumbers | None = None,
+        known: SensitivityNumbers | None = None,
     ) -> None:
         self.rig, self.settled, self._housings, self._parts, self._reads = (
             rig,
@@ -100,39 +101,39 @@ class PointSlopes:
             reads,
         )
         self._directions = directions
-        self.feedback = settled.last.feedback
-        self.near = NearLoop(rig, settled, parts, reads, None if known is None else known.near)
-        self._g = flat(raw(rig, settled.last, parts, self.feedback))
+        self.coupling_state = settled.last.coupling_state
+        self.near = LinearisedDrag(rig, settled, parts, reads, None if known is None else known.near)
+        self._g = flat(raw(rig, settled.last, parts, self.coupling_state))
         self._y = np.array([number for _, reading in reads for number in reading(rig, settled)])
-        self.index = _index(self.feedback)
+        self.index = _index(self.coupling_state)
         numbers = known or self._found()
         self.loop = numbers.loop
-        """(n, n) slope of a pass by its feedback."""
+        """(n, n) slope of a pass by its coupling state."""
         self.follow = numbers.follow
-        """(f, n) slope of the readings by the feedback."""
+        """(f, n) slope of the readings by the coupling state."""
         self.inverse = np.linalg.inv(np.eye(len(self._g)) - self.loop)
-        """(n, n) how far the feedback moves until the loop has settled, per change of what a pass hands on."""
+        """(n, n) how far the coupling state moves until the loop has settled, per change of what a pass hands on."""
         self._closed = self.follow @ self.inverse
         """(f, n) settled readings per change of what a pass hands on."""
 
     @property
-    def numbers(self) -> SlopeNumbers:
+    def numbers(self) -> SensitivityNumbers:
         """The slopes."""
-        return SlopeNumbers(self.loop, self.follow, self.near.slopes)
+        return SensitivityNumbers(self.loop, self.follow, self.near.slopes)
 
-    def _found(self) -> SlopeNumbers:
-        """The slopes, from one pass per number of the feedback."""
-        x = flat(self.feedback)
+    def _found(self) -> SensitivityNumbers:
+        """The slopes, from one pass per number of the coupling state."""
+        x = flat(self.coupling_state)
         slopes, readings = [], []
         for number in self.index.values():
             moved = x.copy()
             moved[number] += STEP
             done = self._pass(
-                self.rig, self.settled.point, unflat(moved, self.feedback), self.settled.bracing
+                self.rig, self.settled.point, unflat(moved, self.coupling_state), self.settled.bracing
             )
             slopes.append((done.handed - self._g) / STEP)
             readings.append((done.readings - self._y) / STEP)
-        return SlopeNumbers(np.array(slopes).T, np.array(readings).T, self.near.slopes)
+        return SensitivityNumbers(np.array(slopes).T, np.array(readings).T, self.near.slopes)
 
     @property
     def readings(self) -> FloatArray:
@@ -149,7 +150,7 @@ class PointSlopes:
 
     def changed(self, rig: Rig, point: OperatingPoint, bracing: Bracing | None) -> Answer:
         """Settled readings of a rig or setting nearby, from one pass of it."""
-        done = self._pass(rig, point, self.feedback, bracing)
+        done = self._pass(rig, point, self.coupling_state, bracing)
         return replace(done, readings=self._y + self.answer(done.handed - self._g, done.readings - self._y))
 
     def links(self) -> dict[str, FloatArray]:
@@ -244,7 +245,7 @@ class PointSlopes:
 
     def _handed(self, name: str, links: Sequence[Link]) -> FloatArray:
         """(n, m) what a pass hands on by the coefficients of a housing: growth, gear bulk, heats of its films."""
-        handed = self._directions[name].feedback.copy()
+        handed = self._directions[name].coupling_state.copy()
         for link in links:
             heat = self._heat_of(name, link)
             if heat is not None:
@@ -252,7 +253,7 @@ class PointSlopes:
         return handed
 
     def _heat_of(self, name: str, link: Link) -> int | None:
-        """Number of the feedback that counts the heat of a film."""
+        """Number of the coupling state that counts the heat of a film."""
         if not isinstance(link.condition, Film):
             return None
         kind, _, part = link.condition.kind.partition(":")
@@ -260,7 +261,9 @@ class PointSlopes:
             return self.index.get(("bearing_heat", f"{name}.{part}"))
         return self.index.get(("wall_heat", f"{name}.{kind}")) if kind in (GEAR_OIL, BEARING_OIL) else None
 
-    def _pass(self, rig: Rig, point: OperatingPoint, feedback: Feedback, bracing: Bracing | None) -> Answer:
+    def _pass(
+        self, rig: Rig, point: OperatingPoint, coupling_state: CouplingState, bracing: Bracing | None
+    ) -> Answer:
         """A pass with what it hands on and what is read of it; the loop to first order where it is nearly the same."""
         causes: dict[Cause, float] | None = None
 
@@ -278,7 +281,7 @@ class PointSlopes:
             return self.near.response(causes)
 
         parts = replace(self._parts, response=response)
-        done = one_pass(rig, point, feedback, bracing, self.settled.last, parts=parts)
+        done = run_iteration(rig, point, coupling_state, bracing, self.settled.last, parts=parts)
         settled = Settled(point, done, bracing)
         near = None if causes is None else iter(self.near.orders(causes).tolist())
         orders = {} if near is not None else self._orders(rig, done, bracing)
@@ -290,10 +293,10 @@ class PointSlopes:
                 read += islice(near, numbers_of(channel))
             else:
                 read += order_numbers(channel, orders)
-        handed = flat(raw(rig, done, self._parts, self.feedback))
+        handed = flat(raw(rig, done, self._parts, self.coupling_state))
         return Answer(readings=np.array(read), handed=handed, same_loop=near is not None)
 
-    def _orders(self, rig: Rig, done: PassResult, bracing: Bracing | None) -> Orders:
+    def _orders(self, rig: Rig, done: IterationResult, bracing: Bracing | None) -> Orders:
         """Orders after a pass. Raises NotConverged where contacts would have to be followed exactly."""
         read = [channel for channel, _ in self._reads if channel.quantity in ORDER_QUANTITIES]
         if not read:
@@ -307,7 +310,7 @@ TURNING = ("gear_", "shaft_")
 """How the surfaces of turning parts begin."""
 
 
-def _fresh_over_mean(rig: Rig, name: str, last: PassResult) -> float:
+def _fresh_over_mean(rig: Rig, name: str, last: IterationResult) -> float:
     """Gear oil as it leaves the teeth, warmed by all losses and not yet cooled by walls, over its mean [K]."""
     own = [placed for placed in last.losses if placed.gearbox == name]
     heat = sum(placed.into_oil - placed.into_bearing_oil for placed in own)
@@ -334,14 +337,14 @@ def link_name(gearbox: str, link: Link) -> str:
 
 
 def directions_of(
-    rig: Rig, settled: SettledPoint, housings: ReducedHousings, parts: Parts, reads: Named
+    rig: Rig, settled: SettledPoint, housings: ReducedHousings, parts: IterationParts, reads: Named
 ) -> dict[str, Directions]:
-    """How feedback and readings follow the shapes of every housing; heats of films are left out."""
+    """How coupling state and readings follow the shapes of every housing; heats of films are left out."""
     last = settled.last
-    like = last.feedback
+    like = last.coupling_state
     first = flat(raw(rig, last, parts, like))
 
-    def readings(done: PassResult) -> FloatArray:
+    def readings(done: IterationResult) -> FloatArray:
         settled_there = Settled(done.point, done, settled.bracing)
         return np.array(
             [number for channel, read in reads for number in _of_field(channel, read, rig, settled_there)]
@@ -352,7 +355,7 @@ def directions_of(
     for name, field in last.fields.items():
         assert isinstance(field, ReducedField)
         shapes = housings.bases[name].reduced.shapes
-        growth: GrowthMap | None = housings.growths.get(name)
+        growth: ExpansionMap | None = housings.growths.get(name)
         by_feedback, by_readings = [], []
         for number in range(shapes.shape[1]):
             coefficients = field.coefficients.copy()
@@ -370,7 +373,7 @@ def directions_of(
 
 
 def _of_field(channel: Channel, read: Reading, rig: Rig, settled: Settled) -> Sequence[float]:
-    """Readings that hang on a field itself; zeros for the others, which follow the feedback."""
+    """Readings that hang on a field itself; zeros for the others, which follow the coupling state."""
     if channel.quantity in ("temperature", "seal_gap"):
         return read(rig, settled)
     return [0.0] * numbers_of(channel)
@@ -381,12 +384,16 @@ def numbers_of(channel: Channel) -> int:
     return sum(2 if order else 1 for order in channel.orders) if channel.orders else 1
 
 
-def _index(feedback: Feedback) -> dict[tuple[str, str], int]:
-    """(arrow, place) -> number in the flat feedback."""
-    names = [(arrow, place) for arrow in feedback.__dataclass_fields__ for place in getattr(feedback, arrow)]
+def _index(coupling_state: CouplingState) -> dict[tuple[str, str], int]:
+    """(arrow, place) -> number in the flat coupling state."""
+    names = [
+        (arrow, place)
+        for arrow in coupling_state.__dataclass_fields__
+        for place in getattr(coupling_state, arrow)
+    ]
     return {name: number for number, name in enumerate(names)}
 
 
 def _scale(number: int, index: Mapping[tuple[str, str], int]) -> float:
-    """Size of a number of the feedback [W for a heat]."""
+    """Size of a number of the coupling state [W for a heat]."""
     return SCALES[list(index)[number][0]]

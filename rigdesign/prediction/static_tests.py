@@ -16,7 +16,7 @@ from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import brace_cold, mesh_models, shifted_laws, signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
@@ -78,7 +78,7 @@ def standing_laws(rig: Rig) -> list[MeshLaw]:
     """Mesh laws of the cold rig with the mean stiffness that the standstill torque makes, all teeth alike."""
     assert rig.system is not None
     point = OperatingPoint(stage="standstill", speed=0.0, torque=standstill_torque(rig))
-    cold = cold_feedback(rig, point)
+    cold = initial_state(rig, point)
     laws = [
         alike_teeth(law)
         for law in shifted_laws(rig, mesh_models(rig, point, cold), brace_cold(rig, point, cold))

@@ -26,7 +26,7 @@ def bore_rows(rig: Rig, result: PointResult, name: str, shape: Expansion) -> lis
         full = f"{name}.{part}"
         growth = bearing_growth(rig, name, shape, entry)
         found = growth.bore_roundness
-        share = clearance_share(found.peak_to_valley, result.last.feedback.bearing_clearance[full])
+        share = clearance_share(found.peak_to_valley, result.last.coupling_state.bearing_clearance[full])
         rows.append(
             {
                 "bearing": full,

@@ -11,7 +11,7 @@ from dynamics.mesh.law import MeshLaw
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
 from dynamics.response.speed_sweep import ResponseCurve, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
-from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loads import laws_of, locked_share, mesh_models, signed_torque
 from rigdesign.coupling.time_run import held_points
 from rigdesign.coupling.tooth_deviations import periodic_laws
@@ -73,7 +73,7 @@ class CurvePlan:
         )
 
 
-def plan_curves(rig: Rig, warm: PassResult) -> CurvePlan:
+def plan_curves(rig: Rig, warm: IterationResult) -> CurvePlan:
     """Periodic response over speed at every torque of the schedule, warm gears of ``warm``."""
     numerics = rig.case.numerics
     governing = _key(signed_torque(rig, warm.point))
@@ -84,13 +84,13 @@ def plan_curves(rig: Rig, warm: PassResult) -> CurvePlan:
     shipped = rig.case.drivetrain.mesh_stiffness if rig.case.drivetrain else ""
     other = "iso_6336_scaled" if shipped == VARIANT else VARIANT
     if rig.fidelity != "quick":
-        models = mesh_models(rig, warm.point, warm.feedback, other)
+        models = mesh_models(rig, warm.point, warm.coupling_state, other)
         own = grid(rig, numerics.curve_speed_start, numerics.curve_speed_end)
         works[other] = partial(_curve, rig, warm, laws_of(models), governing, own, refined=False)
     return CurvePlan(torque=governing, works=works)
 
 
-def solve_curves(rig: Rig, warm: PassResult) -> Curves:
+def solve_curves(rig: Rig, warm: IterationResult) -> Curves:
     """The curves of `plan_curves`, one after the other."""
     plan = plan_curves(rig, warm)
     return plan.curves([work() for work in plan.works.values()])
@@ -144,7 +144,7 @@ def resolved(rig: Rig) -> bool:
 
 def _curve(
     rig: Rig,
-    warm: PassResult,
+    warm: IterationResult,
     laws: Sequence[MeshLaw],
     torque: float,
     speeds: Sequence[float],

@@ -18,7 +18,7 @@ from dynamics.drivetrain.modes import (
 from dynamics.drivetrain.static_loop import port_model, solve_static
 from dynamics.response.propagator import DEFAULT_CUTOFF
 from dynamics.response.time_response import TimeResponse
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import laws_of, mesh_models, shifted_gear, signed_torque
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.records import root
@@ -284,7 +284,7 @@ def bracing_drift(rig: Rig, point: PointResult) -> BracingDrift:
     """The bracing of one held point, set cold and then warmed up."""
     system, power = rig.system, rig.case.drivetrain
     assert system is not None and power is not None
-    cold = laws_of(mesh_models(rig, point.point, cold_feedback(rig, point.point)))
+    cold = laws_of(mesh_models(rig, point.point, initial_state(rig, point.point)))
     gear = shifted_gear(rig)
     mode = power.bracing.mode
     if mode == "torque_controlled" and gear is None:

@@ -9,7 +9,7 @@ import numpy as np
 from rigdesign.coupling.expansion import spin_growth
 from rigdesign.coupling.loads import MeshModel
 from rigdesign.coupling.losses import ANDERSON_LOEWENTHAL
-from rigdesign.records.solved_rig import Subject
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import GrowthResult
 from thermal.conduction.heat_rows import HeatRow
 
@@ -36,23 +36,23 @@ RISE = (
 )
 
 
-def hand_checks(subject: Subject) -> list[dict[str, Any]]:
+def hand_checks(solved: SolvedRig) -> list[dict[str, Any]]:
     """quantity, computed, by_hand, unit, formula; in the order of the report."""
-    return [*_loads(subject), *_losses(subject), *_growth(subject)]
+    return [*_loads(solved), *_losses(solved), *_growth(solved)]
 
 
 def _row(quantity: str, computed: float, by_hand: float, unit: str, formula: str) -> dict[str, Any]:
     return {"quantity": quantity, "computed": computed, "by_hand": by_hand, "unit": unit, "formula": formula}
 
 
-def _loads(subject: Subject) -> list[dict[str, Any]]:
-    last, rig = subject.test.last, subject.rig
+def _loads(solved: SolvedRig) -> list[dict[str, Any]]:
+    last, rig = solved.test.last, solved.rig
     rows = []
     for model in last.models:
         box, mesh = rig.mesh(model.name)
         shaft = box.gears[box.meshes[mesh].pinion].shaft
-        speed = rig.shaft_speed(shaft, subject.test.point.speed)
-        torque = abs(last.feedback.mesh_torque[model.name])
+        speed = rig.shaft_speed(shaft, solved.test.point.speed)
+        torque = abs(last.coupling_state.mesh_torque[model.name])
         stiffness, pair = model.law.mean_stiffness, model.pair
         deflection = torque / pair.base_radii[0] / stiffness + mean_gap(model)
         rows.append(
@@ -84,9 +84,9 @@ def mean_gap(model: MeshModel) -> float:
     return float(np.average(law.gap[:, active], weights=law.stiffness[:, active]))
 
 
-def _losses(subject: Subject) -> list[dict[str, Any]]:
+def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
     rows = []
-    for placed in subject.test.last.losses:
+    for placed in solved.test.last.losses:
         details = placed.loss.details
         if placed.loss.kind == "mesh" and not placed.given:
             by_hand = math.prod(
@@ -107,7 +107,7 @@ def _losses(subject: Subject) -> list[dict[str, Any]]:
                     f"{WINDAGE}; at losses.chamber_density = {float(details['mist_density']):.3g} kg/m3 here",
                 )
             )  # fmt: skip
-    for row in subject.cooler:
+    for row in solved.cooler:
         given, taken = (
             math.fsum(float(row[key]) for key in keys)
             for keys in (("losses_W", "pump_W", "heater_W"), ("cooler_W", "room_W"))
@@ -119,9 +119,9 @@ def _losses(subject: Subject) -> list[dict[str, Any]]:
     return rows
 
 
-def _growth(subject: Subject) -> list[dict[str, Any]]:
+def _growth(solved: SolvedRig) -> list[dict[str, Any]]:
     rows = []
-    for result in subject.growth:
+    for result in solved.growth:
         rows += [
             _row(
                 f"growth of {shaft['shaft']}", shaft["growth_mm"], shaft["free_expansion_mm"], "mm",
@@ -130,11 +130,11 @@ def _growth(subject: Subject) -> list[dict[str, Any]]:
             for shaft in result.shafts
         ]  # fmt: skip
         for seal in result.seal_gaps:
-            plate = partition_gap(subject, result, seal["seal"])
+            plate = partition_gap(solved, result, seal["seal"])
             by_hand, formula = (1e3 * plate, PLATE) if plate is not None else (seal["by_hand_mm"], RING)
             rows.append(_row(f"mean gap of seal {seal['seal']}", seal["hot_mean_mm"], by_hand, "mm", formula))
         for bearing in result.bearings:
-            clearance = end_wall_clearance(subject, result, bearing["bearing"])
+            clearance = end_wall_clearance(solved, result, bearing["bearing"])
             if clearance is not None:
                 rows.append(
                     _row(
@@ -148,22 +148,22 @@ def _growth(subject: Subject) -> list[dict[str, Any]]:
                 rise = coupling["recommended_cold_vertical_mm"] * (1.0 if ends[0] else -1.0)
                 name, by_hand = (
                     f"rise of the shaft at coupling {coupling['coupling']}",
-                    axis_rise(subject, result),
+                    axis_rise(solved, result),
                 )
                 rows.append(_row(name, rise, by_hand, "mm", RISE))
     return rows
 
 
-def axis_rise(subject: Subject, result: GrowthResult) -> float:
+def axis_rise(solved: SolvedRig, result: GrowthResult) -> float:
     """Free expansion of the housing and of the field under it up to the shaft axes [mm], by their mean temperatures."""
     name = result.gearbox
-    housing = subject.case.gearboxes[name].housing
+    housing = solved.case.gearboxes[name].housing
     assert housing is not None
-    field = next(p for p in subject.points if p.point.stage == result.stage).last.fields[name].temperature
-    elements, bodies = subject.rig.conduction[name].elements, subject.rig.models[name].mesh.bodies
+    field = next(p for p in solved.points if p.point.stage == result.stage).last.fields[name].temperature
+    elements, bodies = solved.rig.conduction[name].elements, solved.rig.models[name].mesh.bodies
     box = elements.mesh.points[np.unique(elements.mesh.cells[bodies["housing"]]), :2]
     low, high = box.min(axis=0), box.max(axis=0)
-    cold, rise = subject.case.ambient.reference_temperature, 0.0
+    cold, rise = solved.case.ambient.reference_temperature, 0.0
     for body, material, height in (
         ("field", housing.field.material, housing.field.thickness),
         ("housing", housing.material, housing.shaft_height),
@@ -172,47 +172,45 @@ def axis_rise(subject: Subject, result: GrowthResult) -> float:
         places, _ = elements.at_points(elements.mesh.points[:, :2], bodies[body])
         under = ((places >= low) & (places <= high)).all(axis=1)
         mean = float(np.average(values[under], weights=volumes[under]))
-        rise += subject.rig.materials[material].expansion_coefficient * height * (mean - cold)
+        rise += solved.rig.materials[material].expansion_coefficient * height * (mean - cold)
     return 1e3 * rise
 
 
-def partition_gap(subject: Subject, result: GrowthResult, seal: str) -> float | None:
+def partition_gap(solved: SolvedRig, result: GrowthResult, seal: str) -> float | None:
     """Hot gap [m] of a seal in a partition: a free plate widens its bore by its mean strain, however its warmth lies.
 
     None for the seals at the ends, whose walls have no surfaces of their own. Source: disc with a free bore,
     Timoshenko and Goodier, Theory of Elasticity, section 150.
     """
     shaft, _, side = seal.rpartition("_")
-    housing = subject.case.gearboxes[result.gearbox].housing
+    housing = solved.case.gearboxes[result.gearbox].housing
     if housing is None or shaft not in housing.shafts:
         return None
-    point = next(p for p in subject.points if p.point.stage == result.stage)
+    point = next(p for p in solved.points if p.point.stage == result.stage)
     rows = point.last.fields[result.gearbox].solution.balance.rows
     plate, journal = (
         _mean_temperature(rows, names)
         for names in ((f"partition_warm_{side}", f"partition_cold_{side}"), (f"shaft_{shaft}_seal_{side}",))
     )
-    entry, materials = housing.shafts[shaft], subject.rig.materials
-    cold = subject.case.ambient.reference_temperature
+    entry, materials = housing.shafts[shaft], solved.rig.materials
+    cold = solved.case.ambient.reference_temperature
     wide = materials[housing.material].expansion_coefficient * (plate - cold)
     thick = materials[entry.material].expansion_coefficient * (journal - cold)
-    gap = next(
-        s.radial_gap for s in subject.case.gearboxes[result.gearbox].seals.values() if s.shaft == shaft
-    )
+    gap = next(s.radial_gap for s in solved.case.gearboxes[result.gearbox].seals.values() if s.shaft == shaft)
     return gap + 0.5 * entry.seal_diameter * (wide - thick)
 
 
-def end_wall_clearance(subject: Subject, result: GrowthResult, full: str) -> float | None:
+def end_wall_clearance(solved: SolvedRig, result: GrowthResult, full: str) -> float | None:
     """Hot diametral clearance [m] of the bearing ``gearbox.bearing``: its end wall widens the bore by its mean strain.
 
     None for a user's mesh that has no material where the box has its end wall. Source: as `partition_gap`.
     """
-    rig = subject.rig
+    rig = solved.rig
     name, part = full.split(".")
-    box = subject.case.gearboxes[name]
+    box = solved.case.gearboxes[name]
     assert box.housing is not None
     entry, geometry = box.bearings[part], rig.geometries[name]
-    point = next(p for p in subject.points if p.point.stage == result.stage)
+    point = next(p for p in solved.points if p.point.stage == result.stage)
     field = point.last.fields[name]
     elements, cells = rig.conduction[name].elements, rig.models[name].mesh.bodies["housing"]
     values, volumes = elements.at_points(field.temperature, cells)
@@ -223,7 +221,7 @@ def end_wall_clearance(subject: Subject, result: GrowthResult, full: str) -> flo
         return None
     wall = float(np.average(values[inside], weights=volumes[inside]))
     journal = _mean_temperature(field.solution.balance.rows, (f"shaft_{entry.shaft}_journal_{entry.side}",))
-    cold, materials = subject.case.ambient.reference_temperature, rig.materials
+    cold, materials = solved.case.ambient.reference_temperature, rig.materials
     wide = materials[box.housing.material].expansion_coefficient * (wall - cold)
     thick = materials[box.housing.shafts[entry.shaft].material].expansion_coefficient * (journal - cold)
     spin = spin_growth(rig, entry, point.point.speed)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from rigdesign.coupling.expansion import axes_of, bearing_growth
-from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.oil import OilStream, heater_and_cooler
@@ -67,7 +67,7 @@ def oil_rows(stage: str, streams: Sequence[OilStream]) -> list[OilRow]:
     ]
 
 
-def cooler(rig: Rig, last: PassResult) -> dict[str, float | str]:
+def cooler(rig: Rig, last: IterationResult) -> dict[str, float | str]:
     """What cooler and room take out against what shafts, pump and heaters put in [W], at one held stage."""
     damped = math.fsum(placed.not_heat for placed in last.losses)
     lost = math.fsum(placed.loss.power for placed in last.losses) - damped
@@ -97,7 +97,7 @@ def thermal_result(rig: Rig, result: PointResult, field: HousingField) -> Therma
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
     other = solve_housing(
-        rig, name, result.point, last.feedback, last.bearings, last.losses, field,
+        rig, name, result.point, last.coupling_state, last.bearings, last.losses, field,
         radiation_included=not housing.radiation_included, tolerance=COMPARED,
     )  # fmt: skip
     readings = {housing.radiation_included: field, not housing.radiation_included: other}
@@ -239,8 +239,8 @@ def _gears(rig: Rig, result: PointResult, name: str, shape: Expansion) -> list[d
                 "tip_clearance_hot_mm": MM * min(warm.tip_clearances),
                 "inclination_mrad": MM * axes.inclination,
                 "skew_mrad": MM * axes.skew,
-                "bulk_pinion_degC": result.last.feedback.gear_temperature[pinion] - ZERO,
-                "bulk_wheel_degC": result.last.feedback.gear_temperature[wheel] - ZERO,
+                "bulk_pinion_degC": result.last.coupling_state.gear_temperature[pinion] - ZERO,
+                "bulk_wheel_degC": result.last.coupling_state.gear_temperature[wheel] - ZERO,
             }
         )
     return rows
@@ -256,7 +256,7 @@ def _bearings(rig: Rig, result: PointResult, name: str, shape: Expansion) -> lis
             {
                 "bearing": full,
                 "diametral_clearance_cold_um": UM * entry.diametral_clearance,
-                "diametral_clearance_hot_um": UM * result.last.feedback.bearing_clearance[full],
+                "diametral_clearance_hot_um": UM * result.last.coupling_state.bearing_clearance[full],
                 "bore_ovality_um": UM * growth.bore_ovality,
                 "minimum_film_um": UM * state.minimum_film,
                 "film_temperature_degC": state.film_temperature - ZERO,

@@ -106,7 +106,7 @@ def _solved_again(
     """The field with other films on the teeth and what these let through to the rims."""
     name = field.gearbox
     gears = {surface: gear for gear, surface in rim_surfaces(rig.case.gearboxes[name]).items()}
-    bulk = result.last.feedback.gear_temperature
+    bulk = result.last.coupling_state.gear_temperature
     conditions: list[Condition] = []
     for condition in field.conditions:
         gear = gears.get(getattr(condition, "surface", ""))

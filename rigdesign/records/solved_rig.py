@@ -19,7 +19,7 @@ from rigdesign.rig.model import Rig
 
 
 @dataclass(frozen=True, kw_only=True)
-class Subject:
+class SolvedRig:
     """A solved rig."""
 
     rig: Rig

@@ -32,7 +32,7 @@ class DynamicWork:
             test = governing_point(points)
             assert test.setting is not None
             self._plan = plan_curves(rig, test.last)
-            ramp = partial(run_ramp, rig, test.last, test.setting, test.last.feedback)
+            ramp = partial(run_ramp, rig, test.last, test.setting, test.last.coupling_state)
             works = [ramp, *self._plan.works.values()]
         self._works = Beside(works)
 

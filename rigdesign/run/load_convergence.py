@@ -15,9 +15,9 @@ from dataclasses import dataclass, field, replace
 from dynamics.errors import NotConverged
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.checks.dynamics import loaded_stages
-from rigdesign.coupling.loads import Setting, mesh_models, respond
-from rigdesign.coupling.state import Feedback, OperatingPoint
-from rigdesign.records.solved_rig import Subject
+from rigdesign.coupling.loads import BracingState, mesh_models, respond
+from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import DiscretisationRow
 from rigdesign.rig.model import Rig
 from rigdesign.rig.resolution import Coarsening
@@ -35,16 +35,20 @@ class _Loaded:
     """An operating point of the warm rig at which a periodic response is wanted."""
 
     point: OperatingPoint
-    feedback: Feedback = field(repr=False)
+    coupling_state: CouplingState = field(repr=False)
     drags: Mapping[str, float]
-    setting: Setting
+    setting: BracingState
 
     def responses(self, rigs: Rigs) -> tuple[CurvePoint, ...]:
         """Of each rig; nothing where one of them finds none."""
         try:
             return tuple(
                 respond(
-                    rig, self.point, mesh_models(rig, self.point, self.feedback), self.drags, self.setting
+                    rig,
+                    self.point,
+                    mesh_models(rig, self.point, self.coupling_state),
+                    self.drags,
+                    self.setting,
                 )
                 for rig in rigs
             )
@@ -52,52 +56,52 @@ class _Loaded:
             return ()
 
 
-def load_errors(subject: Subject) -> tuple[DiscretisationRow, ...]:
+def load_errors(solved: SolvedRig) -> tuple[DiscretisationRow, ...]:
     """Discretisation errors of the checks on dynamic loads by id; none without loads or where no response is found."""
-    if subject.run is None:
+    if solved.run is None:
         return ()
-    rigs = (subject.rig, *(replace(subject.rig, coarsening=halved) for halved in HALVED))
-    rows = [*_held(subject, rigs)]
-    for mesh in range(len(subject.rig.mesh_names)):
-        rows += _run(subject, rigs, mesh)
+    rigs = (solved.rig, *(replace(solved.rig, coarsening=halved) for halved in HALVED))
+    rows = [*_held(solved, rigs)]
+    for mesh in range(len(solved.rig.mesh_names)):
+        rows += _run(solved, rigs, mesh)
     return tuple(rows)
 
 
-def missing_load_errors(subject: Subject) -> tuple[str, ...]:
+def missing_load_errors(solved: SolvedRig) -> tuple[str, ...]:
     """Ids of the checks on dynamic loads whose error is not known: a coarser rig found no periodic response."""
-    if subject.run is None:
+    if solved.run is None:
         return ()
-    known = {row.quantity for row in subject.discretisation}
+    known = {row.quantity for row in solved.discretisation}
     wanted = [
-        f"dynamics.{key}.{subject.label(mesh)}"
-        for mesh in range(len(subject.rig.mesh_names))
+        f"dynamics.{key}.{solved.label(mesh)}"
+        for mesh in range(len(solved.rig.mesh_names))
         for key in (
             "dynamic_factor",
-            *(("ramp_peak", "contact_margin") if loaded_stages(subject, mesh) else ()),
+            *(("ramp_peak", "contact_margin") if loaded_stages(solved, mesh) else ()),
         )
     ]
     return tuple(name for name in wanted if name not in known)
 
 
-def _held(subject: Subject, rigs: Rigs) -> Iterator[DiscretisationRow]:
+def _held(solved: SolvedRig, rigs: Rigs) -> Iterator[DiscretisationRow]:
     """K_V of every mesh at the held stage where it is highest."""
     found: dict[str, tuple[CurvePoint, ...]] = {}
-    for mesh in range(len(subject.rig.mesh_names)):
+    for mesh in range(len(solved.rig.mesh_names)):
         worst = max(
-            (point for point in subject.points if point.last.response is not None),
+            (point for point in solved.points if point.last.response is not None),
             key=lambda point: _factor(point.last.response, mesh) if point.last.response else 0.0,
         )
         stage, last = worst.point.stage, worst.last
         assert worst.setting is not None
         if stage not in found:
-            loaded = _Loaded(worst.point, last.feedback, last.drags, worst.setting)
+            loaded = _Loaded(worst.point, last.coupling_state, last.drags, worst.setting)
             found[stage] = loaded.responses(rigs)
-        yield from _row(subject, "dynamic_factor", mesh, found[stage], _factor)
+        yield from _row(solved, "dynamic_factor", mesh, found[stage], _factor)
 
 
-def _run(subject: Subject, rigs: Rigs, mesh: int) -> Iterator[DiscretisationRow]:
+def _run(solved: SolvedRig, rigs: Rigs, mesh: int) -> Iterator[DiscretisationRow]:
     """Highest peak and least share of the time run, in the stages that the checks look at."""
-    rows = loaded_stages(subject, mesh)
+    rows = loaded_stages(solved, mesh)
     if not rows:
         return
     peak = max(rows, key=lambda row: float(row["peak_Nm"]))
@@ -106,13 +110,13 @@ def _run(subject: Subject, rigs: Rigs, mesh: int) -> Iterator[DiscretisationRow]
         ("ramp_peak", peak, ("speed_rpm", "mean_Nm"), _factor),
         ("contact_margin", least, ("least_share_at_rpm", "least_share_mean_Nm"), _least),
     ):
-        loaded = _at(subject, mesh, str(row["stage"]), float(row[place[0]]) * RPM, float(row[place[1]]))
-        yield from _row(subject, key, mesh, loaded.responses(rigs), value)
+        loaded = _at(solved, mesh, str(row["stage"]), float(row[place[0]]) * RPM, float(row[place[1]]))
+        yield from _row(solved, key, mesh, loaded.responses(rigs), value)
 
 
-def _at(subject: Subject, mesh: int, stage: str, speed: float, torque: float) -> _Loaded:
+def _at(solved: SolvedRig, mesh: int, stage: str, speed: float, torque: float) -> _Loaded:
     """The warm rig of the test at another speed [rad/s] and mean torque [N m] of the pinion of a mesh."""
-    test, rig = subject.test, subject.rig
+    test, rig = solved.test, solved.rig
     assert test.last.response is not None
     share = torque / float(test.last.response.mean[mesh])
     point = OperatingPoint(
@@ -120,19 +124,22 @@ def _at(subject: Subject, mesh: int, stage: str, speed: float, torque: float) ->
         speed=speed / rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, 1.0),
         torque=share * test.point.torque,
     )
-    torques = {name: share * value for name, value in test.last.feedback.mesh_torque.items()}
+    torques = {name: share * value for name, value in test.last.coupling_state.mesh_torque.items()}
     return _Loaded(
-        point, replace(test.last.feedback, mesh_torque=torques), {}, Setting(mode="torque_controlled")
+        point,
+        replace(test.last.coupling_state, mesh_torque=torques),
+        {},
+        BracingState(mode="torque_controlled"),
     )
 
 
 def _row(
-    subject: Subject, key: str, mesh: int, responses: tuple[CurvePoint, ...], value: Value
+    solved: SolvedRig, key: str, mesh: int, responses: tuple[CurvePoint, ...], value: Value
 ) -> Iterator[DiscretisationRow]:
     """Error of the check ``key`` of a mesh from the responses of the rigs."""
     if not responses:
         return
-    numerics = subject.case.numerics
+    numerics = solved.case.numerics
     ruled = (
         numerics.slices_spur is None and numerics.slices_helical is None,
         numerics.shaft_element_length is None,
@@ -141,7 +148,7 @@ def _row(
     shares = [1.0 / (2.0**ORDER - 1.0) if rule else 1.0 for rule in ruled]
     parts = [share * abs(fine - other) for share, other in zip(shares, halved, strict=True)]
     yield DiscretisationRow(
-        quantity=f"dynamics.{key}.{subject.label(mesh)}", gearbox="", stage="", value=fine, error=sum(parts),
+        quantity=f"dynamics.{key}.{solved.label(mesh)}", gearbox="", stage="", value=fine, error=sum(parts),
         unit="-", order=ORDER if all(ruled) else None,
         method=f"periodic response at {responses[0].speed / RPM:.0f} rpm of the first pinion, half the slices "
         f"{halved[0]:.4f}, elements twice as long {halved[1]:.4f}"

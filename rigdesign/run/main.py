@@ -14,7 +14,7 @@ from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.finite import require_finite
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.model import Case
-from rigdesign.checks import Subject, all_checks
+from rigdesign.checks import all_checks
 from rigdesign.checks.rules import overall
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.losses import PlacedLoss
@@ -24,12 +24,13 @@ from rigdesign.coupling.time_run import held_points, schedule_of
 from rigdesign.records import heat
 from rigdesign.records.dynamics import dynamics_result
 from rigdesign.records.hand import hand_checks
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check, Finding, RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.dynamic_work import DynamicWork
 from rigdesign.run.load_convergence import load_errors
 from rigdesign.run.mesh_convergence import discretisation
-from rigdesign.run.mesh_refinement import MeshesBeside, looping_rig, on_mesh
+from rigdesign.run.mesh_refinement import BackgroundMeshing, looping_rig, on_mesh
 from rigdesign.run.solver_errors import solver_errors
 from rigdesign.run.warnings import not_modelled, unanswered, warnings_of
 from thermal.fe.kernels import one_thread
@@ -65,12 +66,12 @@ def run_case(
     say = progress or (lambda message: None)
     clock = _Clock()
     with solver_errors(case), threadpool_limits(limits=1):
-        subject = solve_case(case, fidelity, say, clock.lap)
-        result = _assemble(subject, clock)
+        solved = solve_case(case, fidelity, say, clock.lap)
+        result = _assemble(solved, clock)
         if transient:
             from rigdesign.run.transient import with_transient
 
-            result = with_transient(subject, result, say)
+            result = with_transient(solved, result, say)
             clock.lap("transient")
         require_finite(result)
         return result
@@ -78,7 +79,7 @@ def run_case(
 
 def solve_case(
     case: Case, fidelity: Fidelity, say: Progress = lambda message: None, lap: Progress = lambda name: None
-) -> Subject:
+) -> SolvedRig:
     """The solved rig before its checks; ``lap`` is called with the name of every part that is done."""
     say("building the rig")
     wanted = build_rig(case, fidelity)
@@ -87,7 +88,7 @@ def solve_case(
     for name in rig.models:
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
     lap("rig_and_mesh")
-    with MeshesBeside(wanted, rig) as meshing, one_thread():
+    with BackgroundMeshing(wanted, rig) as meshing, one_thread():
         settled = _settled(rig, say)
         lap("coupling")
         rigs = meshing.rigs()
@@ -112,7 +113,7 @@ def solve_case(
             lap("alternatives")
         run = dynamics.result()
         lap("dynamics")
-    subject = Subject(
+    solved = SolvedRig(
         rig=wanted,
         points=points,
         run=run,
@@ -124,10 +125,10 @@ def solve_case(
         mesh_shifts=meshes.shifts,
     )
     say("errors of slices and shaft elements")
-    subject = replace(subject, discretisation=(*meshes.rows, *load_errors(subject)))
+    solved = replace(solved, discretisation=(*meshes.rows, *load_errors(solved)))
     lap("load_errors")
     say("assembling the result")
-    return subject
+    return solved
 
 
 def _settled(rig: Rig, say: Progress) -> list[PointResult]:
@@ -135,15 +136,15 @@ def _settled(rig: Rig, say: Progress) -> list[PointResult]:
     settled: list[PointResult] = []
     for point in held_points(rig):
         say(f"coupling loads, losses, temperatures and growth at stage {point.stage}")
-        start = settled[-1].last.feedback if settled else None
+        start = settled[-1].last.coupling_state if settled else None
         settled.append(solve_point(rig, point, start=start))
     return settled
 
 
-def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
+def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
     """Checks and records of a solved rig."""
-    case, rig, points = subject.case, subject.rig, list(subject.points)
-    checks = all_checks(subject)
+    case, rig, points = solved.case, solved.rig, list(solved.points)
+    checks = all_checks(solved)
     clock.lap("checks")
     losses = losses_by_stage(rig, points)
     return RunResult(
@@ -151,20 +152,20 @@ def _assemble(subject: Subject, clock: "_Clock") -> RunResult:
         fidelity=rig.fidelity,
         verdict=overall(checks),
         checks=checks,
-        dynamics=subject.dynamics,
+        dynamics=solved.dynamics,
         losses=[row for stage, found in losses.items() for row in heat.loss_rows(stage, found)],
         oil=[row for p in points for row in heat.oil_rows(p.point.stage, p.last.streams)],
-        cooler=[dict(row) for row in subject.cooler],
-        thermal=list(subject.thermal),
-        growth=list(subject.growth),
+        cooler=[dict(row) for row in solved.cooler],
+        thermal=list(solved.thermal),
+        growth=list(solved.growth),
         coupling=[heat.coupling_history(p) for p in points],
-        discretisation=list(subject.discretisation),
-        reference_shift=list(subject.mesh_shifts),
-        hand_checks=hand_checks(subject),
+        discretisation=list(solved.discretisation),
+        reference_shift=list(solved.mesh_shifts),
+        hand_checks=hand_checks(solved),
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),
-        not_modelled=not_modelled(subject),
-        warnings=[*_doubts(case), *warnings_of(subject, losses), *unanswered(checks)],
+        not_modelled=not_modelled(solved),
+        warnings=[*_doubts(case), *warnings_of(solved, losses), *unanswered(checks)],
         timings_s=clock.laps,
         fields=[field for p in points for field in heat.fields_of(rig, p)],
     )

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 
 from dynamics.errors import DynamicsError
 from rigdesign.base.errors import RigdesignError
-from rigdesign.coupling.expansion import HousingGrowth
+from rigdesign.coupling.expansion import HousingExpansion
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.temperatures import HousingField, body_mean
 from rigdesign.results.result import Check, DiscretisationRow, MeshShift
@@ -112,7 +112,7 @@ def _value(check: Check) -> float:
     return check.value
 
 
-def _measured(rig: Rig, field: HousingField, growth: HousingGrowth | None) -> dict[tuple[str, str], float]:
+def _measured(rig: Rig, field: HousingField, growth: HousingExpansion | None) -> dict[tuple[str, str], float]:
     """Every number of a housing that a check or the heat table shows, by quantity and unit."""
     name, mesh = field.gearbox, rig.models[field.gearbox].mesh
     housing = field.temperature[mesh.cells[mesh.bodies.get("housing", slice(None))]]

@@ -17,15 +17,15 @@ from rigdesign.base.parallel import Beside
 from rigdesign.checks import alignment, thermal
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.expansion import expand_housing
-from rigdesign.coupling.iteration import PassResult, feedback_of
+from rigdesign.coupling.iteration import IterationResult, next_state
 from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.loop import PointResult, Residual
 from rigdesign.coupling.oil import oil_streams
-from rigdesign.coupling.state import Feedback, growth_change, temperature_change
+from rigdesign.coupling.state import CouplingState, growth_change, temperature_change
 from rigdesign.coupling.temperatures import HousingField, heat_into_films, heat_into_oil, solve_housing
 from rigdesign.records import heat
 from rigdesign.records.heat_split import split_as_solved
-from rigdesign.records.solved_rig import Subject
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check, ThermalResult
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import MeshError, NamedMesh
@@ -44,7 +44,7 @@ def looping_rig(rig: Rig) -> Rig:
     return replace(rig, fidelity="standard") if rig.fidelity == "reference" else rig
 
 
-class MeshesBeside:
+class BackgroundMeshing:
     """Meshes the rig at all other fidelities its errors need, on another core; `rigs` waits for them.
 
     rig : of which the errors are wanted; source : the one on which the loop runs
@@ -108,7 +108,9 @@ def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
         meshes = source.models[name].mesh, rig.models[name].mesh
         same = meshes[0] is meshes[1]
         guess = field if same and rig is source else _carried(field, *meshes)
-        fields[name] = solve_housing(rig, name, last.point, last.feedback, last.bearings, last.losses, guess)
+        fields[name] = solve_housing(
+            rig, name, last.point, last.coupling_state, last.bearings, last.losses, guess
+        )
         if name in last.growth:
             growth[name] = expand_housing(rig, fields[name], last.growth[name] if same else None)
     bearing_heat = dict(last.bearing_heat)
@@ -124,10 +126,10 @@ def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
         wall_heat=wall_heat,
         streams=tuple(oil_streams(rig, last.losses, bearing_heat, wall_heat)),
     )
-    after = feedback_of(rig, done)
+    after = next_state(rig, done)
     change = Residual(
-        temperature=temperature_change(done.feedback, after),
-        growth=growth_change(done.feedback, after),
+        temperature=temperature_change(done.coupling_state, after),
+        growth=growth_change(done.coupling_state, after),
         torque=0.0,
     )
     return replace(settled, last=_warmed(rig, done, after), residuals=(*settled.residuals, change))
@@ -143,10 +145,10 @@ def _carried(field: HousingField, old: NamedMesh, new: NamedMesh) -> HousingFiel
     return replace(field, solution=replace(field.solution, temperature=temperature, preconditioner=None))
 
 
-def _warmed(rig: Rig, done: PassResult, after: Feedback) -> PassResult:
+def _warmed(rig: Rig, done: IterationResult, after: CouplingState) -> IterationResult:
     """The pass with gears and bearings at the lengths and temperatures it ended with."""
-    feedback = replace(
-        done.feedback,
+    coupling_state = replace(
+        done.coupling_state,
         gear_temperature=after.gear_temperature,
         centre_distance=after.centre_distance,
         bearing_clearance=after.bearing_clearance,
@@ -155,15 +157,15 @@ def _warmed(rig: Rig, done: PassResult, after: Feedback) -> PassResult:
     )
     return replace(
         done,
-        feedback=feedback,
-        models=mesh_models(rig, done.point, feedback),
-        bearings=solve_bearings(rig, done.point, feedback),
+        coupling_state=coupling_state,
+        models=mesh_models(rig, done.point, coupling_state),
+        bearings=solve_bearings(rig, done.point, coupling_state),
     )
 
 
 def checked(rig: Rig, points: Sequence[PointResult]) -> dict[str, Check]:
     """The checks that rest on temperatures, growth and oil, by id, as ``points`` on the mesh of ``rig`` have them."""
-    subject = Subject(
+    solved = SolvedRig(
         rig=rig,
         points=points,
         run=None,
@@ -172,7 +174,7 @@ def checked(rig: Rig, points: Sequence[PointResult]) -> dict[str, Check]:
         growth=[heat.growth_result(rig, p, name) for p in points for name in p.last.growth],
         cooler=[heat.cooler(rig, point.last) for point in points],
     )
-    found = (*thermal.checks(subject), *alignment.checks(subject))
+    found = (*thermal.checks(solved), *alignment.checks(solved))
     return {check.id: check for check in found if check.value is not None}
 
 

@@ -10,7 +10,7 @@ from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.rules import overall, with_omissions
 from rigdesign.checks.transient import transient_checks
-from rigdesign.records.solved_rig import Subject
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check, Finding, RunResult
 from rigdesign.results.transient import Settling, TransientCurve, TransientResult, WorstMoment
 from rigdesign.rig.model import Rig
@@ -35,7 +35,7 @@ STEADY = "temperature over time: "
 
 
 def with_transient(
-    subject: Subject, result: RunResult, say: Callable[[str], None] = lambda message: None
+    solved: SolvedRig, result: RunResult, say: Callable[[str], None] = lambda message: None
 ) -> RunResult:
     """The result of a steady run with the thermal course beside it, its checks and its warnings.
 
@@ -46,14 +46,14 @@ def with_transient(
     ConditionError, NotConverged
         Of the heat model.
     """
-    if not subject.rig.models:
+    if not solved.rig.models:
         text = "no gearbox has a housing: there are no temperatures over time"
         return replace(result, warnings=[*result.warnings, Finding(id="transient", text=text)])
-    run = run_transient(subject.rig, subject.points, say)
-    record = transient_result(subject, run)
+    run = run_transient(solved.rig, solved.points, say)
+    record = transient_result(solved, run)
     added = [
-        with_assumptions(subject.case, with_omissions(check, omissions(subject, check)))
-        for check in transient_checks(subject.case, record)
+        with_assumptions(solved.case, with_omissions(check, omissions(solved, check)))
+        for check in transient_checks(solved.case, record)
     ]
     checks: list[Check] = [*result.checks, *added]
     return replace(
@@ -67,34 +67,34 @@ def with_transient(
         ],
         not_modelled=[
             *(text for text in result.not_modelled if not text.startswith(STEADY)),
-            *simplifications(subject.rig),
+            *simplifications(solved.rig),
         ],
-        warnings=[*result.warnings, *_cold_oil(subject), *_warnings(run)],
+        warnings=[*result.warnings, *_cold_oil(solved), *_warnings(run)],
     )
 
 
-def transient_result(subject: Subject, run: TransientRun) -> TransientResult:
+def transient_result(solved: SolvedRig, run: TransientRun) -> TransientResult:
     """All branches as records."""
-    plan = subject.case.transient
+    plan = solved.case.transient
     return TransientResult(
-        curves=[curve(subject.rig, branch, run.branches) for branch in run.branches],
+        curves=[curve(solved.rig, branch, run.branches) for branch in run.branches],
         worst=[
             row
             for planned in (True, False)
             for branches in ([b for b in run.branches if (b.name != "cold_start") is planned],)
             if branches
             for row in (
-                *_least(subject, branches, planned),
-                *_hottest(subject, branches, planned),
-                *worst_misalignments(subject, branches, run.branches, planned),
-                *worst_powers(subject, [p for p in run.power if (p.name != "cold_start") is planned], planned),
+                *_least(solved, branches, planned),
+                *_hottest(solved, branches, planned),
+                *worst_misalignments(solved, branches, run.branches, planned),
+                *worst_powers(solved, [p for p in run.power if (p.name != "cold_start") is planned], planned),
             )
         ],
-        settling=[row for branch in run.branches if branch.name == SCHEDULE for row in _settling(subject, branch)],
+        settling=[row for branch in run.branches if branch.name == SCHEDULE for row in _settling(solved, branch)],
         soak=list(run.soak),
         inputs={
             "warm_up": hours(plan.warm_up),
-            "dwell": hours(plan.dwell or subject.case.test_plan.time),
+            "dwell": hours(plan.dwell or solved.case.test_plan.time),
             "oil_run_on": hours(plan.oil_run_on),
             "soak_back": hours(plan.soak_back),
             "stop_time": hours(plan.stop_time),
@@ -140,9 +140,9 @@ def curve(rig: Rig, branch: Branch, branches: Sequence[Branch]) -> TransientCurv
     )  # fmt: skip
 
 
-def _least(subject: Subject, branches: Sequence[Branch], planned: bool) -> Iterator[WorstMoment]:
+def _least(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> Iterator[WorstMoment]:
     """Smallest clearance of every kind over some branches."""
-    limits = clearance_limits(subject.case)
+    limits = clearance_limits(solved.case)
     for quantity in QUANTITIES:
         value, place, branch, at = min(
             (
@@ -158,7 +158,7 @@ def _least(subject: Subject, branches: Sequence[Branch], planned: bool) -> Itera
             value=MM * value,
             unit="mm",
             place=place,
-            steady=_steady(subject, quantity),
+            steady=_steady(solved, quantity),
             limit=None if limit is None else MM * limit,
             planned=planned,
             time_s=float(branch.times[at]),
@@ -167,28 +167,25 @@ def _least(subject: Subject, branches: Sequence[Branch], planned: bool) -> Itera
         )
 
 
-def _steady(subject: Subject, quantity: Quantity) -> float | None:
+def _steady(solved: SolvedRig, quantity: Quantity) -> float | None:
     """Worst steady clearance of the held stages [mm]."""
     rows = {
-        "seal_gap": [s["hot_min_mm"] for g in subject.growth for s in g.seal_gaps],
-        "axial_play": [s["axial_play_hot_mm"] for g in subject.growth for s in g.shafts],
+        "seal_gap": [s["hot_min_mm"] for g in solved.growth for s in g.seal_gaps],
+        "axial_play": [s["axial_play_hot_mm"] for g in solved.growth for s in g.shafts],
         "bearing_clearance": [
-            1e-3 * b["diametral_clearance_hot_um"] for g in subject.growth for b in g.bearings
+            1e-3 * b["diametral_clearance_hot_um"] for g in solved.growth for b in g.bearings
         ],
-        "backlash": [gear["backlash_hot_mm"] for g in subject.growth for gear in g.gears],
-        "tip_clearance": [gear["tip_clearance_hot_mm"] for g in subject.growth for gear in g.gears],
+        "backlash": [gear["backlash_hot_mm"] for g in solved.growth for gear in g.gears],
+        "tip_clearance": [gear["tip_clearance_hot_mm"] for g in solved.growth for gear in g.gears],
     }
     return min(rows[quantity], default=None)
 
 
-def _hottest(subject: Subject, branches: Sequence[Branch], planned: bool) -> Iterator[WorstMoment]:
+def _hottest(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> Iterator[WorstMoment]:
     """Highest temperature of housings and of gear bodies over some branches."""
-    maximum = subject.case.limits.temperatures.housing_maximum
+    maximum = solved.case.limits.temperatures.housing_maximum
     gears = [
-        body
-        for model in subject.rig.models.values()
-        for body in model.mesh.bodies
-        if body.startswith("gear_")
+        body for model in solved.rig.models.values() for body in model.mesh.bodies if body.startswith("gear_")
     ]
     for quantity, places, limit in (
         ("housing_temperature", ["housing_max"], maximum),
@@ -210,7 +207,7 @@ def _hottest(subject: Subject, branches: Sequence[Branch], planned: bool) -> Ite
             value=value - ZERO,
             unit="degC",
             place=f"{branch.gearbox}.{place}",
-            steady=_steady_temperature(subject, quantity),
+            steady=_steady_temperature(solved, quantity),
             limit=None if limit is None else limit - ZERO,
             planned=planned,
             time_s=float(branch.times[at]),
@@ -219,20 +216,20 @@ def _hottest(subject: Subject, branches: Sequence[Branch], planned: bool) -> Ite
         )
 
 
-def _steady_temperature(subject: Subject, quantity: str) -> float:
+def _steady_temperature(solved: SolvedRig, quantity: str) -> float:
     if quantity == "housing_temperature":
-        return max(row.bodies["housing"]["max_degC"] for row in subject.thermal)
+        return max(row.bodies["housing"]["max_degC"] for row in solved.thermal)
     return max(
         entry["mean_degC"]
-        for row in subject.thermal
+        for row in solved.thermal
         for body, entry in row.bodies.items()
         if body.startswith("gear_")
     )
 
 
-def _settling(subject: Subject, branch: Branch) -> Iterator[Settling]:
+def _settling(solved: SolvedRig, branch: Branch) -> Iterator[Settling]:
     """Field, housing, bearings, seals and backlash: when each stays near its end value in every dwell."""
-    share = subject.case.transient.settled_share
+    share = solved.case.transient.settled_share
     bodies = [body for body in ("field", "housing") if body in branch.temperatures]
     for number, phase in enumerate(branch.phases):
         if not phase.held:
@@ -266,9 +263,9 @@ def _settled(
     )
 
 
-def _cold_oil(subject: Subject) -> Iterator[Finding]:
+def _cold_oil(solved: SolvedRig) -> Iterator[Finding]:
     """What is too thick to be pumped when the rig is as cold as the room."""
-    yield from (Finding(id="oil", text=text) for text in cold_oil(subject.rig))
+    yield from (Finding(id="oil", text=text) for text in cold_oil(solved.rig))
 
 
 def _warnings(run: TransientRun) -> Iterator[Finding]:

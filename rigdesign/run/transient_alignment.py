@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rigdesign.case.model import Case
 from rigdesign.coupling.alignment import ALIGNMENT, CouplingEnd, CouplingPlace, coupling_places
-from rigdesign.records.solved_rig import Subject
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.transient import WorstMoment
 from rigdesign.rig.model import Rig
 from rigdesign.transient.branch import Branch
@@ -85,10 +85,10 @@ def _end(end: CouplingEnd, branch: Branch, branches: Sequence[Branch]) -> FloatA
 
 
 def worst_misalignments(
-    subject: Subject, branches: Sequence[Branch], every: Sequence[Branch], planned: bool
+    solved: SolvedRig, branches: Sequence[Branch], every: Sequence[Branch], planned: bool
 ) -> Iterator[WorstMoment]:
     """Largest misalignment of every kind over some branches; of couplings one for each."""
-    rig = subject.rig
+    rig = solved.rig
     found = [(branch, misalignments(rig, branch, every)) for branch in branches]
     for quantity in MISALIGNMENTS:
         peaks = [
@@ -102,13 +102,13 @@ def worst_misalignments(
         )
         for group in groups:
             peak = max((p for p in peaks if not coupled or p.place == group), key=lambda p: p.value)
-            limit = limit_of(subject.case, quantity, peak.place)
+            limit = limit_of(solved.case, quantity, peak.place)
             yield WorstMoment(
                 quantity=quantity,
                 value=peak.value,
                 unit=UNITS[quantity][0],
                 place=peak.place,
-                steady=_steady(subject, quantity, group),
+                steady=_steady(solved, quantity, group),
                 limit=None if limit is None else UNITS[quantity][1] * limit,
                 planned=planned,
                 time_s=float(peak.branch.times[peak.at]),
@@ -127,16 +127,16 @@ def limit_of(case: Case, quantity: Misalignment, place: str) -> float | None:
     return found
 
 
-def _steady(subject: Subject, quantity: Misalignment, coupling: str) -> float | None:
+def _steady(solved: SolvedRig, quantity: Misalignment, coupling: str) -> float | None:
     """Largest steady value of the held stages, of one coupling where it is one's."""
     rows = {
-        "bearing_tilt": [row["tilt_mrad"] for growth in subject.growth for row in growth.bores],
-        "bore_out_of_round": [row["out_of_round_share"] for growth in subject.growth for row in growth.bores],
-        "axis_inclination": [abs(row["inclination_um"]) for growth in subject.growth for row in growth.axes],
-        "axis_skew": [abs(row["skew_um"]) for growth in subject.growth for row in growth.axes],
+        "bearing_tilt": [row["tilt_mrad"] for growth in solved.growth for row in growth.bores],
+        "bore_out_of_round": [row["out_of_round_share"] for growth in solved.growth for row in growth.bores],
+        "axis_inclination": [abs(row["inclination_um"]) for growth in solved.growth for row in growth.axes],
+        "axis_skew": [abs(row["skew_um"]) for growth in solved.growth for row in growth.axes],
     }
     if quantity in rows:
         return max(rows[quantity], default=None)
     key = "offset_hot_mm" if quantity == "coupling_offset" else "angle_hot_mrad"
-    coupled = (row for growth in subject.growth for row in growth.couplings if row["coupling"] == coupling)
+    coupled = (row for growth in solved.growth for row in growth.couplings if row["coupling"] == coupling)
     return max((row[key] for row in coupled), default=None)

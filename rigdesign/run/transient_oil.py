@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from rigdesign.records.solved_rig import Subject
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.transient import OilPowerCurve, WorstMoment
 from rigdesign.transient.oil_power import OilPower
 
@@ -27,9 +27,9 @@ def largest_stream(power: OilPower, quantity: str, at: int) -> str:
     return max(power.streams, key=lambda name: sign * float(power.streams[name][at]))
 
 
-def worst_powers(subject: Subject, powers: Sequence[OilPower], planned: bool) -> Iterator[WorstMoment]:
+def worst_powers(solved: SolvedRig, powers: Sequence[OilPower], planned: bool) -> Iterator[WorstMoment]:
     """Largest power of heaters and of the cooler over some branches."""
-    limits = subject.case.limits.oil
+    limits = solved.case.limits.oil
     for quantity, key, limit in (
         ("heater_power", "heater_W", limits.heater_power_maximum),
         ("cooler_power", "cooler_W", limits.cooler_power_maximum),
@@ -47,7 +47,7 @@ def worst_powers(subject: Subject, powers: Sequence[OilPower], planned: bool) ->
             value=KW * value,
             unit="kW",
             place=largest_stream(branch, quantity, at),
-            steady=max((KW * float(row[key]) for row in subject.cooler), default=None),
+            steady=max((KW * float(row[key]) for row in solved.cooler), default=None),
             limit=None if limit is None else KW * limit,
             planned=planned,
             time_s=float(branch.times[at]),

@@ -18,7 +18,7 @@ from rigdesign.coupling.shaft_torques import torques_left_out
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
-from rigdesign.records.solved_rig import Subject
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check, Finding
 from rigdesign.rig.films import printed_law
 from rigdesign.rig.model import Rig
@@ -34,23 +34,23 @@ FILM_FACTOR = 3.0
 RPM = 30.0 / math.pi
 
 
-def warnings_of(subject: Subject, losses: Mapping[str, Sequence[PlacedLoss]]) -> list[Finding]:
+def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -> list[Finding]:
     """All warnings of the run in a fixed order; ``losses`` by stage."""
     found = [
-        *(Finding(id="gear", text=text) for text in _gears(subject)),
-        *(Finding(id="iso_6336_1", text=text) for text in _iso(subject)),
-        *(Finding(id="shaft", text=t.finding) for t in subject.rig.shaft_torsions if t.finding),
-        *(Finding(id="response", text=text) for text in _response(subject)),
-        *(Finding(id="unlike_teeth", text=text) for text in _unlike(subject)),
-        *(Finding(id="time_run", text=text) for text in _time_run(subject)),
+        *(Finding(id="gear", text=text) for text in _gears(solved)),
+        *(Finding(id="iso_6336_1", text=text) for text in _iso(solved)),
+        *(Finding(id="shaft", text=t.finding) for t in solved.rig.shaft_torsions if t.finding),
+        *(Finding(id="response", text=text) for text in _response(solved)),
+        *(Finding(id="unlike_teeth", text=text) for text in _unlike(solved)),
+        *(Finding(id="time_run", text=text) for text in _time_run(solved)),
         *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
-        *(Finding(id="oil", text=text) for text in _oils(subject)),
-        *(Finding(id="damping", text=text) for text in _damping(subject)),
-        *(Finding(id="sampling", text=text) for text in _sampling(subject)),
-        *(Finding(id="load_error", text=text) for text in _load_errors(subject)),
-        *(Finding(id="film", text=text) for text in _films(subject)),
-        *(Finding(id="not_steady", text=text) for text in _warming(subject)),
-        *(Finding(id="heat_audit", text=text) for text in _audits(subject)),
+        *(Finding(id="oil", text=text) for text in _oils(solved)),
+        *(Finding(id="damping", text=text) for text in _damping(solved)),
+        *(Finding(id="sampling", text=text) for text in _sampling(solved)),
+        *(Finding(id="load_error", text=text) for text in _load_errors(solved)),
+        *(Finding(id="film", text=text) for text in _films(solved)),
+        *(Finding(id="not_steady", text=text) for text in _warming(solved)),
+        *(Finding(id="heat_audit", text=text) for text in _audits(solved)),
     ]
     return list(dict.fromkeys(found))
 
@@ -68,10 +68,10 @@ def unanswered(checks: Iterable[Check]) -> list[Finding]:
     ]
 
 
-def _gears(subject: Subject) -> Iterator[str]:
-    for point in subject.points:
+def _gears(solved: SolvedRig) -> Iterator[str]:
+    for point in solved.points:
         for model in point.last.models:
-            for text in subject.rig.pairs[model.name].warnings:
+            for text in solved.rig.pairs[model.name].warnings:
                 yield f"{model.name}, cold: {text}"
             for text in model.pair.warnings:
                 yield f"{model.name}, hot, stage {point.point.stage}: {text}"
@@ -83,26 +83,26 @@ def _gears(subject: Subject) -> Iterator[str]:
                     yield f"{model.name}, stage {point.point.stage}: {text}"
 
 
-def _iso(subject: Subject) -> Iterator[str]:
-    for point in subject.points:
+def _iso(solved: SolvedRig) -> Iterator[str]:
+    for point in solved.points:
         for model in point.last.models:
-            box, mesh = subject.rig.mesh(model.name)
-            speed = subject.rig.shaft_speed(box.gears[box.meshes[mesh].pinion].shaft, point.point.speed)
-            torque = point.last.feedback.mesh_torque[model.name]
-            for text in iso_factor(subject.rig, model.name, torque, speed).warnings:
+            box, mesh = solved.rig.mesh(model.name)
+            speed = solved.rig.shaft_speed(box.gears[box.meshes[mesh].pinion].shaft, point.point.speed)
+            torque = point.last.coupling_state.mesh_torque[model.name]
+            for text in iso_factor(solved.rig, model.name, torque, speed).warnings:
                 yield f"{model.name}: {text}"
 
 
-def _response(subject: Subject) -> Iterator[str]:
+def _response(solved: SolvedRig) -> Iterator[str]:
     """Speeds without a periodic response, states that settled loosely, curves too coarse for resonances."""
-    if subject.run is None or subject.dynamics is None:
+    if solved.run is None or solved.dynamics is None:
         return
-    for row in next(iter(subject.dynamics.gearboxes.values())).unsolved:
+    for row in next(iter(solved.dynamics.gearboxes.values())).unsolved:
         yield (
             f"curve {row['curve']}: no periodic response at {row['speed_rpm']:.0f} rpm ({row['reason']}): a "
             "resonance or loss of contact there is not seen; look at the time run at this speed"
         )
-    for where, points in _states(subject).items():
+    for where, points in _states(solved).items():
         loose = [p for p in points if p.method == "harmonic_balance" and p.residual > SETTLED]
         if loose:
             worst = max(loose, key=lambda point: point.residual)
@@ -110,20 +110,20 @@ def _response(subject: Subject) -> Iterator[str]:
                 f"{where}: {len(loose)} of {len(points)} periodic states settled to more than {SETTLED:.0e}, the "
                 f"worst to {worst.residual:.1e} at {worst.speed * RPM:.0f} rpm: compare with the time run there"
             )
-    if not resolved(subject.rig):
-        speeds = subject.run.curves.response.speeds
+    if not resolved(solved.rig):
+        speeds = solved.run.curves.response.speeds
         yield (
             f"K_V over speed: {len(speeds)} speeds, {np.diff(speeds).max() * RPM:.0f} rpm apart, do not resolve "
             "narrow resonances; use standard fidelity and response_period = mesh before a verdict rests on them"
         )
 
 
-def _unlike(subject: Subject) -> Iterator[str]:
+def _unlike(solved: SolvedRig) -> Iterator[str]:
     """What single teeth and swinging torques add beyond the period of the periodic response."""
-    rig = subject.rig
-    if rig.drivetrain is None or not subject.points:
+    rig = solved.rig
+    if rig.drivetrain is None or not solved.points:
         return
-    laws = laws_of(subject.points[-1].last.models)
+    laws = laws_of(solved.points[-1].last.models)
     missing = [f"{gear}: its teeth differ" for gear in averaged_gears(rig, laws)]
     missing += [f"{name}: its torque swings" for name in torques_left_out(rig, laws)]
     for what in missing:
@@ -133,21 +133,21 @@ def _unlike(subject: Subject) -> Iterator[str]:
         )
 
 
-def _states(subject: Subject) -> dict[str, list[CurvePoint]]:
+def _states(solved: SolvedRig) -> dict[str, list[CurvePoint]]:
     """Periodic states by where they belong: a curve or a held stage."""
-    assert subject.run is not None
-    curves = subject.run.curves
+    assert solved.run is not None
+    curves = solved.run.curves
     found = {f"curve {name}": list(curve.points) for name, (_, curve) in curves.named.items()}
     found |= {f"curve {name}": list(curve.points) for name, curve in curves.variants.items()}
-    for point in subject.points:
+    for point in solved.points:
         if point.last.response is not None:
             found[f"stage {point.point.stage}"] = [point.last.response]
     return found
 
 
-def _time_run(subject: Subject) -> Iterator[str]:
-    if subject.run is not None:
-        yield from subject.run.ramp.warnings
+def _time_run(solved: SolvedRig) -> Iterator[str]:
+    if solved.run is not None:
+        yield from solved.run.ramp.warnings
 
 
 def loss_warnings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[str]:
@@ -163,12 +163,12 @@ def loss_warnings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[str]:
         yield f"{place}, {'all turning stages' if everywhere else named}: {text}"
 
 
-def _oils(subject: Subject) -> Iterator[str]:
+def _oils(solved: SolvedRig) -> Iterator[str]:
     """Every oil at the coldest and at the hottest place of its stream."""
-    for point in subject.points:
+    for point in solved.points:
         for stream in point.last.streams:
             name, kind = stream.name.split(".")
-            oil = gear_oil(subject.rig, name) if kind == "gear_oil" else bearing_oil(subject.rig, name)
+            oil = gear_oil(solved.rig, name) if kind == "gear_oil" else bearing_oil(solved.rig, name)
             places = stream.inlet, stream.outlet, stream.chamber
             for temperature in (min(places), max(places)):
                 for text in oil.warnings(temperature):
@@ -183,8 +183,8 @@ def cold_oil(rig: Rig) -> Iterator[str]:
             yield from (f"{name}.{kind}, start in the cold: {text}" for text in oil.warnings(room))
 
 
-def _warming(subject: Subject) -> Iterator[str]:
-    time = subject.case.ambient.warming_time
+def _warming(solved: SolvedRig) -> Iterator[str]:
+    time = solved.case.ambient.warming_time
     if time is not None:
         yield (
             f"ambient.warming_time = {show(time, 'time')}: temperatures and clearances are those of a rig that still "
@@ -192,13 +192,13 @@ def _warming(subject: Subject) -> Iterator[str]:
         )
 
 
-def _damping(subject: Subject) -> Iterator[str]:
-    if subject.dynamics is not None:
-        yield from (row["warning"] for row in subject.dynamics.damping_audit if row["warning"])
+def _damping(solved: SolvedRig) -> Iterator[str]:
+    if solved.dynamics is not None:
+        yield from (row["warning"] for row in solved.dynamics.damping_audit if row["warning"])
 
 
-def _load_errors(subject: Subject) -> Iterator[str]:
-    missing = missing_load_errors(subject)
+def _load_errors(solved: SolvedRig) -> Iterator[str]:
+    missing = missing_load_errors(solved)
     if missing:
         yield (
             f"{', '.join(missing)}: the error of slices and shaft elements is not known, since a rig with half of them "
@@ -206,29 +206,29 @@ def _load_errors(subject: Subject) -> Iterator[str]:
         )
 
 
-def _sampling(subject: Subject) -> Iterator[str]:
-    drivetrain = subject.rig.drivetrain
+def _sampling(solved: SolvedRig) -> Iterator[str]:
+    drivetrain = solved.rig.drivetrain
     if drivetrain is not None:
-        speed = subject.rig.drive_speed(subject.test.point.speed)
-        audits = sampling_audit(drivetrain, speed, subject.case.numerics.sample_rate)
+        speed = solved.rig.drive_speed(solved.test.point.speed)
+        audits = sampling_audit(drivetrain, speed, solved.case.numerics.sample_rate)
         yield from (audit.warning for audit in audits if audit.warning)
-        modes = loop_modes(drivetrain, laws_of(subject.test.last.models), DEFAULT_CUTOFF)
-        yield from modes_above_samples(modes, subject.case.numerics.sample_rate)
+        modes = loop_modes(drivetrain, laws_of(solved.test.last.models), DEFAULT_CUTOFF)
+        yield from modes_above_samples(modes, solved.case.numerics.sample_rate)
 
 
-def _films(subject: Subject) -> Iterator[str]:
-    for field in _fields(subject):
+def _films(solved: SolvedRig) -> Iterator[str]:
+    for field in _fields(solved):
         yield from field.solution.warnings
 
 
-def _audits(subject: Subject) -> Iterator[str]:
+def _audits(solved: SolvedRig) -> Iterator[str]:
     """Heat that cannot be, films taken at another temperature difference, radiation counted twice."""
-    for field in _fields(subject):
+    for field in _fields(solved):
         found = (
             *audit_conditions(field.conditions),
             *_radiation_bound(field),
-            *_assumed_differences(subject, field),
-            *_thin_rim_films(subject, field),
+            *_assumed_differences(solved, field),
+            *_thin_rim_films(solved, field),
         )
         yield from (f"{field.gearbox}: {text}" for text in found)
 
@@ -255,10 +255,10 @@ def _radiation_bound(field: HousingField) -> Iterator[str]:
             yield text
 
 
-def _assumed_differences(subject: Subject, field: HousingField) -> Iterator[str]:
+def _assumed_differences(solved: SolvedRig, field: HousingField) -> Iterator[str]:
     rows = {(row.surface, row.kind): row for row in field.solution.balance.rows}
     films = {c.surface: c for c in field.conditions if isinstance(c, Film)}
-    for surface, taken in printed_films(subject.rig, field.gearbox):
+    for surface, taken in printed_films(solved.rig, field.gearbox):
         film = films[surface]
         text = assumed_difference(
             surface,
@@ -271,11 +271,11 @@ def _assumed_differences(subject: Subject, field: HousingField) -> Iterator[str]
             yield text
 
 
-def _thin_rim_films(subject: Subject, field: HousingField) -> Iterator[str]:
+def _thin_rim_films(solved: SolvedRig, field: HousingField) -> Iterator[str]:
     """Gears whose friction heat is split by assumption under a given film far from the one their jets make."""
-    name, rig = field.gearbox, subject.rig
+    name, rig = field.gearbox, solved.rig
     box = rig.case.gearboxes[name]
-    point = next(p.point for p in subject.points if p.last.fields.get(name) is field)
+    point = next(p.point for p in solved.points if p.last.fields.get(name) is field)
     if box.heat_split.rule != "assumed" or point.speed == 0.0:
         return
     rows = {row.surface: row for row in field.solution.balance.rows if row.kind == GEAR_OIL}
@@ -292,12 +292,12 @@ def _thin_rim_films(subject: Subject, field: HousingField) -> Iterator[str]:
             )
 
 
-def _fields(subject: Subject) -> Iterable[HousingField]:
-    for point in subject.points:
+def _fields(solved: SolvedRig) -> Iterable[HousingField]:
+    for point in solved.points:
         yield from point.last.fields.values()
 
 
-def not_modelled(subject: Subject) -> list[str]:
+def not_modelled(solved: SolvedRig) -> list[str]:
     """What the verdict knows nothing of."""
     items = [
         "bending and tilting of shafts: the drivetrain is torsional, journal stiffness does not enter the loads",
@@ -308,19 +308,19 @@ def not_modelled(subject: Subject) -> list[str]:
         "roughness of the tooth roots: Y_RrelT is 1, as for the test gears behind sigma_FE; flank strength (pitting, "
         "scuffing) and its safety",
     ]
-    without = [name for name, box in subject.case.gearboxes.items() if box.housing is None]
+    without = [name for name, box in solved.case.gearboxes.items() if box.housing is None]
     if without:
         items.append(
             f"housing of {', '.join(without)}: gears at the temperature of their oil outlet, all losses into the oil"
         )
-    if subject.run is None:
+    if solved.run is None:
         items.append("dynamic loads: the losses are given")
-    elif len(subject.rig.pairs) > 1:
+    elif len(solved.rig.pairs) > 1:
         items.append(
             "angle at which the gears are put on their shafts: the meshes start in the phase that "
             "gearboxes.*.meshes.*.phase states; K_V near resonances in which both gearboxes take part hangs on it"
         )
-    for name, box in subject.case.gearboxes.items():
+    for name, box in solved.case.gearboxes.items():
         if any(mesh.double_helical for mesh in box.meshes.values()):
             items.append(
                 f"{name}: one half of the double-helical gears carries the whole torque in the model, as in P2"

@@ -19,7 +19,7 @@ from rigdesign.transient.places import probes_of
 from rigdesign.transient.soak import first_broken, soak_of
 from rigdesign.transient.warm_up import Soak
 from thermal.expansion.alignment import ShaftAxis
-from thermal.expansion.many_fields import ExpansionCourse
+from thermal.expansion.many_fields import ExpansionBasis
 from thermal.transient.history import TransientSolution, solve_transient
 
 FloatArray = NDArray[np.float64]
@@ -46,7 +46,7 @@ class TransientRun:
 
 
 @dataclass(frozen=True)
-class Course:
+class ThermalHistory:
     """Temperatures of a branch before its clearances are read."""
 
     name: str
@@ -84,7 +84,7 @@ def run_transient(
         own, missed[name] = _read(rig, name, courses)
         by_name = {branch.name: branch for branch in own}
 
-        def trial(step: int, name: str = name, courses: list[Course] = courses) -> bool:
+        def trial(step: int, name: str = name, courses: list[ThermalHistory] = courses) -> bool:
             say(f"{name}: warm-up of {courses[0].solution.times[step] / 3600.0:.2f} h")
             (tried,), _ = _read(rig, name, [_after_warm_up(rig, heating, name, courses[0], step)])
             return first_broken(rig.case, tried) is None
@@ -109,14 +109,16 @@ def _oil_history(branch: Branch) -> OilHistory:
     )
 
 
-def _read(rig: Rig, name: str, courses: Sequence[Course]) -> tuple[list[Branch], float]:
+def _read(rig: Rig, name: str, courses: Sequence[ThermalHistory]) -> tuple[list[Branch], float]:
     """Clearances of courses of one housing, and what the patterns of their expansion miss [K]."""
     fields = [np.asarray(field, dtype=np.float64) for course in courses for field in course.fields]
-    shapes = ExpansionCourse.of(rig.expansion[name], rig.case.ambient.reference_temperature, fields)
+    shapes = ExpansionBasis.of(rig.expansion[name], rig.case.ambient.reference_temperature, fields)
     return [read_branch(rig, name, course, shapes) for course in courses], shapes.missed
 
 
-def _after_warm_up(rig: Rig, heating: Heating, name: str, planned: Course, step: int) -> Course:
+def _after_warm_up(
+    rig: Rig, heating: Heating, name: str, planned: ThermalHistory, step: int
+) -> ThermalHistory:
     """The running phases up to the last dwell, begun at a time step of the warm-up."""
     phases = planned.phases[1:]
     last = max(i for i, phase in enumerate(phases) if phase.held)
@@ -124,7 +126,7 @@ def _after_warm_up(rig: Rig, heating: Heating, name: str, planned: Course, step:
     return march(rig, heating, name, "shorter_warm_up", phases[: last + 1], field)
 
 
-def _courses(rig: Rig, heating: Heating, name: str, say: Callable[[str], None]) -> list[Course]:
+def _courses(rig: Rig, heating: Heating, name: str, say: Callable[[str], None]) -> list[ThermalHistory]:
     phases = schedule_phases(rig.case)
     say(f"{name} over the schedule: {', '.join(phase.name for phase in phases)}")
     planned = march(rig, heating, name, SCHEDULE, phases)
@@ -151,7 +153,7 @@ def march(
     initial: FloatArray | None = None,
     volumes: Mapping[str, float] | None = None,
     start: float = 0.0,
-) -> Course:
+) -> ThermalHistory:
     """Temperatures of one housing over ``phases``.
 
     initial : field [K] to start from, the cold rig when left out; start : its time in the schedule [s]
@@ -182,10 +184,10 @@ def march(
         largest_step=UNBOUND,
         reuse=setup,
     )
-    return Course(event, phases, start, solution, fields, ends)
+    return ThermalHistory(event, phases, start, solution, fields, ends)
 
 
-def read_branch(rig: Rig, name: str, course: Course, shapes: ExpansionCourse) -> Branch:
+def read_branch(rig: Rig, name: str, course: ThermalHistory, shapes: ExpansionBasis) -> Branch:
     """Clearances of a course at every time."""
     solution = course.solution
     begins = np.concatenate([[0.0], np.cumsum([phase.duration for phase in course.phases])])

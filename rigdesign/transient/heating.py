@@ -22,7 +22,7 @@ class Heating:
         self._states: dict[OperatingPoint, StageLosses] = {
             held.point: StageLosses(
                 point=held.point,
-                feedback=held.last.feedback,
+                coupling_state=held.last.coupling_state,
                 bearings=held.last.bearings,
                 losses=held.last.losses,
             )

@@ -79,7 +79,7 @@ def _steady(rig: Rig, name: str, state: StageLosses, losses: Sequence[PlacedLoss
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
     conditions = boundary_conditions(
-        rig, name, state.point, state.feedback, state.bearings, losses,
+        rig, name, state.point, state.coupling_state, state.bearings, losses,
         radiation_included=housing.radiation_included,
     )  # fmt: skip
     return [condition for condition in conditions if not isinstance(condition, StoredHeat)]
@@ -87,12 +87,12 @@ def _steady(rig: Rig, name: str, state: StageLosses, losses: Sequence[PlacedLoss
 
 def _warmer(state: StageLosses) -> StageLosses:
     """The same state with every oil outlet and film one step warmer."""
-    outlets = {stream: value + MOVED for stream, value in state.feedback.oil_outlet.items()}
+    outlets = {stream: value + MOVED for stream, value in state.coupling_state.oil_outlet.items()}
     films = {
         bearing: replace(film, film_temperature=film.film_temperature + 0.5 * MOVED)
         for bearing, film in state.bearings.items()
     }
-    return replace(state, feedback=replace(state.feedback, oil_outlet=outlets), bearings=films)
+    return replace(state, coupling_state=replace(state.coupling_state, oil_outlet=outlets), bearings=films)
 
 
 def _dry(placed: PlacedLoss) -> PlacedLoss:
@@ -118,7 +118,7 @@ def _gear_network(
 ) -> StreamNetwork:
     box = rig.case.gearboxes[name]
     lubricant, inlet = gear_oil(rig, name), box.oil.inlet_temperature
-    outlet = state.feedback.oil_outlet[f"{name}.{GEAR_OIL}"]
+    outlet = state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
     feed = f"{GEAR_OIL} {FEED}"
     stream = _films(GEAR_OIL, feed, inlet, wetted, oil)
     own = [placed for placed in losses if placed.gearbox == name]
@@ -162,7 +162,7 @@ def _bearing_network(
         _films(BEARING_OIL, feed, inlet, wetted, oil),
         *(_films(f"{BEARING_FILM}:{part}", feed, inlet, wetted, oil) for part in box.bearings),
     ]
-    outlet = state.feedback.oil_outlet[f"{name}.{BEARING_OIL}"]
+    outlet = state.coupling_state.oil_outlet[f"{name}.{BEARING_OIL}"]
     specific_heat = lubricant.heat_capacity(0.5 * (inlet + outlet))
     each = density * box.bearing_oil.flow
     # a film is balanced with the heat capacity of the oil as fed, the stream with that of its mean temperature
@@ -192,7 +192,7 @@ def _leak(rig: Rig, name: str, state: StageLosses, specific_heat: float) -> tupl
     if not share:
         return None
     lubricant = gear_oil(rig, name)
-    warm, mixed = (state.feedback.oil_outlet[f"{name}.{kind}"] for kind in (GEAR_OIL, BEARING_OIL))
+    warm, mixed = (state.coupling_state.oil_outlet[f"{name}.{kind}"] for kind in (GEAR_OIL, BEARING_OIL))
     flow = share * lubricant.density(box.oil.inlet_temperature) * box.oil.flow * len(box.meshes)
     return warm, flow * lubricant.heat_capacity(0.5 * (warm + mixed)) / specific_heat
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from dynamics.response.time_response import DragCurve, TimeResponse
 from rigdesign.coupling.drag_torques import drag_shafts
-from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.time_run import drag_curves, schedule_of, torque_limits
 from rigdesign.rig.model import Rig
 
@@ -41,7 +41,7 @@ def peaks_only(ramp: TimeResponse) -> TimeResponse:
     )
 
 
-def shifted_drive(rig: Rig, warm: PassResult, ramp: TimeResponse, stated: Array) -> TimeResponse | None:
+def shifted_drive(rig: Rig, warm: IterationResult, ramp: TimeResponse, stated: Array) -> TimeResponse | None:
     """``ramp`` of the stated rig with the motor's torque under the losses of ``warm``.
 
     stated : `losses_on_motor` of the stated rig over ``ramp`` [N m], (n,)
@@ -57,15 +57,15 @@ def shifted_drive(rig: Rig, warm: PassResult, ramp: TimeResponse, stated: Array)
     return replace(ramp, drive_torque=torque)
 
 
-def losses_on_motor(rig: Rig, warm: PassResult, ramp: TimeResponse) -> Array:
+def losses_on_motor(rig: Rig, warm: IterationResult, ramp: TimeResponse) -> Array:
     """Torque that all losses ask of the motor over the time of the run [N m], (n,)."""
     return drag_on_motor(rig, warm, ramp) + friction_on_motor(rig, warm, ramp)
 
 
-def drag_on_motor(rig: Rig, warm: PassResult, ramp: TimeResponse) -> Array:
+def drag_on_motor(rig: Rig, warm: IterationResult, ramp: TimeResponse) -> Array:
     """Torque of all drags at the motor over the time of the run [N m], (n,)."""
     assert rig.drivetrain is not None
-    curves: Mapping[str, DragCurve] = drag_curves(rig, warm, warm.feedback)
+    curves: Mapping[str, DragCurve] = drag_curves(rig, warm, warm.coupling_state)
     shafts = drag_shafts(rig.drivetrain)
     total = np.zeros(len(ramp.time))
     for name, curve in curves.items():
@@ -75,7 +75,7 @@ def drag_on_motor(rig: Rig, warm: PassResult, ramp: TimeResponse) -> Array:
     return total
 
 
-def friction_on_motor(rig: Rig, warm: PassResult, ramp: TimeResponse) -> Array:
+def friction_on_motor(rig: Rig, warm: IterationResult, ramp: TimeResponse) -> Array:
     """Torque of all tooth friction at the motor over the time of the run [N m], (n,): it follows the load."""
     held, speed = abs(rig.torque_ratio * warm.point.torque), rig.drive_speed(warm.point.speed)
     if not held or not speed:

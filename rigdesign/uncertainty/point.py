@@ -9,14 +9,15 @@ from dynamics.response.time_response import TimeResponse
 from rigdesign.base.errors import RigdesignError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
-from rigdesign.checks import Subject, held_checks
-from rigdesign.coupling.loads import Setting
+from rigdesign.checks import held_checks
+from rigdesign.coupling.loads import BracingState
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
-from rigdesign.coupling.state import Feedback
+from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points, run_ramp
 from rigdesign.records import heat
 from rigdesign.records.curves import Curves, solve_curves
 from rigdesign.records.dynamics import DynamicRun, bracing_record, dynamics_result
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check, DynamicsResult
 from rigdesign.results.verdict import Verdict
 from rigdesign.rig.model import Rig, build_rig
@@ -32,7 +33,7 @@ DRIVE = ("drive_torque", "drive_power")
 ACTUATOR = ("actuator_force",)
 """Quantities of bought parts that follow the setting of the bracing, hot."""
 LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "tooth_growth": 2e-6}
-"""Change of a field of `Feedback` [K, m] beyond which the loads are solved again: on the prototype half a
+"""Change of a field of `CouplingState` [K, m] beyond which the loads are solved again: on the prototype half a
 kelvin moves a check on loads by up to 0.001 of its limit, `ranges_verdicts.LEAST_MOVE`, and 5 um do."""
 GEOMETRY = ("models", "conduction", "expansion")
 """Cached parts of a rig that hang on geometry and materials of its housings alone."""
@@ -65,8 +66,8 @@ class Reference:
     """The settled stated rig, small enough to be handed to worker processes; they make the rest again from it."""
 
     case: Case
-    feedbacks: tuple[Feedback, ...]
-    settings: tuple[Setting | None, ...]
+    states: tuple[CouplingState, ...]
+    settings: tuple[BracingState | None, ...]
     curves: Curves | None
     ramp: TimeResponse | None
     motor_losses: Array | None
@@ -78,19 +79,19 @@ class Reference:
 def settle(case: Case) -> tuple[Reference, Outcome]:
     """Solve the stated rig and say what its checks are."""
     with solver_errors(case), threadpool_limits(limits=1):
-        subject = solve_case(case, FIDELITY)
-        outcome = _outcome(subject, ())
-        run = subject.run
+        solved = solve_case(case, FIDELITY)
+        outcome = _outcome(solved, ())
+        run = solved.run
         ramp = None if run is None else peaks_only(run.ramp)
-        losses = None if ramp is None else losses_on_motor(subject.rig, subject.test.last, ramp)
+        losses = None if ramp is None else losses_on_motor(solved.rig, solved.test.last, ramp)
     reference = Reference(
         case=case,
-        feedbacks=tuple(point.last.feedback for point in subject.points),
-        settings=tuple(point.setting for point in subject.points),
+        states=tuple(point.last.coupling_state for point in solved.points),
+        settings=tuple(point.setting for point in solved.points),
         curves=None if run is None else run.curves,
         ramp=ramp,
         motor_losses=losses,
-        dynamics=subject.dynamics,
+        dynamics=solved.dynamics,
         key=case.hash,
     )
     return reference, outcome
@@ -105,31 +106,31 @@ def solve_end(end: RangeEnd, *, reference: Reference) -> Outcome:
     try:
         with solver_errors(end.case), threadpool_limits(limits=1):
             stated = _stated(reference)
-            subject, parts = _moved(stated, end.case, end.parts, reference.motor_losses)
-            return _outcome(subject, parts)
+            solved, parts = _moved(stated, end.case, end.parts, reference.motor_losses)
+            return _outcome(solved, parts)
     except RigdesignError as error:
         return Outcome(checks={}, max_temperature=None, error=str(error))
     except Exception as error:
         return Outcome(checks={}, max_temperature=None, error=f"{type(error).__name__}: {error}")
 
 
-_made: dict[str, Subject] = {}
+_made: dict[str, SolvedRig] = {}
 """The stated rig of this process by the hash of its case; one at a time."""
 
 
-def _stated(reference: Reference) -> Subject:
+def _stated(reference: Reference) -> SolvedRig:
     if reference.key not in _made:
         _made.clear()
         _made[reference.key] = _restored(reference)
     return _made[reference.key]
 
 
-def _restored(reference: Reference) -> Subject:
-    """The stated rig with its fields, from its settled feedback."""
+def _restored(reference: Reference) -> SolvedRig:
+    """The stated rig with its fields, from its settled coupling state."""
     rig = build_rig(reference.case, FIDELITY)
     points = [
-        solve_point(rig, point, start=feedback)
-        for point, feedback in zip(held_points(rig), reference.feedbacks, strict=True)
+        solve_point(rig, point, start=coupling_state)
+        for point, coupling_state in zip(held_points(rig), reference.states, strict=True)
     ]
     run = None
     if reference.curves is not None and reference.ramp is not None:
@@ -138,8 +139,8 @@ def _restored(reference: Reference) -> Subject:
 
 
 def _moved(
-    stated: Subject, case: Case, parts: tuple[Part, ...], motor_losses: Array | None
-) -> tuple[Subject, tuple[Part, ...]]:
+    stated: SolvedRig, case: Case, parts: tuple[Part, ...], motor_losses: Array | None
+) -> tuple[SolvedRig, tuple[Part, ...]]:
     """The rig of ``case`` with the named parts solved again and the others those of the stated rig."""
     rig = _rig_like(stated.rig, case, parts)
     points = list(stated.points)
@@ -158,7 +159,7 @@ def _moved(
         ramp = run.ramp if shifted is None else shifted
     if "time run" in solved:
         assert test.setting is not None
-        ramp = run_ramp(rig, test.last, test.setting, test.last.feedback)
+        ramp = run_ramp(rig, test.last, test.setting, test.last.coupling_state)
     curves = solve_curves(rig, test.last) if "curves" in parts else run.curves
     run = DynamicRun(points=tuple(points), curves=curves, ramp=ramp)
     if "curves" in parts or "time run" in parts:
@@ -171,10 +172,10 @@ def _moved(
 def _loads_move(points: Sequence[PointResult], stated: Sequence[PointResult]) -> bool:
     """Whether gears or axes are so much warmer or colder that the loads change."""
     return any(
-        abs(value - getattr(before.last.feedback, name)[part]) > most
+        abs(value - getattr(before.last.coupling_state, name)[part]) > most
         for point, before in zip(points, stated, strict=True)
         for name, most in LOADS_MOVE.items()
-        for part, value in getattr(point.last.feedback, name).items()
+        for part, value in getattr(point.last.coupling_state, name).items()
     )
 
 
@@ -203,11 +204,11 @@ def _made_of(case: Case, name: str) -> tuple[str, ...]:
     return (box.housing.material, box.housing.field.material, *shafts, *gears)
 
 
-def _coupled(rig: Rig, stated: Subject) -> Iterator[PointResult]:
+def _coupled(rig: Rig, stated: SolvedRig) -> Iterator[PointResult]:
     """The held points from those of the stated rig; its fields are the first guess where the mesh is the same."""
     same = all(rig.models[name] is stated.rig.models[name] for name in rig.models)
     for point, near in zip(held_points(rig), stated.points, strict=True):
-        yield solve_point(rig, point, start=near.last.feedback, before=near.last if same else None)
+        yield solve_point(rig, point, start=near.last.coupling_state, before=near.last if same else None)
 
 
 def _asks_for(case: Case, quantities: tuple[str, ...]) -> bool:
@@ -218,8 +219,8 @@ def _asks_for(case: Case, quantities: tuple[str, ...]) -> bool:
 
 def _subject(
     rig: Rig, points: Sequence[PointResult], run: DynamicRun | None, dynamics: DynamicsResult | None
-) -> Subject:
-    return Subject(
+) -> SolvedRig:
+    return SolvedRig(
         rig=rig,
         points=points,
         run=run,
@@ -230,10 +231,10 @@ def _subject(
     )
 
 
-def _outcome(subject: Subject, parts: tuple[Part, ...]) -> Outcome:
+def _outcome(solved: SolvedRig, parts: tuple[Part, ...]) -> Outcome:
     return Outcome(
-        checks={check.id: _at_end(check) for check in held_checks(subject)},
-        max_temperature=max((row.max_temperature_degC for row in subject.thermal), default=None),
+        checks={check.id: _at_end(check) for check in held_checks(solved)},
+        max_temperature=max((row.max_temperature_degC for row in solved.thermal), default=None),
         parts=parts,
     )
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from dynamics.mesh.flank import mesh_law
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import Method, periodic_response
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, mesh_models, microgeometry, signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
@@ -77,7 +77,7 @@ class Course:
 def simulation_models(prototype: Prototype, stiffness: str | None = None) -> tuple[MeshModel, ...]:
     """Meshes of P2's simulation: cold, 12,000 rpm, 180 N m; ``stiffness`` as in ``mesh_models``."""
     rig, point = _point(prototype)
-    return mesh_models(rig, point, cold_feedback(rig, point), stiffness)
+    return mesh_models(rig, point, initial_state(rig, point), stiffness)
 
 
 def simulation_laws(prototype: Prototype, stiffness: str | None = None) -> list[MeshLaw]:

@@ -36,7 +36,7 @@ from rigdesign.diagnosis.residual.baseline import Drift
 from rigdesign.diagnosis.residual.calibration import calibrate as fit_all
 from rigdesign.diagnosis.residual.calibration import calibrate_drift
 from rigdesign.diagnosis.residual.covariance_inflation import widen_drift
-from rigdesign.diagnosis.residual.residual_problem import Comparison, plain
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.run import diagnose_measurement, read_subject
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.measurement import load_measurement
@@ -137,22 +137,22 @@ FIRST_DRIFT = Drift(shared=0.01, slope=0.5, shaft=0.5, mesh=0.5, amplitude=0.03)
 """Where the fit of the drifts starts, and the centre of its prior."""
 
 
-def _pairs(out: Path, spec: Spec) -> Iterable[tuple[Comparison, Comparison]]:
+def _pairs(out: Path, spec: Spec) -> Iterable[tuple[ResidualProblem, ResidualProblem]]:
     """A healthy set and its healthy baseline, if they were made."""
     folder = folder_of(out, "null", "baseline", spec)
     if (folder / "set_1").is_dir():
         yield _subject(spec.rig, folder / "set_1"), _subject(spec.rig, folder / "set_0")
 
 
-def _alike(subjects: Iterable[Comparison]) -> Iterable[list[Comparison]]:
+def _alike(subjects: Iterable[ResidualProblem]) -> Iterable[list[ResidualProblem]]:
     """Sets with the very same numbers."""
-    groups: dict[tuple[object, ...], list[Comparison]] = {}
+    groups: dict[tuple[object, ...], list[ResidualProblem]] = {}
     for subject in subjects:
         groups.setdefault(subject.features, []).append(subject)
     return groups.values()
 
 
-def _subject(rig: str, folder: Path) -> Comparison:
+def _subject(rig: str, folder: Path) -> ResidualProblem:
     case = case_of(rig)
     return read_subject(case, load_measurement(set_of(folder), case), effects_for(rig))[1]
 

@@ -32,7 +32,7 @@ def solved() -> tuple[Rig, PointResult]:
 def run() -> TimeResponse:
     rig, point = solved()
     assert point.setting is not None
-    return run_ramp(rig, point.last, point.setting, point.last.feedback)
+    return run_ramp(rig, point.last, point.setting, point.last.coupling_state)
 
 
 def last(stage: str, seconds: float = 0.3) -> np.ndarray:

@@ -59,7 +59,7 @@ def point(rig: Rig, shape: Expansion) -> Any:
     clearances = {f"test.{name}": 60e-6 for name in rig.case.gearboxes["test"].bearings}
     last = SimpleNamespace(
         growth={"test": SimpleNamespace(expansion=shape)},
-        feedback=SimpleNamespace(bearing_clearance=clearances),
+        coupling_state=SimpleNamespace(bearing_clearance=clearances),
     )
     return SimpleNamespace(last=last)
 

@@ -13,7 +13,7 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.component_limits import bought_parts
-from rigdesign.records.solved_rig import Subject
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check
 from rigdesign.rig.model import build_rig
 from tests.idler_case import idler_case
@@ -24,7 +24,7 @@ PEAKS = {"test": 212.0, "reference": 218.7}
 """Highest dynamic torque of each mesh at its pinion [N m]."""
 
 
-def subject_of(case: Case) -> Subject:
+def subject_of(case: Case) -> SolvedRig:
     """A rig whose run is made up: 15 N m at the motor at 12,000 rpm of the first pinion."""
     rig = build_rig(case, "quick")
     boxes: dict[str, Any] = {
@@ -35,7 +35,7 @@ def subject_of(case: Case) -> Subject:
     ramp = SimpleNamespace(
         drive_torque=np.array([15.0]), speed=np.array([12000.0 * RPM]), time=np.array([10.0])
     )
-    return Subject(
+    return SolvedRig(
         rig=rig, points=(), run=SimpleNamespace(ramp=ramp), thermal=(), growth=(), cooler=(),
         dynamics=SimpleNamespace(gearboxes=boxes, bracing=bracing),
     )  # type: ignore[arg-type]  # fmt: skip

@@ -9,7 +9,7 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.losses import PlacedLoss, rotating_losses
 from rigdesign.coupling.oil import oil_streams
@@ -42,11 +42,11 @@ def films(case: Case) -> dict[str, FilmCoefficient]:
 def conditions_of(case: Case) -> tuple[list[object], list[PlacedLoss]]:
     rig = build_rig(case, "quick")
     point = held_points(rig)[0]
-    feedback = cold_feedback(rig, point)
-    bearings = solve_bearings(rig, point, feedback)
-    losses = rotating_losses(rig, point, feedback, mesh_models(rig, point, feedback), bearings)
+    coupling_state = initial_state(rig, point)
+    bearings = solve_bearings(rig, point, coupling_state)
+    losses = rotating_losses(rig, point, coupling_state, mesh_models(rig, point, coupling_state), bearings)
     return list(
-        boundary_conditions(rig, "test", point, feedback, bearings, losses, radiation_included=True)
+        boundary_conditions(rig, "test", point, coupling_state, bearings, losses, radiation_included=True)
     ), losses
 
 

@@ -14,7 +14,7 @@ from rigdesign.case import load_case
 from rigdesign.checks import dynamics, ramp, strength, thermal
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.rules import with_omissions
-from rigdesign.records.solved_rig import Subject
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check, GearboxDynamics
 from rigdesign.rig.model import Rig, build_rig
 from tests.report_example import gearbox
@@ -50,14 +50,16 @@ def load(stage: str, least: float, peak: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def subject(points: Any = None, crossings: Any = (), **changes: Any) -> Subject:
+def solved(points: Any = None, crossings: Any = (), **changes: Any) -> SolvedRig:
     """Both gearboxes with the same made-up loads; ``changes`` of the records of one mesh."""
     empty: dict[str, Any] = {"resonances": [], "unsolved": [], "lift_off": [], "stage_loads": []}
     box: GearboxDynamics = replace(gearbox("rig", 0.1, []), **(empty | changes))
     run: Any = SimpleNamespace(curves=SimpleNamespace(named={"180 Nm": (180.0, None), "90 Nm": (90.0, None)}))
     results: Any = SimpleNamespace(gearboxes={"test": box, "reference": box}, loop_crossings=crossings)
     held_points = points or [held("test", (1.1, 1.2))]
-    return Subject(rig=rig(), points=held_points, run=run, dynamics=results, thermal=[], growth=[], cooler=[])
+    return SolvedRig(
+        rig=rig(), points=held_points, run=run, dynamics=results, thermal=[], growth=[], cooler=[]
+    )
 
 
 def named(checks: Any, identity: str) -> Check:
@@ -69,14 +71,14 @@ def named(checks: Any, identity: str) -> Check:
 def test_the_slower_wheel_has_to_get_its_cycles_too() -> None:
     """720 h at 12,000 rpm of the pinion are 5.184e8 turns, 99/102 of them of the wheel."""
     check = named(
-        strength.checks(subject(root_stress=gearbox("specimen", 0.1, []).root_stress)), "specimen.load_cycles"
+        strength.checks(solved(root_stress=gearbox("specimen", 0.1, []).root_stress)), "specimen.load_cycles"
     )
     assert check.value == pytest.approx(720.0 * 60.0 * 12000.0 * 99.0 / 102.0)
     assert "test.wheel at 11647 rpm" in check.reason
 
 
 def test_the_worst_held_stage_governs_the_dynamic_factor() -> None:
-    both = subject([held("first", (1.1, 1.4)), held("second", (1.3, 1.2))])
+    both = solved([held("first", (1.1, 1.4)), held("second", (1.3, 1.2))])
     values = {check.id: (check.value, check.reason) for check in dynamics.checks(both)}
     assert values["dynamics.dynamic_factor.test"] == (1.3, "stage second")
     assert values["dynamics.dynamic_factor.reference"] == (1.4, "stage first")
@@ -84,7 +86,7 @@ def test_the_worst_held_stage_governs_the_dynamic_factor() -> None:
 
 def test_without_a_dangerous_resonance_the_distance_is_that_of_the_end_of_the_search() -> None:
     check = named(
-        dynamics.checks(subject(resonances=[resonance(12100.0, dangerous=False)])),
+        dynamics.checks(solved(resonances=[resonance(12100.0, dangerous=False)])),
         "dynamics.resonance_distance.test",
     )
     assert check.value == pytest.approx(0.125)
@@ -93,7 +95,7 @@ def test_without_a_dangerous_resonance_the_distance_is_that_of_the_end_of_the_se
 
 @pytest.mark.parametrize(("rpm", "verdict"), [(11400.0, "fail"), (12600.0, "fail"), (10500.0, "pass")])
 def test_a_resonance_above_the_held_speed_counts_as_one_below(rpm: float, verdict: str) -> None:
-    check = named(dynamics.checks(subject(resonances=[resonance(rpm)])), "dynamics.resonance_distance.test")
+    check = named(dynamics.checks(solved(resonances=[resonance(rpm)])), "dynamics.resonance_distance.test")
     assert check.verdict == verdict
     assert check.value == pytest.approx(abs(rpm - 12000.0) / 12000.0)
 
@@ -101,7 +103,7 @@ def test_a_resonance_above_the_held_speed_counts_as_one_below(rpm: float, verdic
 def test_resonances_at_another_torque_do_not_count_and_holes_are_said() -> None:
     hole = {"curve": "180 Nm", "speed_rpm": 12100.0, "reason": "not settled"}
     rows = [resonance(12100.0, torque="90 Nm")]
-    with_hole = subject([held("test", (1.1, 1.2), models=())], resonances=rows, unsolved=[hole])
+    with_hole = solved([held("test", (1.1, 1.2), models=())], resonances=rows, unsolved=[hole])
     with_hole = replace(with_hole, rig=replace(rig(), fidelity="standard"))
     check = named(dynamics.checks(with_hole), "dynamics.resonance_distance.test")
     assert (check.value, check.verdict) == (pytest.approx(0.125), "pass")
@@ -117,7 +119,7 @@ def test_contact_and_peak_of_the_loaded_ramp() -> None:
         {"stage": "to_transition_speed", "start_s": 1.1, "share": 0.4},
         {"stage": "run_up", "start_s": 2.6, "share": 0.02},
     ]
-    checks = dynamics.checks(subject(stage_loads=loads, lift_off=lost))
+    checks = dynamics.checks(solved(stage_loads=loads, lift_off=lost))
     margin = named(checks, "dynamics.contact_margin.test")
     assert (margin.value, margin.verdict) == (pytest.approx(8.0 / 90.0), "fail")
     assert "stage run_up, near 2175 rpm" in margin.reason
@@ -131,19 +133,19 @@ def test_a_stage_that_comes_from_the_start_torque_is_not_loaded_yet(stage: str) 
     """From 10 to 90 N m or back at 750 rpm: at its light end the teeth may part."""
     loads = [load(stage, 0.0, 400.0), load("full_torque", 60.0, 200.0)]
     lost = [{"stage": stage, "start_s": 1.1, "share": 0.4}]
-    checks = dynamics.checks(subject(stage_loads=loads, lift_off=lost))
+    checks = dynamics.checks(solved(stage_loads=loads, lift_off=lost))
     assert named(checks, "dynamics.contact_margin.test").value == pytest.approx(60.0 / 90.0)
     assert named(checks, "dynamics.ramp_peak.test").value == pytest.approx(200.0 / 180.0)
     assert named(checks, "dynamics.lift_off.test").value == 0.0
 
 
-def without(path: tuple[str, str]) -> Subject:
+def without(path: tuple[str, str]) -> SolvedRig:
     """The shipped case with one limit left out."""
     case = rig().case
     group, key = path
     part = getattr(case.limits, group).model_copy(update={key: None})
     limits = case.limits.model_copy(update={group: part})
-    return replace(subject(), rig=replace(rig(), case=case.model_copy(update={"limits": limits})))
+    return replace(solved(), rig=replace(rig(), case=case.model_copy(update={"limits": limits})))
 
 
 @pytest.mark.parametrize(
@@ -172,7 +174,7 @@ def growth(stage: str, shifts: dict[str, tuple[str, float]]) -> Any:
 def test_one_check_of_the_seal_travel_for_every_shaft_over_all_held_stages() -> None:
     """A shaft whose name begins like another's keeps to its own seals."""
     two = replace(
-        subject(),
+        solved(),
         growth=[
             growth(
                 "first", {"a": ("test_pinion", -0.2), "b": ("test_wheel", 0.1), "c": ("test_pinion_2", 0.9)}
@@ -193,7 +195,7 @@ def test_cooler_heater_and_room_are_those_of_their_own_worst_stage() -> None:
     def row(stage: str, cooler: float, heater: float, room: float) -> dict[str, float | str]:
         return {"stage": stage, "flow_l_min": 26.0, "cooler_W": cooler, "heater_W": heater, "room_W": room}
 
-    both = replace(subject(), cooler=[row("hot", 9e3, 0.5e3, 2e3), row("fast", 12e3, 1.5e3, 1e3)])
+    both = replace(solved(), cooler=[row("hot", 9e3, 0.5e3, 2e3), row("fast", 12e3, 1.5e3, 1e3)])
     found = {check.id: (check.value, check.reason) for check in thermal._oil(both)}
     assert found["oil.cooler"] == (pytest.approx(12.0), "stage fast")
     assert found["oil.heater"] == (pytest.approx(1.5), "stage fast")
@@ -208,13 +210,13 @@ def test_teeth_hotter_than_their_gear_govern_the_tempering_distance() -> None:
         "reference.pinion": 333.15,
         "reference.wheel": 333.15,
     }
-    point = held("test", (1.1, 1.2), feedback=SimpleNamespace(gear_temperature=temperature))
+    point = held("test", (1.1, 1.2), coupling_state=SimpleNamespace(gear_temperature=temperature))
     split = [
         SimpleNamespace(gear="test.pinion", tooth_degC=None),
         SimpleNamespace(gear="test.wheel", tooth_degC=150.0),
     ]
     row: Any = SimpleNamespace(stage="test", heat_split=split)
-    found = list(thermal._tempering_distances(replace(subject([point]), thermal=[row])))
+    found = list(thermal._tempering_distances(replace(solved([point]), thermal=[row])))
     assert [(round(value, 9), where) for value, where in found] == [
         (50.0, "test.pinion at 130.0 degC, stage test"),
         (30.0, "teeth of test.wheel at 150.0 degC, stage test"),
@@ -223,7 +225,7 @@ def test_teeth_hotter_than_their_gear_govern_the_tempering_distance() -> None:
     ]
 
 
-def films(*states: tuple[float, float, float]) -> Subject:
+def films(*states: tuple[float, float, float]) -> SolvedRig:
     """Bearings with (film [um], specific load [MPa], transition speed [rpm]) at 180 N m."""
     bearings = {
         f"test.b{index}": SimpleNamespace(
@@ -231,7 +233,7 @@ def films(*states: tuple[float, float, float]) -> Subject:
         )
         for index, (film, pressure, speed) in enumerate(states)
     }
-    return subject([held("test", (1.1, 1.2), bearings=bearings)])
+    return solved([held("test", (1.1, 1.2), bearings=bearings)])
 
 
 @pytest.mark.parametrize(("film", "verdict"), [(6.0, "fail"), (8.0, "pass"), (60.0, "pass")])
@@ -265,9 +267,9 @@ def test_a_hotter_room_uses_no_less_of_a_temperature_limit() -> None:
     film = SimpleNamespace(film_temperature=373.15, minimum_film=2e-5, specific_load=1e6)
     points = [
         held("test", (1.1, 1.2), streams=[], bearings={"test.pinion_front": film},
-             feedback=SimpleNamespace(gear_temperature={}, bearing_clearance={}))
+             coupling_state=SimpleNamespace(gear_temperature={}, bearing_clearance={}))
     ]  # fmt: skip
     for room in ("5 degC", "20 degC", "40 degC"):
         warm = build_rig(rig().case.with_value("ambient.temperature", room), "quick")
-        checks = thermal._temperatures(replace(subject(points), rig=warm))
+        checks = thermal._temperatures(replace(solved(points), rig=warm))
         assert named(checks, "temperature.bearing_film").utilisation == pytest.approx(0.8)

@@ -8,8 +8,8 @@ import pytest
 
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.coupling import loop as coupling
-from rigdesign.coupling.iteration import feedback_of
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.iteration import next_state
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.oil_supply import gear_oil
 from tests.warm_prototype import base
 
@@ -19,10 +19,10 @@ SIZE = {"temperature": 4.0, "length": 300e-6, "torque": 0.5}
 """How far each is from its end at first [K, m, relative]; every pass halves it."""
 
 
-def state(open_at: dict[str, float]) -> Feedback:
-    """A feedback that far from its end."""
+def state(open_at: dict[str, float]) -> CouplingState:
+    """A coupling state that far from its end."""
     rest: Any = {}
-    return Feedback(
+    return CouplingState(
         gear_temperature={"g": 400.0 + open_at["temperature"]}, centre_distance={"m": 0.1 + open_at["length"]},
         bearing_clearance=rest, bearing_heat=rest, wall_heat=rest, oil_outlet=rest,
         mesh_torque={"m": 100.0 / (1.0 + open_at["torque"])}, tooth_growth=rest,
@@ -48,7 +48,7 @@ def loop(monkeypatch: pytest.MonkeyPatch, slow: str, passes: int = 40) -> coupli
 
     monkeypatch.setattr(coupling, "cold_feedback", lambda *_: state(after(0)))
     monkeypatch.setattr(coupling, "one_pass", one_pass)
-    monkeypatch.setattr(coupling, "feedback_of", lambda _, count: state(after(count)))
+    monkeypatch.setattr(coupling, "next_state", lambda _, count: state(after(count)))
     monkeypatch.setattr(coupling, "heat_residual", lambda *_: 0.0)
     return coupling.solve_point(rig, POINT)
 
@@ -82,7 +82,7 @@ def test_gears_without_a_housing_are_no_colder_than_the_oil_that_leaves_them() -
     capacity = oil.density(inlet) * oil.heat_capacity(inlet) * box.oil.flow * len(box.meshes)
     rise = into_oil / capacity
     assert rise > 5.0
-    found = feedback_of(rig, result.last).gear_temperature
+    found = next_state(rig, result.last).gear_temperature
     for gear in box.gears:
         assert inlet + 0.95 * rise < found[f"reference.{gear}"] < inlet + rise + 60.0
 
@@ -97,8 +97,8 @@ def test_gears_without_a_housing_follow_the_oil_of_their_mesh(stream: str, follo
         else entry
         for entry in result.last.streams
     )
-    before = feedback_of(rig, result.last).gear_temperature
-    after = feedback_of(rig, replace(result.last, streams=hotter)).gear_temperature
+    before = next_state(rig, result.last).gear_temperature
+    after = next_state(rig, replace(result.last, streams=hotter)).gear_temperature
     for gear in rig.case.gearboxes["reference"].gears:
         rise = after[f"reference.{gear}"] - before[f"reference.{gear}"]
         assert rise > 15.0 if follow else abs(rise) < 5.0

@@ -9,10 +9,10 @@ from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.baseline import Change, Drift, differenced
 from rigdesign.diagnosis.residual.calibration import calibrate_drift
 from rigdesign.diagnosis.residual.covariance_inflation import widen_drift
-from rigdesign.diagnosis.residual.residual_problem import Comparison
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.resonance import steepness
-from rigdesign.prediction.model import Feature, Setting
+from rigdesign.prediction.model import Feature, OperatingCondition
 from tests.diagnosis_example import story
 
 STEP = 0.01
@@ -21,24 +21,24 @@ STEP = 0.01
 STILL = Drift(shared=0.01, slope=0.0, shaft=0.0, mesh=0.0, amplitude=0.0)
 
 
-def moved(library: Library, settings: tuple[Setting, ...]) -> Library:
+def moved(library: Library, settings: tuple[OperatingCondition, ...]) -> Library:
     """The library for points met elsewhere; its numbers stay."""
     return replace(library, settings=settings)
 
 
-def faster(subject: Comparison, step: float) -> Comparison:
+def faster(subject: ResidualProblem, step: float) -> ResidualProblem:
     """The same readings at points run faster."""
     runs = tuple(replace(one, speed=one.speed * float(np.exp(step))) for one in subject.library.settings)
     return replace(subject, library=moved(subject.library, runs))
 
 
 @pytest.fixture(scope="module")
-def pair() -> tuple[Comparison, Comparison]:
+def pair() -> tuple[ResidualProblem, ResidualProblem]:
     problem = story("mesh loss").problem
     return faster(problem.subject, STEP), problem.baseline
 
 
-def more_by(pair: tuple[Comparison, Comparison], drift: Drift) -> np.ndarray:
+def more_by(pair: tuple[ResidualProblem, ResidualProblem], drift: Drift) -> np.ndarray:
     """(n, n) what a drift adds to the covariance."""
     change = Change.of(*pair, Amplitudes())
     return change.covariance(drift) - change.covariance(STILL)

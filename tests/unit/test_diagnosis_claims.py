@@ -20,7 +20,7 @@ from rigdesign.diagnosis.library.library import Response
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.evidence import Hypothesis, weigh
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
-from rigdesign.prediction import Channel, Setting
+from rigdesign.prediction import Channel, OperatingCondition
 from rigdesign.prediction.changes import changed_case
 from rigdesign.prediction.predict import predict
 from rigdesign.report.pages.diagnosis import diagnosis_page
@@ -338,7 +338,7 @@ def test_a_pick_with_which_the_gap_grows_is_not_patched():
 
 def test_the_full_run_is_that_of_a_check():
     case = the_case()
-    setting = Setting(name="P1", speed=150.0, torque=200.0)
+    setting = OperatingCondition(name="P1", speed=150.0, torque=200.0)
     channels = (
         Channel(name="P", quantity="motor_power", place="motor"),
         Channel(name="T", quantity="oil_outlet_temperature", place="test.gear_oil"),

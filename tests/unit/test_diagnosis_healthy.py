@@ -14,11 +14,11 @@ from rigdesign.diagnosis.residual.residual_problem import plain
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, weigh
 from rigdesign.diagnosis.statistics.support import support
-from rigdesign.prediction.model import Channel, Setting, features_of
+from rigdesign.prediction.model import Channel, OperatingCondition, features_of
 from tests.diagnosis_example import DESIGN, story
 
 SETTINGS = tuple(
-    Setting(name=f"P{i}", speed=speed, torque=50.0, inlet_temperature={"test.gear_oil": 350.0})
+    OperatingCondition(name=f"P{i}", speed=speed, torque=50.0, inlet_temperature={"test.gear_oil": 350.0})
     for i, speed in enumerate((100.0, 200.0, 400.0))
 )
 CHANNELS = (

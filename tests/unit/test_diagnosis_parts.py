@@ -19,7 +19,7 @@ from rigdesign.diagnosis.statistics.intervals import fit_together
 from rigdesign.diagnosis.statistics.next_measurement import Proposal, Rival, ranked
 from rigdesign.diagnosis.statistics.outliers import reject
 from rigdesign.diagnosis.statistics.phase_shift import Turning
-from rigdesign.prediction.model import Channel, Feature, Setting, features_of
+from rigdesign.prediction.model import Channel, Feature, OperatingCondition, features_of
 
 
 def plane(name, covariance, columns, half=10.0):
@@ -173,8 +173,8 @@ def test_next_measurement_prefers_what_the_rivals_foresee_differently():
 
 
 SETTINGS = (
-    Setting(name="P1", speed=100.0, torque=50.0, inlet_temperature={"test.gear_oil": 350.0}),
-    Setting(name="P2", speed=200.0, torque=80.0, inlet_temperature={"test.gear_oil": 360.0}),
+    OperatingCondition(name="P1", speed=100.0, torque=50.0, inlet_temperature={"test.gear_oil": 350.0}),
+    OperatingCondition(name="P2", speed=200.0, torque=80.0, inlet_temperature={"test.gear_oil": 360.0}),
 )
 CHANNELS = (
     Channel(name="T", quantity="temperature", place="test.outer_warm"),
@@ -207,7 +207,9 @@ def library():
 
 
 def test_library_serves_a_nearby_point_of_fewer_channels_under_other_names():
-    run = (Setting(name="late", speed=202.0, torque=79.0, inlet_temperature={"test.gear_oil": 362.0}),)
+    run = (
+        OperatingCondition(name="late", speed=202.0, torque=79.0, inlet_temperature={"test.gear_oil": 362.0}),
+    )
     wanted = (Channel(name="TC7", quantity="temperature", place="test.outer_warm"),)
     served = library().serving(run, wanted)
     assert served is not None
@@ -218,7 +220,9 @@ def test_library_serves_a_nearby_point_of_fewer_channels_under_other_names():
 
 
 def test_distance_of_a_library_is_that_of_its_farthest_point():
-    run = Setting(name="late", speed=202.0, torque=79.0, inlet_temperature={"test.gear_oil": 362.0})
+    run = OperatingCondition(
+        name="late", speed=202.0, torque=79.0, inlet_temperature={"test.gear_oil": 362.0}
+    )
     assert library().distance(SETTINGS) == 0.0
     near = [abs(run.speed / 200.0 - 1.0) / 0.05, abs(run.torque / SETTINGS[1].torque - 1.0) / 0.05, 2.0 / 8.0]
     assert library().distance([run]) == pytest.approx(max(near))
@@ -226,7 +230,9 @@ def test_distance_of_a_library_is_that_of_its_farthest_point():
 
 
 def test_library_does_not_serve_what_it_does_not_hold():
-    far = (Setting(name="P1", speed=150.0, torque=50.0, inlet_temperature={"test.gear_oil": 350.0}),)
+    far = (
+        OperatingCondition(name="P1", speed=150.0, torque=50.0, inlet_temperature={"test.gear_oil": 350.0}),
+    )
     assert library().serving(far, CHANNELS) is None
     more = (Channel(name="M", quantity="torque", place="side", orders=(3.0,)),)
     assert library().serving(SETTINGS, more) is None

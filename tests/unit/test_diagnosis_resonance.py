@@ -5,9 +5,12 @@ import pytest
 
 from rigdesign.diagnosis.statistics.columns import amplitudes_of
 from rigdesign.diagnosis.statistics.resonance import BLURRED, steepness
-from rigdesign.prediction.model import Feature, Setting
+from rigdesign.prediction.model import Feature, OperatingCondition
 
-SETTINGS = (Setting(name="slow", speed=100.0, torque=50.0), Setting(name="fast", speed=300.0, torque=50.0))
+SETTINGS = (
+    OperatingCondition(name="slow", speed=100.0, torque=50.0),
+    OperatingCondition(name="fast", speed=300.0, torque=50.0),
+)
 MODES = np.array([1000.0, 6000.0])
 
 

@@ -9,7 +9,7 @@ from rigdesign.base import errors
 from rigdesign.base.errors import CaseError, Fault, RigdesignError
 from rigdesign.case import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 
@@ -70,6 +70,6 @@ def test_a_part_is_named_before_what_its_solver_says() -> None:
     rig = build_rig(thin, "quick")
     point = held_points(rig)[-1]
     with pytest.raises(ValueError, match=r"^gearboxes\.reference\.bearings\.wheel_rear: .*B/D = 0\.075"):
-        solve_bearings(rig, point, cold_feedback(rig, point))
+        solve_bearings(rig, point, initial_state(rig, point))
     with pytest.raises(ValueError, match=r"^gearboxes\.reference\.meshes\.main: rack: "):
         build_rig(load_case(PROTOTYPE).with_value("gearboxes.reference.meshes.main.rack.dedendum", "6.1"))

@@ -6,7 +6,7 @@ import pytest
 from tests.unit.test_housing import PROTOTYPE
 from thermal.expansion.elastic import ElasticError
 from thermal.expansion.expansion import expand
-from thermal.expansion.many_fields import ExpansionCourse
+from thermal.expansion.many_fields import ExpansionBasis
 from thermal.expansion.setup import ExpansionSetup
 from thermal.housing.gearbox import build_gearbox
 
@@ -37,7 +37,7 @@ def fields(setup: ExpansionSetup) -> list[np.ndarray]:
 
 def test_three_patterns_hold_twelve_fields(setup: ExpansionSetup) -> None:
     found = fields(setup)
-    course = ExpansionCourse.of(setup, COLD, found, missed=1e-3, tolerance=1e-9)
+    course = ExpansionBasis.of(setup, COLD, found, missed=1e-3, tolerance=1e-9)
     assert len(course.patterns) == 3
     assert course.missed <= 1e-3
     for field in (found[4], found[-1]):
@@ -51,13 +51,13 @@ def test_three_patterns_hold_twelve_fields(setup: ExpansionSetup) -> None:
 
 def test_patterns_stop_at_the_limit(setup: ExpansionSetup) -> None:
     found = fields(setup)
-    coarse = ExpansionCourse.of(setup, COLD, found, missed=5.0)
+    coarse = ExpansionBasis.of(setup, COLD, found, missed=5.0)
     assert len(coarse.patterns) < 3 and 1e-3 < coarse.missed <= 5.0
-    cold = ExpansionCourse.of(setup, COLD, [np.full_like(found[0], COLD)])
+    cold = ExpansionBasis.of(setup, COLD, [np.full_like(found[0], COLD)])
     assert len(cold.patterns) == 0
     assert np.abs(cold.shape(np.full_like(found[0], COLD)).displacement).max() == 0.0
 
 
 def test_no_field_is_refused(setup: ExpansionSetup) -> None:
     with pytest.raises(ElasticError, match="no temperature field"):
-        ExpansionCourse.of(setup, COLD, [])
+        ExpansionBasis.of(setup, COLD, [])

@@ -22,7 +22,13 @@ def coefficients(changes: tuple[tuple[str, object], ...] = ()) -> dict[tuple[str
     last = result.last
     found = {}
     for condition in boundary_conditions(
-        changed, "test", result.point, last.feedback, last.bearings, last.losses, radiation_included=False
+        changed,
+        "test",
+        result.point,
+        last.coupling_state,
+        last.bearings,
+        last.losses,
+        radiation_included=False,
     ):
         if isinstance(condition, Film):
             found[condition.surface, condition.kind] = condition.law(350.0, 345.0).value
@@ -77,7 +83,13 @@ def test_factors_multiply_and_show_as_one() -> None:
     changed = build_rig(case_with(changes), "quick").with_models(rig.models)
     last = result.last
     films = boundary_conditions(
-        changed, "test", result.point, last.feedback, last.bearings, last.losses, radiation_included=True
+        changed,
+        "test",
+        result.point,
+        last.coupling_state,
+        last.bearings,
+        last.losses,
+        radiation_included=True,
     )
     shown = {
         film.law(350.0, 300.0).inputs.get("film_factor")

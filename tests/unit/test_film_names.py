@@ -12,7 +12,7 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from thermal.conditions.boundary import Exchange, Film
@@ -39,15 +39,17 @@ def shipped_bearings() -> dict[str, BearingState]:
     """Journal bearings of the shipped case; no film but theirs depends on them."""
     rig = build_rig(load_case(PROTOTYPE), "quick")
     point = held_points(rig)[0]
-    return dict(solve_bearings(rig, point, cold_feedback(rig, point)))
+    return dict(solve_bearings(rig, point, initial_state(rig, point)))
 
 
 def film_at(case: Case, surface: str) -> FilmCoefficient:
     """Coefficient of the one film or exchange of a surface, wall at 340 K, air at 20 degC."""
     rig = build_rig(case, "quick")
     point = held_points(rig)[0]
-    feedback = cold_feedback(rig, point)
-    rows = boundary_conditions(rig, "test", point, feedback, shipped_bearings(), [], radiation_included=True)
+    coupling_state = initial_state(rig, point)
+    rows = boundary_conditions(
+        rig, "test", point, coupling_state, shipped_bearings(), [], radiation_included=True
+    )
     films = [c for c in rows if isinstance(c, Film) and c.surface == surface]
     gaps = [c for c in rows if isinstance(c, Exchange) and c.surface_a == surface]
     (own,) = [*films, *gaps]

@@ -11,8 +11,8 @@ from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.flank_heat import gear_flanks, mesh_split, pinion_share, tooth_ring
-from rigdesign.coupling.initial_state import cold_feedback
-from rigdesign.coupling.iteration import PassResult, one_pass
+from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import IterationResult, run_iteration
 from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import mesh_losses
@@ -53,9 +53,9 @@ def rig(case: Case) -> Rig:
 
 
 @pytest.fixture(scope="module")
-def done(rig: Rig) -> PassResult:
+def done(rig: Rig) -> IterationResult:
     point = held_points(rig)[-1]
-    return one_pass(rig, point, cold_feedback(rig, point), None)
+    return run_iteration(rig, point, initial_state(rig, point), None)
 
 
 def equal_gears() -> GearPair:
@@ -124,12 +124,12 @@ def test_an_idler_is_wetted_twice_a_turn() -> None:
 def test_assumed_split_stays_what_the_case_says() -> None:
     plain = build_rig(load_case(CASES / "uhcf_prototype"), "quick")
     point = held_points(plain)[-1]
-    split = mesh_split(plain, "test.main", point, cold_feedback(plain, point))
+    split = mesh_split(plain, "test.main", point, initial_state(plain, point))
     assert (split.pinion, split.kept) == (0.5, (0.5, 0.5))
     assert mesh_split(plain, "reference.main", point, None).into_rims == (0.0, 0.0)
 
 
-def test_friction_goes_into_rims_and_oil_and_nowhere_else(rig: Rig, done: PassResult) -> None:
+def test_friction_goes_into_rims_and_oil_and_nowhere_else(rig: Rig, done: IterationResult) -> None:
     mesh = next(p for p in done.losses if p.name == "test.main" and p.loss.kind == "mesh")
     assert mesh.split is not None
     assert 0.5 < mesh.split.pinion < 0.6
@@ -143,14 +143,16 @@ def test_friction_goes_into_rims_and_oil_and_nowhere_else(rig: Rig, done: PassRe
     assert done.wall_heat["test.gear_oil"] == pytest.approx(oil)
 
 
-def test_kept_share_follows_the_temperature_of_the_flank(rig: Rig, done: PassResult) -> None:
+def test_kept_share_follows_the_temperature_of_the_flank(rig: Rig, done: IterationResult) -> None:
     """A hotter flank thins its oil: less film, more of the heat reaches the rim."""
-    hot = replace(done.feedback, gear_temperature=dict.fromkeys(done.feedback.gear_temperature, 500.0))
-    cold, warm = (mesh_losses(rig, done.point, done.models, None, f) for f in (done.feedback, hot))
+    hot = replace(
+        done.coupling_state, gear_temperature=dict.fromkeys(done.coupling_state.gear_temperature, 500.0)
+    )
+    cold, warm = (mesh_losses(rig, done.point, done.models, None, f) for f in (done.coupling_state, hot))
     assert warm[0].into_body > cold[0].into_body
 
 
-def test_split_is_a_result_with_a_range(rig: Rig, done: PassResult) -> None:
+def test_split_is_a_result_with_a_range(rig: Rig, done: IterationResult) -> None:
     result = PointResult(point=done.point, last=done, setting=None, residuals=())
     rows = {row.gear: row for row in heat_split_rows(rig, result, done.fields["test"])}
     assert set(rows) == {"test.pinion", "test.wheel"}
@@ -167,7 +169,7 @@ def test_split_is_a_result_with_a_range(rig: Rig, done: PassResult) -> None:
         assert row.tooth_degC > row.bulk_degC
 
 
-def test_without_ranges_the_split_has_none(rig: Rig, done: PassResult) -> None:
+def test_without_ranges_the_split_has_none(rig: Rig, done: IterationResult) -> None:
     plain = replace(
         rig, case=rig.case.with_value(f"{RIMS}.wetted_share", 0.8).with_value(f"{RIMS}.film_factor", 1.0)
     )
@@ -226,7 +228,7 @@ def test_a_standing_gear_has_no_film(rig: Rig) -> None:
 
 def test_models_of_the_whole_rig_are_split(rig: Rig) -> None:
     point = held_points(rig)[-1]
-    feedback = cold_feedback(rig, point)
-    for placed in mesh_losses(rig, point, mesh_models(rig, point, feedback)):
+    coupling_state = initial_state(rig, point)
+    for placed in mesh_losses(rig, point, mesh_models(rig, point, coupling_state)):
         assert placed.split is not None
         assert placed.into_body == pytest.approx(math.fsum(placed.split.into_rims) * placed.loss.power)

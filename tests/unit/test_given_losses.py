@@ -10,7 +10,7 @@ from rigdesign.case import load_case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_shafts, drag_torques
 from rigdesign.coupling.given_losses import given_power
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import brace_cold, mesh_models, respond
 from rigdesign.coupling.losses import PlacedLoss, mesh_losses, rotating_losses
 from rigdesign.coupling.time_run import held_points
@@ -44,15 +44,17 @@ def losses_at(rig: Rig, speed_share: float = 1.0) -> tuple[PlacedLoss, ...]:
     """What turns at a share of the test speed, cold and without heat from the housing."""
     point = held_points(rig)[-1]
     point = replace(point, speed=speed_share * point.speed)
-    feedback = cold_feedback(rig, point)
-    bearings = solve_bearings(rig, point, feedback)
-    return tuple(rotating_losses(rig, point, feedback, mesh_models(rig, point, feedback), bearings))
+    coupling_state = initial_state(rig, point)
+    bearings = solve_bearings(rig, point, coupling_state)
+    return tuple(
+        rotating_losses(rig, point, coupling_state, mesh_models(rig, point, coupling_state), bearings)
+    )
 
 
 def film_rise(rig: Rig, name: str) -> float:
     """Film temperature above the inlet, cold and without heat from the housing [K]."""
     point = held_points(rig)[-1]
-    state = solve_bearings(rig, point, cold_feedback(rig, point))[name]
+    state = solve_bearings(rig, point, initial_state(rig, point))[name]
     return state.film_temperature - rig.case.gearboxes["test"].bearing_oil.inlet_temperature
 
 
@@ -89,7 +91,7 @@ def test_the_motor_pays_for_all_heat_where_the_drag_is_constant(tmp_path: Path) 
     turning = losses_at(rig)
     assert {placed.loss.kind for placed in turning} == {"bearing"}
     point = held_points(rig)[-1]
-    cold = cold_feedback(rig, point)
+    cold = initial_state(rig, point)
     models = mesh_models(rig, point, cold)
     response = respond(rig, point, models, {}, brace_cold(rig, point, cold))
     lost = sum(p.loss.power for p in (*turning, *mesh_losses(rig, point, models, response)))

@@ -10,11 +10,11 @@ from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.coupling.bearing_films import bearing_loads, solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
-from rigdesign.coupling.initial_state import cold_feedback
-from rigdesign.coupling.iteration import feedback_of, one_pass
+from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.iteration import next_state, run_iteration
 from rigdesign.coupling.loads import brace_cold, mesh_models
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
-from rigdesign.coupling.state import Feedback, OperatingPoint
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.loop_forces import loop_forces
 from rigdesign.rig.model import Rig, build_rig
@@ -24,36 +24,36 @@ TORQUE, GRAVITY = 180.0, 9.81
 
 
 @cache
-def rig(folder: Path, housing: bool) -> tuple[Rig, OperatingPoint, Feedback]:
+def rig(folder: Path, housing: bool) -> tuple[Rig, OperatingPoint, CouplingState]:
     built = build_rig(load_case(idler_case(folder, housing=housing)), "quick")
     point = held_points(built)[0]
-    return built, point, cold_feedback(built, point)
+    return built, point, initial_state(built, point)
 
 
 @pytest.fixture(scope="module")
-def boxed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Rig, OperatingPoint, Feedback]:
+def boxed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Rig, OperatingPoint, CouplingState]:
     return rig(tmp_path_factory.mktemp("boxed"), True)
 
 
 @pytest.fixture(scope="module")
-def bare(tmp_path_factory: pytest.TempPathFactory) -> tuple[Rig, OperatingPoint, Feedback]:
+def bare(tmp_path_factory: pytest.TempPathFactory) -> tuple[Rig, OperatingPoint, CouplingState]:
     return rig(tmp_path_factory.mktemp("bare"), False)
 
 
-def test_torque_goes_through_the_idlers(boxed: tuple[Rig, OperatingPoint, Feedback]) -> None:
+def test_torque_goes_through_the_idlers(boxed: tuple[Rig, OperatingPoint, CouplingState]) -> None:
     """Both base radii of a line balance; the reference gears of another module carry the same torque."""
     expected = {"test.left": 1.0, "test.right": -1.0, "reference.left": -1.0, "reference.right": 1.0}
     assert boxed[2].mesh_torque == pytest.approx({m: s * TORQUE for m, s in expected.items()}, rel=1e-9)
 
 
 def test_tangential_forces_of_an_idler_add_and_separating_ones_cancel(
-    boxed: tuple[Rig, OperatingPoint, Feedback], bare: tuple[Rig, OperatingPoint, Feedback]
+    boxed: tuple[Rig, OperatingPoint, CouplingState], bare: tuple[Rig, OperatingPoint, CouplingState]
 ) -> None:
-    built, _, feedback = boxed
+    built, _, coupling_state = boxed
     pair = built.pairs["test.left"]
     tangential = TORQUE / pair.working_radii[0]
     weight = GRAVITY * (pair.masses[0] + built.shaft_mass("test_pinion"))
-    loads = bearing_loads(built, feedback)
+    loads = bearing_loads(built, coupling_state)
     both = loads["test.pinion_front"] + loads["test.pinion_rear"]
     assert both == pytest.approx(2.0 * tangential + weight, rel=1e-9)
     # a wheel feels one mesh, its separating force stays
@@ -69,11 +69,11 @@ def test_tangential_forces_of_an_idler_add_and_separating_ones_cancel(
 
 
 def test_wheels_that_both_drive_the_pinion_cancel_on_its_bearings(
-    boxed: tuple[Rig, OperatingPoint, Feedback],
+    boxed: tuple[Rig, OperatingPoint, CouplingState],
 ) -> None:
-    built, _, feedback = boxed
-    torque = dict(feedback.mesh_torque) | {"test.left": 90.0, "test.right": 90.0}
-    split = Feedback(**{**vars(feedback), "mesh_torque": torque})
+    built, _, coupling_state = boxed
+    torque = dict(coupling_state.mesh_torque) | {"test.left": 90.0, "test.right": 90.0}
+    split = CouplingState(**{**vars(coupling_state), "mesh_torque": torque})
     loads = bearing_loads(built, split)
     pair = built.pairs["test.left"]
     weight = GRAVITY * (pair.masses[0] + built.shaft_mass("test_pinion"))
@@ -81,15 +81,15 @@ def test_wheels_that_both_drive_the_pinion_cancel_on_its_bearings(
 
 
 def test_heat_of_both_meshes_enters_the_rim_of_the_idler_once(
-    boxed: tuple[Rig, OperatingPoint, Feedback],
+    boxed: tuple[Rig, OperatingPoint, CouplingState],
 ) -> None:
-    built, point, feedback = boxed
-    models = mesh_models(built, point, feedback)
-    bearings = solve_bearings(built, point, feedback)
-    turning = rotating_losses(built, point, feedback, models, bearings)
+    built, point, coupling_state = boxed
+    models = mesh_models(built, point, coupling_state)
+    bearings = solve_bearings(built, point, coupling_state)
+    turning = rotating_losses(built, point, coupling_state, models, bearings)
     losses = [*turning, *mesh_losses(built, point, models)]
     conditions = boundary_conditions(
-        built, "test", point, feedback, bearings, losses, radiation_included=True
+        built, "test", point, coupling_state, bearings, losses, radiation_included=True
     )
     rims = {c.surface: c.power for c in conditions if getattr(c, "kind", "") == "mesh_loss"}  # type: ignore[union-attr]
     left, right = (p.into_body for p in losses if p.gearbox == "test" and p.loss.kind == "mesh")
@@ -105,41 +105,41 @@ def test_heat_of_both_meshes_enters_the_rim_of_the_idler_once(
 
 
 def test_a_double_helical_gear_stirs_the_mist_with_both_halves(
-    boxed: tuple[Rig, OperatingPoint, Feedback],
+    boxed: tuple[Rig, OperatingPoint, CouplingState],
 ) -> None:
-    built, point, feedback = boxed
+    built, point, coupling_state = boxed
     single = built.case.with_value("gearboxes.reference.meshes.*.double_helical", False)
-    one, two = (_windage(build_rig(case, "quick"), point, feedback) for case in (single, built.case))
+    one, two = (_windage(build_rig(case, "quick"), point, coupling_state) for case in (single, built.case))
     assert two > 1.6 * one
-    heavy, light = (bearing_loads(build_rig(c, "quick"), feedback) for c in (built.case, single))
+    heavy, light = (bearing_loads(build_rig(c, "quick"), coupling_state) for c in (built.case, single))
     name = "reference.pinion_front"
     half = GRAVITY * built.pairs["reference.left"].masses[0] * (277.93 - 159.97) / (277.93 - 32.03)
     # nearly along the load, which leans by the separating force
     assert 0.9 * half < heavy[name] - light[name] < half
 
 
-def _windage(built: Rig, point: OperatingPoint, feedback: Feedback) -> float:
-    models = mesh_models(built, point, feedback)
-    losses = rotating_losses(built, point, feedback, models, {})
+def _windage(built: Rig, point: OperatingPoint, coupling_state: CouplingState) -> float:
+    models = mesh_models(built, point, coupling_state)
+    losses = rotating_losses(built, point, coupling_state, models, {})
     return sum(p.loss.power for p in losses if p.name == "reference.pinion" and p.loss.kind == "windage")
 
 
-def test_one_pass_hands_signed_torques_on(bare: tuple[Rig, OperatingPoint, Feedback]) -> None:
+def test_one_pass_hands_signed_torques_on(bare: tuple[Rig, OperatingPoint, CouplingState]) -> None:
     """Losses of the shafts between come off the torque on the way round from the motor."""
-    built, point, feedback = bare
-    done = one_pass(built, point, feedback, brace_cold(built, point, feedback))
-    torque = feedback_of(built, done).mesh_torque
+    built, point, coupling_state = bare
+    done = run_iteration(built, point, coupling_state, brace_cold(built, point, coupling_state))
+    torque = next_state(built, done).mesh_torque
     assert [math.copysign(1.0, t) for t in torque.values()] == [1.0, -1.0, -1.0, 1.0]
     assert torque["test.left"] == pytest.approx(TORQUE, rel=1e-4)
     assert 5.0 < abs(torque["test.right"]) - TORQUE < 15.0
 
 
-def test_an_idler_cannot_be_shifted_to_brace(boxed: tuple[Rig, OperatingPoint, Feedback]) -> None:
+def test_an_idler_cannot_be_shifted_to_brace(boxed: tuple[Rig, OperatingPoint, CouplingState]) -> None:
     with pytest.raises(CaseError, match="in 2 meshes: an idler that is shifted only turns"):
         boxed[0].case.with_value("drivetrain.bracing.shifted_gear", "reference.pinion")
 
 
-def test_a_loop_that_is_open_holds_no_torque(boxed: tuple[Rig, OperatingPoint, Feedback]) -> None:
+def test_a_loop_that_is_open_holds_no_torque(boxed: tuple[Rig, OperatingPoint, CouplingState]) -> None:
     built = boxed[0]
     lines = {shaft: i for i, shaft in enumerate(built.drivetrain.lines())}  # type: ignore[union-attr]
     with pytest.raises(ValueError, match="is in no closed loop"):

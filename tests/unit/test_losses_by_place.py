@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rigdesign.case import load_case
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.losses import PlacedLoss, chamber_mist, rotating_losses
 from rigdesign.coupling.state import OperatingPoint
@@ -30,8 +30,8 @@ def rig(name: str, *changes: tuple[str, object]) -> Rig:
 def losses(built: Rig, speed: float, torque: float = 180.0) -> list[PlacedLoss]:
     """What turns at ``speed`` [rad/s] in the cold rig, bearings left out."""
     point = OperatingPoint(stage="x", speed=speed, torque=torque)
-    feedback = cold_feedback(built, point)
-    return rotating_losses(built, point, feedback, mesh_models(built, point, feedback), {})
+    coupling_state = initial_state(built, point)
+    return rotating_losses(built, point, coupling_state, mesh_models(built, point, coupling_state), {})
 
 
 def area(mesh: NamedMesh, surface: str) -> float:
@@ -85,8 +85,10 @@ def test_mist_is_as_warm_as_its_oil_is_on_the_average() -> None:
     """Oil in at 140 and out at 60 degC: air of 100 degC, 21.9e-6 Pa s (VDI Heat Atlas)."""
     built = rig("uhcf_prototype")
     assert built.case.gearboxes["test"].oil.inlet_temperature == pytest.approx(413.15)
-    feedback = cold_feedback(built, OperatingPoint(stage="x", speed=0.0, torque=180.0))
-    feedback = replace(feedback, oil_outlet={**feedback.oil_outlet, "test.gear_oil": 333.15})
-    mist = chamber_mist(built, "test", feedback)
+    coupling_state = initial_state(built, OperatingPoint(stage="x", speed=0.0, torque=180.0))
+    coupling_state = replace(
+        coupling_state, oil_outlet={**coupling_state.oil_outlet, "test.gear_oil": 333.15}
+    )
+    mist = chamber_mist(built, "test", coupling_state)
     assert mist.viscosity == pytest.approx(21.9e-6, rel=0.01)
     assert mist.density == 5.0  # what the case says of the oil in it

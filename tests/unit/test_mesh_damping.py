@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from rigdesign.case import load_case
-from rigdesign.coupling.iteration import PassResult
+from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.losses import PlacedLoss
-from rigdesign.prediction.memoisation import Memory
+from rigdesign.prediction.memoisation import Memoisation
 from rigdesign.records.heat import cooler, loss_rows
 from rigdesign.run.main import losses_by_stage
 from rigdesign.validation.prototype import Prototype, case_folder
@@ -21,7 +21,7 @@ CLOSING = tuple(
 HEATS = ("losses.mesh_damping_heats_oil", True)
 
 
-def damper(last: PassResult) -> PlacedLoss:
+def damper(last: IterationResult) -> PlacedLoss:
     return next(p for p in last.losses if p.loss.kind == "mesh_damping" and p.gearbox == "test")
 
 
@@ -101,11 +101,11 @@ def test_every_stage_that_turns_books_friction_and_damping_alike() -> None:
 
 
 def test_a_remembered_mesh_takes_the_damper_of_the_case() -> None:
-    memory = Memory()
+    memory = Memoisation()
     rig, test = base()
-    shipped = memory.models(rig, test.point, test.last.feedback)
+    shipped = memory.models(rig, test.point, test.last.coupling_state)
     changed, _ = settled(*CLOSING)
-    other = memory.models(changed, test.point, test.last.feedback)
+    other = memory.models(changed, test.point, test.last.coupling_state)
     assert [model.law.damping_acts_on for model in shipped] == ["relative_rotation"] * 2
     assert [model.law.damping_acts_on for model in other] == ["contact_closing_rate"] * 2
     assert all(a.law.gap is b.law.gap for a, b in zip(shipped, other))

@@ -7,7 +7,7 @@ import pytest
 
 from dynamics.mesh.flank import reach_beyond
 from rigdesign import load_case
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import brace_cold, mesh_models, mesh_phase, respond
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
@@ -33,7 +33,7 @@ def test_the_stated_phase_moves_k_v_at_a_resonance_and_not_the_torque() -> None:
         rig = build_rig(case, "quick")
         point = held_points(rig)[0]
         point = type(point)(stage=point.stage, speed=2380.0 * np.pi / 30.0, torque=point.torque)
-        cold = cold_feedback(rig, point)
+        cold = initial_state(rig, point)
         models = mesh_models(rig, point, cold)
         factors.append(respond(rig, point, models, {}, brace_cold(rig, point, cold)).dynamic_factor[1])
     assert factors[2] == pytest.approx(factors[0], rel=1e-4)

@@ -31,7 +31,9 @@ def changed(*changes: tuple[str, object]) -> Rig:
 def streams(*changes: tuple[str, object]) -> dict[str, OilStream]:
     """Streams under the losses and heats of the shipped state."""
     last = base()[1].last
-    found = oil_streams(changed(*changes), last.losses, last.feedback.bearing_heat, last.feedback.wall_heat)
+    found = oil_streams(
+        changed(*changes), last.losses, last.coupling_state.bearing_heat, last.coupling_state.wall_heat
+    )
     return {stream.name: stream for stream in found}
 
 
@@ -93,7 +95,7 @@ def test_a_short_circuit_takes_the_heat_of_the_meshes_past_the_walls() -> None:
     plain, short = streams()["test.gear_oil"], streams((SHORT, 0.25))["test.gear_oil"]
     assert short.outlet == pytest.approx(plain.outlet, abs=1e-9)
     last = base()[1].last
-    walls = last.feedback.wall_heat["test.gear_oil"]
+    walls = last.coupling_state.wall_heat["test.gear_oil"]
     losses = plain.heat - walls
     along = Portion(oil=gear_oil(rig, "test"), inlet=plain.inlet, flow=0.75 * plain.flow)
     assert along.heat_at(short.chamber) == pytest.approx(0.75 * losses + walls, rel=1e-9)
@@ -113,7 +115,10 @@ def test_ways_of_the_oil_close_the_balance_of_the_rig() -> None:
     _, before = settled()
     assert open_share(rig, after) < 2e-3
     assert outlet(after, "test.bearing_oil") > outlet(before, "test.bearing_oil") + 2.0
-    assert after.feedback.oil_outlet["test.gear_oil"] < before.feedback.oil_outlet["test.gear_oil"] - 1.0
+    assert (
+        after.coupling_state.oil_outlet["test.gear_oil"]
+        < before.coupling_state.oil_outlet["test.gear_oil"] - 1.0
+    )
     assert lost(after, "oil_acceleration") < 0.9 * lost(
         before, "oil_acceleration"
     )  # slower jets, less of them
@@ -126,7 +131,9 @@ def test_blocked_jets_drive_the_others_faster() -> None:
     _, last = settled()
     jets = []
     for changes in ((), ((JETS, 0.5),)):
-        losses = rotating_losses(changed(*changes), last.point, last.feedback, last.models, last.bearings)
+        losses = rotating_losses(
+            changed(*changes), last.point, last.coupling_state, last.models, last.bearings
+        )
         jets.append(
             next(p.loss for p in losses if p.name == "test.main" and p.loss.kind == "oil_acceleration")
         )
@@ -152,7 +159,9 @@ def test_flanks_past_blocked_jets_stay_dry() -> None:
 def test_the_course_over_time_ends_at_the_same_state() -> None:
     """The networks of the transient with leak, bypass and short circuit solve to the settled field."""
     rig, last = settled((LEAK, 0.1), (BYPASS, 0.2), (SHORT, 0.1))
-    state = StageLosses(point=last.point, feedback=last.feedback, bearings=last.bearings, losses=last.losses)
+    state = StageLosses(
+        point=last.point, coupling_state=last.coupling_state, bearings=last.bearings, losses=last.losses
+    )
     conditions = oil_conditions(rig, "test", state, oil=True)
     setup = rig.conduction["test"]
     networks = [c for c in conditions if isinstance(c, StreamNetwork)]
@@ -161,7 +170,9 @@ def test_the_course_over_time_ends_at_the_same_state() -> None:
         setup.mesh, setup.conductivity, conditions, last.fields["test"].temperature, reuse=setup
     )
     for kind in (GEAR_OIL, BEARING_OIL):
-        assert solution.volumes[kind] == pytest.approx(last.feedback.oil_outlet[f"test.{kind}"], abs=0.1)
+        assert solution.volumes[kind] == pytest.approx(
+            last.coupling_state.oil_outlet[f"test.{kind}"], abs=0.1
+        )
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from rigdesign import load_case, run_case
-from rigdesign.checks import Subject, held_checks
+from rigdesign.checks import SolvedRig, held_checks
 from rigdesign.checks.omissions import OMISSIONS, omissions
 from rigdesign.checks.rules import Omission, Rule, hold, with_omissions
 from rigdesign.checks.transient import TITLES
@@ -106,9 +106,9 @@ def test_every_pattern_of_the_table_means_a_check() -> None:
     assert idle == []
 
 
-def as_subject(rig: Rig, point: PointResult) -> Subject:
+def as_solved_rig(rig: Rig, point: PointResult) -> SolvedRig:
     """A settled point without its dynamic results."""
-    return Subject(
+    return SolvedRig(
         rig=rig,
         points=[point],
         run=None,
@@ -123,7 +123,7 @@ def as_subject(rig: Rig, point: PointResult) -> Subject:
 def shipped() -> dict[str, Check]:
     """Thermal checks of the prototype: the test gearbox has a housing, the reference gearbox none."""
     rig, point = base()
-    return {check.id: check for check in held_checks(as_subject(rig, point))}
+    return {check.id: check for check in held_checks(as_solved_rig(rig, point))}
 
 
 @pytest.mark.parametrize(
@@ -160,11 +160,11 @@ def test_what_leaves_nothing_out_still_passes() -> None:
 def test_the_tilting_moment_of_helical_gears_has_a_size() -> None:
     """T tan(beta) over span, diameter and width of the bearings: 18 deg, 245.9 mm, 40 mm, 30 mm; wheel torque."""
     rig, last = settled(("gearboxes.reference.meshes.main.double_helical", False))
-    subject = as_subject(rig, replace(base()[1], last=last))
-    check = next(check for check in held_checks(subject) if check.id == "bearing.specific_load")
+    solved = as_solved_rig(rig, replace(base()[1], last=last))
+    check = next(check for check in held_checks(solved) if check.id == "bearing.specific_load")
     assert check.verdict == "pass" and "tilting moment" in check.left_out[0]
-    (omission,) = omissions(subject, check)
-    torque = abs(last.feedback.mesh_torque["reference.main"]) * 102.0 / 99.0
+    (omission,) = omissions(solved, check)
+    torque = abs(last.coupling_state.mesh_torque["reference.main"]) * 102.0 / 99.0
     assert omission.size == pytest.approx(1e-6 * torque * 0.3249197 / (0.2459 * 0.04 * 0.03), rel=1e-3)
     assert not shipped()["bearing.specific_load"].left_out
 
@@ -172,7 +172,7 @@ def test_the_tilting_moment_of_helical_gears_has_a_size() -> None:
 def test_with_one_temperature_of_oil_nothing_is_exchanged_with_two_it_is() -> None:
     rig, last = settled(("gearboxes.reference.oil.inlet_temperature", "60 degC"))
     point = replace(base()[1], last=last)
-    found = {check.id: check for check in held_checks(as_subject(rig, point))}
+    found = {check.id: check for check in held_checks(as_solved_rig(rig, point))}
     for identity in ("oil.cooler", "temperature.oil_outlet"):
         assert any("warmer oil of gearbox reference" in text for text in found[identity].left_out)
         assert found[identity].verdict == "warn"
@@ -180,7 +180,7 @@ def test_with_one_temperature_of_oil_nothing_is_exchanged_with_two_it_is() -> No
 
 def test_a_rig_that_still_warms_up_is_at_best_a_warning() -> None:
     rig, last = settled(("ambient.warming_time", "2 h"))
-    found = {check.id: check for check in held_checks(as_subject(rig, replace(base()[1], last=last)))}
+    found = {check.id: check for check in held_checks(as_solved_rig(rig, replace(base()[1], last=last)))}
     for identity in ("temperature.oil_outlet", "oil.cooler"):
         assert found[identity].verdict == "warn"
         assert any("rest of the warm-up" in text for text in found[identity].left_out)
@@ -245,12 +245,12 @@ def test_a_motor_at_its_limit_says_so_of_torque_and_power() -> None:
     time = np.linspace(2.0, 8.0, 101)
     torque = np.where(np.arange(101) < 50, 20.0, 10.0)
     run: Any = SimpleNamespace(ramp=SimpleNamespace(time=time, drive_torque=torque))
-    subject = replace(as_subject(rig, point), run=run)
+    solved = replace(as_solved_rig(rig, point), run=run)
     motor = rig.case.limits.bought_parts["motor"]
     for quantity in ("drive_torque", "drive_power"):
         parts = {"motor": motor.model_copy(update={"quantity": quantity})}
         limits = rig.case.limits.model_copy(update={"bought_parts": parts})
-        here = replace(subject, rig=replace(rig, case=rig.case.model_copy(update={"limits": limits})))
+        here = replace(solved, rig=replace(rig, case=rig.case.model_copy(update={"limits": limits})))
         check = replace(held(1.0), id="bought_part.motor")
         (omission,) = omissions(here, check)
         assert "49.5 % of the run" in omission.text

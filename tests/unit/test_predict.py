@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.base.errors import UsageError
 from rigdesign.case.loader import load_case
-from rigdesign.prediction import Channel, Setting, features_of
+from rigdesign.prediction import Channel, OperatingCondition, features_of
 from rigdesign.prediction.places import place_weights
 from rigdesign.prediction.predict import predict
 from rigdesign.prediction.readings import readings
@@ -17,7 +17,7 @@ from rigdesign.run.main import run_case
 
 CASE = load_case(Path(__file__).parents[2] / "cases" / "uhcf_prototype")
 STAGE = next(stage for stage in CASE.schedule.resolved() if stage.held)
-DWELL = Setting(name=STAGE.name, speed=STAGE.speed_end, torque=STAGE.torque_end)
+DWELL = OperatingCondition(name=STAGE.name, speed=STAGE.speed_end, torque=STAGE.torque_end)
 POINT = (0.05, -0.16, 0.14)
 
 CHANNELS = (

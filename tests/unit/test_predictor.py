@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from rigdesign.case.loader import changed_together, load_case
-from rigdesign.prediction import Channel, Setting
+from rigdesign.prediction import Channel, OperatingCondition
 from rigdesign.prediction.predict import predict
 from rigdesign.prediction.predictor import Predictor
 
 CASES = Path(__file__).parents[2] / "cases"
 CASE = load_case(CASES / "uhcf_prototype")
 SETTINGS = (
-    Setting(name="fast", speed=1256.0, torque=180.0),
-    Setting(name="slow", speed=500.0, torque=90.0, inlet_temperature={"test.gear_oil": 373.0}),
+    OperatingCondition(name="fast", speed=1256.0, torque=180.0),
+    OperatingCondition(name="slow", speed=500.0, torque=90.0, inlet_temperature={"test.gear_oil": 373.0}),
 )
 CHANNELS = (
     Channel(name="wall", quantity="temperature", place="test.outer_warm"),
@@ -127,7 +127,10 @@ def test_a_loop_without_housing_has_no_links():
         Channel(name="oil", quantity="oil_outlet_temperature", place="test.gear_oil"),
         Channel(name="drive", quantity="drive_torque"),
     )
-    settings = (Setting(name="a", speed=200.0, torque=150.0), Setting(name="b", speed=300.0, torque=200.0))
+    settings = (
+        OperatingCondition(name="a", speed=200.0, torque=150.0),
+        OperatingCondition(name="b", speed=300.0, torque=200.0),
+    )
     predictor = Predictor(case, settings, channels)
     assert predictor.links() == {} and predictor.error == 0.0
     full = predict(changed_together(case, TIGHT), settings, channels)

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from rigdesign.case.loader import load_case
-from rigdesign.prediction import Channel, Setting
+from rigdesign.prediction import Channel, OperatingCondition
 from rigdesign.prediction.changes import changed_case
-from rigdesign.prediction.memoisation import Memory
+from rigdesign.prediction.memoisation import Memoisation
 from rigdesign.prediction.operating import like, operating_point, rig_at
 from rigdesign.prediction.predictor import Predictor
 
 CASE = load_case(Path(__file__).parents[2] / "cases" / "loop_1to1")
 SETTINGS = (
-    Setting(name="slow", speed=105.0, torque=350.0),
-    Setting(name="fast", speed=377.0, torque=200.0, inlet_temperature={"test.gear_oil": 343.0}),
+    OperatingCondition(name="slow", speed=105.0, torque=350.0),
+    OperatingCondition(name="fast", speed=377.0, torque=200.0, inlet_temperature={"test.gear_oil": 343.0}),
 )
 CHANNELS = (
     Channel(name="torque", quantity="torque", place="wheel_side", orders=(0.0, 1.0, 28.0, 29.0)),
@@ -104,15 +104,15 @@ def test_a_swinging_motor_is_answered_in_proportion(predictor):
 
 
 def test_memory_finds_again_what_a_change_leaves_alone(predictor):
-    memory, stated = Memory(), predictor._rig
+    memory, stated = Memoisation(), predictor._rig
     setting, point = SETTINGS[0], operating_point(SETTINGS[0])
-    feedback = predictor._points[0].last.feedback
-    own = memory.models(rig_at(stated, setting), point, feedback)
+    coupling_state = predictor._points[0].last.coupling_state
+    own = memory.models(rig_at(stated, setting), point, coupling_state)
     bracing = memory.bracing(rig_at(stated, setting), point)
 
     def met(changes):
         rig = rig_at(like(stated, changed_case(CASE, changes)), setting)
-        return memory.models(rig, point, feedback), memory.bracing(rig, point)
+        return memory.models(rig, point, coupling_state), memory.bracing(rig, point)
 
     models, braced = met({"gearboxes.test.gears.pinion.inertia_factor": 1.2})
     assert all(one is other for one, other in zip(models, own)) and braced is bracing

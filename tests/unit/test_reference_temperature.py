@@ -6,7 +6,7 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.coupling.expansion import uniform_growth
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import warm_pair
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
@@ -30,7 +30,7 @@ def test_a_box_in_a_warm_room_has_grown_before_it_runs() -> None:
         ({"temperature": "35 degC", "reference_temperature": "35 degC"}, 0.0),
     ):
         rig = rig_at(**values)
-        cold = cold_feedback(rig, held_points(rig)[0])
+        cold = initial_state(rig, held_points(rig)[0])
         change = cold.centre_distance["test.main"] - 99.5e-3
         assert change == pytest.approx(expected, rel=0.1, abs=1e-12)
     assert uniform_growth(rig_at(), "reference", 293.15)["reference.main"] == 99.5e-3
@@ -41,7 +41,7 @@ def test_the_room_does_not_change_a_hot_gear() -> None:
     for room in ("20 degC", "35 degC"):
         rig = rig_at(temperature=room)
         point = held_points(rig)[0]
-        cold = cold_feedback(rig, point)
+        cold = initial_state(rig, point)
         hot = type(cold)(**{**vars(cold), "gear_temperature": dict.fromkeys(cold.gear_temperature, 420.0)})
         pairs.append(warm_pair(rig, "test.main", point.speed, hot).gears[0].tip_radius)
     assert pairs[0] == pairs[1]

@@ -12,7 +12,7 @@ from dynamics.standards import iso6336_3_2006 as iso
 from rigdesign.case import load_case
 from rigdesign.checks import strength
 from rigdesign.records.curves import iso_factor
-from rigdesign.records.solved_rig import Subject
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.rig.model import Rig, build_rig
 from tests.report_example import gearbox
 
@@ -62,7 +62,7 @@ def test_pitch_errors_load_single_teeth_of_a_lightly_loaded_wide_gear(prototype:
     assert transverse_load_factor(narrow, other) == 1.0
 
 
-def rated(rig: Rig, meshes: int) -> Subject:
+def rated(rig: Rig, meshes: int) -> SolvedRig:
     """The rig held at 180 N m with a K_V of 1.1 in every mesh, and made-up histories."""
     response = SimpleNamespace(dynamic_factor=np.full(meshes, 1.1), mean=np.full(meshes, 180.0))
     point: Any = SimpleNamespace(
@@ -72,7 +72,7 @@ def rated(rig: Rig, meshes: int) -> Subject:
     box = gearbox("specimen", 0.1, [])
     results: Any = SimpleNamespace(gearboxes={rig.mesh_labels[name]: box for name in rig.mesh_names})
     run: Any = SimpleNamespace()
-    return Subject(rig=rig, points=[point], run=run, dynamics=results, thermal=[], growth=[], cooler=[])
+    return SolvedRig(rig=rig, points=[point], run=run, dynamics=results, thermal=[], growth=[], cooler=[])
 
 
 def test_safety_of_a_rig_gear_takes_sharing_and_cycles(prototype: Rig) -> None:

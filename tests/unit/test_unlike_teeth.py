@@ -11,7 +11,7 @@ from dynamics.mesh.flank import Microgeometry, alike_teeth, flank_modification, 
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, laws_of, locked_share, mesh_models, signed_torque
 from rigdesign.coupling.shaft_torques import swinging_torques, torques_left_out
 from rigdesign.coupling.state import OperatingPoint
@@ -31,7 +31,7 @@ def shipped(name: str) -> Case:
 
 def built(case: Case) -> tuple[Rig, tuple[MeshModel, ...]]:
     rig = build_rig(case, "quick")
-    return rig, mesh_models(rig, POINT, cold_feedback(rig, POINT))
+    return rig, mesh_models(rig, POINT, initial_state(rig, POINT))
 
 
 def test_defaults_leave_all_teeth_alike() -> None:

@@ -1,8 +1,8 @@
 """Every arrow of the coupling loop: cut it, and a named result moves as a hand calculation says.
 
-An arrow is a field of `Feedback`; `solve_point(..., hold={arrow})` keeps it at its cold value while the rest of the
-loop settles. Each test derives sign and amount by hand from what the arrow carries, and asks for at least twenty
-times the tolerance of the loop: 1 K, 10 um, 2 % of the torque.
+An arrow is a field of `CouplingState`; `solve_point(..., freeze={arrow})` keeps it at its cold value while the rest
+of the loop settles. Each test derives sign and amount by hand from what the arrow carries, and asks for at least
+twenty times the tolerance of the loop: 1 K, 10 um, 2 % of the torque.
 
 Backlash acts on torques only where the bracing is held (torque control hides it), so these tests hold the twist
 of the shipped rig. Its test bearings get half of their oil and the reference mesh a tenth, so that film and
@@ -18,10 +18,10 @@ import pytest
 
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import Case, load_case
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import ToothPath
 from rigdesign.coupling.loop import PointResult, solve_point
-from rigdesign.coupling.state import Feedback
+from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.dynamics import bracing_drift
 from rigdesign.records.heat import cooler
@@ -32,7 +32,7 @@ TEMPERATURE, LENGTH, TORQUE = 0.05, 0.5e-6, 1e-3
 """Tolerances of the loop: K, m, relative."""
 CLEAR = 20.0
 """A cut arrow must move its result by this many tolerances."""
-ARROWS = frozenset(field.name for field in fields(Feedback))
+ARROWS = frozenset(field.name for field in fields(CouplingState))
 
 
 def shipped() -> Case:
@@ -60,7 +60,7 @@ def warm() -> PointResult:
 def cut(arrow: str) -> PointResult:
     """The loop without one arrow, started where the whole loop settled."""
     point = held_points(held_rig())[-1]
-    return solve_point(held_rig(), point, hold=frozenset({arrow}), start=warm().last.feedback)
+    return solve_point(held_rig(), point, freeze=frozenset({arrow}), start=warm().last.coupling_state)
 
 
 @cache
@@ -101,13 +101,13 @@ def test_gear_temperature_takes_up_backlash() -> None:
     The tooth there, s(r) = r (s_0 / r_0 + 2 inv alpha_0 - 2 inv alpha(r)) with r d(inv alpha)/dr = tan alpha, is
     thicker by 2 r_w tan(alpha_wt) e. Both gears together: dj_t = -2 tan(alpha_wt) sum(r_w alpha dT).
     """
-    feedback, room = warm().last.feedback, held_rig().case.ambient.temperature
+    coupling_state, room = warm().last.coupling_state, held_rig().case.ambient.temperature
     whole, without = warm().last.models[0].pair, cut("gear_temperature").last.models[0].pair
     grown = sum(
-        radius * 11.5e-6 * (feedback.gear_temperature[name] - room)
+        radius * 11.5e-6 * (coupling_state.gear_temperature[name] - room)
         for radius, name in zip(without.working_radii, ("test.pinion", "test.wheel"))
     )
-    apart = warm().last.feedback.centre_distance["test.main"] - without.centre_distance
+    apart = warm().last.coupling_state.centre_distance["test.main"] - without.centre_distance
     by_hand = 2.0 * math.tan(without.working_pressure_angle) * (apart - grown)
     moved = whole.transverse_backlash - without.transverse_backlash
     assert moved == pytest.approx(by_hand, rel=0.02)
@@ -124,7 +124,7 @@ def test_centre_distance_opens_the_backlash() -> None:
     """Axes that move apart by da open 2 tan(alpha_wt) da: each flank leaves the line of centres by da tan."""
     whole, without = warm().last.models[0].pair, cut("centre_distance").last.models[0].pair
     steel = held_rig().materials["case_hardened_steel"].expansion_coefficient
-    after, before = warm().last.feedback, cut("centre_distance").last.feedback
+    after, before = warm().last.coupling_state, cut("centre_distance").last.coupling_state
     grown = sum(
         radius * steel * (after.gear_temperature[name] - before.gear_temperature[name])
         for radius, name in zip(without.working_radii, ("test.pinion", "test.wheel"))
@@ -180,16 +180,19 @@ def test_bearing_clearance_lowers_the_drag() -> None:
     name = "test.pinion_front"
     drags = []
     for result in (warm(), cut("bearing_clearance")):
-        feedback, state = result.last.feedback, result.last.bearings[name]
+        coupling_state, state = result.last.coupling_state, result.last.bearings[name]
         drags.append(
             petroff_with_heat_balance(
-                name, feedback.bearing_clearance[name], state.eccentricity, feedback.bearing_heat[name]
+                name,
+                coupling_state.bearing_clearance[name],
+                state.eccentricity,
+                coupling_state.bearing_heat[name],
             )[0]
         )
     by_hand = drags[0] / drags[1] - 1.0
     before = cut("bearing_clearance").last.bearings[name].drag_torque
     moved = warm().last.bearings[name].drag_torque / before - 1.0
-    opened = warm().last.feedback.bearing_clearance[name] - 80e-6
+    opened = warm().last.coupling_state.bearing_clearance[name] - 80e-6
     assert opened > CLEAR * LENGTH
     assert moved == pytest.approx(by_hand, rel=0.15)
     assert moved < -CLEAR * TORQUE
@@ -207,7 +210,7 @@ def test_bearing_heat_warms_its_film(name: str) -> None:
     slope = math.log(viscosity(low) / viscosity(low + 1.0))
     capacity = 2.0 * heat_capacity_flow("bearing_oil", rig.case.gearboxes["test"].bearing_oil.flow)
     power = without.bearings[name].power
-    by_hand = whole.feedback.bearing_heat[name] / capacity / (1.0 + slope * power / capacity)
+    by_hand = whole.coupling_state.bearing_heat[name] / capacity / (1.0 + slope * power / capacity)
     assert high - low == pytest.approx(by_hand, rel=0.10)
     assert high - low > CLEAR * TEMPERATURE
 
@@ -217,7 +220,7 @@ def test_wall_heat_cools_the_gear_oil() -> None:
     whole, without = warm().last, cut("wall_heat").last
     after = {stream.name: stream for stream in whole.streams}["test.gear_oil"]
     before = {stream.name: stream for stream in without.streams}["test.gear_oil"]
-    by_hand = whole.feedback.wall_heat["test.gear_oil"] / heat_capacity_flow("gear_oil", after.flow)
+    by_hand = whole.coupling_state.wall_heat["test.gear_oil"] / heat_capacity_flow("gear_oil", after.flow)
     assert after.outlet - before.outlet == pytest.approx(by_hand, rel=0.03)
     assert after.outlet - before.outlet < -CLEAR * TEMPERATURE
 
@@ -229,7 +232,7 @@ def test_oil_outlet_moves_the_wall_between_both_oils() -> None:
     the plate hangs on the outer walls, which follow less: the mean of the plate stays up to a tenth below.
     """
     whole, without = warm().last, cut("oil_outlet").last
-    outlet, inlet = whole.feedback.oil_outlet, without.feedback.oil_outlet
+    outlet, inlet = whole.coupling_state.oil_outlet, without.coupling_state.oil_outlet
     gear = 0.5 * (outlet["test.gear_oil"] - inlet["test.gear_oil"])
     bearing = outlet["test.bearing_oil"] - inlet["test.bearing_oil"]
     film, plate = 1.0 / 300.0, 0.015 / 50.0
@@ -251,7 +254,7 @@ def test_oil_outlet_thins_the_tooth_film() -> None:
     """ISO/TR 14179-2: mu falls with eta^-0.05, taken at the mean of inlet and outlet."""
     viscosity = held_rig().oils["MIL-PRF-23699"].dynamic_viscosity
     inlet = held_rig().case.gearboxes["reference"].oil.inlet_temperature
-    outlet = warm().last.feedback.oil_outlet["reference.gear_oil"]
+    outlet = warm().last.coupling_state.oil_outlet["reference.gear_oil"]
     by_hand = (viscosity(0.5 * (inlet + outlet)) / viscosity(inlet)) ** -0.05
     moved = warm().last.models[1].friction.value / cut("oil_outlet").last.models[1].friction.value
     assert moved == pytest.approx(by_hand, rel=1e-3)
@@ -262,7 +265,10 @@ def test_mesh_torque_loads_the_reference_bearings() -> None:
     """The tooth force T / r_b on the front bearing by the lever rule; the weight does not change."""
     whole, without = warm().last, cut("mesh_torque").last
     # the wheel drives here: the torque at the pinion is negative
-    change = without.feedback.mesh_torque["reference.main"] - whole.feedback.mesh_torque["reference.main"]
+    change = (
+        without.coupling_state.mesh_torque["reference.main"]
+        - whole.coupling_state.mesh_torque["reference.main"]
+    )
     lever = (277.93 - 159.97) / (277.93 - 32.03)
     by_hand = lever * change / whole.models[1].pair.base_radii[0]
     name = "reference.pinion_front"
@@ -307,10 +313,10 @@ def test_tooth_growth_winds_up_a_helical_loop(tmp_path: Path) -> None:
     rig = build_rig(load_case(file), "quick")
     point = held_points(rig)[-1]
     whole = solve_point(rig, point)
-    without = solve_point(rig, point, hold=frozenset({"tooth_growth"}), start=whole.last.feedback)
-    travel = whole.last.feedback.tooth_growth["test.main"]
+    without = solve_point(rig, point, freeze=frozenset({"tooth_growth"}), start=whole.last.coupling_state)
+    travel = whole.last.coupling_state.tooth_growth["test.main"]
     free = 11.5e-6 * sum(
-        reach * (whole.last.feedback.gear_temperature[gear] - rig.case.ambient.temperature)
+        reach * (whole.last.coupling_state.gear_temperature[gear] - rig.case.ambient.temperature)
         for reach, gear in ((0.11234, "test.pinion"), (0.12786, "test.wheel"))
     )
     helix = math.radians(18.0)
@@ -362,11 +368,12 @@ def test_mesh_loss_heats_the_gears(gear: str, bore: float, width: float) -> None
         if row.surface.startswith(f"gear_test_{gear}_") and row.coefficient is not None
     ]
     oil = 0.5 * (
-        base.last.feedback.oil_outlet["test.gear_oil"] - zero.last.feedback.oil_outlet["test.gear_oil"]
+        base.last.coupling_state.oil_outlet["test.gear_oil"]
+        - zero.last.coupling_state.oil_outlet["test.gear_oil"]
     )
     by_hand = oil + mean_to_sink(0.5 * 0.5 * loss.loss.power, bore, width, films)
     name = f"test.{gear}"
-    moved = base.last.feedback.gear_temperature[name] - zero.last.feedback.gear_temperature[name]
+    moved = base.last.coupling_state.gear_temperature[name] - zero.last.coupling_state.gear_temperature[name]
     assert len(films) == 3
     assert moved == pytest.approx(by_hand, rel=0.15)
     assert moved > CLEAR * TEMPERATURE
@@ -382,7 +389,7 @@ def without_mesh_loss() -> PointResult:
             '[losses.given.none]\ngearbox = "test"\nkind = "mesh"\npart = "main"\npower = "0 W"\n',
         )
     _, base = controlled()
-    return solve_point(rig, base.point, start=base.last.feedback)
+    return solve_point(rig, base.point, start=base.last.coupling_state)
 
 
 def test_one_friction_coefficient_for_torque_and_heat() -> None:
@@ -401,7 +408,7 @@ def test_friction_brakes_the_motor_as_much_as_it_heats(tmp_path: Path) -> None:
         tmp_path,
         '[losses.friction]\nlaw = "constant"\ncoefficient = 0.08\n',
     )
-    point = solve_point(rough, base.point, start=base.last.feedback)
+    point = solve_point(rough, base.point, start=base.last.coupling_state)
     assert base.last.response is not None and point.last.response is not None
     for index, model in enumerate(base.last.models):
         grown = point.last.response.friction_power[index] / base.last.response.friction_power[index]
@@ -442,9 +449,9 @@ def test_too_few_passes_show_their_residuals() -> None:
 
 def test_unknown_arrow_is_refused() -> None:
     point = held_points(held_rig())[-1]
-    cold = cold_feedback(held_rig(), point)
+    cold = initial_state(held_rig(), point)
     with pytest.raises(KeyError, match="no such arrow: wall_haet"):
-        cold.hold(frozenset({"wall_haet"}), cold)
+        cold.freeze(frozenset({"wall_haet"}), cold)
 
 
 def test_all_heat_goes_to_cooler_or_room() -> None:

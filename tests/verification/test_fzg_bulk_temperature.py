@@ -24,7 +24,7 @@ def settled(path: Path) -> tuple[Rig, PointResult]:
 
 def bulk(result: PointResult) -> list[float]:
     """Pinion and wheel of the test gearbox [degC]."""
-    found = result.last.feedback.gear_temperature
+    found = result.last.coupling_state.gear_temperature
     return [found[f"test.{gear}"] - 273.15 for gear in ("pinion", "wheel")]
 
 

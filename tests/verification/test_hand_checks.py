@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from dynamics.losses.windage import anderson_loewenthal
 from rigdesign import load_case
 from rigdesign.coupling.expansion import spin_growth
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import brace_cold, mesh_models, respond
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.losses import rotating_losses
@@ -28,7 +28,7 @@ def test_crowning_belongs_to_the_mean_deflection() -> None:
     """Reference gear: 5 + 5 um over the profile and the face add about as much as the load."""
     rig = build_rig(load_case(PROTOTYPE), "quick")
     point = held_points(rig)[0]
-    cold = cold_feedback(rig, point)
+    cold = initial_state(rig, point)
     models = mesh_models(rig, point, cold)
     response = respond(rig, point, models, {}, brace_cold(rig, point, cold))
     for index, model in enumerate(models):
@@ -110,7 +110,7 @@ def test_both_windage_laws_stand_beside_each_other_and_the_range_of_the_mist_hol
     assert len(rows) == 4
     wide = rows["windage, reference.pinion"]
     fed = rig.case.gearboxes["reference"].oil
-    mean = 0.5 * (fed.inlet_temperature + result.last.feedback.oil_outlet["reference.gear_oil"])
+    mean = 0.5 * (fed.inlet_temperature + result.last.coupling_state.oil_outlet["reference.gear_oil"])
     oil = rig.oils[fed.oil].dynamic_viscosity(mean)
     warm = next(model.pair for model in result.last.models if model.name == "reference.main")
     radius, halves = warm.gears[0].reference_radius, 0.08
@@ -122,7 +122,7 @@ def test_both_windage_laws_stand_beside_each_other_and_the_range_of_the_mist_hol
     for density in ("1.2 kg/m3", "20 kg/m3"):
         changed = build_rig(rig.case.with_value("losses.chamber_density", density), "quick")
         losses = rotating_losses(
-            changed, result.point, result.last.feedback, result.last.models, result.last.bearings
+            changed, result.point, result.last.coupling_state, result.last.models, result.last.bearings
         )
         powers[density] = {p.name: p.loss.power for p in losses if p.loss.kind == "windage"}
     for name, row in rows.items():

@@ -11,7 +11,7 @@ from dynamics.drivetrain.shaft import Section, Shaft, free_frequencies
 from dynamics.response.speed_sweep import periodic_response
 from rigdesign.case import load_case
 from rigdesign.checks import all_checks
-from rigdesign.coupling.initial_state import cold_feedback
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import laws_of, mesh_models, respond, signed_torque
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
@@ -35,7 +35,7 @@ def factors(name: str, speeds: Array, **numerics: object) -> Array:
     own = rig(name, **numerics)
     assert own.system is not None
     point = held_points(own)[-1]
-    laws = laws_of(mesh_models(own, point, cold_feedback(own, point)))
+    laws = laws_of(mesh_models(own, point, initial_state(own, point)))
     curve = periodic_response(
         own.system, laws, speeds * RPM, signed_torque(own, point), methods=("harmonic_balance",),
         cutoff=own.highest_mode,
@@ -155,7 +155,7 @@ def test_checks_of_the_loads_carry_the_error_of_too_few_slices(coarse_loop) -> N
     case = load_case("cases/loop_1to1").with_value("numerics.slices_spur", 33)
     fine_rig = build_rig(case, "quick")
     last = coarse_loop.points[-1]
-    models = mesh_models(fine_rig, last.point, last.last.feedback)
+    models = mesh_models(fine_rig, last.point, last.last.coupling_state)
     fine = respond(fine_rig, last.point, models, last.last.drags, last.setting).dynamic_factor
     for mesh, label in enumerate(("test", "reference")):
         assert checks[f"dynamics.ramp_peak.{label}"].discretisation_error is not None

@@ -24,7 +24,7 @@ LEAST_SHARE = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
-class ExpansionCourse:
+class ExpansionBasis:
     """Patterns of temperature rise with their displacements.
 
     patterns : (k, n_nodes) [K], orthonormal; displacements : (k, n_nodes, 3) [m]
@@ -46,7 +46,7 @@ class ExpansionCourse:
         *,
         missed: float = MISSED,
         tolerance: float = 1e-5,
-    ) -> "ExpansionCourse":
+    ) -> "ExpansionBasis":
         """Find the patterns of ``fields`` (n_nodes,) [K] and expand them from ``reference`` [K].
 
         missed : limit of what they may miss [K]; tolerance : of the linear solves

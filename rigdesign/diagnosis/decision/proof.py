@@ -18,11 +18,11 @@ from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.naming import Names
 from rigdesign.diagnosis.decision.patch import Fitted, patched_case
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor
-from rigdesign.diagnosis.residual.residual_problem import Comparison
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.heldout import Gap, gap
-from rigdesign.prediction.model import Channel, Feature, Setting
+from rigdesign.prediction.model import Channel, Feature, OperatingCondition
 from rigdesign.prediction.predict import predict
 
 Sizes = Mapping[str, tuple[float, ...]]
@@ -44,7 +44,7 @@ class FullRun:
     """The full model of a case at the operating points and for the sensors of a set; ``say`` is called before a run."""
 
     case: Case
-    settings: tuple[Setting, ...]
+    settings: tuple[OperatingCondition, ...]
     channels: tuple[Channel, ...]
     effects: tuple[Effect, ...]
     say: Callable[[str], None] = lambda message: None
@@ -84,7 +84,7 @@ class Proof:
         aside; rerun : None leaves it at the stored runs
     """
 
-    subject: Comparison
+    subject: ResidualProblem
     whole: Whitened
     points: tuple[str, ...]
     rerun: Rerun | None = None

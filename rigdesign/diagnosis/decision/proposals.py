@@ -10,19 +10,19 @@ from rigdesign.diagnosis.decision.workflow import Diagnosis, Problem
 from rigdesign.diagnosis.library.candidates import COST, NOISE, SPARE, Extra, extra_points
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor
-from rigdesign.diagnosis.residual.residual_problem import Comparison
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 from rigdesign.diagnosis.statistics.next_measurement import Proposal, Ranked, Rival, ranked
 from rigdesign.diagnosis.statistics.reference_scale import levels
 from rigdesign.measurement.places import Places
-from rigdesign.prediction.model import Channel, Feature, Setting
+from rigdesign.prediction.model import Channel, Feature, OperatingCondition
 
 RIVALS = 3
 """Explanations that are to be told apart."""
 
 
-def extras_of(case: Case, settings: Sequence[Setting]) -> tuple[Extra, ...]:
+def extras_of(case: Case, settings: Sequence[OperatingCondition]) -> tuple[Extra, ...]:
     """Points beside the plan of a set."""
     return extra_points(settings, Places(case).meshes if case.drivetrain is not None else ())
 
@@ -69,7 +69,7 @@ def _rivals(found: Diagnosis) -> list[Evidence]:
     return [one for _, one in ordered][:RIVALS]
 
 
-def _with_candidates(subject: Comparison, library: Library) -> tuple[Comparison, int]:
+def _with_candidates(subject: ResidualProblem, library: Library) -> tuple[ResidualProblem, int]:
     """The numbers of the set followed by those that could be read."""
     have = set(subject.features)
     spare = tuple(feature for feature in library.features if feature not in have and _offered(feature))
@@ -85,7 +85,7 @@ def _with_candidates(subject: Comparison, library: Library) -> tuple[Comparison,
     cut = library.rows(features)
     scatter[:measured, :measured] = subject.scatter
     return (
-        Comparison(
+        ResidualProblem(
             features=features,
             values=np.concatenate([subject.values, np.zeros(count)]),
             noise=np.concatenate([subject.noise, noise]),
@@ -107,7 +107,7 @@ def _offered(feature: Feature) -> bool:
     return feature.channel.startswith(SPARE) != feature.setting.startswith(SPARE)
 
 
-def _answers(problem: Problem, whole: Comparison, rivals: Sequence[Evidence]) -> dict[str, Hypothesis]:
+def _answers(problem: Problem, whole: ResidualProblem, rivals: Sequence[Evidence]) -> dict[str, Hypothesis]:
     """Of the rivals at all numbers, in the units of the features."""
     names = {one.hypothesis.name for one in rivals}
     effects = [one for one in whole.effects if any(f"{name}/".startswith(f"{one.name}/") for name in names)]

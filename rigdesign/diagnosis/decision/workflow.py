@@ -21,7 +21,7 @@ from rigdesign.diagnosis.residual.baseline import differenced
 from rigdesign.diagnosis.residual.data_error import wrong_data
 from rigdesign.diagnosis.residual.healthy import relative_speed
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor, without_a_name
-from rigdesign.diagnosis.residual.residual_problem import Comparison, plain
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.residual.signature import Contest, Signature
 from rigdesign.diagnosis.residual.unmodelled_cause import anonymous
 from rigdesign.diagnosis.statistics.columns import Array, Column
@@ -48,8 +48,8 @@ class Problem:
     repeated : the noise is known from repeats
     """
 
-    subject: Comparison
-    baseline: Comparison | None
+    subject: ResidualProblem
+    baseline: ResidualProblem | None
     seed: str
     repeated: bool
 
@@ -164,7 +164,7 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun 
     )
 
 
-def _space(problem: Problem, subject: Comparison, calibration: Calibration) -> Whitened:
+def _space(problem: Problem, subject: ResidualProblem, calibration: Calibration) -> Whitened:
     if problem.baseline is None:
         return plain(subject, calibration.amplitudes, calibration.widening)
     return differenced(
@@ -176,7 +176,7 @@ def _space(problem: Problem, subject: Comparison, calibration: Calibration) -> W
 
 
 def _cut(
-    problem: Problem, space: Whitened, subject: Comparison, rows: Sequence[int], calibration: Calibration
+    problem: Problem, space: Whitened, subject: ResidualProblem, rows: Sequence[int], calibration: Calibration
 ) -> Whitened:
     """The space of some of its numbers.
 
@@ -190,14 +190,14 @@ def _cut(
     )
 
 
-def _assemblies(subject: Comparison) -> list[tuple[tuple[str, int], ...]]:
+def _assemblies(subject: ResidualProblem) -> list[tuple[tuple[str, int], ...]]:
     """(n,) teeth by which meshes were put on further at the point of each number."""
     found = {one.name: tuple(sorted(one.tooth_offset.items())) for one in subject.library.settings}
     return [found.get(feature.setting, ()) for feature in subject.features]
 
 
 def _explanations(
-    problem: Problem, subject: Comparison, space: Whitened, *, rivals: bool = True, data: bool = True
+    problem: Problem, subject: ResidualProblem, space: Whitened, *, rivals: bool = True, data: bool = True
 ) -> Explanations:
     """All explanations; without the anonymous ``rivals`` where only data and catalogue are weighed, and without wrong
     ``data`` where those were looked at before."""
@@ -224,7 +224,7 @@ def _explanations(
 
 def _search(
     problem: Problem,
-    subject: Comparison,
+    subject: ResidualProblem,
     space: Whitened,
     explanations: Explanations,
     calibration: Calibration,
@@ -259,7 +259,7 @@ def _search(
     return examinations, tuple(found)
 
 
-def _signature(problem: Problem, subject: Comparison, calibration: Calibration) -> Signature:
+def _signature(problem: Problem, subject: ResidualProblem, calibration: Calibration) -> Signature:
     """An order is answered as badly as the model knows it: the frequencies near it, and of a mesh its own size.
 
     Without a baseline what a healthy rig leaves is as wide as that by itself.
@@ -313,7 +313,7 @@ def _half(one: Evidence) -> float:
     return one.hypothesis.half if curve is None else curve.half
 
 
-def _refused(subject: Comparison) -> Decision | None:
+def _refused(subject: ResidualProblem) -> Decision | None:
     """Too little to name anything from, whatever the numbers say."""
     points = {feature.setting for feature in subject.features if feature.setting}
     if len(points) >= LEAST_RUNNING_POINTS:
@@ -326,7 +326,7 @@ def _refused(subject: Comparison) -> Decision | None:
 
 
 def _wrong_data(
-    problem: Problem, subject: Comparison, whole: Whitened, calibration: Calibration
+    problem: Problem, subject: ResidualProblem, whole: Whitened, calibration: Calibration
 ) -> Examination | None:
     """A look at all data together, if they fit once something in them is undone; no effect is looked for.
 

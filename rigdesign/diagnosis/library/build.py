@@ -13,7 +13,7 @@ from rigdesign.diagnosis.catalogue.effects import DYNAMIC, Effect
 from rigdesign.diagnosis.library.cache import Parts
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.statistics.columns import Array
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Setting
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, OperatingCondition
 from rigdesign.prediction.predictor import Predictor
 
 Progress = Callable[[str], None]
@@ -42,7 +42,7 @@ POWER = Channel(name="losses of the rig", quantity="motor_power", place="motor")
 
 def build_library(
     case: Case,
-    settings: Sequence[Setting],
+    settings: Sequence[OperatingCondition],
     channels: Sequence[Channel],
     effects: Sequence[Effect],
     say: Progress = lambda message: None,
@@ -220,6 +220,6 @@ def _exponents(
                 yield f"{kind} loss of {name} over {law}", slope * share
 
 
-def _ratios(settings: Sequence[Setting], law: str) -> Array:
+def _ratios(settings: Sequence[OperatingCondition], law: str) -> Array:
     values = np.array([max(abs(getattr(setting, law)), 1e-3) for setting in settings])
     return np.asarray(values / np.exp(np.log(values).mean()))

@@ -21,7 +21,7 @@ from rigdesign import __version__
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import Library, Response
-from rigdesign.prediction.model import Channel, Setting
+from rigdesign.prediction.model import Channel, OperatingCondition
 
 SCHEMA = 3
 """Of the stored libraries; raise it with any change of what they hold."""
@@ -45,7 +45,7 @@ def cache_folder() -> Path:
 
 def library_of(
     case: Case,
-    settings: Sequence[Setting],
+    settings: Sequence[OperatingCondition],
     channels: Sequence[Channel],
     effects: Sequence[Effect],
     build: Callable[[], Library],
@@ -67,7 +67,7 @@ def library_of(
 
 def stored_library(
     case: Case,
-    settings: Sequence[Setting],
+    settings: Sequence[OperatingCondition],
     channels: Sequence[Channel],
     effects: Sequence[Effect],
     say: Progress = _silent,
@@ -91,7 +91,11 @@ class Parts:
 
     @classmethod
     def of(
-        cls, case: Case, settings: Sequence[Setting], channels: Sequence[Channel], effects: Sequence[Effect]
+        cls,
+        case: Case,
+        settings: Sequence[OperatingCondition],
+        channels: Sequence[Channel],
+        effects: Sequence[Effect],
     ) -> "Parts":
         """Of one library: its rig, plan and sensors."""
         plan = hashlib.sha256(repr((tuple(settings), tuple(channels))).encode()).hexdigest()[:16]

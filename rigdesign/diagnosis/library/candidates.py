@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from rigdesign.case.model import Case
 from rigdesign.measurement.places import Places
-from rigdesign.prediction.model import Channel, Quantity, Setting
+from rigdesign.prediction.model import Channel, OperatingCondition, Quantity
 
 SPARE = "could be: "
 """Start of the names of sensors and points that are not measured."""
@@ -45,7 +45,7 @@ class Extra:
     """A point that could be run."""
 
     title: str
-    setting: Setting
+    setting: OperatingCondition
     cost: float
 
 
@@ -80,7 +80,7 @@ def _thermocouples(places: Places) -> list[str]:
     ][:MOST_TEMPERATURES]
 
 
-def extra_points(settings: Sequence[Setting], meshes: Sequence[str]) -> tuple[Extra, ...]:
+def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) -> tuple[Extra, ...]:
     """Points beside the plan: its corners if it has several, other oil, other flow, a wheel put on further."""
     middle = sorted(settings, key=lambda one: one.speed * abs(one.torque))[len(settings) // 2]
     slow, fast = (pick(one.speed for one in settings) for pick in (min, max))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.prediction.met_again import apart, nearest_of
-from rigdesign.prediction.model import Channel, Feature, Setting, features_of
+from rigdesign.prediction.model import Channel, Feature, OperatingCondition, features_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,7 +72,7 @@ class Library:
     """
 
     channels: tuple[Channel, ...]
-    settings: tuple[Setting, ...]
+    settings: tuple[OperatingCondition, ...]
     features: tuple[Feature, ...]
     base: Array
     inputs: Mapping[tuple[str, str, str], Array]
@@ -85,7 +85,9 @@ class Library:
     modes: Array
     error: float
 
-    def serving(self, settings: tuple[Setting, ...], channels: tuple[Channel, ...]) -> "Library | None":
+    def serving(
+        self, settings: tuple[OperatingCondition, ...], channels: tuple[Channel, ...]
+    ) -> "Library | None":
         """The library for points near some of its plan and channels among its own; None where it cannot serve.
 
         Names of points and channels may differ: a channel is known by what and where it reads.
@@ -127,7 +129,7 @@ class Library:
             powers={run_of[point].name: power for point, power in self.powers.items() if point in run_of},
         )
 
-    def distance(self, settings: Sequence[Setting]) -> float:
+    def distance(self, settings: Sequence[OperatingCondition]) -> float:
         """How far points lie from those of the plan that serve them: one at the limit, infinite where none does."""
         points = _matches(settings, self.settings, apart)
         if points is None:
@@ -177,7 +179,7 @@ def _of_sensors(sources: Mapping[str, Array], names: Mapping[str, str]) -> dict[
     }
 
 
-def states(setting: Setting, kind: str, place: str) -> bool:
+def states(setting: OperatingCondition, kind: str, place: str) -> bool:
     """Whether a setting says this value or leaves it to the case."""
     if kind in ("speed", "torque"):
         return True
@@ -186,7 +188,7 @@ def states(setting: Setting, kind: str, place: str) -> bool:
     return place in getattr(setting, kind)
 
 
-def value_of(setting: Setting, kind: str, place: str) -> float:
+def value_of(setting: OperatingCondition, kind: str, place: str) -> float:
     """One value of a setting [SI].
 
     Raises ValueError where the setting leaves it to the case: a plan states all it varies.

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from rigdesign.diagnosis.residual.residual_problem import Comparison
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, amplitudes_of
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
@@ -55,7 +55,7 @@ class Change:
         frequencies near it; amplitude : (n,) of the orders in the healthy set; all zero for all other numbers
     """
 
-    subject: Comparison
+    subject: ResidualProblem
     expected: Array
     known: Array
     shared: Array
@@ -64,7 +64,7 @@ class Change:
     amplitude: Array
 
     @classmethod
-    def of(cls, subject: Comparison, baseline: Comparison, amplitudes: Amplitudes) -> "Change":
+    def of(cls, subject: ResidualProblem, baseline: ResidualProblem, amplitudes: Amplitudes) -> "Change":
         """By the columns both have: what they span is known from it, and errors number by number."""
         subject = subject.on_the_scale_of(baseline)
         here, there = subject.covariance(amplitudes), baseline.covariance(amplitudes)
@@ -106,7 +106,9 @@ class Change:
         return Whitened.of(total, self.subject.residual - self.expected)
 
 
-def differenced(subject: Comparison, baseline: Comparison, amplitudes: Amplitudes, drift: Drift) -> Whitened:
+def differenced(
+    subject: ResidualProblem, baseline: ResidualProblem, amplitudes: Amplitudes, drift: Drift
+) -> Whitened:
     """The residual of a set given a healthy set of the same rig.
 
     What both share is the covariance of the columns at either set's numbers; noise, the settings' scatter and a
@@ -126,7 +128,7 @@ def _matched(there: Covariance, here: Covariance) -> Array:
     return np.stack(rows, axis=1)
 
 
-def _same_numbers(subject: Comparison, baseline: Comparison, again: Mapping[str, str]) -> Array:
+def _same_numbers(subject: ResidualProblem, baseline: ResidualProblem, again: Mapping[str, str]) -> Array:
     """(n, m) one where two numbers are the same channel and order at a point that was met again."""
     others = {(f.channel, f.setting, f.order, f.part): j for j, f in enumerate(baseline.features)}
     found = np.zeros((len(subject.features), len(baseline.features)))
@@ -137,7 +139,7 @@ def _same_numbers(subject: Comparison, baseline: Comparison, again: Mapping[str,
     return found
 
 
-def _speed_steps(subject: Comparison, baseline: Comparison, again: Mapping[str, str]) -> Array:
+def _speed_steps(subject: ResidualProblem, baseline: ResidualProblem, again: Mapping[str, str]) -> Array:
     """(n,) by how much each number's point was met at another speed: logarithm of the ratio, without sign."""
     before = {setting.name: setting.speed for setting in baseline.library.settings}
     steps = {
@@ -148,7 +150,7 @@ def _speed_steps(subject: Comparison, baseline: Comparison, again: Mapping[str, 
     return np.array([steps.get(feature.setting, 0.0) for feature in subject.features])
 
 
-def _by_speed(subject: Comparison) -> Array:
+def _by_speed(subject: ResidualProblem) -> Array:
     """(n,) derivative of the prediction by the logarithm of the speed of its point."""
     speeds = {setting.name: setting.speed for setting in subject.library.settings}
     found = np.zeros(len(subject.features))

@@ -16,7 +16,7 @@ from scipy.optimize import minimize
 
 from rigdesign.diagnosis.residual.baseline import Change, Drift
 from rigdesign.diagnosis.residual.covariance_inflation import widen
-from rigdesign.diagnosis.residual.residual_problem import Comparison, plain
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array
 
@@ -44,7 +44,9 @@ class Group:
     count: int
 
     @classmethod
-    def of(cls, sets: Sequence[Comparison], amplitudes: Amplitudes, widening: Mapping[str, float]) -> "Group":
+    def of(
+        cls, sets: Sequence[ResidualProblem], amplitudes: Amplitudes, widening: Mapping[str, float]
+    ) -> "Group":
         """Sets with the same features in the same order.
 
         amplitudes : at which the constants are bent to the data (`subject.plain`): columns are those of the first
@@ -76,10 +78,10 @@ ROUNDS = 2
 
 
 def calibrate(
-    alike: Sequence[Sequence[Comparison]],
+    alike: Sequence[Sequence[ResidualProblem]],
     start: Amplitudes,
     fixed: frozenset[str] = frozenset(),
-    larger: Sequence[Comparison] = (),
+    larger: Sequence[ResidualProblem] = (),
 ) -> tuple[Amplitudes, dict[str, float]]:
     """Amplitudes and widening of healthy sets, in lists of the same features.
 
@@ -157,7 +159,7 @@ def _misfit(group: Group, amplitudes: Mapping[str, float], names: Sequence[str])
 
 
 def calibrate_drift(
-    pairs: Sequence[tuple[Comparison, Comparison]], amplitudes: Amplitudes, start: Drift
+    pairs: Sequence[tuple[ResidualProblem, ResidualProblem]], amplitudes: Amplitudes, start: Drift
 ) -> Drift:
     """What a healthy rig changes from set to set, from pairs of healthy sets (the second is the baseline).
 

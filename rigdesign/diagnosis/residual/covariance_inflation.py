@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from rigdesign.diagnosis.residual.baseline import Drift, differenced
-from rigdesign.diagnosis.residual.residual_problem import Comparison, plain
+from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
@@ -36,7 +36,7 @@ UNSEEN = 2.0
 nothing of it."""
 
 
-def widen(subjects: Iterable[Comparison], amplitudes: Amplitudes) -> dict[str, float]:
+def widen(subjects: Iterable[ResidualProblem], amplitudes: Amplitudes) -> dict[str, float]:
     """Spread [coordinate] that healthy sets show along causes beyond the columns, by `Direction.likeness`.
 
     z = a'r / |a| in the white space of a healthy rig has a mean square of one where the covariance is right. The
@@ -47,7 +47,7 @@ def widen(subjects: Iterable[Comparison], amplitudes: Amplitudes) -> dict[str, f
 
 
 def widen_drift(
-    pairs: Iterable[tuple[Comparison, Comparison]], amplitudes: Amplitudes, drift: Drift
+    pairs: Iterable[tuple[ResidualProblem, ResidualProblem]], amplitudes: Amplitudes, drift: Drift
 ) -> Drift:
     """The drift with the spread that healthy pairs show along an effect from set to set; found as in `widen`."""
     still = replace(drift, widening={})
@@ -128,7 +128,7 @@ class _Seen:
     judged: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, subject: Comparison, space: Whitened) -> "_Seen":
+    def of(cls, subject: ResidualProblem, space: Whitened) -> "_Seen":
         """Of a set in the white space of a healthy rig."""
         found = list(subject.directions())
         white = space.covariance.whiten(np.hstack([one.values for one in found]))

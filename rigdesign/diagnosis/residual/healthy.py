@@ -13,7 +13,7 @@ from rigdesign.diagnosis.catalogue.effects import Effect, Family
 from rigdesign.diagnosis.library.library import NEAR_SENSOR, Library
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, Column, series_numbers
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature, Setting
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature, OperatingCondition
 
 
 def healthy_columns(
@@ -38,12 +38,12 @@ def healthy_columns(
     )
 
 
-def relative_speed(features: Sequence[Feature], settings: Sequence[Setting]) -> Array:
+def relative_speed(features: Sequence[Feature], settings: Sequence[OperatingCondition]) -> Array:
     """(n,) logarithm of the speed of each number's point over the geometric mean of the points; zero at rest."""
     return _relative(features, {setting.name: float(np.log(setting.speed)) for setting in settings})
 
 
-def relative_torque(features: Sequence[Feature], settings: Sequence[Setting]) -> Array:
+def relative_torque(features: Sequence[Feature], settings: Sequence[OperatingCondition]) -> Array:
     """The same of the torque."""
     return _relative(
         features, {setting.name: float(np.log(max(abs(setting.torque), 1e-3))) for setting in settings}

@@ -34,7 +34,7 @@ from rigdesign.prediction.model import Channel, Feature
 
 
 @dataclass(frozen=True, kw_only=True)
-class Comparison:
+class ResidualProblem:
     """One set held against the library of its rig, on the numbers that are usable.
 
     values, noise : (n,)
@@ -70,11 +70,11 @@ class Comparison:
         """Readings less prediction."""
         return np.asarray(self.values - self.library.base)
 
-    def rows(self, keep: Sequence[int]) -> "Comparison":
+    def rows(self, keep: Sequence[int]) -> "ResidualProblem":
         """The comparison cut to some of its numbers, in their order."""
         places = np.array(keep, dtype=np.intp)
         features = tuple(self.features[place] for place in places)
-        return Comparison(
+        return ResidualProblem(
             features=features,
             values=self.values[places],
             noise=self.noise[places],
@@ -88,7 +88,7 @@ class Comparison:
             level=self.level[places],
         )  # fmt: skip
 
-    def on_the_scale_of(self, other: "Comparison") -> "Comparison":
+    def on_the_scale_of(self, other: "ResidualProblem") -> "ResidualProblem":
         """The same with orders over the levels that they have in another set of the rig.
 
         What the model has wrong in both is the same amount; its own levels follow speeds that were met differently.
@@ -163,7 +163,7 @@ def compare(
     stated: Mapping[tuple[str, str], Stated],
     mesh_orders: frozenset[float],
     teeth_a_turn: int,
-) -> Comparison:
+) -> ResidualProblem:
     """Hold the usable numbers of a set against its library.
 
     stated : systematic uncertainties of the settings, by (kind, place)
@@ -177,7 +177,7 @@ def compare(
         name: Stated(offset=entry.offset_sd, scale=entry.scale_sd) for name, entry in data.channels.items()
     }
     noise = {setting.name: noise for setting, noise in zip(data.settings, data.setting_noise, strict=True)}
-    return Comparison(
+    return ResidualProblem(
         features=features,
         values=data.values[usable],
         noise=data.noise[usable],
@@ -193,7 +193,7 @@ def compare(
 
 
 def plain(
-    subject: Comparison, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None
+    subject: ResidualProblem, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None
 ) -> Whitened:
     """The residual of one set against the model.
 

@@ -13,7 +13,7 @@ from rigdesign.diagnosis.library.library import Library, value_of
 from rigdesign.diagnosis.statistics.columns import Array, Column
 from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.diagnosis.statistics.reference_scale import excess
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Setting
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, OperatingCondition
 
 TIMES = 12.0
 """Bound of a sensor error over its stated systematic uncertainty."""
@@ -145,7 +145,7 @@ def _angle_zero(library: Library) -> list[SensorError]:
 
 
 def input_errors(
-    library: Library, settings: Sequence[Setting], stated: Mapping[tuple[str, str], Stated]
+    library: Library, settings: Sequence[OperatingCondition], stated: Mapping[tuple[str, str], Stated]
 ) -> tuple[SensorError, ...]:
     """Systematic errors of the settings: what was run is not what was read, so the rig answers to something else.
 

@@ -9,13 +9,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from rigdesign.diagnosis.statistics.columns import Array
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature, Setting
+from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, Feature, OperatingCondition
 
 AMBIENT = 293.15
 """Ambient [K] where neither point nor case says more."""
 
 
-def setting_of(features: Sequence[Feature], settings: Sequence[Setting]) -> dict[str, Setting]:
+def setting_of(
+    features: Sequence[Feature], settings: Sequence[OperatingCondition]
+) -> dict[str, OperatingCondition]:
     """Settings by name; features name them."""
     return {setting.name: setting for setting in settings}
 
@@ -24,7 +26,7 @@ def excess(
     features: Sequence[Feature],
     base: Array,
     channels: Mapping[str, Channel],
-    settings: Sequence[Setting],
+    settings: Sequence[OperatingCondition],
 ) -> Array:
     """(n,) prediction less what it counts from."""
     by_name = setting_of(features, settings)
@@ -32,7 +34,7 @@ def excess(
     return np.asarray(base - np.array(zero))
 
 
-def _zero(feature: Feature, channel: Channel, setting: Setting | None) -> float:
+def _zero(feature: Feature, channel: Channel, setting: OperatingCondition | None) -> float:
     if setting is None or channel.quantity not in ("temperature", "oil_outlet_temperature"):
         return 0.0
     ambient = AMBIENT if setting.ambient_temperature is None else setting.ambient_temperature
@@ -45,7 +47,7 @@ def levels(
     features: Sequence[Feature],
     base: Array,
     channels: Mapping[str, Channel],
-    settings: Sequence[Setting],
+    settings: Sequence[OperatingCondition],
     mesh_orders: frozenset[float],
 ) -> Array:
     """(n,) level of every number, positive."""

@@ -10,13 +10,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from rigdesign.diagnosis.statistics.columns import Array
-from rigdesign.prediction.model import Feature, Setting
+from rigdesign.prediction.model import Feature, OperatingCondition
 
 BLURRED = 0.04
 """Relative distance from a natural frequency below which an order gets no steeper: the model has it that far off."""
 
 
-def steepness(features: Sequence[Feature], settings: Sequence[Setting], modes: Array) -> Array:
+def steepness(features: Sequence[Feature], settings: Sequence[OperatingCondition], modes: Array) -> Array:
     """(n,) relative change of an order by the logarithm of its frequency; zero for means and all other numbers.
 
     modes : natural frequencies [rad/s]

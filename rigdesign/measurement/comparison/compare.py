@@ -18,7 +18,7 @@ from rigdesign.measurement.processing.baseline import Foretold, HealthySet, fore
 from rigdesign.measurement.processing.propagation import setting_spread
 from rigdesign.measurement.quantities import CHANNELS
 from rigdesign.measurement.reading.measurement_set import Finding, MeasurementSet
-from rigdesign.prediction.model import Feature, Prediction, Setting
+from rigdesign.prediction.model import Feature, OperatingCondition, Prediction
 
 Array = NDArray[np.float64]
 BY_CHANCE = 1e-3
@@ -273,7 +273,7 @@ def _located_row(item: Located, comparison: Comparison) -> dict[str, Any]:
     }
 
 
-def _setting_row(setting: Setting) -> dict[str, Any]:
+def _setting_row(setting: OperatingCondition) -> dict[str, Any]:
     return {
         "point": setting.name,
         "speed_rpm": to_plain(units.display(setting.speed, "speed")),

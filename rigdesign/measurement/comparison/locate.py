@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.prediction.model import Feature, Setting
+from rigdesign.prediction.model import Feature, OperatingCondition
 
 Array = NDArray[np.float64]
 VARIABLES: Mapping[str, str] = {
@@ -55,7 +55,7 @@ class Located:
     largest: float
 
 
-def leading_variables(settings: Sequence[Setting], ambient: float) -> dict[str, Array]:
+def leading_variables(settings: Sequence[OperatingCondition], ambient: float) -> dict[str, Array]:
     """Each variable at each setting (n_settings,), as a share of its largest value."""
     speed = np.array([setting.speed for setting in settings])
     torque = np.array([setting.torque for setting in settings])
@@ -78,7 +78,7 @@ def locate(
     residual: Array,
     spread: Array,
     groups: Sequence[str],
-    settings: Sequence[Setting],
+    settings: Sequence[OperatingCondition],
     ambient: float,
 ) -> tuple[Located, ...]:
     """Groups by the size of their whitened residual, largest first.

@@ -19,7 +19,7 @@ from rigdesign.measurement.reading.measurement_set import (
     MeasuredPoint,
     MeasurementSet,
 )
-from rigdesign.prediction.model import Feature, Setting, features_of
+from rigdesign.prediction.model import Feature, OperatingCondition, features_of
 
 THERMAL = frozenset(("temperature", "oil_outlet_temperature", "seal_gap"))
 """Quantities that mean nothing before temperatures have settled."""
@@ -95,7 +95,7 @@ def _not_steady(
 
 
 def _through_sensors(
-    settings: Sequence[Setting],
+    settings: Sequence[OperatingCondition],
     channels: Mapping[str, MeasuredChannel],
     names: Sequence[Feature],
     values: NDArray[np.float64],
@@ -129,7 +129,7 @@ def _through_sensors(
 
 
 def _few_readings(
-    settings: Sequence[Setting],
+    settings: Sequence[OperatingCondition],
     names: Sequence[Feature],
     repeats: NDArray[np.int64],
     usable: NDArray[np.bool_],

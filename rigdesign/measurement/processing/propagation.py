@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rigdesign.measurement.data import Data
 from rigdesign.measurement.quantities import CHANNELS
-from rigdesign.prediction.model import Setting
+from rigdesign.prediction.model import OperatingCondition
 
 Array = NDArray[np.float64]
 Key = tuple[str, str]
@@ -57,7 +57,7 @@ def _series(data: Data) -> dict[tuple[str, float, str], list[int]]:
     return series
 
 
-def _level(setting: Setting, key: Key) -> float:
+def _level(setting: OperatingCondition, key: Key) -> float:
     quantity, place = key
     if quantity == "inlet_temperature":
         return setting.inlet_temperature.get(place, np.nan)

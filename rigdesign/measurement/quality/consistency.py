@@ -13,7 +13,7 @@ from rigdesign.case import Case
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.measurement.quantities import CHANNELS, SETTINGS, to_si
 from rigdesign.measurement.reading.measurement_set import Finding, MeasurementSet
-from rigdesign.prediction.model import Setting
+from rigdesign.prediction.model import OperatingCondition
 from rigdesign.properties.oil import MIL_PRF_23699, OILS, ZERO_CELSIUS
 from thermal.housing.surfaces import exact_areas
 
@@ -152,7 +152,9 @@ def _size(data: "Data", row: int) -> float:
     return value
 
 
-def _alike(first: Setting, second: Setting, noise: Mapping[tuple[str, str], float]) -> bool:
+def _alike(
+    first: OperatingCondition, second: OperatingCondition, noise: Mapping[tuple[str, str], float]
+) -> bool:
     def near(a: float, b: float, key: tuple[str, str]) -> bool:
         return abs(a - b) <= max(
             SAME * math.sqrt(2.0) * noise.get(key, 0.0), SAME_SHARE * max(abs(a), abs(b))
@@ -266,7 +268,7 @@ def _means(data: "Data") -> dict[tuple[str, str], float]:
     }
 
 
-def _enthalpy(case: Case, setting: Setting, stream: str, outlet: float) -> float:
+def _enthalpy(case: Case, setting: OperatingCondition, stream: str, outlet: float) -> float:
     """Heat one stream takes up [W]; of an oil of the case's own with properties of a common one."""
     name, _, kind = stream.partition(".")
     box = case.gearboxes[name]
@@ -278,7 +280,7 @@ def _enthalpy(case: Case, setting: Setting, stream: str, outlet: float) -> float
     return oil.density(inlet) * flow * oil.heat_capacity(0.5 * (inlet + outlet)) * (outlet - inlet)
 
 
-def _to_room(case: Case, setting: Setting) -> float:
+def _to_room(case: Case, setting: OperatingCondition) -> float:
     """Most heat the housings can give to the room [W]; boundless where no housing is known."""
     areas = [
         sum(area for name, area in exact_areas(housing_geometry(box)).items() if name.startswith(("outer_", "field_")))

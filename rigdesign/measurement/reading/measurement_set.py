@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rigdesign.case import Case
 from rigdesign.measurement.reading.document import Transfer
-from rigdesign.prediction.model import Channel, Feature, Setting
+from rigdesign.prediction.model import Channel, Feature, OperatingCondition
 
 Weight = Literal["dropped", "suspect", "note"]
 """dropped: what is named is not used; suspect: it is used, but may be wrong; note: good to know."""
@@ -74,7 +74,7 @@ class SettingSensor:
 class MeasuredPoint:
     """One operating point: how it was run (means over its repeats)."""
 
-    setting: Setting
+    setting: OperatingCondition
     readings: Mapping[str, NDArray[np.float64]]
     """By setting column, SI: (repeats,), NaN where missing."""
     steady: bool = True
@@ -122,6 +122,6 @@ class MeasurementSet:
         return found
 
     @property
-    def settings(self) -> tuple[Setting, ...]:
+    def settings(self) -> tuple[OperatingCondition, ...]:
         """Operating points as run, in the order of the table."""
         return tuple(point.setting for point in self.points)

@@ -28,7 +28,7 @@ from rigdesign.measurement.reading.measurement_set import (
     SettingSensor,
 )
 from rigdesign.measurement.reading.table import Table, numbers
-from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Feature, Setting
+from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Feature, OperatingCondition
 
 STANDSTILL = "standstill"
 """Name of rows that hold numbers of the rig at rest and cold; they need no settings."""
@@ -253,7 +253,7 @@ def _setting(
     sensors: Mapping[str, SettingSensor],
     means: Mapping[str, float],
     tooth_offset: Mapping[str, int],
-) -> Setting:
+) -> OperatingCondition:
     by_place: dict[str, dict[str, float]] = {"inlet_temperature": {}, "flow": {}}
     single: dict[str, float] = {}
     for column, sensor in sensors.items():
@@ -263,7 +263,7 @@ def _setting(
             by_place[sensor.quantity][sensor.place] = means[column]
         else:
             single[sensor.quantity] = means[column]
-    return Setting(
+    return OperatingCondition(
         name=name,
         speed=single["speed"],
         torque=single["torque"],
