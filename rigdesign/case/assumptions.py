@@ -15,7 +15,7 @@ class AssumptionRecord:
     reason: str
     range: tuple[str, str] | None = None
     decides: tuple[str, ...] = ()
-    """Ids of the checks that rest on it."""
+    """Ids of the checks that depend on it."""
 
 
 def implied_assumptions(gearboxes: Mapping[str, Gearbox]) -> Iterator[AssumptionRecord]:

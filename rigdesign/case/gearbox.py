@@ -149,8 +149,8 @@ class HeatSplit(Part):
 
     mesh: MeshRule | None = None
     """assumed: ``mesh_into_gears`` of the friction heat enters the gears; flank_film: all of it enters the flanks,
-    and the films on the rims (law ``flank_film``) decide what the oil takes. When left out: flank_film, or assumed
-    where the case gives a share."""
+    and the films on the rims (law ``flank_film``) decide how much heat goes into the oil. When left out:
+    flank_film, or assumed where the case gives a share."""
     mesh_into_gears: Share | None = None
     """For ``assumed``."""
     mesh_pinion_share: Share | None = None

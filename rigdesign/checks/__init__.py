@@ -11,7 +11,7 @@ __all__ = ["all_checks", "held_checks"]
 
 
 def all_checks(solved: SolvedRig) -> list[Check]:
-    """Every check in the order of the report, each with its discretisation error and the assumed inputs it rests on."""
+    """Every check in the order of the report, each with its discretisation error and the inputs it depends on."""
     return [
         with_error(with_assumptions(solved.case, check), solved.mesh_errors.get(check.id))
         for check in held_checks(solved)

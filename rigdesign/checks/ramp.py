@@ -21,7 +21,7 @@ SOURCES = {
 
 
 def checks(solved: SolvedRig) -> list[Check]:
-    """Ramp rules of the paper, the transition speed they rest on, then the bought parts."""
+    """Ramp rules of the paper, the transition speed they depend on, then the bought parts."""
     return [
         *_ramp(solved),
         _transition(solved),

@@ -302,7 +302,7 @@ def new_measurement(case: Path, *, out: Path) -> int:
 
 @app.command
 def validate(*, out: Path | None = None, json: bool = False, quick: bool = False) -> int:
-    """Print every published number beside ours, with the assumption it rests on.
+    """Print every published number beside ours, with the assumption it depends on.
 
     Parameters
     ----------

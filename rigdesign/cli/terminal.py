@@ -198,7 +198,7 @@ MOST_DOUBTS = 4
 
 def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     """Verdict, where, what and how big, the gap, what remains, what next, and where the files are."""
-    from rigdesign.diagnosis.decision.naming import told
+    from rigdesign.diagnosis.decision.naming import formatted
     from rigdesign.diagnosis.document.advice import VERDICTS, certainty, headline, steps
     from rigdesign.diagnosis.document.document import sentences
 
@@ -211,11 +211,11 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     for text in sentences(outcome.before, measurement)[:3]:
         console.print(Text("where     ", "bold") + Text(text))
     for one in outcome.named:
-        sizes = "; ".join(told(value) for value in one.shown)
+        sizes = "; ".join(formatted(value) for value in one.shown)
         console.print(Text("effect    ", "bold") + Text(f"{one.explanation}: {sizes}, 95 % interval"))
     for suspect in () if outcome.verdict == "within_noise" else outcome.suspects:
         share = f"{100.0 * suspect.inclusion:.0f} %"
-        size = "" if suspect.size is None else f"; alone {told(suspect.size.shown[0])}"
+        size = "" if suspect.size is None else f"; alone {formatted(suspect.size.shown[0])}"
         console.print(Text("perhaps   ", "bold") + Text(f"{suspect.name}: posterior {share}{size}"))
     doubts = [one.text for one in outcome.result.data.findings if one.weight == "suspect"]
     for text in doubts[:MOST_DOUBTS]:
@@ -310,7 +310,7 @@ def _missed(row: "ValidationRow") -> str:
 
 
 def _by_assumptions(rows: Sequence["ValidationRow"]) -> dict[str, list[str]]:
-    """Ids of the rows that rest on the same words."""
+    """Ids of the rows that depend on the same words."""
     found: dict[str, list[str]] = {}
     for row in rows:
         if row.assumptions:

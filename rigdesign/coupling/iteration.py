@@ -51,7 +51,7 @@ class IterationResult:
 
 @dataclass(frozen=True, kw_only=True)
 class IterationParts:
-    """The dear parts of a pass, each as the function that computes it.
+    """The expensive parts of a pass, each as the function that computes it.
 
     `rigdesign.prediction` puts others in their place: what is known already, fields and growth projected on few
     shapes.
@@ -81,7 +81,7 @@ def run_iteration(
 ) -> IterationResult:
     """Compute one pass; ``before`` gives the fields to start from.
 
-    parts : what computes its dear parts
+    parts : what computes its expensive parts
     fine : expand the housings and solve the fields to the last digit; else the growth of ``before`` is carried on
         and the heat of the fields closes to 1e-4, which saves time while the temperatures still move a lot. A pass
         that ends the loop must be fine.

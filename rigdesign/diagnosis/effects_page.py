@@ -28,7 +28,7 @@ SENSORS = (
         "grows with the reading",
     ),
     ("torque_zero:<channel>", "zero of a torque or angle channel", "mean only, the same at any torque"),
-    ("angle_zero", "the mark of the tach stands elsewhere", "all orders turned, the higher the more"),
+    ("angle_zero", "index pulse offset", "all orders turned, the higher the more"),
     (
         "inlet_offset:<stream>, inlet_scale:<stream>",
         "inlet temperature of an oil stream read wrong",

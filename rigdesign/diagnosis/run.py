@@ -185,7 +185,7 @@ HIGHEST = 40
 
 
 def mesh_orders(case: Case) -> frozenset[float]:
-    """Orders of all meshes per turn of the gear that counts; none without a drivetrain."""
+    """Orders of all meshes per turn of the reference gear; none without a drivetrain."""
     if case.drivetrain is None:
         return frozenset()
     orders = Places(case).mesh_orders.values()
@@ -193,6 +193,6 @@ def mesh_orders(case: Case) -> frozenset[float]:
 
 
 def teeth_a_turn(case: Case) -> int:
-    """Of the gear that counts."""
+    """Of the reference gear."""
     box, gear = Places(case).counting_gear.split(".")
     return case.gearboxes[box].gears[gear].teeth

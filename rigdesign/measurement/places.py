@@ -96,7 +96,7 @@ class Places:
 
     @cached_property
     def gear_orders(self) -> dict[str, Fraction]:
-        """Turns of every gear, ``gearbox.gear``, per turn of the gear that counts."""
+        """Turns of every gear, ``gearbox.gear``, per turn of the reference gear."""
         gears = {
             f"{name}.{gear}": (name, gear) for name, box in self._case.gearboxes.items() for gear in box.gears
         }
@@ -138,7 +138,7 @@ class Places:
 
     @cached_property
     def mesh_orders(self) -> dict[str, Fraction]:
-        """Tooth meshes per turn of the gear that counts, by ``gearbox.mesh``."""
+        """Tooth meshes per turn of the reference gear, by ``gearbox.mesh``."""
         orders = {}
         for name, box in self._case.gearboxes.items():
             for mesh, entry in box.meshes.items():
@@ -149,7 +149,7 @@ class Places:
 
     @cached_property
     def cycle(self) -> int:
-        """Turns of the gear that counts until the same teeth meet everywhere: the hunting cycle."""
+        """Turns of the reference gear until the same teeth meet everywhere: the hunting cycle."""
         return lcm(1, *(self._cycle(name, box) for name, box in self._case.gearboxes.items()))
 
     def _cycle(self, name: str, box: Gearbox) -> int:

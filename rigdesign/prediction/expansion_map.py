@@ -71,7 +71,7 @@ def numbers_of(growth: HousingExpansion) -> FloatArray:
 
 
 def with_numbers(growth: HousingExpansion, numbers: FloatArray) -> HousingExpansion:
-    """The growth with other numbers; displacements and what else hangs on them stay those of the base."""
+    """The growth with other numbers; displacements and what else depends on them stay those of the base."""
     left = numbers
 
     def take(count: int) -> FloatArray:

@@ -62,14 +62,14 @@ class Channel:
     at: tuple[float, float, float] | None = None
     """Coordinates in the housing [m]."""
     orders: tuple[float, ...] = ()
-    """Of ``torque`` and ``angle``: per turn of the gear that counts; 0 is the mean."""
+    """Of ``torque`` and ``angle``: per turn of the reference gear; 0 is the mean."""
 
 
 @dataclass(frozen=True, order=True)
 class Feature:
     """One number: a channel at an operating point, of orders the real or imaginary part.
 
-    The signal is the sum of Re(X_k exp(i k phi)) over its orders k; phi is the angle of the gear that counts,
+    The signal is the sum of Re(X_k exp(i k phi)) over its orders k; phi is the angle of the reference gear,
     zero where its tooth 0 stands at the pitch point of its first mesh (plus the phase of the case).
     """
 

@@ -14,7 +14,7 @@ from rigdesign.rig.model import Rig, build_rig
 STREAMS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
 """Name of an oil stream -> key of the gearbox that feeds it."""
 HOUSINGS = ("models", "conduction")
-"""Cached parts of a rig that hang on geometry and materials of its housings alone, as ``expansion`` does."""
+"""Cached parts of a rig that depend on geometry and materials of its housings alone, as ``expansion`` does."""
 UNMOVED = (*HOUSINGS, "geometries", "speed_ratios", "drivetrain", "mesh_forces", "system", "joints")
 """Cached parts of a rig that no setting of an operating point touches."""
 

@@ -1,6 +1,6 @@
 """Complex orders of torque and angle that the channels of a rig read at a settled operating point.
 
-Conventions. The signal is the sum of Re(X_k exp(i k phi)) over its orders k, per turn of the gear that counts; phi is
+Conventions. The signal is the sum of Re(X_k exp(i k phi)) over its orders k, per turn of the reference gear; phi is
 the mean angle of that gear, zero where its tooth 0 stands at the pitch point of its first mesh (plus the phase of the
 case). The torque in a coupling is what it transmits, positive where its first shaft is ahead of its second in the
 running direction. The angle of a shaft is that of the end that no coupling takes (of its start, if both or none are
@@ -114,7 +114,7 @@ class PointOrders:
 
     @cached_property
     def count(self) -> "_Count":
-        """The gear that counts."""
+        """The reference gear."""
         return _Count.of(self.rig, self.models)
 
     @cached_property
@@ -153,7 +153,7 @@ class PointOrders:
         )
 
     def prepare(self, orders: Iterable[float]) -> None:
-        """Solve what is missing of some orders, per turn of the gear that counts, at once."""
+        """Solve what is missing of some orders, per turn of the reference gear, at once."""
         missing = sorted({float(order) for order in orders} - self._loads.keys())
         if missing:
             turned = [order * self.count.turns for order in missing]
@@ -244,10 +244,10 @@ def _still(system: LinearSystem) -> LinearSystem:
 
 @dataclass(frozen=True)
 class _Count:
-    """The gear that counts, against the pinion of the first mesh."""
+    """The reference gear, against the pinion of the first mesh."""
 
     turns: float
-    """Of the pinion per turn of the gear that counts, inverted: order of the pinion per order of that gear [-]."""
+    """Of the pinion per turn of the reference gear, inverted: order of the pinion per order of that gear [-]."""
     ahead: float
     """Its angle beyond that of tooth 0 at the pitch point where pair 0 meets [rad]."""
 
@@ -260,7 +260,7 @@ class _Count:
         return _Count(law.teeth_1 / law.teeth_2, law.tooth_offset_2 * 2.0 * pi / law.teeth_2)
 
     def turned(self, order: float) -> complex:
-        """Factor exp(i order phi) of the gear that counts at pinion angle zero."""
+        """Factor exp(i order phi) of the reference gear at pinion angle zero."""
         return complex(np.exp(1j * order * self.ahead))
 
 

@@ -373,7 +373,7 @@ def directions_of(
 
 
 def _of_field(channel: Channel, read: Reading, rig: Rig, settled: Settled) -> Sequence[float]:
-    """Readings that hang on a field itself; zeros for the others, which follow the coupling state."""
+    """Readings that depend on a field itself; zeros for the others, which follow the coupling state."""
     if channel.quantity in ("temperature", "seal_gap"):
         return read(rig, settled)
     return [0.0] * numbers_of(channel)

@@ -1,7 +1,7 @@
 """Solid materials of a rig, with source and confidence; SI units.
 
 Elastic constants and densities are those of the field's standards; strength numbers are starting values
-that a material certificate should replace before a verdict rests on them.
+that a material certificate should replace before a verdict depends on them.
 """
 
 from collections.abc import Mapping

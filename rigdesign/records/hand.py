@@ -97,7 +97,7 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
                 _row(
                     f"sliding loss, {placed.name}", placed.loss.power, by_hand, "W",
                     "P mu H_V of rigid teeth; deflected ones share the load beyond the ends of the path. The gear bulk "
-                    "temperature hangs on the difference",
+                    "temperature depends on the difference",
                 )
             )  # fmt: skip
         if placed.loss.kind == "windage" and not placed.given:

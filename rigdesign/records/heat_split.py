@@ -1,4 +1,4 @@
-"""The heat split as a result: what the oil takes of the friction heat of each gear, with its range."""
+"""The heat split as a result: share of the friction heat of each gear that goes into the oil, with its range."""
 
 import math
 from collections.abc import Mapping

@@ -40,7 +40,7 @@ class Check:
     upper_limit: float | None = None
     """Second limit of a window (comparison ``within``)."""
     assumptions: tuple[str, ...] = ()
-    """Case paths of the assumptions the value rests on."""
+    """Case paths of the assumptions the value depends on."""
     left_out: tuple[str, ...] = ()
     """Known contributors that the value does not count: the check is at best a warning, unless they are small."""
     discretisation_error: float | None = None
@@ -350,7 +350,7 @@ class RunResult:
     coupling: list[CouplingHistory]
     discretisation: list[DiscretisationRow] = field(default_factory=list)
     reference_shift: list[MeshShift] = field(default_factory=list)
-    """At reference: every check that rests on a housing mesh, on the standard mesh and on the fine one."""
+    """At reference: every check that depends on a housing mesh, on the standard mesh and on the fine one."""
     hand_checks: list[dict[str, Any]]
     """{quantity, computed, by_hand, unit, formula}: a number an engineer can redo beside each key result."""
     assumptions: list[AssumptionRecord]

@@ -48,7 +48,7 @@ class Rig:
 
     @cached_property
     def speed_ratios(self) -> Mapping[str, float]:
-        """Speed of each shaft per speed of the gear that counts."""
+        """Speed of each shaft per speed of the reference gear."""
         return speed_ratios(self.case, self.drivetrain)
 
     @cached_property

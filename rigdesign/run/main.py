@@ -202,7 +202,7 @@ def losses_by_stage(rig: Rig, points: list[PointResult]) -> dict[str, Sequence[P
 
 
 def _assumptions(case: Case, checks: list[Check]) -> list[AssumptionRecord]:
-    """The case's assumptions with the checks that rest on them."""
+    """The case's assumptions with the checks that depend on them."""
     return [
         replace(record, decides=tuple(check.id for check in checks if record.path in check.assumptions))
         for record in case.assumptions

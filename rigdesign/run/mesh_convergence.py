@@ -4,7 +4,7 @@ The settled point is solved once more, same losses, films and oil, on meshes of 
 standard; quick and standard beside reference. From three meshes the error follows by Richardson extrapolation
 with the order observed, from two with the order of a field at re-entrant edges. At quick there is nothing
 coarser, only the energy norm of the recovered gradient is given. The values of the checks are taken on every
-mesh as they are, the worst place of all; a verdict that hangs on the mesh says so
+mesh as they are, the worst place of all; a verdict that depends on the mesh says so
 (`rigdesign.checks.rules.with_error`).
 Sources: Roache, Annu. Rev. Fluid Mech. 29 (1997) 123; Celik et al., J. Fluids Eng. 130 (2008) 078001 for meshes
 without a constant ratio; Strang, Fix, An Analysis of the Finite Element Method, ch. 8: at an edge of 270 degrees

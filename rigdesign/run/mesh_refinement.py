@@ -164,7 +164,7 @@ def _warmed(rig: Rig, done: IterationResult, after: CouplingState) -> IterationR
 
 
 def checked(rig: Rig, points: Sequence[PointResult]) -> dict[str, Check]:
-    """The checks that rest on temperatures, growth and oil, by id, as ``points`` on the mesh of ``rig`` have them."""
+    """The checks that depend on temperatures, growth and oil, by id, as ``points`` on the mesh of ``rig`` have them."""
     solved = SolvedRig(
         rig=rig,
         points=points,

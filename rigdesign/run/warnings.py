@@ -114,7 +114,7 @@ def _response(solved: SolvedRig) -> Iterator[str]:
         speeds = solved.run.curves.response.speeds
         yield (
             f"K_V over speed: {len(speeds)} speeds, {np.diff(speeds).max() * RPM:.0f} rpm apart, do not resolve "
-            "narrow resonances; use standard fidelity and response_period = mesh before a verdict rests on them"
+            "narrow resonances; use standard fidelity and response_period = mesh before a verdict depends on them"
         )
 
 
@@ -318,7 +318,7 @@ def not_modelled(solved: SolvedRig) -> list[str]:
     elif len(solved.rig.pairs) > 1:
         items.append(
             "angle at which the gears are put on their shafts: the meshes start in the phase that "
-            "gearboxes.*.meshes.*.phase states; K_V near resonances in which both gearboxes take part hangs on it"
+            "gearboxes.*.meshes.*.phase states; K_V near resonances in which both gearboxes take part depends on it"
         )
     for name, box in solved.case.gearboxes.items():
         if any(mesh.double_helical for mesh in box.meshes.values()):

@@ -36,7 +36,7 @@ LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "tooth_growth":
 """Change of a field of `CouplingState` [K, m] beyond which the loads are solved again: on the prototype half a
 kelvin moves a check on loads by up to 0.001 of its limit, `ranges_verdicts.LEAST_MOVE`, and 5 um do."""
 GEOMETRY = ("models", "conduction", "expansion")
-"""Cached parts of a rig that hang on geometry and materials of its housings alone."""
+"""Cached parts of a rig that depend on geometry and materials of its housings alone."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -71,7 +71,7 @@ READINGS = {
 
 
 def response_rows(prototype: Prototype) -> Iterator[ValidationRow]:
-    """All rows that rest on the periodic response over speed; some nine curves."""
+    """All rows that depend on the periodic response over speed; some nine curves."""
     yield from _amplitude_readings()
     models = simulation_models(prototype)
     laws = [model.law for model in models]

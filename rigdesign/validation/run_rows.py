@@ -62,7 +62,7 @@ def _losses(result: RunResult) -> Iterator[ValidationRow]:
                 source="P2, structure of the thermal model (main rig)", published=500.0, computed=row.power_W,
                 unit="W", basis="predicted", free_parameters=2,
                 assumptions="500 W is what P2 puts into the FE model of the main rig, beside 80 kW "
-                "dissipated by the meshes; hangs on the split of the profile shifts and on the friction "
+                "dissipated by the meshes; depends on the split of the profile shifts and on the friction "
                 "coefficient",
             )  # fmt: skip
     bearings = [row.power_W for row in result.losses if row.stage == stage and row.kind in BEARING_KINDS]

@@ -1,4 +1,4 @@
-"""K_V over speed of the prototype as P2 simulated it, and variants that show what the curve hangs on."""
+"""K_V over speed of the prototype as P2 simulated it, and variants that show what the curve depends on."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

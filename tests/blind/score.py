@@ -35,7 +35,7 @@ from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
 from rigdesign.diagnosis.residual.baseline import Drift
 from rigdesign.diagnosis.residual.calibration import calibrate as fit_all
 from rigdesign.diagnosis.residual.calibration import calibrate_drift
-from rigdesign.diagnosis.residual.covariance_inflation import widen_drift
+from rigdesign.diagnosis.residual.covariance_inflation import inflate_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.run import diagnose_measurement, read_subject
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
@@ -120,7 +120,7 @@ def calibrate(out: Path, without: str | None, target: Path) -> None:
     pairs = [pair for spec in specs("null", "baseline") if spec.rig != without for pair in _pairs(out, spec)]
     small = [pair for pair in pairs if len(pair[0].features) < MOST_NUMBERS["baseline"]]
     shares = calibrate_drift(small, amplitudes, FIRST_DRIFT)
-    drift = widen_drift(pairs, amplitudes, shares)
+    drift = inflate_drift(pairs, amplitudes, shares)
     content = {
         "sets": [len(subjects) - len(larger), len(subjects)],
         "pairs": [len(small), len(pairs)],

@@ -1,4 +1,4 @@
-"""Which assumed inputs a check of the shipped case rests on, by the table of the checks."""
+"""Which assumed inputs a check of the shipped case depends on, by the table of the checks."""
 
 import json
 import re
@@ -18,7 +18,7 @@ NOTHING = (
     r"gearboxes\.reference\.seals\..*\.axial_travel",  # without a housing: no growth, no heat to split
     r"gearboxes\.reference\.heat_split\..*",
 )
-"""Assumed inputs of the shipped case that no check rests on."""
+"""Assumed inputs of the shipped case that no check depends on."""
 
 
 @pytest.fixture(scope="module")

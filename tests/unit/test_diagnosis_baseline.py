@@ -8,7 +8,7 @@ import pytest
 from rigdesign.diagnosis.library.library import Library
 from rigdesign.diagnosis.residual.baseline import Change, Drift, differenced
 from rigdesign.diagnosis.residual.calibration import calibrate_drift
-from rigdesign.diagnosis.residual.covariance_inflation import widen_drift
+from rigdesign.diagnosis.residual.covariance_inflation import inflate_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.resonance import steepness
@@ -155,7 +155,7 @@ def test_drifts_of_healthy_pairs_are_found_again(pair):
 def test_the_drift_is_widened_along_what_changed_from_set_to_set(pair):
     subject, baseline = pair
     drift = Drift(shared=0.01, slope=1.0, shaft=0.1, mesh=0.1, amplitude=0.01)
-    found = widen_drift([(subject, baseline)] * 3, Amplitudes(), drift)
+    found = inflate_drift([(subject, baseline)] * 3, Amplitudes(), drift)
     assert replace(found, widening={}) == drift
     before = differenced(subject, baseline, Amplitudes(), drift).chi_square
     assert found.widening and differenced(subject, baseline, Amplitudes(), found).chi_square < 0.5 * before

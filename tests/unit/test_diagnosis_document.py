@@ -12,7 +12,7 @@ from rigdesign.base.json_text import to_text
 from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.waiting import WAITING
-from rigdesign.diagnosis.decision.naming import Names, told
+from rigdesign.diagnosis.decision.naming import Names, formatted
 from rigdesign.diagnosis.document.advice import certainty, headline, steps
 from rigdesign.diagnosis.document.correction import of_data
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
@@ -127,9 +127,9 @@ def test_a_harmonic_that_may_be_zero_has_any_phase() -> None:
 def test_a_factor_is_told_as_a_factor_and_open_at_its_bound() -> None:
     (one,) = names().sized("mesh_loss:test", (log(1.25),), [(log(0.9), log(1.6))]).shown
     assert one.value == pytest.approx(1.25) and one.factor and one.open
-    assert told(one) == "factor x 1.25 (0.9 to 1.6, open at a bound)"
+    assert formatted(one) == "factor x 1.25 (0.9 to 1.6, open at a bound)"
     (share,) = names().sized("bypass:test", (0.1,), [(0.0, 0.2)]).shown
-    assert told(share) == "share 10 % (0 to 20)" and not share.open
+    assert formatted(share) == "share 10 % (0 to 20)" and not share.open
 
 
 def test_a_tooth_is_told_with_its_number() -> None:
@@ -148,7 +148,7 @@ def test_names_know_orders_from_teeth() -> None:
     assert known.entry("unknown: heat at gear oil ~n") is None
     assert known.entry("run_out:test.pinion/4") is None
     assert known.title("swapped_points:P01,P02") == "operating points P01 and P02 exchanged"
-    assert known.title("angle_zero (+0.2 rad)") == "the mark of the tach stands elsewhere by +0.2 rad"
+    assert known.title("angle_zero (+0.2 rad)") == "index pulse offset by +0.2 rad"
     assert known.title("unit:P (kilowatt)") == "P in another unit or sign: kilowatt"
     with pytest.raises(ValueError, match="no size"):
         known.sized("swapped_points:P01,P02", (), ())
@@ -290,7 +290,7 @@ def test_degrees_are_what_an_engineer_reads() -> None:
     phase = names().sized(
         "run_out:test.pinion", (cos(radians(30)) * 1e-5, sin(radians(30)) * 1e-5), [(0, 2e-5)] * 2
     )
-    assert told(phase.shown[1]).startswith("phase 30 deg")
+    assert formatted(phase.shown[1]).startswith("phase 30 deg")
 
 
 def test_the_page_of_effects_is_that_of_the_catalogue() -> None:

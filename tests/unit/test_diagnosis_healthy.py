@@ -1,4 +1,4 @@
-"""What a healthy rig leaves: films and their conductances, errors of answers; and its widening."""
+"""The residual of a healthy rig: films and their conductances, errors of answers; and its widening."""
 
 from dataclasses import replace
 

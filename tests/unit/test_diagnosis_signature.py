@@ -103,7 +103,7 @@ def test_an_answer_that_is_a_share_off_is_forgiven_and_noise_is_not():
 
 
 def test_an_order_near_a_resonance_is_off_by_a_share_of_its_amplitude():
-    """Whatever its phase; numbers of which a healthy rig leaves more are left out."""
+    """Whatever its phase; numbers of which the residual of a healthy rig is larger are left out."""
     answer = np.tile([5.0, 3.0, -4.0], POINTS)
     precision = np.where([feature.setting == "P0" for feature in FEATURES], 1e-4, 1.0)
     own = signature(1.0).rows(plane(healthy(), answer), answer, precision).toarray()[2 * len(NUMBERS) :]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.residual.data_error import wrong_data
+from rigdesign.diagnosis.residual.data_error import data_error
 from rigdesign.diagnosis.statistics.covariance import Covariance
 from rigdesign.prediction.model import Channel, Feature
 
@@ -31,7 +31,7 @@ def likeliest(change):
     expected = np.array([LEVEL[one.channel] for one in FEATURES]) * rng.uniform(0.9, 1.1, len(FEATURES))
     values = change(expected + noise * rng.normal(size=len(FEATURES)))
     covariance = Covariance.of_noise(noise, [], {})
-    found = wrong_data(covariance, FEATURES, CHANNELS, values, expected, met_before=True)
+    found = data_error(covariance, FEATURES, CHANNELS, values, expected, met_before=True)
     return min(found, key=lambda one: float(one.residual @ one.residual)).name
 
 
@@ -68,7 +68,7 @@ def test_a_mark_elsewhere_is_found_with_its_angle(angle):
     expected, values = (np.ravel([(one.real, one.imag) for one in many]) for many in (true, read))
     covariance = Covariance.of_noise(noise, [], {})
     found = {
-        known: wrong_data(covariance, features, CHANNELS, values, expected, met_before=known)
+        known: data_error(covariance, features, CHANNELS, values, expected, met_before=known)
         for known in (True, False)
     }
     [mark] = [one for one in found[True] if one.name.startswith("angle_zero")]
@@ -83,7 +83,7 @@ def test_orders_alone_tell_no_unit():
     )
     covariance = Covariance.of_noise(np.full(2, 0.05), [], {})
     read, expected = np.array([-3.0, 8.0]), np.array([9.0, 1.0])
-    assert wrong_data(covariance, features, CHANNELS, read, expected, met_before=False) == []
+    assert data_error(covariance, features, CHANNELS, read, expected, met_before=False) == []
 
 
 def test_exchanged_channels_are_recognised():

@@ -131,7 +131,7 @@ def test_values_reach_the_page(page):
         "1.31",
     ):
         assert value in text, value
-    assert "rests on" in text
+    assert "depends on" in text
     assert "no interval without tooth contact" not in text
 
 

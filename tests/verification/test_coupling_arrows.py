@@ -229,7 +229,7 @@ def test_oil_outlet_moves_the_wall_between_both_oils() -> None:
     """A plate of 15 mm between two films of h = 300 W/(m2 K) with fluids that move by g and b.
 
     In series 1/h + t/k + 1/h the side of the cold oil follows its fluid by (1/h + t/k) / (2/h + t/k). The rim of
-    the plate hangs on the outer walls, which follow less: the mean of the plate stays up to a tenth below.
+    the plate depends on the outer walls, which follow less: the mean of the plate stays up to a tenth below.
     """
     whole, without = warm().last, cut("oil_outlet").last
     outlet, inlet = whole.coupling_state.oil_outlet, without.coupling_state.oil_outlet

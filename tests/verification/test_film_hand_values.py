@@ -2,7 +2,7 @@
 
 Sources: P2 (Figure 11, Formulas 2 to 4); the correlations themselves, evaluated by hand with air properties
 at the film temperature; ISO/TR 14179-2. Tolerances are half a unit of the last printed digit, or wider where
-the hand value rests on rounded air properties.
+the hand value depends on rounded air properties.
 """
 
 import math

@@ -139,7 +139,7 @@ def test_deviations_swing_the_loop_against_its_inertia(case, effect, order, behi
         wound = truth._state(circuit, point, None)["place"][circuit.gears[gear]]
         force = answers[-1].mesh_forces[mesh.name].mean()
         turned = np.conj(wave) * np.exp(1j * (2.0 if order == 2.0 else 1.0) * wound)
-        torques.append(-force * 1j * order * turned)  # per turn of the gear that counts
+        torques.append(-force * 1j * order * turned)  # per turn of the reference gear
     expected = -(torques[1] - torques[0]) / (inertia * (order * speed) ** 2)
     for shaft in answers[0].angles:
         ratio = running[circuit.ends[shaft, "start"]]

@@ -35,7 +35,7 @@ SETTLED = 1e-5
 
 @dataclass(frozen=True, kw_only=True)
 class Point:
-    """Operating point: speed [rad/s] and bracing torque [N m] of the gear that counts, oil [K], friction, drags."""
+    """Operating point: speed [rad/s] and bracing torque [N m] of the reference gear, oil [K], friction, drags."""
 
     speed: float
     torque: float

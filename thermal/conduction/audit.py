@@ -95,7 +95,7 @@ def radiation_counted_twice(surface: str, formula: str, radiating: bool) -> str 
         return None
     return (
         f"{surface}: film {formula} is of the size of convection and radiation together, and the surface "
-        "radiates as well; verdicts should rest on one of them (radiation_included = true drops the explicit "
+        "radiates as well; verdicts should depend on one of them (radiation_included = true drops the explicit "
         "radiation)"
     )
 

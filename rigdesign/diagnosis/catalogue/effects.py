@@ -22,7 +22,7 @@ Family = Literal[
     "oil",
     "state",
 ]
-"""Kind of thing that is off: it names the amplitude of what cannot be told from it."""
+"""Kind of thing that is off: it names the amplitude of what cannot be distinguished from it."""
 
 
 DYNAMIC: frozenset[Family] = frozenset({"excitation", "tooth", "stiffness", "inertia", "damping"})

@@ -111,8 +111,8 @@ def _not_steady(case: Case) -> Effect:
         name="not_steady",
         title="points read before the housing was warm",
         family="state",
-        signature="heavy parts too cold at every point, oil and drive torque kept; told is the time of one implicit "
-        "step, about twice the true one",
+        signature="heavy parts too cold at every point, oil and drive torque kept; reported is the time of one "
+        "implicit step, about twice the true one",
         parameters=(
             Parameter(name="rate", unit="1/s", low=0.0, high=2.0 / 3600.0, source="two runs within an hour"),
         ),

@@ -37,7 +37,7 @@ UNNAMED = frozenset({"anonymous", "local"})
 
 @dataclass(frozen=True, kw_only=True)
 class Thresholds:
-    """Numbers the verdict hangs on.
+    """Numbers the verdict depends on.
 
     named : inclusion probability of a name; input : mass of input errors; catalogue : logarithm of the Bayes factor
     by which an explanation outside the catalogue may lead the best one within; misfit : standard deviations of the
@@ -76,7 +76,7 @@ class Posterior:
 
 @dataclass(frozen=True, kw_only=True)
 class Decision:
-    """The verdict with the parts it rests on.
+    """The verdict with the parts it depends on.
 
     named : effects of a name, or the members of an alias group; reason : in one sentence; apart : names that hold
         whichever of the group is present
@@ -184,7 +184,7 @@ def decide(
             return Decision(
                 verdict="alias_group",
                 named=group,
-                reason="one of them is at work; these data cannot tell which",
+                reason="one of them is present; these data cannot tell which",
             )
         return Decision(
             verdict="unknown_located",
@@ -203,7 +203,7 @@ def _credible(one: Evidence, effects: frozenset[str], sensors: frozenset[str]) -
 def _smallest_group(
     evidence: Sequence[Evidence], weights: Posterior, effects: frozenset[str], thresholds: Thresholds
 ) -> tuple[str, ...]:
-    """Smallest set of effects of which at least one is at work with the asked probability; empty if none is small."""
+    """Smallest set of effects of which at least one is present with the asked probability; empty if none is small."""
     parts = [
         part for part, _ in sorted(weights.inclusion.items(), key=lambda item: -item[1]) if part in effects
     ]
@@ -241,7 +241,7 @@ def _silent(
             reason="the residual is larger than a healthy rig's, nothing explains it",
         )
     if weights.masses["none"] >= 0.5:
-        return Decision(verdict="within_noise", named=(), reason="a healthy rig leaves as much")
+        return Decision(verdict="within_noise", named=(), reason="the residual of a healthy rig is as large")
     return Decision(
         verdict="too_small",
         named=(),

@@ -69,7 +69,7 @@ class Examination:
     count: int
 
 
-def examine(
+def evaluate(
     space: Whitened,
     explanations: Explanations,
     thresholds: Thresholds,
@@ -84,7 +84,7 @@ def examine(
 ) -> Examination:
     """Weigh everything and decide.
 
-    points : (n,) operating point of each number; left out, a name may rest on one
+    points : (n,) operating point of each number; left out, a name may depend on one
     loop : names of effects that show in orders and natural frequencies
     signature : how wrong the model may answer to a right cause; left out, not at all
     table : detectability where it is known already; it depends on covariance and explanations alone
@@ -170,7 +170,7 @@ def _supported(
     explained: float,
     loop: frozenset[str],
 ) -> Decision:
-    """The decision without the names that rest on one operating point or explain too little beside the others.
+    """The decision without the names that depend on one operating point or explain too little beside the others.
 
     Of an alias group its leader is asked.
     """

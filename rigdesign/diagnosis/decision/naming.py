@@ -1,7 +1,7 @@
 """From the name of an explanation to what is said of it: effect, tooth, sizes with unit and interval.
 
-A harmonic that is fitted by its parts along cosine and sine is told by amplitude and phase as well. Sizes are rounded
-once, here: what a report says is what a patch writes.
+A harmonic that is fitted by its parts along cosine and sine is reported by amplitude and phase as well. Sizes are
+rounded once, here: what a report says is what a patch writes.
 """
 
 from collections.abc import Mapping, Sequence
@@ -27,7 +27,7 @@ Interval = tuple[float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class Value:
-    """One number that is told of an effect.
+    """One number that is reported of an effect.
 
     interval : 95 %; open : it ends on a physical bound, the size may be larger
     factor : neutral at one; phase : an angle on the circle, its interval may pass zero
@@ -47,7 +47,7 @@ class Sized:
 
     name : of the entry, ``single_pitch:test.pinion``; explanation : with tooth or order, ``single_pitch:test.pinion/7``
     values : of the entry's parameters, as a patch writes them; ends : their intervals
-    shown : what is told: amplitude and phase of a harmonic, then its parts
+    shown : what is reported: amplitude and phase of a harmonic, then its parts
     """
 
     name: str
@@ -184,7 +184,7 @@ def parameter_of(names: Names, explanation: str) -> Parameter | None:
 
 
 def rounded(value: float) -> float:
-    """A size as it is told and written."""
+    """A size as it is reported."""
     return float(f"{value:.{DIGITS}g}") + 0.0
 
 
@@ -222,10 +222,10 @@ def _shown(
     along, across = values
     halves = [max(high - value, value - low) for value, (low, high) in zip(values, ends)]
     amplitude, phase = _polar(_amplitude_name(parameters[0].name), parameters[0].unit, along, across, halves)
-    told = (amplitude, phase)
+    shown = (amplitude, phase)
     if isinstance(entry, Effect) and entry.kind == "run_out":
-        told = (amplitude, phase, _twice(amplitude))  # type: ignore[assignment]
-    return (*told, *plain)
+        shown = (amplitude, phase, _twice(amplitude))  # type: ignore[assignment]
+    return (*shown, *plain)
 
 
 def _meets(end: float, limit: float) -> bool:
@@ -280,7 +280,7 @@ def _without_entry(explanation: str) -> str:
     if kind == "swapped_points":
         return f"operating points {first} and {second} exchanged"
     if angle := angle_of_mark(explanation):
-        return f"the mark of the tach stands elsewhere by {angle}"
+        return f"index pulse offset by {angle}"
     if kind == "unit":
         channel, _, what = rest.partition(" (")
         return f"{channel} in another unit or sign: {what.removesuffix(')')}"
@@ -298,7 +298,7 @@ def display_scale(unit: str, factor: bool) -> tuple[float, str]:
     return _SCALES.get(unit, (1.0, unit)) if unit else (100.0, "%")
 
 
-def told(value: Value) -> str:
+def formatted(value: Value) -> str:
     """``run-out F_r 24.1 um (22.0 to 26.2)``."""
     scale, unit = display_scale(value.unit, value.factor)
     numbers = [f"{scale * one:.3g}" for one in (value.value, *value.interval)]

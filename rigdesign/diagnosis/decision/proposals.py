@@ -14,7 +14,7 @@ from rigdesign.diagnosis.residual.residual_problem import ResidualProblem
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 from rigdesign.diagnosis.statistics.next_measurement import Proposal, Ranked, Rival, ranked
-from rigdesign.diagnosis.statistics.reference_scale import levels
+from rigdesign.diagnosis.statistics.reference_scale import reference_scale
 from rigdesign.measurement.places import Places
 from rigdesign.prediction.model import Channel, Feature, OperatingCondition
 
@@ -96,7 +96,7 @@ def _with_candidates(subject: ResidualProblem, library: Library) -> tuple[Residu
             scatter=scatter,
             mesh_orders=subject.mesh_orders,
             teeth_a_turn=subject.teeth_a_turn,
-            level=levels(features, cut.base, channels, cut.settings, subject.mesh_orders),
+            level=reference_scale(features, cut.base, channels, cut.settings, subject.mesh_orders),
         ),
         measured,
     )
@@ -130,7 +130,7 @@ def _rival(one: Evidence, hypothesis: Hypothesis) -> Rival:
 
 
 def _nothing(count: int) -> Rival:
-    """That nothing is at work: with too few data the first question is whether the leading explanation is real."""
+    """That no effect is present: with too few data the first question is whether the leading explanation is real."""
     return Rival(name="none", answer=np.zeros(count), slopes=np.zeros((count, 0)), deviations=np.zeros(0))
 
 

@@ -15,10 +15,10 @@ from rigdesign.diagnosis.catalogue.effects import CIRCUIT, DYNAMIC
 from rigdesign.diagnosis.decision.claims import Refusal, Traces, claim
 from rigdesign.diagnosis.decision.decision import Decision, posterior
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
-from rigdesign.diagnosis.decision.evaluate import Earlier, Examination, Explanations, examine
+from rigdesign.diagnosis.decision.evaluate import Earlier, Examination, Explanations, evaluate
 from rigdesign.diagnosis.decision.proof import Proof, Rerun
 from rigdesign.diagnosis.residual.baseline import differenced
-from rigdesign.diagnosis.residual.data_error import wrong_data
+from rigdesign.diagnosis.residual.data_error import data_error
 from rigdesign.diagnosis.residual.healthy import relative_speed
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor, without_a_name
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
@@ -89,7 +89,7 @@ class Diagnosis:
     rejected: tuple[tuple[int, float], ...]
     held_out_points: tuple[str, ...]
     deciding: Examination = field(repr=False)
-    """The look that the verdict rests on: the first one, or that at all points at once where the data are wrong."""
+    """The look that the verdict depends on: the first one, or that at all points at once where the data are wrong."""
     examinations: tuple[Examination, ...] = field(repr=False)
     covariance: Covariance = field(repr=False)
     """Of all numbers that were kept, held-out ones included."""
@@ -180,7 +180,7 @@ def _cut(
 ) -> Whitened:
     """The space of some of its numbers.
 
-    What a baseline foretells of a number does not hang on the others of the set; where constants are bent to the data
+    What a baseline foretells of a number does not depend on the others of the set; where constants are bent to the data
     it does.
     """
     return (
@@ -209,7 +209,7 @@ def _explanations(
         ),
         sensor=sensor(covariance, subject.errors),
         anonymous=without_a_name(covariance, anonymous(subject.library, subject.channels)) if rivals else [],
-        data=wrong_data(
+        data=data_error(
             covariance,
             subject.features,
             subject.channels,
@@ -229,10 +229,10 @@ def _search(
     explanations: Explanations,
     calibration: Calibration,
 ) -> tuple[list[Examination], tuple[Evidence, ...]]:
-    """Examine, take what is named into the model, examine what is left."""
+    """Examine, take what is named into the model, evaluate what is left."""
     signature = _signature(problem, subject, calibration)
     look = partial(
-        examine,
+        evaluate,
         thresholds=calibration.thresholds(problem.baseline is not None),
         points=[feature.setting for feature in subject.features],
         loop=frozenset(effect.claim for effect in subject.effects if effect.family in DYNAMIC),
@@ -262,7 +262,7 @@ def _search(
 def _signature(problem: Problem, subject: ResidualProblem, calibration: Calibration) -> Signature:
     """An order is answered as badly as the model knows it: the frequencies near it, and of a mesh its own size.
 
-    Without a baseline what a healthy rig leaves is as wide as that by itself.
+    Without a baseline the residual of a healthy rig is as wide as that by itself.
     """
     placed = calibration.amplitudes.frequency * subject.steepness
     share = np.hypot(placed, np.where(subject.of_mesh, calibration.amplitudes.series_mesh_point, 0.0))

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.decision.naming import told
+from rigdesign.diagnosis.decision.naming import formatted
 from rigdesign.diagnosis.decision.workflow import LEAST_RUNNING_POINTS
 from rigdesign.diagnosis.document.outcome import Outcome
 from rigdesign.diagnosis.statistics.heldout import LEAST_POINTS, gap_in_words
@@ -23,7 +23,8 @@ VERDICTS = {
 
 
 NOTABLE = 1.5
-"""Residual of a group [standard deviations of a healthy rig] from which on it is told although it proves nothing."""
+"""Residual of a group [standard deviations of a healthy rig] from which on it is reported although it proves
+nothing."""
 
 
 WORTH = 1.0
@@ -64,7 +65,7 @@ def headline(outcome: Outcome) -> str:
             lead = "An effect is present; the data do not identify it"
             return f"{lead}: {reason}. {_where(outcome)}".rstrip()
         case "within_noise":
-            return "Nothing is missing that these data could show: a healthy rig leaves as much."
+            return "Nothing is missing that these data could show: the residual of a healthy rig is as large."
         case "too_small":
             first = _titles(outcome)
             return f"An effect may be present, too small to be distinguished from its rivals; first of them: {first}."
@@ -77,12 +78,12 @@ def _named(outcome: Outcome) -> list[str]:
     for lead, of_case in (("What the model lacks", True), ("What is off in the measurement", False)):
         own = [one for one in outcome.named if isinstance(one.entry, Effect) == of_case]
         if own:
-            texts.append(f"{lead}: {'; '.join(f'{one.title}, {told(one.shown[0])}' for one in own)}.")
+            texts.append(f"{lead}: {'; '.join(f'{one.title}, {formatted(one.shown[0])}' for one in own)}.")
     return texts
 
 
 def _where(outcome: Outcome) -> str:
-    """The most conspicuous group in a sentence; empty where none is outside what a healthy rig leaves."""
+    """The most conspicuous group in a sentence; empty where none is outside the residual of a healthy rig."""
     first = outcome.before[0] if outcome.before else None
     return "" if first is None or not significant(first) else sentence(first, outcome.result.measurement)
 

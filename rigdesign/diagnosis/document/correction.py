@@ -7,7 +7,7 @@ made in the table or at the rig. No file of the user is written to.
 from dataclasses import dataclass
 from typing import Any
 
-from rigdesign.diagnosis.decision.naming import Sized, told
+from rigdesign.diagnosis.decision.naming import Sized, formatted
 from rigdesign.diagnosis.residual.sensors import SensorError, angle_of_mark
 from rigdesign.measurement import MeasuredChannel, MeasurementSet
 
@@ -41,7 +41,7 @@ def of_sensor(sized: Sized) -> Correction:
     assert isinstance(sized.entry, SensorError)
     value = sized.shown[0]
     channel = sized.name.partition(":")[2] or sized.name
-    text = f"{sized.entry.title}: {told(value)}; "
+    text = f"{sized.entry.title}: {formatted(value)}; "
     if sized.name == "angle_zero":
         text += _turned(f"{value.value:.4g} rad")
         return Correction(name=sized.name, text=text, size=sized)
@@ -90,7 +90,7 @@ def of_data(name: str, measurement: MeasurementSet) -> Correction:
 
 
 def _turned(angle: str) -> str:
-    return f"add {angle} to the angle of the gear that counts (zero under data.tach of recordings)"
+    return f"add {angle} to the angle of the reference gear (zero under data.tach of recordings)"
 
 
 def _placed(channel: MeasuredChannel, other: MeasuredChannel) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""diagnosis.json: what was found, how sure it is, what it rests on and what it leaves."""
+"""diagnosis.json: what was found, how sure it is, what it depends on and what it leaves."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -154,11 +154,11 @@ def _value(value: Value) -> dict[str, Any]:
 
 
 def _alternatives(outcome: Outcome) -> list[dict[str, Any]]:
-    """Explanations that were weighed, by posterior mass; that nothing is at work among them."""
+    """Hypotheses with their posterior mass, none among them."""
     found = outcome.result.diagnosis
     evidence = {one.hypothesis.name: one for one in found.deciding.evidence}
     rows: list[dict[str, Any]] = [
-        {"explanation": "none", "title": "nothing but what a healthy rig leaves", "family": "none", "effects": [],
+        {"explanation": "none", "title": "nothing but the residual of a healthy rig", "family": "none", "effects": [],
          "posterior": found.deciding.weights.masses["none"], "gain": 0.0, "parameters": []}
     ]  # fmt: skip
     for one in found.alternatives:

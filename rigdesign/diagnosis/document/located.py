@@ -1,4 +1,4 @@
-"""Where a residual sits: groups of numbers held against what a healthy rig leaves in them."""
+"""Where a residual sits: groups of numbers held against the residual of a healthy rig in them."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -18,7 +18,7 @@ def located(result: Result, residual: Array) -> tuple[Located, ...]:
 
     residual : (n_kept,). A group is weighed by its own block of the covariance of a healthy rig, so that numbers
     that go up and down together count once: ``rms`` is 1 in the mean of healthy rigs, ``excess`` the probability that
-    a healthy rig leaves as much.
+    the residual of a healthy rig is as large.
     """
     found = result.diagnosis
     features = [result.problem.subject.features[row] for row in found.kept]

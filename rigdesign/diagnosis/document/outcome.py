@@ -1,4 +1,4 @@
-"""A diagnosis as it is told: effects with their sizes, suspects, what may be patched and what is refused."""
+"""A diagnosis as it is reported: effects with their sizes, suspects, what may be patched and what is refused."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from typing import Any
 
 from rigdesign.base.errors import CaseError, RigdesignError, UsageError
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.decision.naming import Names, Sized, from_evidence, from_fit, told
+from rigdesign.diagnosis.decision.naming import Names, Sized, formatted, from_evidence, from_fit
 from rigdesign.diagnosis.decision.patch import Fitted, patched_title, patched_values
 from rigdesign.diagnosis.document.correction import Correction, of_data, of_sensor
 from rigdesign.diagnosis.document.located import located
@@ -19,12 +19,12 @@ from rigdesign.diagnosis.statistics.next_measurement import Ranked
 from rigdesign.measurement.comparison.locate import Located
 
 SHOWN = 3
-"""Explanations that are told where nothing is named."""
+"""Explanations that are reported where nothing is named."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Suspect:
-    """Something that may be at work but is not named.
+    """An effect that may be present but is not named.
 
     inclusion : posterior mass of all explanations that claim it; size : at its own best fit, None for what has none
     """
@@ -262,18 +262,21 @@ def _why_not(result: Result, sensors: bool) -> str:
         case "alias_group":
             return "these data do not tell the members of the group apart; pick one with --name, or measure what would"
         case "unknown_located":
-            return "no name for what is at work is safe; pick one with --name, or measure what would decide"
+            return "an effect is present, the data do not identify it; pick one with --name, or measure more"
         case "input_error_suspected":
             return "the data look wrong, not the model; correct them first"
         case "data_insufficient":
             return "these data cannot name anything"
         case "too_small":
-            return "what may be at work is too small to be told from its rivals; pick one with --name, or measure more"
+            return (
+                "what may be present is too small to be distinguished from its rivals; pick one with --name, or measure "
+                "more"
+            )
     return "nothing is missing that these data could show"
 
 
 def _evidence_text(result: Result, one: Sized, picked: bool) -> str:
-    sizes = ", ".join(told(value) for value in one.shown)
+    sizes = ", ".join(formatted(value) for value in one.shown)
     strength = "picked by the user among explanations the data do not tell apart" if picked else (
         f"named, {result.diagnosis.strength}"
     )  # fmt: skip

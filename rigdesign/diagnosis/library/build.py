@@ -190,8 +190,8 @@ def run_places(effect: Effect) -> list[Array]:
 
 def _haste(effect: Effect) -> tuple[int, int]:
     """Order in which the works are dealt to the cores: what runs longest first, so that none ends alone."""
-    dear = ("tooth", "stiffness", "inertia", "damping", "excitation", "state", "oil")
-    place = dear.index(effect.family) if effect.family in dear else len(dear)
+    expensive = ("tooth", "stiffness", "inertia", "damping", "excitation", "state", "oil")
+    place = expensive.index(effect.family) if effect.family in expensive else len(expensive)
     return place, -len(run_places(effect))
 
 

@@ -46,7 +46,7 @@ def widen(subjects: Iterable[ResidualProblem], amplitudes: Amplitudes) -> dict[s
     return _widen([_Seen.of(subject, plain(subject, amplitudes)) for subject in subjects])
 
 
-def widen_drift(
+def inflate_drift(
     pairs: Iterable[tuple[ResidualProblem, ResidualProblem]], amplitudes: Amplitudes, drift: Drift
 ) -> Drift:
     """The drift with the spread that healthy pairs show along an effect from set to set; found as in `widen`."""

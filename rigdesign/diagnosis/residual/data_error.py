@@ -1,4 +1,4 @@
-"""Data that are wrong as they stand: exchanged channels or points, another unit or sign, a mark that stands elsewhere.
+"""Data that are wrong as they stand: exchanged channels or points, another unit or sign, an index pulse offset.
 
 Each explanation undoes one of these and leaves a residual; nothing is fitted but the angle of the mark.
 """
@@ -18,7 +18,7 @@ from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.prediction.model import Channel, Feature
 
 
-def wrong_data(
+def data_error(
     covariance: Covariance,
     features: Sequence[Feature],
     channels: Mapping[str, Channel],
@@ -131,7 +131,7 @@ STEP = 0.3
 def _turned_mark(
     covariance: Covariance, features: Sequence[Feature], values: Array, expected: Array
 ) -> list[Hypothesis]:
-    """The mark of the tach at another angle of the gear that counts: order k of every signal is turned by k times it.
+    """The index pulse at another angle of the reference gear: order k of every signal is turned by k times it.
 
     Beyond what an error of the mark may be that is admitted to an explanation by its slope (`sensors`). Once orders are
     taken apart, the residual is a sum of their cosine and sine parts at any angle.

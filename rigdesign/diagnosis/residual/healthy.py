@@ -1,4 +1,4 @@
-"""What a healthy rig leaves between data and model: the columns of the covariance.
+"""The residual of a healthy rig between data and model: the columns of the covariance.
 
 Every parameter of the catalogue that is never known exactly is a constant with its healthy spread; every local
 conductance of the thermal model is a link of its own, since one wrong film moves many sensors together; losses may

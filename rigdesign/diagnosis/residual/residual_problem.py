@@ -1,4 +1,4 @@
-"""What is to be explained: readings less prediction, and the covariance of what a healthy rig leaves.
+"""What is to be explained: readings less prediction, and the covariance of the residual of a healthy rig.
 
 What is left given a healthy set of the same rig is in `rigdesign.diagnosis.residual.baseline`. What the model answers
 wrongly to a right cause is weighed with each cause (`rigdesign.diagnosis.residual.signature`).
@@ -27,7 +27,7 @@ from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.evidence import Curve
-from rigdesign.diagnosis.statistics.reference_scale import levels
+from rigdesign.diagnosis.statistics.reference_scale import reference_scale
 from rigdesign.diagnosis.statistics.resonance import steepness
 from rigdesign.measurement import Data
 from rigdesign.prediction.model import Channel, Feature
@@ -51,7 +51,7 @@ class ResidualProblem:
     """(n, n) covariance from the random error of the settings read."""
     mesh_orders: frozenset[float]
     teeth_a_turn: int
-    """Of the gear that counts."""
+    """Of the reference gear."""
     level: Array
     """(n,) over which errors of the model are relative (`rigdesign.diagnosis.statistics.reference_scale`)."""
 
@@ -89,9 +89,10 @@ class ResidualProblem:
         )  # fmt: skip
 
     def on_the_scale_of(self, other: "ResidualProblem") -> "ResidualProblem":
-        """The same with orders over the levels that they have in another set of the rig.
+        """The same with orders over the reference scale that they have in another set of the rig.
 
-        What the model has wrong in both is the same amount; its own levels follow speeds that were met differently.
+        What the model has wrong in both is the same amount; its own reference scale follow speeds that were met
+        differently.
         """
         there = {
             (one.channel, one.order): level for one, level in zip(other.features, other.level, strict=True)
@@ -188,7 +189,7 @@ def compare(
         scatter=setting_scatter(cut, noise),
         mesh_orders=mesh_orders,
         teeth_a_turn=teeth_a_turn,
-        level=levels(features, cut.base, channels, cut.settings, mesh_orders),
+        level=reference_scale(features, cut.base, channels, cut.settings, mesh_orders),
     )
 
 

@@ -111,11 +111,11 @@ ANGLE_ZERO = 2e-3
 """Healthy error of the angle at which the mark of the tach stands [rad], one sigma."""
 
 LARGEST_ANGLE_ERROR = 20.0 * ANGLE_ZERO
-"""Up to which orders answer to it by their slope [rad]; beyond it the mark stands elsewhere (`wrong_data`)."""
+"""Up to which orders answer to it by their slope [rad]; beyond it the index pulse is offset (`wrong_data`)."""
 
 
 def mark_elsewhere(angle: float) -> str:
-    """Name of the explanation that the mark stands elsewhere by an angle [rad] beyond that."""
+    """Name of the explanation that the index pulse is offset by an angle [rad] beyond that."""
     return f"angle_zero ({angle:+.4f} rad)"
 
 
@@ -126,7 +126,7 @@ def angle_of_mark(explanation: str) -> str:
 
 
 def _angle_zero(library: Library) -> list[SensorError]:
-    """All orders turned by one angle of the gear that counts: X_k by i k X_k per radian."""
+    """All orders turned by one angle of the reference gear: X_k by i k X_k per radian."""
     turning = Turning.of(library.features)
     values = turning.order_of(len(library.features)) * turning.ahead(library.base)
     if not values.any():
@@ -134,7 +134,7 @@ def _angle_zero(library: Library) -> list[SensorError]:
     return [
         SensorError(
             name="angle_zero",
-            title="the mark of the tach stands elsewhere",
+            title="index pulse offset",
             kind="sensor",
             values=values,
             unit="rad",

@@ -40,7 +40,7 @@ CONTENDERS = 60
 
 
 SLIGHT = 0.1
-"""Error of one number by itself that is left out [standard deviations of what a healthy rig leaves of it]."""
+"""Error of one number by itself that is left out [standard deviations of its residual on a healthy rig]."""
 
 MOST_ALONE = 400
 """Numbers whose own error counts, those with the largest."""
@@ -102,7 +102,7 @@ class Signature:
     def _alone(
         self, hypothesis: Hypothesis, answer: Array, precision: Array
     ) -> tuple[NDArray[np.intp], Array]:
-        """Places (k,) of numbers whose own error counts beside what a healthy rig leaves, and the errors (k,)."""
+        """Places (k,) of numbers whose own error counts beside the residual of a healthy rig, and the errors (k,)."""
         if self.own is None:
             return np.zeros(0, dtype=np.intp), np.zeros(0)
         errors = self.own.at(answer, circuit=not self.circuit.isdisjoint(hypothesis.parts))

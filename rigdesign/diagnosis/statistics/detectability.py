@@ -11,10 +11,10 @@ from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.evidence import Hypothesis, release_of
 
 SEEN = 3.3
-"""Standard deviations at which a size is told from nothing with 5 % error on both sides (1.645 + 1.645)."""
+"""Standard deviations at which a size is distinguished from nothing with 5 % error on both sides (1.645 + 1.645)."""
 
-TOLD = 4.3
-"""Standard deviations at which it is told from its nearest rival as well."""
+SEPARATED = 4.3
+"""Standard deviations at which it is distinguished from its nearest rival as well."""
 
 ALIAS = 0.95
 """Correlation above which two effects look alike to these sensors."""
@@ -64,12 +64,12 @@ def detectabilities(
     nearest = _nearest(effects, [column for _, column in seen], (*effects, *rivals))
     for effect, (size, _), (rival, correlation) in zip(effects, seen, nearest, strict=True):
         half = effect.half if effect.curve is None else effect.curve.half
-        told = TOLD / SEEN * size / max(np.sqrt(max(1.0 - correlation**2, 0.0)), 1e-9)
+        separated = SEPARATED / SEEN * size / max(np.sqrt(max(1.0 - correlation**2, 0.0)), 1e-9)
         rows.append(
             Detectability(
                 effect=effect.name,
                 detectable=size,
-                isolable=float(told),
+                isolable=float(separated),
                 bound=half,
                 rival=rival,
                 correlation=correlation,

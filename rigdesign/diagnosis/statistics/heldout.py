@@ -1,7 +1,7 @@
 """Operating points kept aside before anything is fitted, chosen by a hash and used once.
 
 What an answer a (n,) of the model does to the residual r (n,) of the held-out numbers is the fall of the whitened
-square, with C the covariance of what a healthy rig leaves there:
+square, with C the covariance of the residual of a healthy rig there:
 
     fall = r' C^-1 r - (r - a)' C^-1 (r - a) = 2 a' C^-1 r - a' C^-1 a
 

@@ -41,7 +41,7 @@ class Turning:
     def turned(self, answers: Array, teeth: int, teeth_a_turn: int) -> Array:
         """(m, n) answers of a cause that sits ``teeth`` teeth further on its gear.
 
-        teeth_a_turn : of the gear that counts; each tooth that passes turns order k by 2 pi k over them
+        teeth_a_turn : of the reference gear; each tooth that passes turns order k by 2 pi k over them
         """
         angle = -2.0 * pi * self.orders * teeth / teeth_a_turn
         found = answers.copy()

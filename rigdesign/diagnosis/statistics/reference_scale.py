@@ -43,7 +43,7 @@ def _zero(feature: Feature, channel: Channel, setting: OperatingCondition | None
     return setting.inlet_temperature.get(channel.place, ambient)
 
 
-def levels(
+def reference_scale(
     features: Sequence[Feature],
     base: Array,
     channels: Mapping[str, Channel],

@@ -19,7 +19,7 @@ from rigdesign.measurement.reading.tach import TurnAngle
 SAMPLES_PER_PERIOD = 2.5
 """Least number of samples per period of an order."""
 FRACTION = 1e-9
-"""An order this near a whole number turns with the gear that counts."""
+"""An order this near a whole number turns with the reference gear."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def signal_orders(signal: Signal, turn: TurnAngle, orders: Sequence[float], cycl
 
     Parameters
     ----------
-    orders : per turn of the gear that counts
+    orders : per turn of the reference gear
     cycle : turns of that gear until the same teeth meet everywhere
 
     Raises

@@ -149,7 +149,7 @@ def _few_readings(
 
 
 def _repeated(names: Sequence[Feature], repeats: NDArray[np.int64], usable: NDArray[np.bool_]) -> bool:
-    """Whether at least half the usable numbers of running points rest on two readings or more."""
+    """Whether at least half the usable numbers of running points depend on two readings or more."""
     running = usable & np.array([feature.setting != "" for feature in names], dtype=bool)
     chosen = running if running.any() else usable
     return bool(chosen.any() and np.mean(repeats[chosen] >= 2) >= 0.5)

@@ -217,7 +217,7 @@ def _faults(document: MeasurementFile, rows: Rows) -> Iterator[Fault]:
     order_channels = [n for n, entry in document.channels.items() if entry.quantity in ORDER_QUANTITIES]
     if order_channels and document.data.tach is None and document.data.orders is None:
         yield Fault(
-            "data.tach", "", f"recordings of {', '.join(order_channels)} need the angle of the gear that counts",
+            "data.tach", "", f"recordings of {', '.join(order_channels)} need the angle of the reference gear",
             'add [data.tach] with kind = "pulses" or "angle" and the name of its signal',
         )  # fmt: skip
     seen: set[tuple[str, int]] = set()

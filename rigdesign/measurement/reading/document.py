@@ -33,12 +33,12 @@ class Recording(Part):
     file: Text
     """.tdms, .h5, .hdf5, .mf4 or .csv, in the folder of measurement.toml or below it."""
     start_turn: Annotated[float, Field(ge=0.0)] | None = None
-    """Turns of the gear that counts between the meeting of both teeth 0 and the angle zero of the recording:
+    """Turns of the reference gear between the meeting of both teeth 0 and the angle zero of the recording:
     without it the phases of fractional orders are not known."""
 
 
 class Tach(Part):
-    """How the angle of the gear that counts follows from a recording."""
+    """How the angle of the reference gear follows from a recording."""
 
     kind: Literal["pulses", "angle"]
     """pulses: one or more a turn; angle: an encoder's angle."""
@@ -51,7 +51,7 @@ class Tach(Part):
     wraps: bool = True
     """Whether the angle starts again at zero every turn."""
     zero: Angle = 0.0
-    """Angle of the gear that counts at the index pulse, or where the encoder reads zero."""
+    """Angle of the reference gear at the index pulse, or where the encoder reads zero."""
 
 
 class Data(Part):
@@ -130,14 +130,14 @@ class ChannelTable(Part):
     """1 sigma, systematic, relative; of a thermocouple relative to its excess over ambient."""
     calibrated: date | None = None
     orders: tuple[Annotated[float, Field(ge=0.0)], ...] | None = None
-    """Per turn of the gear that counts, 0 is the mean; from tooth numbers when left out."""
+    """Per turn of the reference gear, 0 is the mean; from tooth numbers when left out."""
     transfer: Transfer | None = None
     signal: Label | None = None
     """Name in recordings; that of the channel when left out."""
 
 
 class Doubt(Part):
-    """A number of the set, or one it rests on, that contradicts another of the same source."""
+    """A number of the set, or one it depends on, that contradicts another of the same source."""
 
     what: Text
     size: Text

@@ -1,4 +1,4 @@
-"""The angle of the gear that counts over time, from pulses or an encoder; lost pulses are found and filled."""
+"""The angle of the reference gear over time, from pulses or an encoder; lost pulses are found and filled."""
 
 import math
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class TachError(ValueError):
 
 @dataclass(frozen=True)
 class TurnAngle:
-    """Angle of the gear that counts at points in time, increasing.
+    """Angle of the reference gear at points in time, increasing.
 
     absolute : whether full turns are counted from where both teeth 0 met; else the angle is known but for whole turns
     lost : pulses that were missing and filled; surplus : pulses that were too many and left out
@@ -56,7 +56,7 @@ class TurnAngle:
 
 
 def turn_angle(tach: Tach, signals: Signals, start_turn: float | None) -> TurnAngle:
-    """Angle of the gear that counts.
+    """Angle of the reference gear.
 
     Parameters
     ----------

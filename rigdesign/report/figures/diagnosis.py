@@ -46,7 +46,7 @@ FAMILY_WORDS = {
 
 
 def residual_maps(outcome: Outcome) -> "Figure":
-    """Residual over what a healthy rig leaves, by series and operating point; before and after where named."""
+    """Residual over the residual of a healthy rig, by series and operating point; before and after where named."""
     from matplotlib.colors import LinearSegmentedColormap
 
     found = outcome.result.diagnosis

@@ -19,7 +19,7 @@ def sorted_checks(checks: list[Check]) -> list[Check]:
 
 
 def drivers(result: RunResult) -> list[tuple[Check, list[AssumptionRecord]]]:
-    """The checks that decide the verdict, each with the assumptions its value rests on.
+    """The checks that decide the verdict, each with the assumptions its value depends on.
 
     Every failing and warning check, filled up with the most used-up passing ones to ``MAX_DRIVERS``.
     """
@@ -55,7 +55,7 @@ def check_families(identities: Sequence[str]) -> str:
 
 
 def mesh_errors(result: RunResult) -> list[dict[str, Any]]:
-    """What the housing mesh leaves open in every check that rests on it, largest share of the margin first.
+    """What the housing mesh leaves open in every check that depends on it, largest share of the margin first.
 
     At `reference` with the change that the fine mesh made.
     """
