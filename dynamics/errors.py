@@ -4,7 +4,7 @@
     ├── DynamicsInputError      an input that cannot be computed; also a ValueError
     │   ├── GearGeometryError, ToothPathError, FrictionError, DrivetrainError, BearingError
     │   └── ScheduleError, LossError
-    └── NotConverged            a solver ended without a solution; also a RuntimeError
+    └── DynamicsNotConverged            a solver ended without a solution; also a RuntimeError
         ├── MarchDiverged, DefectiveModes
         └── FilmNotConvergedError, BearingNotConvergedError
 
@@ -20,5 +20,5 @@ class DynamicsInputError(DynamicsError, ValueError):
     """An input that cannot be computed."""
 
 
-class NotConverged(DynamicsError, RuntimeError):  # noqa: N818
+class DynamicsNotConverged(DynamicsError, RuntimeError):  # noqa: N818
     """A solver ended without a solution; the message names residual, limit and remedy."""

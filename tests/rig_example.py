@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from dynamics.drivetrain.graph import Drivetrain
-from dynamics.drivetrain.parts import Coupling, GearBody, JournalBearing, MeshConnection, Motor
+from dynamics.drivetrain.parts import BearingPlace, Coupling, GearBody, MeshConnection, Motor
 from dynamics.drivetrain.shaft import Disc, Section, Shaft
 from dynamics.mesh.law import MeshLaw
 
@@ -95,7 +95,7 @@ def prototype(element_length: float = 0.010, linear_drag: float = 0.0) -> Drivet
             ),
         ),
         bearings=tuple(
-            JournalBearing(
+            BearingPlace(
                 name=f"{s.name} {end}", shaft=s.name, position=place * s.length, linear_drag=linear_drag
             )
             for s in shafts

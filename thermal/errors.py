@@ -4,7 +4,7 @@
     ├── ThermalInputError       an input that cannot be computed; also a ValueError
     │   ├── MeshError, GeometryError, ConditionError, EnclosureError, FilmError, AirRangeError
     │   └── DirectError, ElasticError
-    └── NotConverged            an iteration that did not reach its tolerance; also a RuntimeError
+    └── ThermalNotConverged            an iteration that did not reach its tolerance; also a RuntimeError
 
 A message states name, value, limit and remedy. Anything else that leaves the package is a defect of it.
 """
@@ -18,7 +18,7 @@ class ThermalInputError(ThermalError, ValueError):
     """An input that cannot be computed."""
 
 
-class NotConverged(ThermalError, RuntimeError):  # noqa: N818
+class ThermalNotConverged(ThermalError, RuntimeError):  # noqa: N818
     """An iteration that did not reach its tolerance; ``residuals`` holds its history."""
 
     def __init__(self, message: str, residuals: tuple[float, ...] = ()) -> None:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from scipy.optimize import brentq
 
 from dynamics.bearing.journal_characteristic import Characteristic, characteristic
-from dynamics.errors import DynamicsInputError, NotConverged
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.kernels.journal import HIGHEST_ECCENTRICITY
 
 TAYLOR_LIMIT = 41.3
@@ -33,7 +33,7 @@ class BearingError(DynamicsInputError):
     """An impossible journal bearing; the message names value, limit and remedy."""
 
 
-class BearingNotConvergedError(NotConverged):
+class BearingNotConvergedError(DynamicsNotConverged):
     """No film temperature balances friction and oil flow."""
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
-from dynamics.errors import DynamicsInputError, NotConverged
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ FILM_END = 1.5 * math.pi
 """Angle behind the widest gap at which the grid ends [rad]: beyond any break-up of the film (257 deg)."""
 
 
-class FilmNotConvergedError(NotConverged):
+class FilmNotConvergedError(DynamicsNotConverged):
     """The cavitated region of a bearing film did not settle."""
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.static_loop import StaticState, loaded_share, port_model, solve_static
-from dynamics.errors import DynamicsInputError, NotConverged
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
 
 Array = NDArray[np.float64]
@@ -77,7 +77,7 @@ class ShiftedGear:
 
 
 @dataclass(frozen=True, kw_only=True)
-class BracingState:
+class BracedLoop:
     """Result of one stage.
 
     torque : (n_meshes,) mean torque at every pinion [N m]; twist [rad]; shift [m] of the gear, 0 without one
@@ -102,8 +102,8 @@ class BracingState:
 class BracingDrift:
     """The same setting cold and hot; ``torque_change`` of the control mesh [N m], 0 when controlled."""
 
-    cold: BracingState
-    hot: BracingState
+    cold: BracedLoop
+    hot: BracedLoop
     torque_change: float
 
 
@@ -116,7 +116,7 @@ def brace(
     gear: ShiftedGear | None = None,
     twist: float = 0.0,
     control_mesh: int = 0,
-) -> BracingState:
+) -> BracedLoop:
     """Twist or shift that makes a mean torque at the pinion of the control mesh [N m], without friction.
 
     twist : of the assembled loop in the two modes with a shift [rad]; there the offset of the shifted
@@ -125,7 +125,7 @@ def brace(
 
     gear : the one that is shifted; a controlled torque without one is made by the twist
 
-    Raises ValueError if a held shift has no gear, NotConverged if no setting makes the torque.
+    Raises ValueError if a held shift has no gear, DynamicsNotConverged if no setting makes the torque.
     """
     if gear is None and mode == "shift_held":
         raise DynamicsInputError(
@@ -163,7 +163,7 @@ def drift(
     laws = hot_laws if gear is None else _shifted(hot_laws, gear, moved)
     try:
         state = solve_static(port_model(system, laws), twist=cold.twist)
-    except NotConverged:
+    except DynamicsNotConverged:
         if loaded_share(port_model(system, laws), torque, cold.twist, control_mesh) > OPEN_SHARE:
             raise
         state = _open_loop(cold.static)
@@ -211,7 +211,7 @@ def _solve_shift(
         slope = (new_excess - excess) / (trial - shift)
         shift, excess = trial, new_excess
         trial = shift - excess / slope
-    raise NotConverged(
+    raise DynamicsNotConverged(
         f"bracing by shift: twist left over = {excess:.3e} rad after 30 steps, limit {1e-10 * scale:.1e}; "
         "check the helix angle and the torque"
     )
@@ -225,14 +225,14 @@ def _state(
     state: StaticState,
     shift: float,
     control_mesh: int,
-) -> BracingState:
+) -> BracedLoop:
     torque = state.mean_torque
     at_gear = 0.0
     if gear is not None:
         law = laws[gear.mesh]
         ratio = gear.working_radius * math.cos(_working_angle(law)) / law.base_radius_1
         at_gear = float(torque[gear.mesh]) * ratio
-    return BracingState(
+    return BracedLoop(
         mode=mode,
         torque=torque,
         twist=state.twist,

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.parts import (
+    BearingPlace,
     Coupling,
     DragPlace,
     End,
     GearBody,
-    JournalBearing,
     MeshConnection,
     Motor,
 )
@@ -43,7 +43,7 @@ class Drivetrain:
     meshes: tuple[MeshConnection, ...]
     motor: Motor
     couplings: tuple[Coupling, ...] = ()
-    bearings: tuple[JournalBearing, ...] = ()
+    bearings: tuple[BearingPlace, ...] = ()
     drag_places: tuple[DragPlace, ...] = ()
     bracing_coupling: str | None = None
 
@@ -70,7 +70,7 @@ class Drivetrain:
         return {name: order[value] for name, value in line.items()}
 
 
-class Joint(NamedTuple):
+class TorsionalJoint(NamedTuple):
     """Spring and damper between two freedoms; all elements of a shaft share its name."""
 
     name: str
@@ -134,7 +134,7 @@ def _shaft_torques(drivetrain: Drivetrain, builder: "_Builder") -> Iterator[Shaf
             yield ShaftTorques(name=coupling.name, load=load, dof=a, parts=coupling.excitation)
 
 
-def joints(drivetrain: Drivetrain) -> tuple[Joint, ...]:
+def joints(drivetrain: Drivetrain) -> tuple[TorsionalJoint, ...]:
     """All springs and dampers between the freedoms of ``assemble``, meshes left out."""
     return tuple(_Builder(drivetrain).joints)
 
@@ -147,7 +147,7 @@ class _Builder:
     inertia: list[float] = field(default_factory=list)
     names: list[str] = field(default_factory=list)
     shaft_of: list[str] = field(default_factory=list)
-    joints: list[Joint] = field(default_factory=list)
+    joints: list[TorsionalJoint] = field(default_factory=list)
     chains: dict[str, ShaftChain] = field(default_factory=dict)
     first: dict[str, int] = field(default_factory=dict)
     stations: int = 0
@@ -159,10 +159,14 @@ class _Builder:
         for gear in self.drivetrain.gears:
             self.add_body(f"{gear.shaft}/{gear.name}", gear.inertia, gear.shaft)
             seat = self.station(gear.shaft, gear.position)
-            self.joints.append(Joint(gear.name, "spline", self.size - 1, seat, gear.stiffness, gear.damping))
+            self.joints.append(
+                TorsionalJoint(gear.name, "spline", self.size - 1, seat, gear.stiffness, gear.damping)
+            )
         for coupling in self.drivetrain.couplings:
             a, b = (self.end(name, end) for name, end in zip(coupling.shafts, coupling.ends))
-            self.joints.append(Joint(coupling.name, "coupling", a, b, coupling.stiffness, coupling.damping))
+            self.joints.append(
+                TorsionalJoint(coupling.name, "coupling", a, b, coupling.stiffness, coupling.damping)
+            )
         self._add_motor(self.drivetrain.motor)
 
     def _add_shafts(self) -> None:
@@ -173,7 +177,9 @@ class _Builder:
             for position, inertia in zip(chain.positions, chain.inertia):
                 self.add_body(f"{shaft.name}/{position * 1e3:.2f} mm", float(inertia), shaft.name)
             for i, spring in enumerate(chain.springs):
-                self.joints.append(Joint(shaft.name, "shaft", start + i, start + i + 1, float(spring), 0.0))
+                self.joints.append(
+                    TorsionalJoint(shaft.name, "shaft", start + i, start + i + 1, float(spring), 0.0)
+                )
 
     @property
     def size(self) -> int:
@@ -196,7 +202,9 @@ class _Builder:
             self.inertia[self.drive] += motor.inertia
             return
         self.add_body(f"{motor.shaft}/motor", motor.inertia, motor.shaft)
-        self.joints.append(Joint("motor", "motor", self.size - 1, self.drive, motor.stiffness, motor.damping))
+        self.joints.append(
+            TorsionalJoint("motor", "motor", self.size - 1, self.drive, motor.stiffness, motor.damping)
+        )
         self.drive = self.size - 1
 
     def matrices(self) -> tuple[Array, Array]:
@@ -215,7 +223,7 @@ class _Builder:
 
 
 def _stations(drivetrain: Drivetrain, shaft: str) -> tuple[float, ...]:
-    parts: tuple[GearBody | JournalBearing | DragPlace | Motor, ...] = (
+    parts: tuple[GearBody | BearingPlace | DragPlace | Motor, ...] = (
         *drivetrain.gears,
         *drivetrain.bearings,
         *drivetrain.drag_places,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import Drivetrain, Joint, assemble, joints
+from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, assemble, joints
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.modal_form import modal_form
 from dynamics.drivetrain.power_loop import speed_ratios
@@ -78,7 +78,7 @@ def loop_modes(
     parts = joints(drivetrain)
     for m, (law, ports, mesh) in enumerate(zip(laws, system.mesh_ports, drivetrain.meshes)):
         approach[m, ports] = law.base_radius_1, -law.base_radius_2
-        parts = (*parts, Joint(f"mesh {mesh.name}", "mesh", int(ports[0]), int(ports[1]), 0.0, 0.0))
+        parts = (*parts, TorsionalJoint(f"mesh {mesh.name}", "mesh", int(ports[0]), int(ports[1]), 0.0, 0.0))
     mean = np.array([law.mean_stiffness for law in laws])
     found = [
         LoopMode(
@@ -121,7 +121,7 @@ def closed_matrices(system: LinearSystem, laws: Sequence[MeshLaw]) -> tuple[Arra
 
 
 def _strain_energy(
-    parts: Sequence[Joint], shape: NDArray[np.complex128], mesh_energy: Array
+    parts: Sequence[TorsionalJoint], shape: NDArray[np.complex128], mesh_energy: Array
 ) -> dict[str, float]:
     share: dict[str, float] = {}
     meshes = iter(mesh_energy)

@@ -40,7 +40,7 @@ class Coupling:
 
 
 @dataclass(frozen=True, kw_only=True)
-class JournalBearing:
+class BearingPlace:
     """Bearing of a shaft as a place that brakes.
 
     ``linear_drag`` [N m s/rad] enters the damping matrix (P2, Table 1: 0.0007). Leave it 0 when the drag

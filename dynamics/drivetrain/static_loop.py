@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.errors import DynamicsInputError, NotConverged
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.tables import undamped
@@ -188,7 +188,7 @@ def solve_static(
     ------
     ValueError
         If not exactly one of torque and twist is given.
-    NotConverged
+    DynamicsNotConverged
         If Newton's method does not settle, for instance because the twist leaves the flanks open.
     """
     if (torque is None) == (twist is None):
@@ -243,7 +243,7 @@ def solve_static(
         move = moves[:, :, 0] + d_phi * moves[:, :, 1]
         step = (move[:, :n], move[:, n], d_phi)
         u, drive, phi = u + step[0], drive + step[1], phi + step[2]
-    raise NotConverged(
+    raise DynamicsNotConverged(
         f"static loop: residual {previous:.2e} of the torque after the last step, limit 1e-10: "
         "the twist leaves the flanks open or the torque is below the friction; raise the twist or the torque"
     )

@@ -351,7 +351,7 @@ def press_flank(
     )  # fmt: skip
 
 
-class Contact(NamedTuple):
+class MeshContact(NamedTuple):
     """One column of a phase table at the place of its flank; slopes over the fraction of a cell."""
 
     position: float
@@ -362,11 +362,11 @@ class Contact(NamedTuple):
 
 
 @inlined
-def contact_at(table: Array, c: int, stride: int, f: float) -> Contact:
+def contact_at(table: Array, c: int, stride: int, f: float) -> MeshContact:
     """Return the contact in column ``c`` at the fraction ``f`` of its cell."""
     k_1, k_2, k_3 = table[c + stride], table[c + 2 * stride], table[c + 3 * stride]
     e_1, e_2, e_3 = table[c + 5 * stride], table[c + 6 * stride], table[c + 7 * stride]
-    return Contact(
+    return MeshContact(
         table[c + ROW_S * stride],
         table[c] + f * (k_1 + f * (k_2 + f * k_3)),
         k_1 + f * (2.0 * k_2 + 3.0 * f * k_3),

@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 18c43582
+# compiled from sources 2da5a92f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

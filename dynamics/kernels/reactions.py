@@ -35,7 +35,7 @@ from dynamics.kernels.contact import (
     sliding_direction,
 )
 
-# compiled from sources 18c43582
+# compiled from sources 2da5a92f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -38,7 +38,7 @@ CYCLE_STEPS = 30
 
 
 @dataclass(frozen=True, kw_only=True)
-class HarmonicTorque:
+class OrderTorque:
     """Torque Re(amplitude exp(i order phi)) on one freedom [N m]; order per turn of the pinion of the first mesh."""
 
     dof: int
@@ -95,7 +95,7 @@ class DeviationResponse:
         """By how much the approach still moved in the last correction, relative to its whole deviation [-]."""
         return max((cycle.change for cycle in self.cycles), default=0.0)
 
-    def loads(self, orders: Iterable[float], torques: Sequence[HarmonicTorque] = ()) -> list[OrderLoads]:
+    def loads(self, orders: Iterable[float], torques: Sequence[OrderTorque] = ()) -> list[OrderLoads]:
         """Loads on the drivetrain at each order (per turn of the pinion of the first mesh, >= 0).
 
         torques : further torques on any freedoms, in first order
@@ -138,7 +138,7 @@ class DeviationResponse:
         return found
 
     def _class(
-        self, residue: float, reach: int, dofs: Integers, torques: Sequence[HarmonicTorque], tangent: Complex
+        self, residue: float, reach: int, dofs: Integers, torques: Sequence[OrderTorque], tangent: Complex
     ) -> Complex:
         """Changes of the torques on ``dofs`` (n_dofs, 2 reach + 1), two-sided, of one class."""
         number = np.arange(-reach, reach + 1)
@@ -155,7 +155,7 @@ class DeviationResponse:
         return HillSystem(self.loop, residue, tangent, receptance).solve(forces, given).torque
 
     def _given(
-        self, residue: float, number: Integers, dofs: Integers, torques: Sequence[HarmonicTorque]
+        self, residue: float, number: Integers, dofs: Integers, torques: Sequence[OrderTorque]
     ) -> Complex:
         """Two-sided given torques of a class (n_dofs, n)."""
         given = np.zeros((dofs.size, number.size), complex)

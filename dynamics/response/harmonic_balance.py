@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from dynamics.drivetrain.modal_form import ModalForm
 from dynamics.drivetrain.shaft_torque import ShaftTorques, harmonic_loads
 from dynamics.drivetrain.static_loop import PortModel
-from dynamics.errors import NotConverged
+from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.force import evaluate_mesh
 
 STALL_LIMIT = 2e-3
@@ -88,7 +88,7 @@ class _Reactions:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem:
+class BalanceProblem:
     """Everything that stays the same over speed.
 
     torque : mean torque asked of ``control_mesh`` [N m], or None when ``twist`` [rad] is held instead
@@ -131,7 +131,7 @@ class Problem:
 
 
 def solve_periodic(
-    problem: Problem,
+    problem: BalanceProblem,
     grid: HarmonicGrid,
     speed: float,
     start: HarmonicSolution,
@@ -147,7 +147,7 @@ def solve_periodic(
     ``resample``
     excitation : (n_bodies, top + 1) one-sided harmonics of further torques on the mesh bodies [N m]
 
-    Raises NotConverged with the residual reached. A stalled iteration counts as converged below
+    Raises DynamicsNotConverged with the residual reached. A stalled iteration counts as converged below
     STALL_LIMIT; its residual stands in the result.
     """
     model = problem.model
@@ -202,7 +202,7 @@ def solve_periodic(
         rest, drive, twist = rest + step[1], drive + step[2], twist + step[3]
     if best.residual < max(tolerance, STALL_LIMIT):
         return best
-    raise NotConverged(
+    raise DynamicsNotConverged(
         f"harmonic balance at {speed:.6g} rad/s: residual {best.residual:.2e} of the mean approach, limit "
         f"{max(tolerance, STALL_LIMIT):.0e}; start from a neighbouring speed or integrate in time"
     )
@@ -272,7 +272,7 @@ def _evaluate(model: PortModel, grid: HarmonicGrid, speed: float, base: float, p
     return _Reactions(harmonics, spectra[0], spectra[1], transmitted)
 
 
-def _error(problem: Problem, miss: Complex, balance: Array, asked: float) -> float:
+def _error(problem: BalanceProblem, miss: Complex, balance: Array, asked: float) -> float:
     """Largest of: approach error over its mean, unbalanced torque and missed torque over the asked one."""
     model, scale = problem.model, problem.approach_scale
     moving = np.abs(miss).sum(axis=1)[_sides(model)] * model.base_radii
@@ -290,7 +290,7 @@ def _sides(model: PortModel) -> NDArray[np.int64]:
 class _Newton:
     """Newton steps of one speed: for each residue class of harmonics one block over the meshes."""
 
-    def __init__(self, problem: Problem, grid: HarmonicGrid, base: float, receptance: Complex) -> None:
+    def __init__(self, problem: BalanceProblem, grid: HarmonicGrid, base: float, receptance: Complex) -> None:
         self.problem, self.grid, self.base = problem, grid, base
         self.receptance = receptance
         self.sides = _sides(problem.model)

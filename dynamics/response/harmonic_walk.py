@@ -11,11 +11,11 @@ import numpy as np
 
 from dynamics.drivetrain.modal_form import ModalForm
 from dynamics.drivetrain.static_loop import PortModel, solve_static
-from dynamics.errors import DynamicsInputError, NotConverged
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.response.harmonic_balance import (
+    BalanceProblem,
     HarmonicGrid,
     HarmonicSolution,
-    Problem,
     resample,
     solve_periodic,
 )
@@ -36,18 +36,18 @@ def highest_mode(form: ModalForm, cutoff: float) -> float:
 class HarmonicWalk:
     """Harmonic balance from speed to speed with its retries."""
 
-    def __init__(self, problem: Problem, period: Period, cutoff: float, tolerance: float) -> None:
+    def __init__(self, problem: BalanceProblem, period: Period, cutoff: float, tolerance: float) -> None:
         """Choose the cell and the highest mode that the harmonics must reach, see ``periodic_response``."""
         self.problem, self.tolerance = problem, tolerance
         self.cells, self.cell_angle = mesh_cells(problem.model, period, problem.control_mesh)
         self.highest = highest_mode(problem.form, cutoff)
 
     def grid(self, speed: float) -> HarmonicGrid:
-        """Grid whose harmonics reach 1.5 times the highest mode; NotConverged if that takes too many."""
+        """Grid whose harmonics reach 1.5 times the highest mode; DynamicsNotConverged if that takes too many."""
         cell_frequency = speed / self.cell_angle
         needed = math.ceil(1.5 * self.highest / cell_frequency)
         if needed > MOST_HARMONICS:
-            raise NotConverged(
+            raise DynamicsNotConverged(
                 f"harmonic balance at {speed:.6g} rad/s: {needed} harmonics needed to reach 1.5 times "
                 f"the highest mode of {self.highest:.4g} Hz, limit {MOST_HARMONICS}; integrate in time"
             )
@@ -60,13 +60,13 @@ class HarmonicWalk:
     def solve(
         self, speed: float, drags: Mapping[str, float] | None, last: HarmonicSolution | None
     ) -> HarmonicSolution:
-        """State at a speed of the drive freedom [rad/s], by continuation from ``last``; else NotConverged."""
+        """State at a speed of the drive freedom [rad/s], by continuation from ``last``; else DynamicsNotConverged."""
         grid = self.grid(speed)
-        reason = NotConverged("")
+        reason = DynamicsNotConverged("")
         for start in self._starts(grid, speed, drags, last):
             try:
                 return self._solve(start, speed, drags)
-            except NotConverged as error:
+            except DynamicsNotConverged as error:
                 reason = error
         raise reason
 
@@ -89,7 +89,7 @@ class HarmonicWalk:
         if last is not None:
             yield resample(last, grid)
             yield resample(last, finer)
-            with suppress(NotConverged):
+            with suppress(DynamicsNotConverged):
                 yield self._approach(resample(last, grid), speed, drags)
         yield quasi_static_start(self.problem, grid, speed, drags)
         yield quasi_static_start(self.problem, finer, speed, drags)
@@ -108,9 +108,11 @@ class HarmonicWalk:
             try:
                 state = self._solve(state, state.speed + step, drags)
                 step *= 2.0
-            except NotConverged:
+            except DynamicsNotConverged:
                 step *= 0.5
-        raise NotConverged(f"continuation stopped at {state.speed:.6g} rad/s on the way to {speed:.6g} rad/s")
+        raise DynamicsNotConverged(
+            f"continuation stopped at {state.speed:.6g} rad/s on the way to {speed:.6g} rad/s"
+        )
 
 
 def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int, float]:
@@ -144,7 +146,7 @@ def mesh_cells(model: PortModel, period: Period, control_mesh: int) -> tuple[int
 
 
 def quasi_static_start(
-    problem: Problem, grid: HarmonicGrid, speed: float, drags: Mapping[str, float] | None
+    problem: BalanceProblem, grid: HarmonicGrid, speed: float, drags: Mapping[str, float] | None
 ) -> HarmonicSolution:
     """Start state: the windup of the slowly rotating loop over one mesh period.
 
@@ -157,7 +159,7 @@ def quasi_static_start(
     )  # fmt: skip
     try:
         state = find()
-    except NotConverged:
+    except DynamicsNotConverged:
         state = find(held=int(problem.model.pinions[problem.control_mesh]))
     coefficients = np.fft.rfft(state.ports[:, :-1].T, axis=1)[:, : grid.harmonics + 1] / grid.samples
     ports = np.zeros((coefficients.shape[0], grid.top + 1), complex)

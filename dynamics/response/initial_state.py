@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.static_loop import line_ratios
-from dynamics.errors import DynamicsInputError, NotConverged
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.time_march import DriveState
@@ -57,7 +57,7 @@ def wound_state(
     ValueError
         If neither or both are given, the lines cannot turn together, or the bracing does not load the first
         mesh.
-    NotConverged
+    DynamicsNotConverged
         If the static state is not found, for instance because the twist leaves the flanks open.
     """
     if (torque is None) == (twist is None):
@@ -117,7 +117,7 @@ class _Winding:
                 limit = 20.0 * scale / stiffness
                 reach = reach + np.clip(step, -limit, limit)
             force, stiffness = self._contact(reach)
-        raise NotConverged(
+        raise DynamicsNotConverged(
             "static state: contact forces still change by "
             f"{np.abs(asked - reach).max() * stiffness.max() / scale:.1e} of the largest, limit 1e-9; "
             "the twist leaves the flanks open: raise twist or torque"

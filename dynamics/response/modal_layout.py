@@ -15,7 +15,7 @@ ComplexArray = NDArray[np.complex128]
 Integers = NDArray[np.int64]
 
 
-class Layout(NamedTuple):
+class ModalLayout(NamedTuple):
     """Places in the marched state, see ``kernels.DiscreteModes``."""
 
     modes: Integers
@@ -41,19 +41,19 @@ class PortBlocks(NamedTuple):
     through: Array
 
 
-def branch_layout(branches: Integers) -> Layout:
+def branch_layout(branches: Integers) -> ModalLayout:
     """Return the places of modes on ``branches`` (n_modes,), not decreasing."""
     modes, starts = [], [0]
     for size in np.unique(branches, return_counts=True)[1]:
         own = np.arange(size)
         modes.append(starts[-1] + own // WIDTH * 2 * WIDTH + own % WIDTH)
         starts.append(starts[-1] + 2 * WIDTH * -(-int(size) // WIDTH))
-    return Layout(np.concatenate(modes), np.array(starts, np.int64))
+    return ModalLayout(np.concatenate(modes), np.array(starts, np.int64))
 
 
 def port_blocks(
-    port_branches: Integers, layout: Layout, decay: ComplexArray, driven: ComplexArray, rows: ComplexArray, old: Array,
-    new: Array,
+    port_branches: Integers, layout: ModalLayout, decay: ComplexArray, driven: ComplexArray, rows: ComplexArray,
+    old: Array, new: Array,
 ) -> PortBlocks:  # fmt: skip
     """Return the tables that take the modes over a step and give the outputs of the ports.
 

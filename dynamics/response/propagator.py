@@ -25,10 +25,10 @@ from numpy.typing import NDArray
 from scipy.sparse.csgraph import connected_components
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.errors import DynamicsInputError, NotConverged
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.kernels import FOUR, WIDTH, DiscreteModes, DragModes
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.modal_layout import Layout, branch_layout, port_blocks
+from dynamics.response.modal_layout import ModalLayout, branch_layout, port_blocks
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -37,7 +37,7 @@ DEFAULT_CUTOFF = 50e3
 """Modes above this frequency [Hz] keep their static effect only."""
 
 
-class DefectiveModes(NotConverged):
+class DefectiveModes(DynamicsNotConverged):
     """The complex modes of the drivetrain are no basis (two of them coincide)."""
 
 
@@ -95,7 +95,7 @@ class Propagator:
     step: float
     modes: DiscreteModes
     hold: ComplexArray
-    layout: Layout
+    layout: ModalLayout
 
 
 def modal_model(

@@ -96,7 +96,7 @@ class Stage:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Command:
+class StageCommand:
     """Commands (n,): time [s], speed [rad/s], acceleration [rad/s2], torque [N m], index of the stage."""
 
     time: Array
@@ -145,7 +145,7 @@ class Schedule:
         """Stages at which the steady state is evaluated."""
         return tuple(stage for stage in self.stages if stage.held)
 
-    def at(self, time: ArrayLike) -> Command:
+    def at(self, time: ArrayLike) -> StageCommand:
         """Commands at given times [s], within the schedule; the ends are kept outside."""
         when = np.atleast_1d(np.asarray(time, dtype=float))
         starts = self.starts
@@ -155,7 +155,7 @@ class Schedule:
         speed = np.array([stage.speed for stage in self.stages])[index]
         torque = np.array([stage.torque for stage in self.stages])[index]
         step, slope = s_function(share), s_slope(share) / length
-        return Command(
+        return StageCommand(
             time=when,
             speed=speed[:, 0] + (speed[:, 1] - speed[:, 0]) * step,
             acceleration=(speed[:, 1] - speed[:, 0]) * slope,
@@ -163,7 +163,7 @@ class Schedule:
             stage=index.astype(np.int64),
         )
 
-    def command(self, interval: float) -> Command:
+    def command(self, interval: float) -> StageCommand:
         """Commands from 0 to the end every ``interval`` [s]; the last sample is the end."""
         if not interval > 0.0:
             raise ScheduleError(f"sample interval = {interval} s: must be above 0; correct it")
@@ -252,7 +252,7 @@ def _just_before(turning: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def _rule(
     schedule: Schedule,
-    command: Command,
+    command: StageCommand,
     name: str,
     text: str,
     where: NDArray[np.bool_],

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.static_loop import PortModel, port_model
-from dynamics.errors import DynamicsInputError, NotConverged
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.harmonic_balance import HarmonicSolution, Problem
+from dynamics.response.harmonic_balance import BalanceProblem, HarmonicSolution
 from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.periodic_response import Period, PeriodicResponse, periodic_by_time
@@ -143,7 +143,7 @@ def periodic_response(
             f"control_mesh = {control_mesh}: time integration controls mesh 0; use harmonic balance alone"
         )
     ratios = pinion_ratios(system, laws)
-    problem = Problem(
+    problem = BalanceProblem(
         model=port_model(system, laws),
         form=system.form,
         torque=torque,
@@ -169,7 +169,7 @@ def periodic_response(
                         system, laws, slow_loads(system), drag_loads(system, names), cutoff=cutoff
                     )
                 found[i] = _in_time(walk, system, given[i], drags[i], period, cutoff, models[names])
-            except NotConverged as also:
+            except DynamicsNotConverged as also:
                 reasons[i] = "; ".join(filter(None, (reason, str(also))))
     return ResponseCurve(
         points=tuple(found[i] for i in sorted(found)),
@@ -239,7 +239,7 @@ def _by_harmonics(
                 try:
                     states[i] = walk.solve(speeds[i] / ratio, drags[i], last)
                     reasons.pop(i, None)
-                except NotConverged as reason:
+                except DynamicsNotConverged as reason:
                     reasons[i] = str(reason)
             last = states.get(i, last)
     model = walk.problem.model
@@ -261,7 +261,7 @@ def _in_time(
         period=period, drag_torques=drags, cutoff=cutoff, model=model,
     )  # fmt: skip
     if not result.steady:
-        raise NotConverged("; ".join(result.warnings))
+        raise DynamicsNotConverged("; ".join(result.warnings))
     return point_in_time(problem.model, result, walk.cells)
 
 

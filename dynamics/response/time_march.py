@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from dynamics import kernels
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.errors import DynamicsInputError, NotConverged
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.propagator import (
@@ -66,7 +66,7 @@ class TorqueControl:
     time_constant: float = 0.02
 
 
-class MarchDiverged(NotConverged):
+class MarchDiverged(DynamicsNotConverged):
     """A march left the finite numbers; the message names mesh, time, speed and the slowest mode."""
 
 

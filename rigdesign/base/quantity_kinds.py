@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
-class Kind:
+class QuantityKind:
     """A kind of quantity.
 
     si : unit inside, in pint's words
@@ -28,7 +28,7 @@ class Kind:
         """What to write: the accepted units and an example."""
         return f'write a {self.label} such as "{self.example}" (units: {", ".join(self.units)})'
 
-    def like(self, example: str) -> "Kind":
+    def like(self, example: str) -> "QuantityKind":
         """The kind with another example, whose unit then comes first: hints for the size of what is meant."""
         unit = example.partition(" ")[2]
         return replace(self, example=example, units={unit: self.units[unit], **self.units})
@@ -39,38 +39,40 @@ class Kind:
         return self.name.replace("_", " ")
 
 
-def _kinds(*kinds: Kind) -> dict[str, Kind]:
+def _kinds(*kinds: QuantityKind) -> dict[str, QuantityKind]:
     return {kind.name: kind for kind in kinds}
 
 
-KINDS: Mapping[str, Kind] = _kinds(
-    Kind("length", "m", {"mm": "mm", "um": "um", "cm": "cm", "m": "m", "in": "inch"}, "7 mm"),
-    Kind("angle", "rad", {"deg": "degree", "rad": "radian", "mrad": "milliradian"}, "20 deg"),
-    Kind("mass", "kg", {"kg": "kg", "g": "g"}, "4 kg"),
-    Kind("inertia", "kg*m**2", {"kg m2": "kg*m**2", "kg cm2": "kg*cm**2", "g m2": "g*m**2"}, "0.01 kg m2"),
-    Kind("temperature", "kelvin", {"degC": "degC", "K": "kelvin", "degF": "degF"}, "140 degC"),
-    Kind("temperature_difference", "kelvin", {"K": "kelvin"}, "20 K"),
-    Kind("time", "s", {"s": "s", "ms": "ms", "min": "minute", "h": "hour", "d": "day"}, "8 s"),
-    Kind("frequency", "hertz", {"Hz": "hertz", "kHz": "kilohertz"}, "40 kHz"),
-    Kind(
+KINDS: Mapping[str, QuantityKind] = _kinds(
+    QuantityKind("length", "m", {"mm": "mm", "um": "um", "cm": "cm", "m": "m", "in": "inch"}, "7 mm"),
+    QuantityKind("angle", "rad", {"deg": "degree", "rad": "radian", "mrad": "milliradian"}, "20 deg"),
+    QuantityKind("mass", "kg", {"kg": "kg", "g": "g"}, "4 kg"),
+    QuantityKind(
+        "inertia", "kg*m**2", {"kg m2": "kg*m**2", "kg cm2": "kg*cm**2", "g m2": "g*m**2"}, "0.01 kg m2"
+    ),
+    QuantityKind("temperature", "kelvin", {"degC": "degC", "K": "kelvin", "degF": "degF"}, "140 degC"),
+    QuantityKind("temperature_difference", "kelvin", {"K": "kelvin"}, "20 K"),
+    QuantityKind("time", "s", {"s": "s", "ms": "ms", "min": "minute", "h": "hour", "d": "day"}, "8 s"),
+    QuantityKind("frequency", "hertz", {"Hz": "hertz", "kHz": "kilohertz"}, "40 kHz"),
+    QuantityKind(
         "speed",
         "rad/s",
         {"rpm": "revolution/minute", "1/min": "revolution/minute", "rad/s": "rad/s"},
         "12000 rpm",
     ),
-    Kind("velocity", "m/s", {"m/s": "m/s", "km/h": "km/hour"}, "20 m/s"),
-    Kind("force", "N", {"N": "N", "kN": "kN"}, "450 N"),
-    Kind(
+    QuantityKind("velocity", "m/s", {"m/s": "m/s", "km/h": "km/hour"}, "20 m/s"),
+    QuantityKind("force", "N", {"N": "N", "kN": "kN"}, "450 N"),
+    QuantityKind(
         "torque", "N*m", {"N m": "N*m", "Nm": "N*m", "kN m": "kN*m", "kNm": "kN*m", "N mm": "N*mm"}, "180 N m"
     ),
-    Kind("power", "W", {"W": "W", "kW": "kW", "MW": "MW"}, "500 W"),
-    Kind(
+    QuantityKind("power", "W", {"W": "W", "kW": "kW", "MW": "MW"}, "500 W"),
+    QuantityKind(
         "pressure",
         "Pa",
         {"MPa": "MPa", "N/mm2": "MPa", "Pa": "Pa", "kPa": "kPa", "GPa": "GPa", "bar": "bar"},
         "206 GPa",
     ),
-    Kind(
+    QuantityKind(
         "flow",
         "m**3/s",
         {
@@ -83,44 +85,48 @@ KINDS: Mapping[str, Kind] = _kinds(
         },
         "5 l/min",
     ),
-    Kind("density", "kg/m**3", {"kg/m3": "kg/m**3", "g/cm3": "g/cm**3", "kg/l": "kg/liter"}, "1000 kg/m3"),
-    Kind(
+    QuantityKind(
+        "density", "kg/m**3", {"kg/m3": "kg/m**3", "g/cm3": "g/cm**3", "kg/l": "kg/liter"}, "1000 kg/m3"
+    ),
+    QuantityKind(
         "kinematic_viscosity",
         "m**2/s",
         {"mm2/s": "mm**2/s", "cSt": "mm**2/s", "m2/s": "m**2/s"},
         "27.6 mm2/s",
     ),
-    Kind(
+    QuantityKind(
         "dynamic_viscosity",
         "Pa*s",
         {"mPa s": "mPa*s", "Pa s": "Pa*s", "cP": "mPa*s"},
         "5 mPa s",
     ),
-    Kind(
+    QuantityKind(
         "heat_capacity",
         "J/(kg*K)",
         {"J/(kg K)": "J/(kg*K)", "J/kgK": "J/(kg*K)", "kJ/(kg K)": "kJ/(kg*K)", "kJ/kgK": "kJ/(kg*K)"},
         "2000 J/(kg K)",
     ),
-    Kind("conductivity", "W/(m*K)", {"W/(m K)": "W/(m*K)", "W/mK": "W/(m*K)"}, "45 W/(m K)"),
-    Kind(
+    QuantityKind("conductivity", "W/(m*K)", {"W/(m K)": "W/(m*K)", "W/mK": "W/(m*K)"}, "45 W/(m K)"),
+    QuantityKind(
         "heat_transfer_coefficient",
         "W/(m**2*K)",
         {"W/(m2 K)": "W/(m**2*K)", "W/m2K": "W/(m**2*K)"},
         "300 W/(m2 K)",
     ),
-    Kind(
+    QuantityKind(
         "torsional_stiffness",
         "N*m/rad",
         {"N m/rad": "N*m/rad", "Nm/rad": "N*m/rad", "kN m/rad": "kN*m/rad"},
         "290e3 N m/rad",
     ),
-    Kind(
+    QuantityKind(
         "torsional_damping", "N*m*s/rad", {"N m s/rad": "N*m*s/rad", "Nms/rad": "N*m*s/rad"}, "600 N m s/rad"
     ),
-    Kind("linear_stiffness", "N/m", {"N/m": "N/m", "N/um": "N/um", "kN/mm": "kN/mm"}, "1e8 N/m"),
-    Kind("linear_damping", "N*s/m", {"N s/m": "N*s/m", "Ns/m": "N*s/m", "kN s/m": "kN*s/m"}, "1000 N s/m"),
-    Kind("data_size", "byte", {"MB": "megabyte", "GB": "gigabyte", "kB": "kilobyte"}, "500 MB"),
-    Kind("expansion_coefficient", "1/K", {"1/K": "1/K", "um/(m K)": "um/(m*K)"}, "11.5e-6 1/K"),
+    QuantityKind("linear_stiffness", "N/m", {"N/m": "N/m", "N/um": "N/um", "kN/mm": "kN/mm"}, "1e8 N/m"),
+    QuantityKind(
+        "linear_damping", "N*s/m", {"N s/m": "N*s/m", "Ns/m": "N*s/m", "kN s/m": "kN*s/m"}, "1000 N s/m"
+    ),
+    QuantityKind("data_size", "byte", {"MB": "megabyte", "GB": "gigabyte", "kB": "kilobyte"}, "500 MB"),
+    QuantityKind("expansion_coefficient", "1/K", {"1/K": "1/K", "um/(m K)": "um/(m*K)"}, "11.5e-6 1/K"),
 )
 """Every kind of quantity a case file knows, by name."""

@@ -24,7 +24,7 @@ PYTHON_LIBRARIES = (
 
 
 @dataclass(frozen=True)
-class Finding:
+class MachineFinding:
     """One line of `rigdesign doctor`."""
 
     subject: str
@@ -49,40 +49,42 @@ def gmsh_remedy(missing: list[str]) -> str:
     return f"gmsh cannot be loaded: {what} is missing; on Debian or Ubuntu run: {APT_LINE}"
 
 
-def diagnose() -> list[Finding]:
+def diagnose() -> list[MachineFinding]:
     """Look at the interpreter, the Python libraries, gmsh's system libraries and the kernel cache."""
     return [_python(), *(_library(name) for name in PYTHON_LIBRARIES), _gmsh(), _kernels()]
 
 
-def _python() -> Finding:
+def _python() -> MachineFinding:
     version = ".".join(map(str, sys.version_info[:3]))
-    return Finding("python", sys.version_info >= (3, 11), f"{version} (3.11 or newer is needed)")
+    return MachineFinding("python", sys.version_info >= (3, 11), f"{version} (3.11 or newer is needed)")
 
 
-def _library(name: str) -> Finding:
+def _library(name: str) -> MachineFinding:
     try:
         module = importlib.import_module(name)
     except (ImportError, OSError) as error:
-        return Finding(name, False, f"{error}; reinstall with: pip install --force-reinstall rigdesign")
-    return Finding(name, True, str(getattr(module, "__version__", "present")))
+        return MachineFinding(
+            name, False, f"{error}; reinstall with: pip install --force-reinstall rigdesign"
+        )
+    return MachineFinding(name, True, str(getattr(module, "__version__", "present")))
 
 
-def _gmsh() -> Finding:
+def _gmsh() -> MachineFinding:
     missing = missing_gmsh_libraries()
     if missing:
-        return Finding("gmsh", False, gmsh_remedy(missing))
+        return MachineFinding("gmsh", False, gmsh_remedy(missing))
     try:
         module = importlib.import_module("gmsh")
     except (ImportError, OSError) as error:
-        return Finding("gmsh", False, f"{error}; {gmsh_remedy([])}")
-    return Finding("gmsh", True, str(module.__version__))
+        return MachineFinding("gmsh", False, f"{error}; {gmsh_remedy([])}")
+    return MachineFinding("gmsh", True, str(module.__version__))
 
 
-def _kernels() -> Finding:
+def _kernels() -> MachineFinding:
     """Compile (or load) the kernels once, so that the first check does not pay for it."""
     try:
         importlib.import_module("dynamics.kernels")
         importlib.import_module("thermal.fe.assembly")
     except (ImportError, OSError, RuntimeError) as error:
-        return Finding("kernels", False, f"{error}; set NUMBA_CACHE_DIR to a writable folder")
-    return Finding("kernels", True, "compiled kernels load")
+        return MachineFinding("kernels", False, f"{error}; set NUMBA_CACHE_DIR to a writable folder")
+    return MachineFinding("kernels", True, "compiled kernels load")

@@ -11,7 +11,7 @@ import re
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any
 
-from rigdesign.base.quantity_kinds import KINDS, Kind
+from rigdesign.base.quantity_kinds import KINDS, QuantityKind
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -68,7 +68,7 @@ def parse(text: object, kind: str, example: str | None = None) -> float:
 
 
 @cache
-def _table(kind: str, example: str | None) -> Kind:
+def _table(kind: str, example: str | None) -> QuantityKind:
     return KINDS[kind] if example is None else KINDS[kind].like(example)
 
 
@@ -169,7 +169,7 @@ def _units_of(kind: str) -> dict[str, str]:
     return {_normal(unit): expression for unit, expression in KINDS[kind].units.items()}
 
 
-def _what_is(unit: str, written: str, table: Kind) -> str:
+def _what_is(unit: str, written: str, table: QuantityKind) -> str:
     """Say what the unit measures, when it is one of another kind."""
     for other in KINDS.values():
         if other.name != table.name and unit in _units_of(other.name):

@@ -24,7 +24,7 @@ from rigdesign.case.fields import (
 End = Literal["start", "end"]
 
 
-class Section(Part):
+class SectionInput(Part):
     """Cylinder of a stepped shaft."""
 
     length: Size
@@ -32,7 +32,7 @@ class Section(Part):
     inner_diameter: Gap = 0.0
 
 
-class Disc(Part):
+class DiscInput(Part):
     """Rigid disc on a shaft: flange, nut, thrust collar."""
 
     position: Gap
@@ -40,15 +40,15 @@ class Disc(Part):
     inertia: Inertia
 
 
-class Shaft(Part):
+class ShaftInput(Part):
     """Stepped shaft; positions on it count from its start."""
 
-    sections: tuple[Section, ...] = Field(min_length=1)
-    discs: Mapping[Name, Disc] = {}
+    sections: tuple[SectionInput, ...] = Field(min_length=1)
+    discs: Mapping[Name, DiscInput] = {}
     material: Name
 
 
-class HarmonicTorque(Part):
+class HarmonicTorqueInput(Part):
     """Torque that swings with the turn of a shaft: torque cos(order angle - phase)."""
 
     order: float = Field(gt=0.0, le=1000.0)
@@ -58,7 +58,7 @@ class HarmonicTorque(Part):
     phase: Angle = 0.0
 
 
-class Coupling(Part):
+class CouplingInput(Part):
     """Torsion spring and damper between the ends of two shafts."""
 
     shafts: tuple[Name, Name]
@@ -66,7 +66,7 @@ class Coupling(Part):
     torsional_stiffness: TorsionalStiffness
     torsional_damping: TorsionalDamping
     """Massless; its flanges and a torque flange are discs of the shafts."""
-    excitation: tuple[HarmonicTorque, ...] = ()
+    excitation: tuple[HarmonicTorqueInput, ...] = ()
     """Torques between its two ends, drawing the first ahead: what it makes of axes out of line turns up at order 2."""
     radial_offset_maximum: Length | None = None
     """What its maker allows between the axes, cold and hot."""
@@ -78,7 +78,7 @@ class Coupling(Part):
     """The same upwards (z)."""
 
 
-class Motor(Part):
+class MotorInput(Part):
     """Drive outside the power circuit."""
 
     shaft: Name
@@ -86,7 +86,7 @@ class Motor(Part):
     torque_limit: Torque
     """At every speed; hold the power against a limit of its own under ``limits.bought_parts``."""
     inertia: Inertia
-    ripple: tuple[HarmonicTorque, ...] = ()
+    ripple: tuple[HarmonicTorqueInput, ...] = ()
     """Of its torque, about the mean."""
 
 
@@ -107,12 +107,12 @@ class Bracing(Part):
     ``torque_at`` is warmer than ``ambient.reference_temperature``."""
 
 
-class Drivetrain(Part):
+class DrivetrainInput(Part):
     """The power circuit: which shafts, how joined, how driven and braced."""
 
-    shafts: Mapping[Name, Shaft] = Field(min_length=2)
-    couplings: Mapping[Name, Coupling] = {}
-    motor: Motor
+    shafts: Mapping[Name, ShaftInput] = Field(min_length=2)
+    couplings: Mapping[Name, CouplingInput] = {}
+    motor: MotorInput
     bracing: Bracing
     torque_at: Text
     """Gear at which test torque and speed are counted, ``gearbox.gear``."""

@@ -93,7 +93,7 @@ class OilState(Part):
     """Heat capacity over that of the data sheet."""
 
 
-class JournalBearing(Part):
+class JournalBearingInput(Part):
     """Plain journal bearing."""
 
     shaft: Name
@@ -200,7 +200,7 @@ class Gearbox(Part):
     gears: Mapping[Name, Gear] = Field(min_length=2)
     meshes: Mapping[Name, GearMesh] = Field(min_length=1)
     oil: GearOil
-    bearings: Mapping[Name, JournalBearing] = Field(min_length=1)
+    bearings: Mapping[Name, JournalBearingInput] = Field(min_length=1)
     bearing_oil: BearingOil
     seals: Mapping[Name, Seals] = {}
     heat_split: HeatSplit

@@ -27,7 +27,7 @@ from rigdesign.case.fields import (
 )
 
 
-class Rack(Part):
+class RackInput(Part):
     """Basic rack of the toothing, in modules (ISO 53 A: 1.0, 1.25, 0.38)."""
 
     addendum: Positive = 1.0
@@ -35,7 +35,7 @@ class Rack(Part):
     tip_radius: float = Field(default=0.38, ge=0.0, le=0.6)
 
     @model_validator(mode="after")
-    def _radius_fits(self) -> "Rack":
+    def _radius_fits(self) -> "RackInput":
         if self.dedendum <= 0.2 or self.tip_radius >= self.dedendum:
             raise fault(
                 f"a tip radius of {self.tip_radius} modules does not fit a dedendum of {self.dedendum}",
@@ -145,7 +145,7 @@ class GearMesh(Part):
     pressure_angle: PressureAngle
     helix_angle: HelixAngle = 0.0
     centre_distance: Size
-    rack: Rack = Rack()
+    rack: RackInput = RackInput()
     profile_shift_split: Literal["equal"] | None = None
     """How the sum of the profile shifts is shared when no gear states its own."""
     contact_ratio: float | None = Field(default=None, gt=0.5, lt=4.0)

@@ -54,7 +54,7 @@ class HousingShaft(Part):
     material: Name
 
 
-class ClampingField(Part):
+class ClampingFieldInput(Part):
     """Plate the gearbox stands on."""
 
     length: Size
@@ -313,7 +313,7 @@ class Housing(Part):
     shaft_height: Size
     """Height of the shaft axes above the clamping field."""
     material: Name
-    field: ClampingField
+    field: ClampingFieldInput
     foot_contact: FootContact | None = None
     """Joint between foot and field; perfect contact when left out, which the report lists as an assumption."""
     mesh: HousingMesh = HousingMesh()

@@ -10,14 +10,14 @@ from typing import Any, Literal
 from pydantic import Field, PrivateAttr
 
 from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
-from rigdesign.case.drivetrain import Drivetrain
+from rigdesign.case.drivetrain import DrivetrainInput
 from rigdesign.case.fields import Name, Part, Text
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
 from rigdesign.case.numerics import Numerics
 from rigdesign.case.provenance import Mark
-from rigdesign.case.schedule import Schedule, TestPlan
+from rigdesign.case.schedule import ScheduleInput, TestPlan
 from rigdesign.case.substances import Ambient, CustomMaterial, CustomOil
 from rigdesign.case.transient import Transient
 
@@ -47,10 +47,10 @@ class Case(Part):
     oils: Mapping[Name, CustomOil] = {}
     materials: Mapping[Name, CustomMaterial] = {}
     gearboxes: Mapping[Name, Gearbox] = Field(min_length=1)
-    drivetrain: Drivetrain | None = None
+    drivetrain: DrivetrainInput | None = None
     """Left out when the losses are given: the dynamic checks are then not applicable."""
     losses: Losses
-    schedule: Schedule
+    schedule: ScheduleInput
     test_plan: TestPlan
     limits: Limits = Limits()
     numerics: Numerics

@@ -10,7 +10,7 @@ from rigdesign.case.fields import Count, Hours, Name, Part, Share, Speed, Text, 
 StageKind = Literal["load", "unload", "run_up", "run_down", "dwell"]
 
 
-class Stage(Part):
+class StageInput(Part):
     """One stage; it starts where the one before ended, the first at standstill without torque.
 
     load, unload: the torque rises, falls at constant speed. run_up, run_down: the speed rises, falls at
@@ -32,7 +32,7 @@ class Stage(Part):
     """Long enough for steady temperatures; the others carry losses only."""
 
     @model_validator(mode="after")
-    def _one_torque(self) -> "Stage":
+    def _one_torque(self) -> "StageInput":
         if self.torque is not None and self.torque_share is not None:
             raise fault("both torque and torque_share are given", "keep one of the two")
         return self
@@ -53,13 +53,13 @@ class StageValues:
     held: bool
 
 
-class Schedule(Part):
+class ScheduleInput(Part):
     """Stages in their order."""
 
     test_speed: Speed
     """Speed of the test, counted at ``drivetrain.torque_at``."""
     test_torque: Torque
-    stages: tuple[Stage, ...] = Field(min_length=1)
+    stages: tuple[StageInput, ...] = Field(min_length=1)
     simulation_only: Text | None = None
     """Why the schedule cannot be run on the rig; left out for one that can."""
 

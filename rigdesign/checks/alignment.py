@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from rigdesign.case.drivetrain import Coupling
+from rigdesign.case.drivetrain import CouplingInput
 from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.coupling.alignment import AlignmentQuantity
 from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig, worst
@@ -13,7 +13,7 @@ GROUP = "alignment"
 NO_END = "neither of its shafts is in a housing: nothing is known of its alignment"
 
 
-class Kind(NamedTuple):
+class AlignmentKind(NamedTuple):
     """A quantity of alignment as a result has it."""
 
     title: str
@@ -28,15 +28,17 @@ class Kind(NamedTuple):
     """Key of the value in a row."""
 
 
-KINDS: dict[AlignmentQuantity, Kind] = {
-    "bearing_tilt": Kind("largest tilt of a shaft in a bearing bore", "mrad", 1e3, "bores", "bearing", "tilt_mrad"),
-    "bore_out_of_round": Kind(
+KINDS: dict[AlignmentQuantity, AlignmentKind] = {
+    "bearing_tilt": AlignmentKind(
+        "largest tilt of a shaft in a bearing bore", "mrad", 1e3, "bores", "bearing", "tilt_mrad"
+    ),
+    "bore_out_of_round": AlignmentKind(
         "bearing bore out of round, share of the radial clearance", "-", 1.0, "bores", "bearing", "out_of_round_share"
     ),
-    "axis_inclination": Kind(
+    "axis_inclination": AlignmentKind(
         "in-plane deviation of the axes of a mesh over the face", "um", 1e6, "axes", "gear_pair", "inclination_um"
     ),
-    "axis_skew": Kind(
+    "axis_skew": AlignmentKind(
         "out-of-plane deviation of the axes of a mesh over the face", "um", 1e6, "axes", "gear_pair", "skew_um"
     ),
 }  # fmt: skip
@@ -62,7 +64,7 @@ def checks(solved: SolvedRig) -> Iterator[Check]:
         yield from _coupling(solved, name, coupling)
 
 
-def _coupling(solved: SolvedRig, name: str, coupling: Coupling) -> Iterator[Check]:
+def _coupling(solved: SolvedRig, name: str, coupling: CouplingInput) -> Iterator[Check]:
     """Offset and angle of a coupling, the larger of cold and hot."""
     for key, words, unit, limit, attribute in (
         ("offset", "radial offset", "mm", coupling.radial_offset_maximum, "radial_offset_maximum"),

@@ -15,7 +15,7 @@ from rich.text import Text
 from rigdesign.results.result import Check, RunResult
 
 if TYPE_CHECKING:
-    from rigdesign.base.system import Finding
+    from rigdesign.base.system import MachineFinding
     from rigdesign.diagnosis.document.outcome import Outcome
     from rigdesign.diagnosis.run import Calibrated
     from rigdesign.measurement.comparison.compare import Comparison
@@ -243,7 +243,7 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     console.print(f"report: {out / 'diagnosis.html'}")
 
 
-def print_findings(findings: Sequence["Finding"]) -> None:
+def print_findings(findings: Sequence["MachineFinding"]) -> None:
     """The lines of `rigdesign doctor`."""
     console = _console()
     for finding in findings:

@@ -7,7 +7,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from dynamics.standards.iso1328_1_2013 import tolerances
-from rigdesign.case.drivetrain import Coupling
+from rigdesign.case.drivetrain import CouplingInput
 from rigdesign.coupling.expansion import axes_of, bearing_growth
 from rigdesign.rig.model import Rig
 from thermal.expansion.alignment import Across, ShaftAxis, ShaftPair, axis_tolerances, shaft_pair
@@ -138,7 +138,7 @@ def coupling_places(rig: Rig) -> Iterator[CouplingPlace]:
             yield CouplingPlace(name=name, first=first, second=second, cold=cold)
 
 
-def _end(rig: Rig, coupling: Coupling, side: int) -> CouplingEnd:
+def _end(rig: Rig, coupling: CouplingInput, side: int) -> CouplingEnd:
     shaft, end = coupling.shafts[side], coupling.ends[side]
     for name, model in rig.models.items():
         for station in model.shafts:

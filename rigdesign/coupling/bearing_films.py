@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dynamics.bearing.journal import BearingState, JournalBearing, solve_bearing
 from rigdesign.base.errors import named
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.gearbox import JournalBearing as CaseBearing
+from rigdesign.case.gearbox import JournalBearingInput as CaseBearing
 from rigdesign.case.gears import GearMesh
 from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.state import CouplingState, OperatingPoint

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.drivetrain.bracing import Mode, ShiftedGear, brace
-from dynamics.errors import NotConverged
+from dynamics.errors import DynamicsNotConverged
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import (
@@ -334,7 +334,7 @@ def respond(
 
     Raises
     ------
-    NotConverged
+    DynamicsNotConverged
         Neither harmonic balance nor time integration settles.
     """
     assert rig.system is not None
@@ -350,7 +350,7 @@ def respond(
         cutoff=rig.highest_mode,
     )
     if curve.failed:
-        raise NotConverged(f"periodic response at stage {point.stage!r}: {curve.failed[0][1]}")
+        raise DynamicsNotConverged(f"periodic response at stage {point.stage!r}: {curve.failed[0][1]}")
     return curve.points[0]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.bearing.journal import BearingState
-from dynamics.errors import NotConverged
+from dynamics.errors import DynamicsNotConverged
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_torques
@@ -61,7 +61,7 @@ def _response(
     drags = drag_torques(turning, rig, point.speed)
     try:
         return respond(rig, point, models, drags, BracingState(mode="torque_controlled"))
-    except NotConverged:
+    except DynamicsNotConverged:
         return None
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.response.propagator import DEFAULT_CUTOFF
-from dynamics.response.schedule import Command, Kind, Schedule, Stage, s_function
+from dynamics.response.schedule import Kind, Schedule, Stage, StageCommand, s_function
 from dynamics.response.time_response import Command as RunCommand
 from dynamics.response.time_response import DragCurve, TimeResponse, run_schedule
 from rigdesign.base.errors import NotConvergedError
@@ -113,7 +113,7 @@ def torque_limits(rig: Rig) -> NDArray[np.float64]:
     )
 
 
-def _speed_command(rig: Rig, schedule: Schedule, command: Command) -> NDArray[np.float64]:
+def _speed_command(rig: Rig, schedule: Schedule, command: StageCommand) -> NDArray[np.float64]:
     """Speed over time [rad/s]; a stage with a constant drive torque asks for its end speed at once.
 
     The controller then stands at its torque limit until the speed is there: the stage's duration is the most it

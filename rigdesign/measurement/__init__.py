@@ -10,7 +10,7 @@ from rigdesign.measurement.data import Data
 from rigdesign.measurement.loader import load_measurement
 from rigdesign.measurement.processing.features import features
 from rigdesign.measurement.reading.measurement_set import (
-    Finding,
+    DataFinding,
     MeasuredChannel,
     MeasuredPoint,
     MeasurementSet,
@@ -19,7 +19,7 @@ from rigdesign.measurement.reading.measurement_set import (
 
 __all__ = [
     "Data",
-    "Finding",
+    "DataFinding",
     "MeasuredChannel",
     "MeasuredPoint",
     "MeasurementSet",

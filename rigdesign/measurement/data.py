@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.measurement.reading.measurement_set import Finding, MeasuredChannel
+from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel
 from rigdesign.prediction.model import Feature, OperatingCondition
 
 Strength = Literal["proven", "indicative"]
@@ -34,6 +34,6 @@ class Data:
     assembly: tuple[int, ...]
     """Per setting, how often the rig has been put together anew before it."""
     channels: Mapping[str, MeasuredChannel]
-    findings: tuple[Finding, ...]
+    findings: tuple[DataFinding, ...]
     strength: Strength
     """indicative: without repeats, noise is what the set declares."""

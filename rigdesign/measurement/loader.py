@@ -15,7 +15,7 @@ from rigdesign.measurement.processing.recorded import read_recordings
 from rigdesign.measurement.reading.columns import channels_of, column_faults, sensors_of
 from rigdesign.measurement.reading.document import MeasurementFile
 from rigdesign.measurement.reading.files import digest_of, document_text, set_file
-from rigdesign.measurement.reading.measurement_set import Finding, MeasurementSet
+from rigdesign.measurement.reading.measurement_set import DataFinding, MeasurementSet
 from rigdesign.measurement.reading.order_table import read_orders
 from rigdesign.measurement.reading.rows import Rows, points_of
 from rigdesign.measurement.reading.table import read_table
@@ -56,7 +56,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     findings += [*rows.findings(channels), *_doubts(document)]
     if document.case is not None and document.case != case.name:
         findings.append(
-            Finding(
+            DataFinding(
                 id="other_case", weight="suspect",
                 text=f"the set belongs to case {document.case}, compared is {case.name}; give its own case or correct "
                 "the key 'case'",
@@ -73,7 +73,7 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
     readings = {feature: values for feature, values in readings.items() if feature.setting in at}
     found = {feature.channel for feature in readings}
     findings += [
-        Finding(
+        DataFinding(
             id="missing_channel", weight="dropped", channels=(name,),
             text=f"{name}: no column, order or recording holds this channel; add it or remove [channels.{name}]",
         )
@@ -164,10 +164,10 @@ def _doubt_faults(document: MeasurementFile) -> Iterable[Fault]:
                 yield unknown(f"doubts[{number}].channels", name, tuple(document.channels), "channel")
 
 
-def _doubts(document: MeasurementFile) -> Iterable[Finding]:
+def _doubts(document: MeasurementFile) -> Iterable[DataFinding]:
     """What the writer of the set suspects of it."""
     for doubt in document.doubts:
-        yield Finding(
+        yield DataFinding(
             id="doubt", weight="suspect", channels=doubt.channels,
             text=f"{doubt.what}: {doubt.size} ({doubt.source})",
         )  # fmt: skip

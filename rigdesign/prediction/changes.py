@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from rigdesign.base import units
-from rigdesign.base.quantity_kinds import KINDS, Kind
+from rigdesign.base.quantity_kinds import KINDS, QuantityKind
 from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
 from rigdesign.case.paths import slot_at
@@ -43,7 +43,7 @@ def _written(plain: Mapping[str, object], path: str, value: object) -> object:
     return _with_unit(float(value), KINDS[slot.quantity.kind])
 
 
-def _with_unit(value: float, kind: Kind) -> str:
+def _with_unit(value: float, kind: QuantityKind) -> str:
     """A number in SI with the unit a file knows it by."""
     spelling = next(unit for unit in kind.units if units.worth(kind.name, unit) == (1.0, 0.0))
     return f"{value!r} {spelling}"

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.static_loop import port_model
-from dynamics.errors import NotConverged
+from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.orders.deviation_response import OrderLoads
@@ -67,7 +67,7 @@ def exact_motion(
     """Solve over the hunting cycle: harmonic balance up to MOST_CELLS mesh periods, else the march in time.
 
     march : take the one or the other
-    Raises NotConverged if neither settles.
+    Raises DynamicsNotConverged if neither settles.
     """
     assert rig.system is not None
     controlled = setting.mode == "torque_controlled"
@@ -92,7 +92,9 @@ def exact_motion(
         longest_time=LONGEST_MARCH, cutoff=rig.highest_mode,
     )  # fmt: skip
     if not marched.steady:
-        raise NotConverged(f"march over the hunting cycle at {point.stage!r}: {'; '.join(marched.warnings)}")
+        raise DynamicsNotConverged(
+            f"march over the hunting cycle at {point.stage!r}: {'; '.join(marched.warnings)}"
+        )
     radius_1, radius_2 = np.array([(law.base_radius_1, law.base_radius_2) for law in laws]).T[..., None]
     omega_2 = (radius_1 * marched.omega_1 - marched.approach_rate) / radius_2
     return _over_cycle(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.drivetrain.graph import Joint
+from dynamics.drivetrain.graph import TorsionalJoint
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.orders.deviation_response import OrderLoads
 from rigdesign.base.errors import UsageError
@@ -34,7 +34,7 @@ class Swing:
 class InCoupling:
     """Torque that a coupling transmits, positive where its first shaft is ahead."""
 
-    joint: Joint
+    joint: TorsionalJoint
     twisted: bool
 
     def mean(self, windup: Array, twist: float) -> float:

@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.errors import NotConverged
+from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.orders.deviation_response import (
     CYCLE_STEPS,
     DeviationResponse,
-    HarmonicTorque,
     OrderLoads,
+    OrderTorque,
     mean_windup,
 )
 from dynamics.response.initial_state import pinion_ratios
@@ -124,7 +124,7 @@ class PointOrders:
 
     @cached_property
     def solved(self) -> "_Solved":
-        """The motion. Raises NotConverged."""
+        """The motion. Raises DynamicsNotConverged."""
         if not self.exact:
             base = self._base or ideal_response(self.rig, self.point, self.models, self.drags, self.setting)
             held = self.setting.mode != "torque_controlled"
@@ -132,7 +132,7 @@ class PointOrders:
             if self.steps < CYCLE_STEPS or response.change < UNSETTLED:
                 return _Deviating(response, base)
             if self.exact is False:
-                raise NotConverged(
+                raise DynamicsNotConverged(
                     f"orders at {self.point.stage!r}: the last correction still moved the contacts by "
                     f"{response.change:.2g} of their deviation (limit {UNSETTLED:g}); follow them exactly"
                 )
@@ -210,7 +210,7 @@ def ideal_response(
 ) -> CurvePoint:
     """Response with all teeth of a gear alike and no torque that swings, over one mesh period.
 
-    Raises NotConverged.
+    Raises DynamicsNotConverged.
     """
     assert rig.system is not None
     controlled = setting.mode == "torque_controlled"
@@ -224,7 +224,7 @@ def ideal_response(
         cutoff=rig.highest_mode,
     )
     if curve.failed:
-        raise NotConverged(f"mesh-periodic response at {point.stage!r}: {curve.failed[0][1]}")
+        raise DynamicsNotConverged(f"mesh-periodic response at {point.stage!r}: {curve.failed[0][1]}")
     return curve.points[0]
 
 
@@ -284,9 +284,7 @@ class _Deviating:
 
     def loads(self, orders: Sequence[float], swings: Sequence[Swing]) -> Sequence[OrderLoads]:
         torques = [
-            HarmonicTorque(
-                dof=int(dof), order=swing.order, amplitude=swing.amplitude * float(swing.load[dof])
-            )
+            OrderTorque(dof=int(dof), order=swing.order, amplitude=swing.amplitude * float(swing.load[dof]))
             for swing in swings
             for dof in np.flatnonzero(swing.load)
         ]

@@ -11,7 +11,7 @@ from rigdesign.coupling.loads import MeshModel
 from rigdesign.coupling.losses import ANDERSON_LOEWENTHAL
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import GrowthResult
-from thermal.conduction.heat_rows import HeatRow
+from thermal.conduction.heat_rows import HeatFlow
 
 PLATE = (
     "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)], T_h the mean of the partition; the colder box round the plate "
@@ -228,7 +228,7 @@ def end_wall_clearance(solved: SolvedRig, result: GrowthResult, full: str) -> fl
     return entry.diametral_clearance + entry.diameter * (wide - thick) - spin
 
 
-def _mean_temperature(rows: Sequence[HeatRow], surfaces: tuple[str, ...]) -> float:
+def _mean_temperature(rows: Sequence[HeatFlow], surfaces: tuple[str, ...]) -> float:
     """Area mean over some surfaces [K]."""
     found = {row.surface: row for row in rows if row.surface in surfaces}
     return float(

@@ -25,8 +25,8 @@ from rigdesign.results.result import (
     ThermalResult,
 )
 from rigdesign.rig.model import Rig
-from thermal.conduction.balance import HeatRow as SolvedRow
 from thermal.conduction.flux import heat_flux
+from thermal.conduction.heat_rows import HeatFlow as SolvedRow
 from thermal.expansion.expansion import Expansion
 
 ZERO = 273.15

@@ -5,18 +5,18 @@ from collections.abc import Mapping, Sequence
 
 from dynamics.drivetrain.graph import Drivetrain
 from dynamics.drivetrain.parts import (
+    BearingPlace,
     Coupling,
     DragPlace,
     End,
     GearBody,
-    JournalBearing,
     MeshConnection,
     Motor,
 )
 from dynamics.drivetrain.shaft import Disc, DrivetrainError, Section, Shaft
 from dynamics.drivetrain.shaft_torque import ShaftTorque
 from dynamics.gear.pair import GearPair
-from rigdesign.case.drivetrain import HarmonicTorque
+from rigdesign.case.drivetrain import HarmonicTorqueInput
 from rigdesign.case.model import Case
 from rigdesign.properties.materials import Material
 
@@ -153,13 +153,13 @@ def _motor(case: Case) -> Motor:
     )
 
 
-def _swinging(torques: Sequence[HarmonicTorque]) -> tuple[ShaftTorque, ...]:
+def _swinging(torques: Sequence[HarmonicTorqueInput]) -> tuple[ShaftTorque, ...]:
     return tuple(
         ShaftTorque(order=torque.order, torque=torque.torque, phase=torque.phase) for torque in torques
     )
 
 
-def _bearings(case: Case) -> list[JournalBearing]:
+def _bearings(case: Case) -> list[BearingPlace]:
     """Constant drag enters the damping matrix; the drag of a computed film acts as a load."""
     constant = case.losses.bearing_drag == "constant"
     bearings = []
@@ -167,7 +167,7 @@ def _bearings(case: Case) -> list[JournalBearing]:
         for name, bearing in box.bearings.items():
             assert bearing.position is not None
             bearings.append(
-                JournalBearing(
+                BearingPlace(
                     name=f"{box_name}.{name}",
                     shaft=bearing.shaft,
                     position=bearing.position,

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from dynamics.drivetrain.graph import Drivetrain, Joint, assemble, joints
+from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, assemble, joints
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.gear.pair import GearPair
 from dynamics.response.propagator import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.case.gearbox import Gearbox, JournalBearing
+from rigdesign.case.gearbox import Gearbox, JournalBearingInput
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.model import Case
@@ -81,7 +81,7 @@ class Rig:
         return None if self.drivetrain is None else assemble(self.drivetrain)
 
     @cached_property
-    def joints(self) -> tuple[Joint, ...]:
+    def joints(self) -> tuple[TorsionalJoint, ...]:
         """Springs and dampers of the power circuit between its freedoms."""
         return () if self.drivetrain is None else joints(self.drivetrain)
 
@@ -231,7 +231,7 @@ class Rig:
         assert power is not None
         return self.shaft_speed(power.motor.shaft, speed)
 
-    def bearings(self) -> list[tuple[str, Gearbox, JournalBearing]]:
+    def bearings(self) -> list[tuple[str, Gearbox, JournalBearingInput]]:
         """(``gearbox.bearing``, gearbox, bearing) of the whole rig."""
         return [
             (f"{box_name}.{name}", box, bearing)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rigdesign.case.drivetrain import Drivetrain, Shaft
+from rigdesign.case.drivetrain import DrivetrainInput, ShaftInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.model import Case
 from rigdesign.rig.model import Rig
@@ -85,7 +85,7 @@ def _places(box: Gearbox, shaft_name: str) -> list[float]:
     return [place for place in (*gears, *bearings) if place is not None]
 
 
-def _joined_ends(train: Drivetrain, shaft_name: str) -> set[str]:
+def _joined_ends(train: DrivetrainInput, shaft_name: str) -> set[str]:
     """Ends of a shaft that a coupling or the motor holds."""
     ends: set[str] = {
         end
@@ -96,7 +96,7 @@ def _joined_ends(train: Drivetrain, shaft_name: str) -> set[str]:
     return ends | ({train.motor.end} if train.motor.shaft == shaft_name else set())
 
 
-def _diameter(shaft: Shaft, place: float) -> float:
+def _diameter(shaft: ShaftInput, place: float) -> float:
     """Diameter of a stepped shaft at a place from its start [m]; beyond its ends that of its end."""
     passed = 0.0
     for section in shaft.sections:

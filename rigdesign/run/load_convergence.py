@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from dynamics.errors import NotConverged
+from dynamics.errors import DynamicsNotConverged
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.checks.dynamics import loaded_stages
 from rigdesign.coupling.loads import BracingState, mesh_models, respond
@@ -52,7 +52,7 @@ class _Loaded:
                 )
                 for rig in rigs
             )
-        except NotConverged:
+        except DynamicsNotConverged:
             return ()
 
 

@@ -25,7 +25,7 @@ from rigdesign.properties.materials import MaterialError
 from rigdesign.properties.oil import OilError
 
 INPUT = thermal.errors.ThermalInputError, dynamics.errors.DynamicsInputError, OilError, MaterialError
-NO_CONVERGENCE = thermal.errors.NotConverged, dynamics.errors.NotConverged
+NO_CONVERGENCE = thermal.errors.ThermalNotConverged, dynamics.errors.DynamicsNotConverged
 
 
 @contextmanager

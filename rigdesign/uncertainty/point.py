@@ -50,7 +50,7 @@ class CheckAtEnd:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Outcome:
+class EndResult:
     """What came of one end: checks by id and the highest temperature of all housings, or the error."""
 
     checks: dict[str, CheckAtEnd]
@@ -76,7 +76,7 @@ class Reference:
     key: str
 
 
-def settle(case: Case) -> tuple[Reference, Outcome]:
+def settle(case: Case) -> tuple[Reference, EndResult]:
     """Solve the stated rig and say what its checks are."""
     with solver_errors(case), threadpool_limits(limits=1):
         solved = solve_case(case, FIDELITY)
@@ -97,7 +97,7 @@ def settle(case: Case) -> tuple[Reference, Outcome]:
     return reference, outcome
 
 
-def solve_end(end: RangeEnd, *, reference: Reference) -> Outcome:
+def solve_end(end: RangeEnd, *, reference: Reference) -> EndResult:
     """Solve one end; an error is an outcome that says what happened.
 
     The stated rig is made once in every process.
@@ -109,9 +109,9 @@ def solve_end(end: RangeEnd, *, reference: Reference) -> Outcome:
             solved, parts = _moved(stated, end.case, end.parts, reference.motor_losses)
             return _outcome(solved, parts)
     except RigdesignError as error:
-        return Outcome(checks={}, max_temperature=None, error=str(error))
+        return EndResult(checks={}, max_temperature=None, error=str(error))
     except Exception as error:
-        return Outcome(checks={}, max_temperature=None, error=f"{type(error).__name__}: {error}")
+        return EndResult(checks={}, max_temperature=None, error=f"{type(error).__name__}: {error}")
 
 
 _made: dict[str, SolvedRig] = {}
@@ -231,8 +231,8 @@ def _subject(
     )
 
 
-def _outcome(solved: SolvedRig, parts: tuple[Part, ...]) -> Outcome:
-    return Outcome(
+def _outcome(solved: SolvedRig, parts: tuple[Part, ...]) -> EndResult:
+    return EndResult(
         checks={check.id: _at_end(check) for check in held_checks(solved)},
         max_temperature=max((row.max_temperature_degC for row in solved.thermal), default=None),
         parts=parts,

@@ -17,7 +17,7 @@ from rigdesign.checks.rules import overall
 from rigdesign.results.ranges import LeftOut, RangedInput, RangesResult, TemperatureRange
 from rigdesign.results.result import RunResult
 from rigdesign.uncertainty.plan import RangeEnd, plan
-from rigdesign.uncertainty.point import FIDELITY, Outcome, Reference, settle, solve_end
+from rigdesign.uncertainty.point import FIDELITY, EndResult, Reference, settle, solve_end
 from rigdesign.uncertainty.verdicts import (
     Ranged,
     check_range,
@@ -74,28 +74,28 @@ def with_ranges(
 
 def _solve(
     ends: Sequence[RangeEnd], reference: Reference, workers: int, count: Count
-) -> dict[tuple[str, str], Outcome]:
-    """Outcome by path and end; the longest ones first, so that no worker waits for another at the end."""
+) -> dict[tuple[str, str], EndResult]:
+    """Results by path and end; the longest ones first, so that no worker waits for another at the end."""
     order = sorted(ends, key=lambda end: -len(end.parts))
-    found: dict[tuple[str, str], Outcome] = {}
+    found: dict[tuple[str, str], EndResult] = {}
     work = partial(solve_end, reference=reference)
     for index, outcome in compute_all(work, order, workers):
         end = order[index]
-        found[end.path, end.end] = outcome or Outcome(checks={}, max_temperature=None, error=DIED)
+        found[end.path, end.end] = outcome or EndResult(checks={}, max_temperature=None, error=DIED)
         count(len(found), len(order), f"{end.path} = {end.value}")
     return found
 
 
-def _outcome(end: RangeEnd, stated: Outcome, solved: dict[tuple[str, str], Outcome]) -> Outcome:
+def _outcome(end: RangeEnd, stated: EndResult, solved: dict[tuple[str, str], EndResult]) -> EndResult:
     if end.same:
         return stated
     if end.case is None:
-        return Outcome(checks={}, max_temperature=None, error=end.error)
+        return EndResult(checks={}, max_temperature=None, error=end.error)
     return solved[end.path, end.end]
 
 
 def joined(
-    result: RunResult, stated: Outcome, ends: list[tuple[RangeEnd, Outcome]], left: list[LeftOut]
+    result: RunResult, stated: EndResult, ends: list[tuple[RangeEnd, EndResult]], left: list[LeftOut]
 ) -> RunResult:
     """The result with its verdicts over the ends; ``stated`` and the outcomes at the fidelity of the ends."""
     ranged = {entry.check.id: entry for entry in ranged_checks(result.checks, stated, ends)}
@@ -112,7 +112,7 @@ def joined(
     return replace(result, checks=checks, verdict=overall(checks), ranges=ranges)
 
 
-def _offset(result: RunResult, stated: Outcome) -> float:
+def _offset(result: RunResult, stated: EndResult) -> float:
     """Highest temperature of the run above that of the stated rig at the fidelity of the ends [K]."""
     hottest = max((row.max_temperature_degC for row in result.thermal), default=0.0)
     return 0.0 if stated.max_temperature is None else hottest - stated.max_temperature
@@ -122,8 +122,8 @@ def _plus(value: float | None, offset: float) -> float | None:
     return None if value is None else value + offset
 
 
-def _inputs(ends: list[tuple[RangeEnd, Outcome]], ranged: list[Ranged], offset: float) -> list[RangedInput]:
-    by_path: dict[str, dict[str, tuple[RangeEnd, Outcome]]] = {}
+def _inputs(ends: list[tuple[RangeEnd, EndResult]], ranged: list[Ranged], offset: float) -> list[RangedInput]:
+    by_path: dict[str, dict[str, tuple[RangeEnd, EndResult]]] = {}
     for end, outcome in ends:
         by_path.setdefault(end.path, {})[end.end] = (end, outcome)
     changes = {path: [entry.check.id for entry in ranged if path in deciding(entry)] for path in by_path}
@@ -150,7 +150,7 @@ def _inputs(ends: list[tuple[RangeEnd, Outcome]], ranged: list[Ranged], offset: 
 
 
 def _temperatures(
-    result: RunResult, stated: Outcome, ends: list[tuple[RangeEnd, Outcome]]
+    result: RunResult, stated: EndResult, ends: list[tuple[RangeEnd, EndResult]]
 ) -> TemperatureRange | None:
     """Range of the highest temperature: that of the run, shifted by what every end changes."""
     hottest = max((row.max_temperature_degC for row in result.thermal), default=None)
@@ -176,7 +176,7 @@ def _temperatures(
     )
 
 
-def _method(ends: list[tuple[RangeEnd, Outcome]]) -> str:
+def _method(ends: list[tuple[RangeEnd, EndResult]]) -> str:
     """What was done for how many ends, in words."""
     solved = [(end, outcome) for end, outcome in ends if end.case is not None and not end.same]
     kinds = Counter(

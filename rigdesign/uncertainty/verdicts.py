@@ -11,7 +11,7 @@ from rigdesign.results.ranges import CheckRange, RangeMargin
 from rigdesign.results.result import Check
 from rigdesign.results.verdict import Verdict
 from rigdesign.uncertainty.plan import RangeEnd
-from rigdesign.uncertainty.point import CheckAtEnd, Outcome
+from rigdesign.uncertainty.point import CheckAtEnd, EndResult
 
 SOLVED_BY = 1e-9
 """Share of the value below which a difference of two solutions is round-off."""
@@ -39,7 +39,7 @@ class Ranged:
 
 
 def ranged_checks(
-    checks: Sequence[Check], stated: Outcome, ends: Sequence[tuple[RangeEnd, Outcome]]
+    checks: Sequence[Check], stated: EndResult, ends: Sequence[tuple[RangeEnd, EndResult]]
 ) -> list[Ranged]:
     """Every check that applies with its shifts; checks of the run, ``stated`` and ``ends`` at quick fidelity."""
     found = []

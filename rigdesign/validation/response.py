@@ -38,7 +38,7 @@ from rigdesign.validation.speed_sweeps import (
     ROUGH,
     SUBCRITICAL,
     TOP_SPEED,
-    Course,
+    SpeedSweep,
     closing,
     course,
     damped,
@@ -124,7 +124,7 @@ def _amplitude_readings() -> Iterator[ValidationRow]:
 
 
 def _simulated_factors(
-    main: Course, others: dict[str, Course], variants: dict[str, Course], mesh_mode: float
+    main: SpeedSweep, others: dict[str, SpeedSweep], variants: dict[str, SpeedSweep], mesh_mode: float
 ) -> Iterator[ValidationRow]:
     """K_V in the three ranges; ``mesh_mode`` is the frequency of the test mesh in the closed loop [Hz]."""
     places: tuple[tuple[str, str, int, tuple[float, float], Published, str, str], ...] = (
@@ -156,7 +156,7 @@ def _simulated_factors(
 
 
 def _reference_main_resonance(
-    prototype: Prototype, main: Course, unscaled: Course, variants: dict[str, Course]
+    prototype: Prototype, main: SpeedSweep, unscaled: SpeedSweep, variants: dict[str, SpeedSweep]
 ) -> Iterator[ValidationRow]:
     """K_V of the reference gear at its main resonance, for which P2 prints no number."""
     pair = prototype.reference_pair
@@ -178,7 +178,7 @@ def _reference_main_resonance(
 
 
 def _depends_on(
-    main: Course, variants: dict[str, Course], mesh: int, limits: tuple[float, float], speed: float
+    main: SpeedSweep, variants: dict[str, SpeedSweep], mesh: int, limits: tuple[float, float], speed: float
 ) -> str:
     """Where the highest K_V of a range was found, and what it is with other inputs."""
     half = float(main.half[main.speed == speed, mesh][0])
@@ -189,7 +189,7 @@ def _depends_on(
     return f"{MODEL}; at {speed:.0f} rpm{main.left_out(limits)}, half peak-to-peak {half:.3f}. Depends on: {others}"
 
 
-def _amplitudes(main: Course) -> Iterator[ValidationRow]:
+def _amplitudes(main: SpeedSweep) -> Iterator[ValidationRow]:
     places: tuple[tuple[str, str, int, tuple[float, float], float, str, Bound | None], ...] = (
         ("TG", "test gear, largest", 0, WHOLE, 150.0, "up to about 150", None),
         ("TG-3000", "test gear, above 3000 rpm", 0, ABOVE_3000, 50.0, "about 50", None),
@@ -207,7 +207,7 @@ def _amplitudes(main: Course) -> Iterator[ValidationRow]:
             )  # fmt: skip
 
 
-def _peaks(main: Course) -> Iterator[ValidationRow]:
+def _peaks(main: SpeedSweep) -> Iterator[ValidationRow]:
     resonances = (
         ("TG-2", 0, 1219.0), ("TG-3", 0, 1796.0), ("RG-1", 1, 1481.0), ("RG-2-h3", 1, 1568.0),
         ("RG-2-h2", 1, 2353.0), ("RG-3", 1, 2962.0), ("RG-4", 1, 4705.0),
@@ -234,7 +234,7 @@ def _peaks(main: Course) -> Iterator[ValidationRow]:
     )  # fmt: skip
 
 
-def _late_resonances(main: Course) -> Iterator[ValidationRow]:
+def _late_resonances(main: SpeedSweep) -> Iterator[ValidationRow]:
     for name, mesh in (("test", 0), ("reference", 1)):
         late = [peak for peak in main.peaks(mesh) if peak >= ABOVE_4000[0]]
         value, speed = main.highest(mesh, ABOVE_4000)
@@ -247,7 +247,7 @@ def _late_resonances(main: Course) -> Iterator[ValidationRow]:
         )  # fmt: skip
 
 
-def _influence(name: str, mesh: int, main: Course, alone: Course) -> ValidationRow:
+def _influence(name: str, mesh: int, main: SpeedSweep, alone: SpeedSweep) -> ValidationRow:
     """Largest change of K_V when the other mesh excites nothing."""
     both, first, second = np.intersect1d(main.speed, alone.speed, return_indices=True)
     change = np.abs(main.factor[first, mesh] / alone.factor[second, mesh] - 1.0)

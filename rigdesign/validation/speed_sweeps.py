@@ -30,7 +30,7 @@ BOTH: tuple[Method, ...] = ("harmonic_balance", "time_integration")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Course:
+class SpeedSweep:
     """Periodic response over speed; index 0 test mesh, 1 reference mesh.
 
     speed : (n,) of the test pinion [rpm]
@@ -91,13 +91,13 @@ def _point(prototype: Prototype) -> tuple[Rig, OperatingPoint]:
 
 def course(
     prototype: Prototype, laws: Sequence[MeshLaw], speeds: Array, methods: tuple[Method, ...] = BOTH
-) -> Course:
+) -> SpeedSweep:
     """Periodic response of P2's rig over ``speeds`` [rpm] at 180 N m, without the speeds that find none."""
     rig, point = _point(prototype)
     assert rig.system is not None
     curve = periodic_response(rig.system, laws, speeds * RPM, signed_torque(rig, point), methods=methods)
     points = curve.points
-    return Course(
+    return SpeedSweep(
         speed=np.round(curve.speeds / RPM, 6),
         factor=np.array([p.dynamic_factor for p in points]),
         half=np.array([p.dynamic_factor_half_peak_to_peak for p in points]),

@@ -5,7 +5,7 @@ import pytest
 from dynamics.drivetrain import bracing
 from dynamics.drivetrain.bracing import ShiftedGear, brace, drift
 from dynamics.drivetrain.graph import assemble
-from dynamics.errors import NotConverged
+from dynamics.errors import DynamicsNotConverged
 from tests.rig_example import TRANSVERSE_ANGLE, prototype, prototype_laws
 
 HELIX = math.radians(18.0)
@@ -124,11 +124,11 @@ def test_a_stalled_solve_is_not_reported_as_open_flanks(monkeypatch: pytest.Monk
 
     def stalling(*args: object, **options: object) -> object:
         if "twist" in options:
-            raise NotConverged("static loop: residual 1")
+            raise DynamicsNotConverged("static loop: residual 1")
         return solve(*args, **options)  # type: ignore[arg-type]
 
     monkeypatch.setattr(bracing, "solve_static", stalling)
-    with pytest.raises(NotConverged, match="residual 1"):
+    with pytest.raises(DynamicsNotConverged, match="residual 1"):
         drift(system, laws, laws, 180.0, "twist_held")
     loose = (laws[0], laws[1]._replace(backlash=laws[1].backlash + 1e-3))
     assert not drift(system, laws, loose, 10.0, "twist_held").hot.torque.any()
@@ -142,5 +142,5 @@ def test_what_cannot_be_braced() -> None:
         ShiftedGear(mesh=1, helix_angle=0.0, base_helix_angle=0.0, working_radius=0.05)
     with pytest.raises(ValueError, match="halves = 3"):
         shifted(halves=3)
-    assert issubclass(NotConverged, RuntimeError)
+    assert issubclass(DynamicsNotConverged, RuntimeError)
     assert math.cos(TRANSVERSE_ANGLE) < 1.0

@@ -21,7 +21,7 @@ from thermal.conditions.boundary import (
 from thermal.conduction.condition_checks import ConditionError
 from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.conduction.terms import ConductionProblem
-from thermal.errors import NotConverged
+from thermal.errors import ThermalNotConverged
 from thermal.fe.mesh import NamedMesh
 from thermal.films.law import FilmCoefficient
 
@@ -247,6 +247,8 @@ def test_a_law_with_a_jump_does_not_converge_and_says_so(mesh: NamedMesh) -> Non
         if not isinstance(c, PrescribedTemperature)
     ]
     jumping.append(Adiabatic(surface="hot_z_min"))
-    with pytest.raises(NotConverged, match=r"Newton: residual .*; hottest in body \w+ at x") as failure:
+    with pytest.raises(
+        ThermalNotConverged, match=r"Newton: residual .*; hottest in body \w+ at x"
+    ) as failure:
         solve_steady(mesh, CONDUCTIVITY, jumping, max_steps=8)
     assert len(failure.value.residuals) == 9

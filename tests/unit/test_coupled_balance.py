@@ -21,7 +21,7 @@ from thermal.conduction.newton import newton
 from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
 from thermal.conduction.stream_terms import VolumeTerms
 from thermal.conduction.terms import ConductionProblem
-from thermal.errors import NotConverged
+from thermal.errors import ThermalNotConverged
 from thermal.films.law import FilmLaw
 
 
@@ -140,7 +140,7 @@ def negated(method: Callable[..., tuple[np.ndarray, float]]) -> Callable[..., tu
 @pytest.mark.parametrize("terms", [ContactTerms, EnclosureTerms])
 def test_one_wrong_sign_in_the_solver_is_no_solution(setup, terms, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(terms, "heat_out", negated(terms.heat_out))
-    with pytest.raises(NotConverged):
+    with pytest.raises(ThermalNotConverged):
         solve_steady(setup.mesh, VARIABLE, conditions(), reuse=setup, max_steps=12)
 
 
@@ -152,7 +152,7 @@ def test_one_wrong_sign_in_the_volumes_is_no_solution(setup, monkeypatch: pytest
         return -nodes, volumes, turned
 
     monkeypatch.setattr(VolumeTerms, "heat_out", wrong)
-    with pytest.raises(NotConverged):
+    with pytest.raises(ThermalNotConverged):
         solve_steady(setup.mesh, VARIABLE, conditions(), reuse=setup, max_steps=12)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
-from dynamics.orders.deviation_response import DeviationResponse, HarmonicTorque
+from dynamics.orders.deviation_response import DeviationResponse, OrderTorque
 from dynamics.orders.tooth_excitation import Motion, excitation, pair_sensitivity, tooth_pattern
 from rigdesign.base.errors import UsageError
 from rigdesign.prediction.model import Channel
@@ -127,13 +127,13 @@ def test_a_harmonic_torque_stirs_its_own_class_of_orders(healthy):
     system = case.rig.system
     response = DeviationResponse(system, [m.law for m in case.models], base, twist_held=True)
     dof = int(response.loop.bodies[0])
-    torque = HarmonicTorque(dof=dof, order=2.0, amplitude=2.0 + 1.0j)
+    torque = OrderTorque(dof=dof, order=2.0, amplitude=2.0 + 1.0j)
     own, side, mirrored, foreign = response.loads([2.0, 30.0, 26.0, 3.0], [torque])
     assert (
         np.abs(own.torque).max() > 10.0 * max(np.abs(side.torque).max(), np.abs(mirrored.torque).max()) > 0.0
     )
     assert not np.any(foreign.torque)
-    [twice] = response.loads([30.0], [HarmonicTorque(dof=dof, order=2.0, amplitude=2.0 * torque.amplitude)])
+    [twice] = response.loads([30.0], [OrderTorque(dof=dof, order=2.0, amplitude=2.0 * torque.amplitude)])
     assert twice.torque == pytest.approx(2.0 * side.torque, rel=1e-9)
 
 

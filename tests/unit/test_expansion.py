@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from thermal.expansion.clearances import concentric_gap_change, free_growth, length_mean
-from thermal.expansion.cylinders import Cylinder, Section
+from thermal.expansion.cylinders import Cylinder, CylinderSection
 from thermal.expansion.elastic import ElasticError
 from thermal.expansion.expansion import Expansion, ExpansionSetup, expand
 from thermal.housing.gearbox import ClampingField, GearDisc, HousingGeometry, ShaftGeometry, build_gearbox
@@ -214,7 +214,7 @@ def test_interpolated_displacement_is_exact_for_rigid_motion_and_swelling(model,
     moved = np.array([3e-6, -2e-6, 5e-6]) + 1e-3 * (points - np.array(station.centre))
     strain = np.full(len(points), 1e-3)
     surface = setup.elements.surfaces[station.bore_surface]
-    section = Section.of(surface, points, station.centre, angles, station.centre[0])
+    section = CylinderSection.of(surface, points, station.centre, angles, station.centre[0])
     radial = section.radial(moved, strain)
     expected = -2e-6 * np.cos(angles) + 5e-6 * np.sin(angles) + 1e-3 * (0.02 + 20e-6)
     assert_allclose(radial, expected, atol=2e-8)

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from thermal.fe import reference, shapes
-from thermal.fe.reference import Rule
+from thermal.fe.reference import QuadratureRule
 from thermal.fe.shapes import CELLS, CellShape, Shape
 
 SHAPES = (*CELLS.values(), shapes.TRIANGLE_6, shapes.QUAD_8, shapes.QUAD_9)
@@ -31,7 +31,7 @@ def on_cube(powers: tuple[int, ...]) -> float:
         (reference.TRIANGLE_7, 5),
     ],
 )
-def test_simplex_rules_are_exact_to_their_degree_and_no_further(rule: Rule, degree: int) -> None:
+def test_simplex_rules_are_exact_to_their_degree_and_no_further(rule: QuadratureRule, degree: int) -> None:
     def error(powers: tuple[int, ...]) -> float:
         return abs(
             float(rule.weights @ np.prod(rule.points ** np.array(powers), axis=1)) - on_simplex(powers)
@@ -48,7 +48,7 @@ def test_simplex_rules_are_exact_to_their_degree_and_no_further(rule: Rule, degr
 @pytest.mark.parametrize(
     ("rule", "degree"), [(reference.GAUSS_8, 3), (reference.GAUSS_27, 5), (reference.GAUSS_9, 5)]
 )
-def test_brick_rules_are_exact_to_their_degree_in_each_coordinate(rule: Rule, degree: int) -> None:
+def test_brick_rules_are_exact_to_their_degree_in_each_coordinate(rule: QuadratureRule, degree: int) -> None:
     def error(powers: tuple[int, ...]) -> float:
         return abs(float(rule.weights @ np.prod(rule.points ** np.array(powers), axis=1)) - on_cube(powers))
 

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from scipy import sparse
 from scipy.spatial import Delaunay
 
-from thermal.errors import NotConverged
+from thermal.errors import ThermalNotConverged
 from thermal.fe import direct
 from thermal.fe.aggregation import rigid_modes
 from thermal.fe.direct import Backend, DirectError, available_backend
@@ -212,7 +212,7 @@ def test_a_stalled_solve_reports_its_history() -> None:
         lambda: conjugate_gradient(matrix, load, lambda r: r, max_iterations=3),
         lambda: gmres(lambda x: matrix @ x, load, lambda r: r, max_iterations=3),
     ):
-        with pytest.raises(NotConverged, match="after 3 iterations is above 1e-10") as failure:
+        with pytest.raises(ThermalNotConverged, match="after 3 iterations is above 1e-10") as failure:
             solve()
         assert len(failure.value.residuals) == 4
         assert isinstance(failure.value, RuntimeError)

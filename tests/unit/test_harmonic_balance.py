@@ -9,10 +9,10 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.modal_form import modal_form
 from dynamics.drivetrain.parts import Motor
 from dynamics.drivetrain.static_loop import port_model
-from dynamics.errors import NotConverged
+from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
 from dynamics.response import harmonic_balance
-from dynamics.response.harmonic_balance import HarmonicGrid, Problem, resample, solve_periodic
+from dynamics.response.harmonic_balance import BalanceProblem, HarmonicGrid, resample, solve_periodic
 from dynamics.response.harmonic_walk import HarmonicWalk, highest_mode, mesh_cells, quasi_static_start
 from dynamics.response.speed_sweep import ResponseCurve, periodic_response
 from dynamics.response.waveform import waveform
@@ -28,9 +28,9 @@ def by_harmonics(laws: tuple[MeshLaw, ...], speeds: list[float], **options: obje
     return periodic_response(system, laws, speeds, torque, methods=("harmonic_balance",), **options)
 
 
-def problem_of(system: LinearSystem, laws: tuple[MeshLaw, ...]) -> Problem:
+def problem_of(system: LinearSystem, laws: tuple[MeshLaw, ...]) -> BalanceProblem:
     form = modal_form(system.inertia, system.damping, system.stiffness, system.lines)
-    return Problem(model=port_model(system, laws), form=form, torque=180.0)
+    return BalanceProblem(model=port_model(system, laws), form=form, torque=180.0)
 
 
 def test_mean_torque_is_the_asked_one_and_the_loop_closes() -> None:
@@ -106,7 +106,7 @@ def test_harmonics_reach_the_highest_mode_or_the_method_is_refused() -> None:
         grid = walk.grid(speed)
         assert grid.harmonics * speed / grid.cell_angle >= 1.5 * walk.highest or grid.harmonics == 24
         assert grid.samples >= 4 * grid.harmonics
-    with pytest.raises(NotConverged, match=r"harmonics needed to reach 1\.5 times"):
+    with pytest.raises(DynamicsNotConverged, match=r"harmonics needed to reach 1\.5 times"):
         walk.grid(10.0)
     assert highest_mode(problem.form, 0.0) == 0.0
 

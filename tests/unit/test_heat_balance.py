@@ -18,7 +18,7 @@ from thermal.conditions.boundary import SurfaceSource as Source
 from thermal.conduction.balance import heat_balance
 from thermal.conduction.steady import CLOSURE, ConductionSetup, TemperatureSolution, solve_steady
 from thermal.conduction.terms import ConductionProblem
-from thermal.errors import NotConverged
+from thermal.errors import ThermalNotConverged
 
 PLACES = [(type(c).__name__, getattr(c, "kind", "")) for c in conditions() if hasattr(c, "kind")]
 
@@ -91,7 +91,7 @@ def test_one_wrong_sign_in_the_solver_is_no_solution(name: str) -> None:
     surface = setup.elements.surfaces[name]
     right = surface.load
     surface.load = lambda values: -right(values)  # type: ignore[method-assign]
-    with pytest.raises(NotConverged):
+    with pytest.raises(ThermalNotConverged):
         solve_steady(setup.mesh, CONDUCTIVITY, conditions(), reuse=setup)
 
 
@@ -103,7 +103,7 @@ def test_a_source_with_the_wrong_sign_in_the_solver_is_no_solution(monkeypatch: 
         self.source = -self.source
 
     monkeypatch.setattr(ConductionProblem, "__init__", wrong)
-    with pytest.raises(NotConverged, match="heat balance open by"):
+    with pytest.raises(ThermalNotConverged, match="heat balance open by"):
         solve_steady(two_blocks(), CONDUCTIVITY, conditions())
 
 
@@ -121,5 +121,5 @@ def test_one_side_of_an_exchange_with_the_wrong_sign_is_no_solution() -> None:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ConductionProblem, "heat_out", wrong)
-        with pytest.raises(NotConverged):
+        with pytest.raises(ThermalNotConverged):
             solve_steady(setup.mesh, CONDUCTIVITY, conditions(), reuse=setup)

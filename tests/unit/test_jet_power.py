@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.errors import NotConverged
+from dynamics.errors import DynamicsNotConverged
 from rigdesign.coupling.drag_torques import drag_torques
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import PlacedLoss, oil_jets
@@ -81,7 +81,7 @@ def test_a_stage_without_a_periodic_response_says_so(monkeypatch: pytest.MonkeyP
     assert not any("no periodic response" in text for text in warnings_at(rig, point, result))
 
     def unsolved(*_: object) -> None:
-        raise NotConverged("no periodic response at 10,800 rpm")
+        raise DynamicsNotConverged("no periodic response at 10,800 rpm")
 
     monkeypatch.setattr("rigdesign.coupling.stage_losses.respond", unsolved)
     for mesh in ("test.main", "reference.main"):

@@ -12,7 +12,7 @@ from rigdesign.case import Case
 from rigdesign.results.result import Check
 from rigdesign.uncertainty import point as ranges_point
 from rigdesign.uncertainty.plan import PARTS, Part, RangeEnd, parts_of, plan
-from rigdesign.uncertainty.point import Outcome, Reference, settle, solve_end
+from rigdesign.uncertainty.point import EndResult, Reference, settle, solve_end
 from rigdesign.uncertainty.run import with_ranges
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
@@ -52,7 +52,7 @@ def written(folder: Path, text: str) -> Case:
 
 
 @pytest.fixture(scope="module")
-def loop(tmp_path_factory: pytest.TempPathFactory) -> tuple[Reference, Outcome]:
+def loop(tmp_path_factory: pytest.TempPathFactory) -> tuple[Reference, EndResult]:
     """Reference and stated checks of the power loop, settled."""
     return settle(written(tmp_path_factory.mktemp("loop"), LOOP))
 
@@ -64,7 +64,7 @@ def end(case: Case, path: str, value: str, *more: Part) -> RangeEnd:
     )  # fmt: skip
 
 
-def differences(one: Outcome, other: Outcome) -> Iterator[tuple[str, float]]:
+def differences(one: EndResult, other: EndResult) -> Iterator[tuple[str, float]]:
     """Check -> difference of its utilisation."""
     assert one.error is None and other.error is None and set(one.checks) == set(other.checks)
     for name, check in one.checks.items():
@@ -77,7 +77,7 @@ def differences(one: Outcome, other: Outcome) -> Iterator[tuple[str, float]]:
     [("losses.chamber_density", "20 kg/m3"), ("losses.friction.lubricant_factor", "1.0")],
 )
 def test_losses_need_no_march_for_the_torque_of_the_motor(
-    loop: tuple[Reference, Outcome], path: str, value: str, monkeypatch: pytest.MonkeyPatch
+    loop: tuple[Reference, EndResult], path: str, value: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Four times the windage, a quarter more friction: the shifted run against the marched one.
 
@@ -103,7 +103,7 @@ def test_losses_need_no_march_for_the_torque_of_the_motor(
     )
 
 
-def test_a_limit_moves_its_own_check_and_nothing_else(loop: tuple[Reference, Outcome]) -> None:
+def test_a_limit_moves_its_own_check_and_nothing_else(loop: tuple[Reference, EndResult]) -> None:
     reference, stated = loop
     outcome = solve_end(end(reference.case, COOLER, "15 kW"), reference=reference)
     assert outcome.parts == ()
@@ -114,7 +114,7 @@ def test_a_limit_moves_its_own_check_and_nothing_else(loop: tuple[Reference, Out
     assert moved == ["oil.cooler"]
 
 
-def test_an_end_is_the_same_whatever_was_solved_before_it(loop: tuple[Reference, Outcome]) -> None:
+def test_an_end_is_the_same_whatever_was_solved_before_it(loop: tuple[Reference, EndResult]) -> None:
     """The stated value as an end gives the stated checks; another end in between leaves no trace."""
     reference, stated = loop
     same = end(reference.case, FLOW, "5 l/min")
@@ -124,7 +124,7 @@ def test_an_end_is_the_same_whatever_was_solved_before_it(loop: tuple[Reference,
     assert solve_end(same, reference=reference) == first
 
 
-def test_an_end_that_does_not_settle_says_so(loop: tuple[Reference, Outcome]) -> None:
+def test_an_end_that_does_not_settle_says_so(loop: tuple[Reference, EndResult]) -> None:
     reference, _ = loop
     outcome = solve_end(end(reference.case, "drivetrain.motor.torque_limit", "12 N m"), reference=reference)
     assert outcome.checks == {}
@@ -132,7 +132,7 @@ def test_an_end_that_does_not_settle_says_so(loop: tuple[Reference, Outcome]) ->
 
 
 def test_the_torque_of_a_motor_at_its_limit_is_marched(
-    loop: tuple[Reference, Outcome], monkeypatch: pytest.MonkeyPatch
+    loop: tuple[Reference, EndResult], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(ranges_point, "LOADS_MOVE", {})
     reference, _ = loop

@@ -9,7 +9,7 @@ from rigdesign.report.pages.report import report_html
 from rigdesign.report.results_json import results_document
 from rigdesign.results.result import Check, RunResult
 from rigdesign.uncertainty.plan import PARTS, RangeEnd, parts_of
-from rigdesign.uncertainty.point import CheckAtEnd, Outcome
+from rigdesign.uncertainty.point import CheckAtEnd, EndResult
 from rigdesign.uncertainty.run import joined
 from tests.report_example import make_check, make_result
 
@@ -26,11 +26,11 @@ def at(margin: float, utilisation: float, verdict: str = "pass") -> CheckAtEnd:
     return CheckAtEnd(value=0.0, margin=margin, utilisation=utilisation, verdict=verdict)  # type: ignore[arg-type]
 
 
-def outcome(hottest: float | None = 150.0, error: str | None = None, **checks: CheckAtEnd) -> Outcome:
-    return Outcome(checks=checks, max_temperature=hottest, parts=("coupling",), error=error)
+def outcome(hottest: float | None = 150.0, error: str | None = None, **checks: CheckAtEnd) -> EndResult:
+    return EndResult(checks=checks, max_temperature=hottest, parts=("coupling",), error=error)
 
 
-def ranged(stated: Outcome, ends: list[tuple[RangeEnd, Outcome]], *checks: Check) -> RunResult:
+def ranged(stated: EndResult, ends: list[tuple[RangeEnd, EndResult]], *checks: Check) -> RunResult:
     slim = make_result(
         checks=list(checks), verdict="pass", dynamics=None, fields=[], growth=[], losses=[], oil=[]
     )
@@ -43,7 +43,7 @@ STATED = outcome(seal_gap=at(0.04, 0.5 / 0.54))
 """The same at quick fidelity: 0.01 mm less."""
 
 
-def both(path: str, low: Outcome, high: Outcome) -> list[tuple[RangeEnd, Outcome]]:
+def both(path: str, low: EndResult, high: EndResult) -> list[tuple[RangeEnd, EndResult]]:
     return [(end(path, "low", "4 mm"), low), (end(path, "high", "6 mm"), high)]
 
 
@@ -112,7 +112,7 @@ def test_round_off_between_two_solutions_decides_nothing() -> None:
 def test_temperatures_and_shifts_add_up_over_the_inputs() -> None:
     """Stated 150 at quick; the run has its own. GAP: -8/+3, OIL: +5/-1: from -8 to +5, both warm ends +8."""
 
-    def hot(value: float, margin: float) -> Outcome:
+    def hot(value: float, margin: float) -> EndResult:
         return outcome(value, seal_gap=at(margin, 0.9))
 
     ends = [*both(GAP, hot(142.0, 0.03), hot(153.0, 0.05)), *both(OIL, hot(155.0, 0.02), hot(149.0, 0.05))]

@@ -112,7 +112,7 @@ def test_what_a_solver_raises_on_purpose_has_its_root(package: ModuleType) -> No
 
 def test_no_convergence_keeps_its_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(*_: object) -> None:
-        raise thermal.errors.NotConverged("stalled at 1e-3, limit 1e-9", (1.0, 0.1, 1e-3))
+        raise thermal.errors.ThermalNotConverged("stalled at 1e-3, limit 1e-9", (1.0, 0.1, 1e-3))
 
     monkeypatch.setattr(run, "solve_case", fail)
     with pytest.raises(NotConvergedError) as caught:

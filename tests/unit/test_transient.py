@@ -16,7 +16,7 @@ from thermal.conduction.capacity import Storage
 from thermal.conduction.condition_checks import Condition, ConditionError
 from thermal.conduction.conductivity import Conductivity
 from thermal.conduction.steady import ConductionSetup, solve_steady
-from thermal.errors import NotConverged
+from thermal.errors import ThermalNotConverged
 from thermal.fe.mesh import box_mesh, disjoint_union
 from thermal.films.law import FilmCoefficient
 from thermal.transient.history import ThermalStage, TransientSolution, settling_time, solve_transient
@@ -108,7 +108,7 @@ def test_heat_that_is_stored_wrongly_is_no_solution(
     right = Storage.heat_out
     monkeypatch.setattr(Storage, "heat_out", lambda self, field: share * right(self, field))
     stage = ThermalStage(name="run", duration=60.0, conditions=conditions())
-    with pytest.raises(NotConverged):
+    with pytest.raises(ThermalNotConverged):
         solve_transient(setup.mesh, VARIABLE, CAPACITY, [stage], 300.0, reuse=setup, tolerance=1.0)
 
 
@@ -308,5 +308,5 @@ def test_a_film_that_jumps_with_the_wall_temperature_is_not_stepped_over() -> No
     ]
     jumping.append(BodySource(body="box", power=1000.0, kind="loss"))
     stage = ThermalStage(name="run", duration=400.0, conditions=jumping)
-    with pytest.raises(NotConverged):
+    with pytest.raises(ThermalNotConverged):
         solve_transient(mesh, {"box": 40.0}, {"box": 3.6e6}, [stage], 300.0)

@@ -29,7 +29,7 @@ from rigdesign.validation import (
 from rigdesign.validation.prototype import Prototype, case_folder
 from rigdesign.validation.rows import compare, compare_printed, not_modelled, stated
 from rigdesign.validation.run_rows import run_rows
-from rigdesign.validation.speed_sweeps import Course, course, simulation_laws, smooth
+from rigdesign.validation.speed_sweeps import SpeedSweep, course, simulation_laws, smooth
 from tests.report_example import make_result
 
 KEYS = {
@@ -201,7 +201,7 @@ def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
 
 def test_speeds_without_a_response_are_told():
     nothing = np.zeros((2, 2))
-    course = Course(
+    course = SpeedSweep(
         speed=np.array([1000.0, 3000.0]), factor=nothing, half=nothing, mean=nothing, drive=np.zeros(2),
         missing=(2000.0, 2050.0, 9000.0),
     )  # fmt: skip
@@ -366,7 +366,7 @@ def test_smooth_meshes_excite_nothing(shipped):
 def test_course_reads_peaks_and_amplitudes():
     speed = np.arange(1000.0, 2000.0, 50.0)
     factor = 1.0 + 0.3 / (1.0 + ((speed - 1500.0) / 60.0) ** 2)
-    found = Course(
+    found = SpeedSweep(
         speed=speed,
         factor=np.column_stack([factor, np.ones_like(factor)]),
         half=np.column_stack([1.0 + 0.8 * (factor - 1.0), np.ones_like(factor)]),

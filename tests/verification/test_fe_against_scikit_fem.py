@@ -11,7 +11,7 @@ from skfem.models.elasticity import lame_parameters
 
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import box_mesh
-from thermal.fe.reference import Rule, rules_of
+from thermal.fe.reference import QuadratureRule, rules_of
 
 YOUNG, POISSON = 210.0, 0.3
 ELEMENTS = {
@@ -19,7 +19,7 @@ ELEMENTS = {
 }  # fmt: skip
 
 
-def rule(of: Rule, brick: bool) -> tuple[np.ndarray, np.ndarray]:
+def rule(of: QuadratureRule, brick: bool) -> tuple[np.ndarray, np.ndarray]:
     """Points and weights on scikit-fem's reference cell, which for bricks is the unit cube."""
     if brick:
         return 0.5 * (of.points.T + 1.0), of.weights / 2.0 ** of.points.shape[1]
@@ -69,7 +69,7 @@ class Pair:
         assert distance.max() < 1e-12
         return same
 
-    def basis(self, of: Rule, element: skfem.Element | None = None) -> skfem.Basis:
+    def basis(self, of: QuadratureRule, element: skfem.Element | None = None) -> skfem.Basis:
         return skfem.Basis(self.mesh, element or self.element, quadrature=rule(of, self.brick))
 
 

@@ -23,7 +23,7 @@ from rigdesign.case.paths import Slot, known_paths, slot_at
 from rigdesign.case.provenance import item_name, take_off
 from rigdesign.checks.assumptions import depends, with_assumptions
 from rigdesign.uncertainty.plan import ALIKE, PARTS, Part, RangeEnd, parts_of, plan
-from rigdesign.uncertainty.point import Outcome, Reference, settle, solve_end
+from rigdesign.uncertainty.point import EndResult, Reference, settle, solve_end
 from rigdesign.uncertainty.verdicts import LEAST_MOVE
 from tests.unit.test_check_assumptions import EXPECTED, check, limit_of
 
@@ -80,7 +80,7 @@ SAMPLE = (
 
 
 @cache
-def settled(name: str) -> tuple[Reference, Outcome]:
+def settled(name: str) -> tuple[Reference, EndResult]:
     """A shipped case with the inputs of `MORE`, settled."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "case.toml"
@@ -144,7 +144,7 @@ def tied(case: Case, path: str) -> tuple[str, ...]:
     )
 
 
-def ends(reference: Reference, path: str) -> tuple[Outcome, Outcome] | None:
+def ends(reference: Reference, path: str) -> tuple[EndResult, EndResult] | None:
     """The path moved: what `--ranges` solves, and all solved again; None where no other value is a valid rig."""
     case = reference.case
     value, slot = numeric_paths(case)[path]
@@ -154,7 +154,7 @@ def ends(reference: Reference, path: str) -> tuple[Outcome, Outcome] | None:
         except CaseError:
             continue
 
-        def solved(parts: tuple[Part, ...], changed: Case = changed, other: object = other) -> Outcome:
+        def solved(parts: tuple[Part, ...], changed: Case = changed, other: object = other) -> EndResult:
             end = RangeEnd(
                 path=path, together_with=(), end="low", value=str(other), stated=str(value), parts=parts, case=changed
             )  # fmt: skip
@@ -167,7 +167,7 @@ def ends(reference: Reference, path: str) -> tuple[Outcome, Outcome] | None:
     return None
 
 
-def differences(one: Outcome, other: Outcome) -> dict[str, float]:
+def differences(one: EndResult, other: EndResult) -> dict[str, float]:
     """Check -> difference of its utilisation, where it is more than what the report lists."""
     found = {}
     for name, left in one.checks.items():

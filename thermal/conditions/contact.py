@@ -60,7 +60,7 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Joint:
+class SurfaceJoint:
     """Quadrature on the common part of two surfaces: n points."""
 
     weights: FloatArray
@@ -87,7 +87,7 @@ class Joint:
         return np.asarray(side.T @ self.weights) / self.area
 
 
-def join(elements: FiniteElements, contact: Contact) -> Joint:
+def join(elements: FiniteElements, contact: Contact) -> SurfaceJoint:
     """Find the common part of both surfaces of ``contact``.
 
     Raises ConditionError if less than ``least_coverage`` of the smaller surface touches the other.
@@ -111,7 +111,7 @@ def join(elements: FiniteElements, contact: Contact) -> Joint:
             "reach, or lower least_coverage"
         )
     n_nodes = len(points)
-    return Joint(
+    return SurfaceJoint(
         weights,
         _interpolation(a, first.facet[at[:, 0]], ref_a, n_nodes),
         _interpolation(b, second.facet[at[:, 1]], ref_b, n_nodes),
@@ -120,7 +120,7 @@ def join(elements: FiniteElements, contact: Contact) -> Joint:
     )
 
 
-def covered(contact: Contact, joint: Joint, others: Collection[str]) -> tuple[str, ...]:
+def covered(contact: Contact, joint: SurfaceJoint, others: Collection[str]) -> tuple[str, ...]:
     """A sentence for each side of a joint that carries other conditions (surfaces ``others``) as well."""
     shares = ((contact.surface_a, joint.coverage_a), (contact.surface_b, joint.coverage_b))
     return tuple(

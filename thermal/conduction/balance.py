@@ -24,7 +24,7 @@ from thermal.conditions.streams import StreamNetwork
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.coupled_rows import contact_rows, enclosure_rows, network_rows
-from thermal.conduction.heat_rows import HeatRow as HeatRow
+from thermal.conduction.heat_rows import HeatFlow as HeatRow
 from thermal.conduction.heat_rows import exchange_rows, film_row, radiation_row, surface_row
 from thermal.conduction.setup import ConductionSetup
 from thermal.fe.elements import FiniteElements

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import sparse
 
-from thermal.conditions.contact import Contact, Joint
+from thermal.conditions.contact import Contact, SurfaceJoint
 from thermal.conduction.law_values import checked_value
 from thermal.fe.low_rank import DIFFERENCE, Column
 from thermal.fe.mesh import FloatArray
@@ -14,7 +14,7 @@ from thermal.fe.mesh import FloatArray
 class ContactTerms:
     """All contacts with their joints."""
 
-    def __init__(self, contacts: Sequence[Contact], joints: Sequence[Joint]) -> None:
+    def __init__(self, contacts: Sequence[Contact], joints: Sequence[SurfaceJoint]) -> None:
         self.contacts, self.joints = contacts, joints
         self._jumps = [joint.jump for joint in joints]
         self._units = [

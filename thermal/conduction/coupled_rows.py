@@ -11,14 +11,14 @@ import numpy as np
 from thermal.conditions.contact import Contact
 from thermal.conditions.enclosure import Enclosure, close_view_factors
 from thermal.conditions.streams import StreamNetwork, inlet_share
-from thermal.conduction.heat_rows import HeatRow, surface_row
+from thermal.conduction.heat_rows import HeatFlow, surface_row
 from thermal.conduction.setup import ConductionSetup
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray
 from thermal.films.law import STEFAN_BOLTZMANN
 
 
-def contact_rows(setup: ConductionSetup, contact: Contact, temperature: FloatArray) -> list[HeatRow]:
+def contact_rows(setup: ConductionSetup, contact: Contact, temperature: FloatArray) -> list[HeatFlow]:
     """Both sides of a contact, from the jump over the joint; area and means are those of the joint."""
     joint = setup.joint(contact)
     at_a, at_b = joint.side_a @ temperature, joint.side_b @ temperature
@@ -29,7 +29,7 @@ def contact_rows(setup: ConductionSetup, contact: Contact, temperature: FloatArr
     rows = []
     for name, mean, sign in ((contact.surface_a, mean_a, 1.0), (contact.surface_b, mean_b, -1.0)):
         rows.append(
-            HeatRow(
+            HeatFlow(
                 surface=name,
                 kind=contact.kind,
                 power=sign * power,
@@ -42,7 +42,7 @@ def contact_rows(setup: ConductionSetup, contact: Contact, temperature: FloatArr
     return rows
 
 
-def enclosure_rows(elements: FiniteElements, enclosure: Enclosure, temperature: FloatArray) -> list[HeatRow]:
+def enclosure_rows(elements: FiniteElements, enclosure: Enclosure, temperature: FloatArray) -> list[HeatFlow]:
     """Net radiation of each surface from the radiosities, as irradiation less radiosity."""
     surfaces = [elements.surfaces[name] for name in enclosure.surfaces]
     areas = np.array([surface.area for surface in surfaces])
@@ -72,17 +72,17 @@ def network_rows(
     temperature: FloatArray,
     volumes: Mapping[str, float],
     number: Mapping[str, int],
-) -> list[HeatRow]:
+) -> list[HeatFlow]:
     """Films with both their sides, powers, streams into a volume and links.
 
     volumes : volume -> outlet temperature [K]; number : volume -> piece its rows count for
     """
     places = {**volumes, **{supply.name: supply.temperature for supply in network.supplies}}
-    rows: list[HeatRow] = []
+    rows: list[HeatFlow] = []
 
     def book(volume: str, kind: str, power: float) -> None:
         rows.append(
-            HeatRow(
+            HeatFlow(
                 surface=volume,
                 kind=kind,
                 power=power,

@@ -9,7 +9,7 @@ from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient
 
 
 @dataclass(frozen=True, kw_only=True)
-class HeatRow:
+class HeatFlow:
     """Heat of one condition at one place."""
 
     surface: str
@@ -33,9 +33,9 @@ def surface_row(
     power: float,
     temperature: FloatArray,
     coefficient: FilmCoefficient | None = None,
-) -> HeatRow:
+) -> HeatFlow:
     """A row of a surface with its area and mean temperature; power [W] into the solid."""
-    return HeatRow(
+    return HeatFlow(
         surface=name,
         kind=kind,
         power=power,
@@ -46,14 +46,14 @@ def surface_row(
     )
 
 
-def film_row(surface: SurfaceElements, film: Film, temperature: FloatArray) -> HeatRow:
+def film_row(surface: SurfaceElements, film: Film, temperature: FloatArray) -> HeatFlow:
     """Heat of a film, its coefficient at the mean wall temperature."""
     coefficient = film.law(surface.mean(temperature), film.fluid_temperature)
     power = coefficient.value * surface.integral(film.fluid_temperature - surface.at_points(temperature))
     return surface_row(surface, film.surface, film.kind, power, temperature, coefficient)
 
 
-def radiation_row(surface: SurfaceElements, radiation: Radiation, temperature: FloatArray) -> HeatRow:
+def radiation_row(surface: SurfaceElements, radiation: Radiation, temperature: FloatArray) -> HeatFlow:
     """Heat from large surroundings, integrated over T^4."""
     wall, room = surface.at_points(temperature), radiation.surroundings_temperature
     power = radiation.emissivity * STEFAN_BOLTZMANN * surface.integral(room**4 - wall**4)
@@ -72,7 +72,7 @@ def radiation_row(surface: SurfaceElements, radiation: Radiation, temperature: F
     return surface_row(surface, radiation.surface, radiation.kind, power, temperature, coefficient)
 
 
-def exchange_rows(elements: FiniteElements, exchange: Exchange, temperature: FloatArray) -> list[HeatRow]:
+def exchange_rows(elements: FiniteElements, exchange: Exchange, temperature: FloatArray) -> list[HeatFlow]:
     """Both sides of an exchange between area means."""
     a, b = elements.surfaces[exchange.surface_a], elements.surfaces[exchange.surface_b]
     mean_a, mean_b = a.mean(temperature), b.mean(temperature)

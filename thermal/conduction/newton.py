@@ -13,7 +13,7 @@ import numpy as np
 from scipy import sparse
 
 from thermal.conduction.terms import ConductionProblem, Linearisation, Preconditioner
-from thermal.errors import NotConverged, ThermalInputError
+from thermal.errors import ThermalInputError, ThermalNotConverged
 from thermal.fe.mesh import FloatArray
 from thermal.fe.solver import LinearSolution, LinearSpace, conjugate_gradient, gmres
 
@@ -58,7 +58,7 @@ def newton(
     linear : Jacobian of a time step nearby; a time step keeps its Jacobian as long as the residual falls by
         ``CONTRACTION`` from step to step
 
-    Raises NotConverged with its history and the hottest place.
+    Raises ThermalNotConverged with its history and the hottest place.
     """
     out, turned = problem.heat_out(field)
     residual = problem.residual(out)
@@ -71,7 +71,7 @@ def newton(
         if size <= limit:
             return NewtonResult(field, tuple(history), tuple(iterations), preconditioner, linear)
         if len(iterations) == max_steps:
-            raise NotConverged(
+            raise ThermalNotConverged(
                 f"Newton: residual {history[-1]:.3g} of the heat after {max_steps} steps is above "
                 f"{tolerance:g}; {_hottest(problem, field)}; check the film laws for jumps or start from a "
                 "nearer field",
@@ -125,7 +125,7 @@ def linear_start(problem: ConductionProblem, field: FloatArray) -> FloatArray:
         load = np.where(fixed, 0.0, down @ parts.load(residual))
         try:
             step = _solved(linear, load, space, START)
-        except NotConverged:
+        except ThermalNotConverged:
             break
         whole = parts.whole(residual, np.where(problem.fixed, 0.0, up @ step.values))
         try:

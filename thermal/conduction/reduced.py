@@ -31,9 +31,9 @@ from thermal.conditions.contact import Contact
 from thermal.conduction.balance import HeatBalance
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition, ConditionError
-from thermal.conduction.heat_rows import HeatRow
+from thermal.conduction.heat_rows import HeatFlow
 from thermal.conduction.setup import ConductionSetup
-from thermal.errors import NotConverged
+from thermal.errors import ThermalNotConverged
 from thermal.fe.low_rank import DIFFERENCE
 from thermal.fe.mesh import FloatArray
 from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient
@@ -199,7 +199,7 @@ class ReducedConduction:
         ------
         ConditionError
             A condition that is solved in full only.
-        NotConverged
+        ThermalNotConverged
             Newton's method stalls.
         """
         system = Projection(self, conditions)
@@ -225,7 +225,7 @@ class ReducedConduction:
                     steps=len(history) - 1,
                 )
             if len(history) > STEPS:
-                raise NotConverged(
+                raise ThermalNotConverged(
                     f"reduced conduction: Newton step of {history[-1]:.3g} K after {STEPS} steps; check the film "
                     "laws for jumps or start from a nearer field",
                     tuple(history[1:]),
@@ -412,7 +412,7 @@ class Projection:
 
     def balance(self, a: FloatArray) -> HeatBalance:
         """Rows of the heat balance at coefficients ``a``, two for an exchange or contact."""
-        rows: list[HeatRow] = []
+        rows: list[HeatFlow] = []
         held = iter(self.multipliers)
         for condition in self.conditions:
             found = self._coefficient(condition, a)
@@ -458,9 +458,9 @@ class Projection:
 
     def _row(
         self, surface: str, kind: str, power: float, a: FloatArray, coefficient: FilmCoefficient | None = None
-    ) -> HeatRow:
+    ) -> HeatFlow:
         own = self.reduced.surface(surface)
-        return HeatRow(
+        return HeatFlow(
             surface=surface,
             kind=kind,
             power=power,
@@ -470,9 +470,9 @@ class Projection:
             coefficient=coefficient,
         )
 
-    def _body_row(self, body: str, kind: str, power: float, a: FloatArray) -> HeatRow:
+    def _body_row(self, body: str, kind: str, power: float, a: FloatArray) -> HeatFlow:
         elements = self.reduced.setup.elements
-        return HeatRow(
+        return HeatFlow(
             surface=body,
             kind=kind,
             power=power,

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from thermal.conditions.boundary import Adiabatic
-from thermal.conditions.contact import Contact, Joint, covered, join
+from thermal.conditions.contact import Contact, SurfaceJoint, covered, join
 from thermal.conduction.capacity import HeatCapacity
 from thermal.conduction.condition_checks import Condition, check_conductivity, surfaces_of
 from thermal.conduction.conductivity import Conductivity, VariableConduction
@@ -50,7 +50,7 @@ class ConductionSetup:
         self.size = self.elements.fine.row_sizes(size)
         """(n_nodes,) sum of the sizes of each row's entries [W/K], for the rounding error of the residual."""
         self._capacities: dict[tuple[tuple[str, float], ...], HeatCapacity] = {}
-        self._joints: dict[tuple[str, str, float | None, float], Joint] = {}
+        self._joints: dict[tuple[str, str, float | None, float], SurfaceJoint] = {}
 
     def matches(self, mesh: NamedMesh, conductivity: Mapping[str, Conductivity]) -> bool:
         """Whether the setup was made for this mesh and these conductivities."""
@@ -71,7 +71,7 @@ class ConductionSetup:
             self._capacities[key] = HeatCapacity(self.elements, capacity)
         return self._capacities[key]
 
-    def joint(self, contact: Contact) -> Joint:
+    def joint(self, contact: Contact) -> SurfaceJoint:
         """Common part of the surfaces of a contact, found once."""
         key = (contact.surface_a, contact.surface_b, contact.reach, contact.least_coverage)
         if key not in self._joints:

@@ -13,7 +13,7 @@ from thermal.conduction.conductivity import Conductivity
 from thermal.conduction.newton import linear_start, newton
 from thermal.conduction.setup import ConductionSetup as ConductionSetup
 from thermal.conduction.terms import ConductionProblem, Preconditioner
-from thermal.errors import NotConverged
+from thermal.errors import ThermalNotConverged
 from thermal.fe.mesh import FloatArray, NamedMesh
 
 CLOSURE = 1e-8
@@ -61,7 +61,7 @@ def solve_steady(
     reuse : setup of the same mesh and conductivities; all but the boundary terms is then at hand
     tolerance : of the nodal residuals' sum relative to the heat turned over; the balance closes to ten times it
 
-    Raises ConditionError (a ValueError) for conditions or values that cannot be computed, NotConverged (a
+    Raises ConditionError (a ValueError) for conditions or values that cannot be computed, ThermalNotConverged (a
     RuntimeError with its history) if Newton's method or a linear solve stalls.
     """
     setup = ConductionSetup(mesh, conductivity) if reuse is None else reuse
@@ -82,7 +82,7 @@ def solve_steady(
     if balance.closure > max(CLOSURE, 10.0 * tolerance) and balance.worst_piece > problem.roundoff(
         result.field
     ):
-        raise NotConverged(
+        raise ThermalNotConverged(
             f"heat balance open by {balance.closure:.3g} of the heat turned over, above {CLOSURE:g}; "
             "lower the tolerance",
             result.residuals,

@@ -103,7 +103,7 @@ def axial_range(surface: SurfaceElements, points: FloatArray) -> tuple[float, fl
 
 
 @dataclass(frozen=True, eq=False)
-class Section:
+class CylinderSection:
     """Points round a cylinder in one cross-section, found once in its mesh and read for any displacement.
 
     nodes : (n, 6) of the facet that covers each point of the unrolled cylinder; shapes : (n, 6) functions there
@@ -119,7 +119,7 @@ class Section:
     @classmethod
     def of(
         cls, surface: SurfaceElements, points: FloatArray, centre: Point, angles: FloatArray, x: float
-    ) -> "Section":
+    ) -> "CylinderSection":
         """Find the points at ``angles`` (n,) [rad] in section ``x`` [m] of a cylinder about an axis along x."""
         corners = points[surface.facets[:, :3]] - np.array(centre)
         phi = np.arctan2(corners[:, :, 2], corners[:, :, 1])

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from thermal.errors import NotConverged
+from thermal.errors import ThermalNotConverged
 from thermal.expansion.supports import ElasticError, FreePieces, check_held, three_two_one
 from thermal.fe.aggregation import rigid_modes
 from thermal.fe.curved import linear_stiffness
@@ -112,7 +112,7 @@ class ElasticSetup:
         tolerance: float = 1e-8,
         start: FloatArray | None = None,
     ) -> Displacement:
-        """Displacement under a nodal temperature (n_nodes,) [K]; raises NotConverged with its residuals.
+        """Displacement under a nodal temperature (n_nodes,) [K]; raises ThermalNotConverged with its residuals.
 
         start : (n_nodes, 3) displacement of a neighbouring temperature field [m]
         """
@@ -132,7 +132,7 @@ class ElasticSetup:
         """Conjugate gradients; where they stall on a small mesh, of very flat cells say, a direct solution."""
         try:
             return conjugate_gradient(self.matrix, load, self.multigrid, start=start, tolerance=tolerance)
-        except NotConverged as stalled:
+        except ThermalNotConverged as stalled:
             if len(load) > DIRECT:
                 raise
             held = self._held | self.free.pins.ravel()

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from thermal.expansion.cylinders import Cylinder, Section
+from thermal.expansion.cylinders import Cylinder, CylinderSection
 from thermal.expansion.elastic import ElasticError, ElasticSetup, three_two_one
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray
@@ -41,7 +41,7 @@ class ExpansionSetup:
         self.piece = self._pieces()
         """Shaft name -> number of its piece."""
         self.elastic = ElasticSetup(self.elements, elastic, self._supports())
-        self._sections: dict[tuple[str, Point, float], Section] = {}
+        self._sections: dict[tuple[str, Point, float], CylinderSection] = {}
         self._cylinders: dict[tuple[str, Point], Cylinder] = {}
         self._expansions: dict[str, float] = {}
 
@@ -62,12 +62,12 @@ class ExpansionSetup:
             self._expansions[surface] = self.elastic.elastic[body].expansion
         return self._expansions[surface]
 
-    def section(self, surface: str, centre: Point, x: float) -> Section:
+    def section(self, surface: str, centre: Point, x: float) -> CylinderSection:
         """Cross-section ``x`` [m] of a cylindrical surface about ``centre``, at the angles `ROUND`."""
         found = self._sections.get((surface, centre, x))
         if found is None:
             face, points = self.elements.surfaces[surface], self.model.mesh.points
-            found = self._sections[surface, centre, x] = Section.of(face, points, centre, ROUND, x)
+            found = self._sections[surface, centre, x] = CylinderSection.of(face, points, centre, ROUND, x)
         return found
 
     def _piece_of(self, body: str) -> int:

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import sparse
 
 from thermal.fe import assembly, kernels
-from thermal.fe.reference import Rule
+from thermal.fe.reference import QuadratureRule
 from thermal.fe.shapes import CellShape, FloatArray, IndexArray
 
 STRAIGHT = 1e-9
@@ -39,7 +39,12 @@ class Level:
 
     @classmethod
     def of(
-        cls, points: FloatArray, cells: IndexArray, values: FloatArray, gradients: FloatArray, rule: Rule
+        cls,
+        points: FloatArray,
+        cells: IndexArray,
+        values: FloatArray,
+        gradients: FloatArray,
+        rule: QuadratureRule,
     ) -> "Level":
         """Work out geometry and which nodes are coupled.
 
@@ -116,7 +121,7 @@ class Level:
         )
 
 
-def linear_level(points: FloatArray, cells: IndexArray, shape: CellShape, rule: Rule) -> Level:
+def linear_level(points: FloatArray, cells: IndexArray, shape: CellShape, rule: QuadratureRule) -> Level:
     """The linear space on straight-sided cells; points : (n_corners, 3), cells : (n_cells, n_corners).
 
     A cell whose corners alone are inverted or flat carries nothing.

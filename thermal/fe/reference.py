@@ -15,7 +15,7 @@ from thermal.fe.shapes import TETRAHEDRON_10, TRIANGLE_6, FloatArray, Shape
 
 
 @dataclass(frozen=True)
-class Rule:
+class QuadratureRule:
     """Quadrature points (n, d) and weights (n,) [-]; the weights sum to the reference volume."""
 
     points: FloatArray
@@ -29,35 +29,35 @@ def _orbit(a: float, corners: int) -> list[list[float]]:
     return [point[1:] for point in full]
 
 
-def _tetrahedron_4() -> Rule:
-    return Rule(np.array(_orbit((5.0 - np.sqrt(5.0)) / 20.0, 4)), np.full(4, 1.0 / 24.0))
+def _tetrahedron_4() -> QuadratureRule:
+    return QuadratureRule(np.array(_orbit((5.0 - np.sqrt(5.0)) / 20.0, 4)), np.full(4, 1.0 / 24.0))
 
 
-def _tetrahedron_14() -> Rule:
+def _tetrahedron_14() -> QuadratureRule:
     c = 0.045503704125649649492
     pairs = [[c if k in pair else 0.5 - c for k in range(4)][1:] for pair in TETRAHEDRON_10.edges]
     points = _orbit(0.31088591926330060980, 4) + _orbit(0.092735250310891226402, 4) + pairs
     weights = [0.11268792571801585080] * 4 + [0.073493043116361949544] * 4 + [0.042546020777081466438] * 6
-    return Rule(np.array(points), np.array(weights) / 6.0)
+    return QuadratureRule(np.array(points), np.array(weights) / 6.0)
 
 
-def _triangle_7() -> Rule:
+def _triangle_7() -> QuadratureRule:
     root = np.sqrt(15.0)
     a, b = (6.0 - root) / 21.0, (6.0 + root) / 21.0
     points = [[1.0 / 3.0, 1.0 / 3.0], *_orbit(a, 3), *_orbit(b, 3)]
     weights = [9.0 / 40.0] + [(155.0 - root) / 1200.0] * 3 + [(155.0 + root) / 1200.0] * 3
-    return Rule(np.array(points), np.array(weights) / 2.0)
+    return QuadratureRule(np.array(points), np.array(weights) / 2.0)
 
 
-def _gauss(per_axis: int, dimension: int) -> Rule:
+def _gauss(per_axis: int, dimension: int) -> QuadratureRule:
     points, weights = np.polynomial.legendre.leggauss(per_axis)
-    return Rule(
+    return QuadratureRule(
         np.array(list(product(points, repeat=dimension))),
         np.array([np.prod(w) for w in product(weights, repeat=dimension)]),
     )
 
 
-CENTRE_OF_TETRAHEDRON = Rule(np.full((1, 3), 0.25), np.full(1, 1.0 / 6.0))
+CENTRE_OF_TETRAHEDRON = QuadratureRule(np.full((1, 3), 0.25), np.full(1, 1.0 / 6.0))
 TETRAHEDRON_4 = _tetrahedron_4()
 TETRAHEDRON_14 = _tetrahedron_14()
 TRIANGLE_7 = _triangle_7()
@@ -70,10 +70,10 @@ GAUSS_9 = _gauss(3, 2)
 class Rules:
     """Rules of one cell: for stiffness, for loads and means, for the linear sub-space, for its sides."""
 
-    stiffness: Rule
-    load: Rule
-    linear: Rule
-    side: Rule
+    stiffness: QuadratureRule
+    load: QuadratureRule
+    linear: QuadratureRule
+    side: QuadratureRule
 
 
 _OF_TETRAHEDRA = Rules(TETRAHEDRON_4, TETRAHEDRON_14, CENTRE_OF_TETRAHEDRON, TRIANGLE_7)

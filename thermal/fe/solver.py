@@ -10,7 +10,7 @@ from typing import TypeVar
 import numpy as np
 from scipy import sparse
 
-from thermal.errors import NotConverged
+from thermal.errors import ThermalNotConverged
 from thermal.fe import kernels
 from thermal.fe.direct import solve_direct
 from thermal.fe.multigrid import LinearSpace, TwoLevelMultigrid
@@ -73,7 +73,7 @@ def conjugate_gradient(
 ) -> LinearSolution:
     """Solve a symmetric positive definite system to ``tolerance`` times the 2-norm of ``load``.
 
-    Raises NotConverged with the residual history after ``max_iterations``.
+    Raises ThermalNotConverged with the residual history after ``max_iterations``.
     """
     product_of = Product(matrix)
     x = np.zeros_like(load) if start is None else start.copy()
@@ -86,7 +86,7 @@ def conjugate_gradient(
     last = 1.0
     while residuals[-1] > tolerance:
         if len(residuals) > max_iterations:
-            raise NotConverged(_stalled("conjugate gradients", residuals, tolerance), tuple(residuals))
+            raise ThermalNotConverged(_stalled("conjugate gradients", residuals, tolerance), tuple(residuals))
         z = preconditioner(residual)
         product = float(residual @ z)
         direction = z + (product / last) * direction if len(residuals) > 1 else z
@@ -109,7 +109,7 @@ def gmres(
 ) -> LinearSolution:
     """Solve a general system by right-preconditioned GMRES without restart, starting from zero.
 
-    Stops at ``tolerance`` times the 2-norm of ``load``. Raises NotConverged with the residual history.
+    Stops at ``tolerance`` times the 2-norm of ``load``. Raises ThermalNotConverged with the residual history.
     """
     scale = float(np.linalg.norm(load))
     if scale == 0.0:
@@ -122,7 +122,7 @@ def gmres(
     while residuals[-1] > tolerance:
         k = len(images)
         if k == max_iterations:
-            raise NotConverged(_stalled("GMRES", residuals, tolerance), tuple(residuals))
+            raise ThermalNotConverged(_stalled("GMRES", residuals, tolerance), tuple(residuals))
         images.append(preconditioner(basis[k]))
         w = operator(images[k])
         for i, v in enumerate(basis):

@@ -16,11 +16,11 @@ from thermal.conduction.condition_checks import Condition, ConditionError, check
 from thermal.conduction.conductivity import Conductivity
 from thermal.conduction.steady import CLOSURE, ConductionSetup
 from thermal.conduction.terms import OFF_REST, ConductionProblem
-from thermal.errors import NotConverged
+from thermal.errors import ThermalNotConverged
 from thermal.fe.mesh import FloatArray, IndexArray, NamedMesh
 from thermal.transient.energy import EnergyAccount, EnergyBalance
 from thermal.transient.probes import Probe, Reader, reader
-from thermal.transient.time_steps import STAGE_WEIGHTS, ProblemAt, Step, Stepper, landing, next_length
+from thermal.transient.time_steps import STAGE_WEIGHTS, ProblemAt, Stepper, TimeStep, landing, next_length
 
 FIRST_STEP = 1e-2
 """First step of a stage as a share of its duration."""
@@ -29,7 +29,7 @@ LARGEST_STEP = 0.1
 """Greatest step as a share of the stage, where none is given."""
 
 SMALLEST_STEP = 1e-10
-"""Step as a share of the stage at which the run gives up."""
+"""Time step as a share of the stage at which the run gives up."""
 
 ConditionsAt = Callable[[float], Sequence[Condition]]
 """Conditions at a time since the start of the stage [s], smooth in it."""
@@ -103,7 +103,7 @@ def solve_transient(
     largest_step : [s]; a tenth of each stage if None
     reuse : setup of the same mesh and conductivities
 
-    Raises ConditionError for input that cannot be computed, NotConverged if a step fails however short it is or
+    Raises ConditionError for input that cannot be computed, ThermalNotConverged if a step fails however short it is or
     the energy does not close.
     """
     setup = ConductionSetup(mesh, conductivity) if reuse is None else reuse
@@ -222,7 +222,7 @@ class _Run:
                     else min(next_length(length, made.error, tolerance), 0.7 * length)
                 )
                 if dt < SMALLEST_STEP * stage.duration:
-                    raise NotConverged(
+                    raise ThermalNotConverged(
                         f"stage {stage.name!r} at {self._time:.6g} s: a step of {length:.3g} s is still off by more "
                         f"than {tolerance:g} K; check the conditions for jumps inside of the stage",
                         (),
@@ -236,10 +236,10 @@ class _Run:
 
     def _try(
         self, problems: "ProblemAt", dt: float, field: FloatArray, slope: FloatArray | None, smallest: float
-    ) -> Step | None:
+    ) -> TimeStep | None:
         try:
             return self._stepper.step(problems, self._time, dt, field, slope)
-        except NotConverged:
+        except ThermalNotConverged:
             if dt <= 8.0 * smallest:
                 raise
             self._stepper.forget()
@@ -268,7 +268,13 @@ class _Run:
         self._temperature = self._temperature + rise
 
     def _accept(
-        self, number: int, problem: ConductionProblem, dt: float, goal: float, made: Step, before: FloatArray
+        self,
+        number: int,
+        problem: ConductionProblem,
+        dt: float,
+        goal: float,
+        made: TimeStep,
+        before: FloatArray,
     ) -> None:
         n = problem.n_nodes
         for share, balance in zip(STAGE_WEIGHTS, made.balances, strict=True):
@@ -296,10 +302,10 @@ class _Run:
             self._observer(self._time, self._temperature.copy(), dict(self._volumes))
 
     def solution(self) -> TransientSolution:
-        """What was kept; NotConverged if the energy does not close."""
+        """What was kept; ThermalNotConverged if the energy does not close."""
         energy = self._account.balance
         if energy.closure > CLOSURE:
-            raise NotConverged(
+            raise ThermalNotConverged(
                 f"energy open by {energy.closure:.3g} of the heat turned over, above {CLOSURE:g}; lower the "
                 "tolerance of Newton's method",
                 (),

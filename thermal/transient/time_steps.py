@@ -51,7 +51,7 @@ ProblemAt = Callable[[float], ConductionProblem]
 
 
 @dataclass(frozen=True)
-class Step:
+class TimeStep:
     """A step made: the new unknowns with their slope in time, the error, the heat of both stages."""
 
     field: FloatArray
@@ -84,7 +84,7 @@ class Stepper:
 
     def step(
         self, problem_at: ProblemAt, time: float, dt: float, field: FloatArray, slope: FloatArray | None
-    ) -> Step:
+    ) -> TimeStep:
         """Make one step.
 
         field : (n_nodes + m,) at ``time`` [K]
@@ -104,7 +104,7 @@ class Stepper:
             parts = zip(ERROR_WEIGHTS, (slope, k1, k2), strict=True)
             third_order = sum((dt * w * k for w, k in parts), np.zeros_like(field))
             error = min(error, self._size(problem, third_order))
-        return Step(second, k2, error, (balance_1, balance_2), used_1 + used_2)
+        return TimeStep(second, k2, error, (balance_1, balance_2), used_1 + used_2)
 
     def _stage(
         self, problem: ConductionProblem, dt: float, base: FloatArray, guess: FloatArray

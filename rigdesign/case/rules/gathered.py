@@ -18,7 +18,7 @@ from rigdesign.properties.materials import MATERIALS
 from rigdesign.properties.oil import OILS
 
 if TYPE_CHECKING:
-    from rigdesign.case.drivetrain import Shaft
+    from rigdesign.case.drivetrain import ShaftInput
     from rigdesign.case.model import Case
 
 MOST_SHAFT_ELEMENTS = 500
@@ -100,7 +100,7 @@ def _missing(plain: object, path: str) -> bool:
     return False
 
 
-def _shafts(case: "Case") -> "Iterable[Shaft]":
+def _shafts(case: "Case") -> "Iterable[ShaftInput]":
     return [] if case.drivetrain is None else case.drivetrain.shafts.values()
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from math import atan2, cos, hypot, pi, sin
 
 from dynamics.standards.iso1328_1_2013 import tolerances
-from rigdesign.case.drivetrain import HarmonicTorque
+from rigdesign.case.drivetrain import HarmonicTorqueInput
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.model import Case
@@ -283,7 +283,7 @@ def _joints(case: Case) -> Iterator[Effect]:
 class _Harmonic:
     """Adds a harmonic torque to a list of them."""
 
-    def __init__(self, path: str, now: tuple[HarmonicTorque, ...], order: float) -> None:
+    def __init__(self, path: str, now: tuple[HarmonicTorqueInput, ...], order: float) -> None:
         self._path, self._now, self._order = path, now, order
 
     def __call__(self, case: Case, values: tuple[float, ...]) -> Changes:

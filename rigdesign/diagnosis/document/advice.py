@@ -35,7 +35,7 @@ MOST_PROPOSED = 8
 
 
 @dataclass(frozen=True, kw_only=True)
-class Step:
+class NextStep:
     """Something to measure or do next.
 
     separation : of the rivals it tells apart least [variances], cost : relative to one thermocouple; None where it
@@ -122,10 +122,10 @@ def certainty(outcome: Outcome) -> str:
     return f"Indicative: {', and '.join(missing)}."
 
 
-def steps(outcome: Outcome) -> tuple[Step, ...]:
+def steps(outcome: Outcome) -> tuple[NextStep, ...]:
     """What to measure or do next: computed proposals first, then what the rules of the workflow say."""
     computed = [
-        Step(
+        NextStep(
             text=one.title, why=_why(outcome, one), separation=one.separation, cost=one.cost, decides=one.decides
         )
         for one in outcome.proposals
@@ -144,49 +144,49 @@ def _why(outcome: Outcome, proposal: Ranked) -> str:
     return f"tells {apart}" if proposal.decides else f"goes some way to tell {apart}"
 
 
-def _first(outcome: Outcome) -> list[Step]:
+def _first(outcome: Outcome) -> list[NextStep]:
     """What the verdict itself asks for."""
-    corrections = [Step(text=one.text, why="then diagnose again") for one in outcome.corrections]
+    corrections = [NextStep(text=one.text, why="then diagnose again") for one in outcome.corrections]
     match outcome.verdict:
         case "alias_group":
             if outcome.picked is None:
                 return [
-                    Step(
+                    NextStep(
                         text="look for what one of the group would show elsewhere on the rig, or pick one with --name",
                         why="these data fit all of them alike",
                     )
                 ]
         case "unknown_located":
             place = outcome.before[0].group if outcome.before else "the rig"
-            return [Step(text=f"look at {place}", why="there the residual stands out most")]
+            return [NextStep(text=f"look at {place}", why="there the residual stands out most")]
     return corrections
 
 
-def _better_data(outcome: Outcome) -> list[Step]:
+def _better_data(outcome: Outcome) -> list[NextStep]:
     result, found = outcome.result, outcome.result.diagnosis
     running = len(result.data.settings)
     steps = []
     if running < LEAST_RUNNING_POINTS:
         steps.append(
-            Step(
+            NextStep(
                 text="measure 9 to 15 operating points that mix low and high speed, torque, oil temperature and flow",
                 why=f"{running} operating point{'s' if running != 1 else ''} cannot tell effects apart",
             )
         )
     elif not found.held_out_points:
         steps.append(
-            Step(
+            NextStep(
                 text=f"measure at least {LEAST_POINTS} operating points: corners of speed, torque and oil temperature",
                 why="some can then be kept aside to prove a name",
             )
         )
     if not result.problem.repeated:
         steps.append(
-            Step(text="repeat every operating point", why="the noise is then measured, not declared")
+            NextStep(text="repeat every operating point", why="the noise is then measured, not declared")
         )
     if result.baseline is None and outcome.verdict != "named":
         steps.append(
-            Step(
+            NextStep(
                 text="measure the same points in a state known to be healthy and give that set as baseline",
                 why="errors of the model cancel in the difference, so that smaller effects are seen",
             )

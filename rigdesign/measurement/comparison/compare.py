@@ -17,7 +17,7 @@ from rigdesign.measurement.data import Data
 from rigdesign.measurement.processing.baseline import Foretold, HealthySet, foretold
 from rigdesign.measurement.processing.propagation import setting_spread
 from rigdesign.measurement.quantities import CHANNELS
-from rigdesign.measurement.reading.measurement_set import Finding, MeasurementSet
+from rigdesign.measurement.reading.measurement_set import DataFinding, MeasurementSet
 from rigdesign.prediction.model import Feature, OperatingCondition, Prediction
 
 Array = NDArray[np.float64]
@@ -48,7 +48,7 @@ class Comparison:
     spread: Array
     located: tuple[Located, ...]
     sentences: tuple[str, ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[DataFinding, ...]
     healthy: HealthySet | None = None
     foretold: Foretold | None = None
 
@@ -113,7 +113,7 @@ def compare(
     return replace(found, sentences=tuple(said))
 
 
-def _of_baseline(data: Data, healthy: HealthySet, known: Foretold) -> Iterator[Finding]:
+def _of_baseline(data: Data, healthy: HealthySet, known: Foretold) -> Iterator[DataFinding]:
     """What the healthy set says of itself, and how much of this one it does not have."""
     for finding in healthy.data.findings:
         yield replace(finding, text=f"healthy set: {finding.text}")
@@ -121,7 +121,7 @@ def _of_baseline(data: Data, healthy: HealthySet, known: Foretold) -> Iterator[F
     if lacking:
         gone = tuple(setting.name for setting in data.settings if setting.name not in known.points)
         why = f" (operating points not met again: {', '.join(gone)})" if gone else ""
-        yield Finding(
+        yield DataFinding(
             id="not_in_baseline", weight="note", points=gone,
             text=f"{lacking} of {int(data.usable.sum())} numbers have no counterpart in the healthy set{why}; they are "
             "held against the simulation alone",

@@ -10,7 +10,7 @@ from rigdesign.base import units
 from rigdesign.base.quantity_kinds import KINDS
 from rigdesign.measurement.data import Data
 from rigdesign.measurement.quantities import CHANNELS
-from rigdesign.measurement.reading.measurement_set import Finding
+from rigdesign.measurement.reading.measurement_set import DataFinding
 
 Array = NDArray[np.float64]
 RATIO = 1.3
@@ -19,7 +19,7 @@ UNLIKE = 3.0
 """Least ratio of two units that can be told from a difference of model and rig."""
 
 
-def unit_findings(data: Data, simulated: Array) -> Iterator[Finding]:
+def unit_findings(data: Data, simulated: Array) -> Iterator[DataFinding]:
     """Channels whose readings are larger or smaller than simulated by the ratio of two units."""
     for name, entry in data.channels.items():
         kind = CHANNELS[entry.channel.quantity].kind
@@ -38,7 +38,7 @@ def unit_findings(data: Data, simulated: Array) -> Iterator[Finding]:
         for unit in KINDS[kind].units:
             factor = own / units.worth(kind, unit)[0]
             if max(factor, 1.0 / factor) > UNLIKE and 1.0 / RATIO < ratio / factor < RATIO:
-                yield Finding(
+                yield DataFinding(
                     id="unit", weight="suspect", channels=(name,),
                     text=f"{name}: reads {ratio:.3g} times what is simulated; its numbers would fit {unit} instead of "
                     f"{entry.unit}; look at its unit",
@@ -52,7 +52,7 @@ GAIN = 0.25
 """What may be left of the squared residual when the two are exchanged."""
 
 
-def swap_findings(data: Data, simulated: Array, spread: Array) -> Iterator[Finding]:
+def swap_findings(data: Data, simulated: Array, spread: Array) -> Iterator[DataFinding]:
     """Suspected swaps of channels of one quantity, best first; each channel is named once."""
     series: dict[str, dict[tuple[str, float, str], int]] = {}
     for i, feature in enumerate(data.features):
@@ -79,7 +79,7 @@ def swap_findings(data: Data, simulated: Array, spread: Array) -> Iterator[Findi
         if named & {first, second}:
             continue
         named |= {first, second}
-        yield Finding(
+        yield DataFinding(
             id="swapped_channels", weight="suspect", channels=(first, second),
             text=f"{first} and {second}: exchanged, they leave {left:.1%} of their squared residual; look at their "
             "cables and names",

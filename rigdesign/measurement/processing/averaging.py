@@ -23,7 +23,7 @@ FRACTION = 1e-9
 
 
 @dataclass(frozen=True)
-class Orders:
+class MeasuredOrders:
     """Complex orders of one signal in one recording.
 
     values : by order, one-sided: x = sum Re(X exp(i k phi)); the mean at 0
@@ -39,8 +39,8 @@ class Orders:
     without_phase: tuple[float, ...] = ()
 
 
-def signal_orders(signal: Signal, turn: TurnAngle, orders: Sequence[float], cycle: int) -> Orders:
-    """Orders of a signal, averaged over whole hunting cycles.
+def signal_orders(signal: Signal, turn: TurnAngle, orders: Sequence[float], cycle: int) -> MeasuredOrders:
+    """MeasuredOrders of a signal, averaged over whole hunting cycles.
 
     A recording shorter than one cycle is averaged over whole turns and gives whole orders only.
 
@@ -79,7 +79,7 @@ def signal_orders(signal: Signal, turn: TurnAngle, orders: Sequence[float], cycl
     if not used:
         raise ValueError("samples are missing in every cycle; look at the cable or record longer")
     scale = np.where(wanted > 0.0, 2.0, 1.0) / (used * 2.0 * math.pi * span)
-    return Orders(
+    return MeasuredOrders(
         values=dict(zip(wanted.tolist(), (scale * sums).tolist())),
         cycles=used,
         cycle=span,

@@ -14,7 +14,7 @@ from rigdesign.measurement.processing.transfer import gain
 from rigdesign.measurement.quality.checks import data_findings
 from rigdesign.measurement.quality.consistency import consistency_findings
 from rigdesign.measurement.reading.measurement_set import (
-    Finding,
+    DataFinding,
     MeasuredChannel,
     MeasuredPoint,
     MeasurementSet,
@@ -81,14 +81,14 @@ def _mean(values: NDArray[np.float64]) -> float:
 
 def _not_steady(
     measurement: MeasurementSet, names: Sequence[Feature], usable: NDArray[np.bool_]
-) -> Iterable[Finding]:
+) -> Iterable[DataFinding]:
     """Take temperatures out at points that had not settled."""
     restless = tuple(point.name for point in measurement.points if not point.steady)
     thermal = {name for name, entry in measurement.channels.items() if entry.channel.quantity in THERMAL}
     hit = [i for i, feature in enumerate(names) if feature.setting in restless and feature.channel in thermal]
     usable[hit] = False
     if hit:
-        yield Finding(
+        yield DataFinding(
             id="not_steady", weight="dropped", points=restless,
             text=f"{', '.join(restless)}: said not to be steady; temperatures there are not used",
         )  # fmt: skip
@@ -101,7 +101,7 @@ def _through_sensors(
     values: NDArray[np.float64],
     noise: NDArray[np.float64],
     usable: NDArray[np.bool_],
-) -> Iterable[Finding]:
+) -> Iterable[DataFinding]:
     """Undo what sensor and logger do to orders; orders they hold back are taken out."""
     speeds = {setting.name: setting.speed for setting in settings}
     place = {feature: i for i, feature in enumerate(names)}
@@ -121,7 +121,7 @@ def _through_sensors(
         noise[[i, j]] /= abs(factor)
     for name, gone in lost.items():
         lowest = min(gone, key=lambda feature: feature.order * speeds[feature.setting])
-        yield Finding(
+        yield DataFinding(
             id="held_back", weight="dropped", channels=(name,),
             text=f"{name}: {len(gone)} orders pass its sensor with less than {LEAST_GAIN:g} of their size, from "
             f"order {lowest.order:g} at {lowest.setting} on; they are not used",
@@ -133,15 +133,15 @@ def _few_readings(
     names: Sequence[Feature],
     repeats: NDArray[np.int64],
     usable: NDArray[np.bool_],
-) -> Iterable[Finding]:
+) -> Iterable[DataFinding]:
     if len(settings) == 1:
-        yield Finding(
+        yield DataFinding(
             id="one_point", weight="note", points=(settings[0].name,),
             text="one operating point only: most effects cannot be told apart; measure at other speeds, torques "
             "and oil temperatures",
         )  # fmt: skip
     if not _repeated(names, repeats, usable):
-        yield Finding(
+        yield DataFinding(
             id="no_repeats", weight="note",
             text="fewer than half the numbers have a second reading: noise is what the set declares, verdicts are "
             "indicative; repeat every point",

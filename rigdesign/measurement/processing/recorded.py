@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case.faults import unknown, written
 from rigdesign.measurement.places import Places
-from rigdesign.measurement.processing.averaging import Orders, signal_orders
+from rigdesign.measurement.processing.averaging import MeasuredOrders, signal_orders
 from rigdesign.measurement.quality.signal_checks import (
     lines_off_the_mesh,
     signal_findings,
@@ -19,7 +19,7 @@ from rigdesign.measurement.quality.signal_checks import (
 )
 from rigdesign.measurement.quantities import CHANNELS, accepted_unit, same_worth, to_si
 from rigdesign.measurement.reading.document import MeasurementFile, Recording
-from rigdesign.measurement.reading.measurement_set import Finding, MeasuredChannel, MeasuredPoint, Weight
+from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel, MeasuredPoint, Weight
 from rigdesign.measurement.reading.rows import Rows
 from rigdesign.measurement.reading.signals import Signal, Signals, read_signals
 from rigdesign.measurement.reading.tach import TachError, TurnAngle, turn_angle
@@ -41,7 +41,7 @@ def read_recordings(
     points: Sequence[MeasuredPoint],
     rows: Rows,
     known: Mapping[Feature, NDArray[np.float64]],
-    findings: MutableSequence[Finding],
+    findings: MutableSequence[DataFinding],
 ) -> Readings:
     """Readings of all recordings by feature [SI]; what the tables hold already (``known``) is left to them.
 
@@ -83,13 +83,13 @@ def read_recordings(
     return found
 
 
-def _shorter(lasting: Mapping[str, Mapping[str, float]]) -> Iterator[Finding]:
+def _shorter(lasting: Mapping[str, Mapping[str, float]]) -> Iterator[DataFinding]:
     """Recordings that last much less than another one of their point; ``lasting``: point -> file -> seconds."""
     for point, files in lasting.items():
         longest = max(files.values())
         for file, length in files.items():
             if length < (1.0 - SHORTER) * longest:
-                yield Finding(
+                yield DataFinding(
                     id="shorter_recording", weight="suspect", points=(point,),
                     text=f"{file}: lasts {length:.4g} s, another recording of {point} {longest:.4g} s; look whether it "
                     "was cut off",
@@ -105,7 +105,7 @@ class _Recording:
         document: MeasurementFile,
         places: Places,
         point: MeasuredPoint,
-        findings: MutableSequence[Finding],
+        findings: MutableSequence[DataFinding],
     ) -> None:
         self._entry = entry
         self._document = document
@@ -176,7 +176,7 @@ class _Recording:
                 yield Feature(name, self._point.name, order, "real"), scale * value.real
                 yield Feature(name, self._point.name, order, "imaginary"), scale * value.imag
 
-    def _say_orders(self, name: str, found: Orders, signal: Signal, turn: TurnAngle) -> None:
+    def _say_orders(self, name: str, found: MeasuredOrders, signal: Signal, turn: TurnAngle) -> None:
         if found.left_out:
             self._say(
                 "missing_samples",
@@ -206,7 +206,7 @@ class _Recording:
 
     def _say(self, identity: str, weight: Weight, text: str, *channels: str) -> None:
         self._findings.append(
-            Finding(
+            DataFinding(
                 id=identity, weight=weight,
                 text=f"{self._entry.file}: {text}", channels=channels, points=(self._point.name,),
             )

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.measurement.reading.measurement_set import Finding, MeasuredChannel
+from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel
 from rigdesign.prediction.model import Feature
 
 Readings = Mapping[Feature, NDArray[np.float64]]
@@ -47,7 +47,7 @@ def pooled_noise(readings: Readings, channels: Mapping[str, MeasuredChannel]) ->
 
 def without_outliers(
     readings: Readings, channels: Mapping[str, MeasuredChannel]
-) -> tuple[dict[Feature, NDArray[np.float64]], list[Finding]]:
+) -> tuple[dict[Feature, NDArray[np.float64]], list[DataFinding]]:
     """The readings without those far off their repeats.
 
     Of three or more repeats the one that is far off goes. Of two that are far apart either may be wrong: neither is
@@ -81,12 +81,12 @@ def without_outliers(
                     f"repeats {numbers} lie more than {OUTLIER:g} standard deviations apart; neither is used"
                 )
             findings.append(
-                Finding(id="repeat_outlier", weight="dropped", channels=(feature.channel,), points=points,
+                DataFinding(id="repeat_outlier", weight="dropped", channels=(feature.channel,), points=points,
                         text=f"{where}: {what}; measure again")
             )  # fmt: skip
         else:
             findings.append(
-                Finding(id="repeats_apart", weight="suspect", channels=(feature.channel,), points=points,
+                DataFinding(id="repeats_apart", weight="suspect", channels=(feature.channel,), points=points,
                         text=f"{where}: repeats {numbers} lie more than {OUTLIER:g} declared standard deviations "
                         "apart; measure a third time")
             )  # fmt: skip

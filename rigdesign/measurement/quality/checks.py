@@ -4,21 +4,21 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rigdesign.measurement.reading.measurement_set import Finding, MeasurementSet
+from rigdesign.measurement.reading.measurement_set import DataFinding, MeasurementSet
 from rigdesign.prediction.model import STANDING_QUANTITIES
 
 LEAST_POINTS = 3
 """Operating points from which a reading that never moves is a dead sensor."""
 
 
-def data_findings(measurement: MeasurementSet) -> tuple[frozenset[str], tuple[Finding, ...]]:
+def data_findings(measurement: MeasurementSet) -> tuple[frozenset[str], tuple[DataFinding, ...]]:
     """Channels that cannot be used, and everything the checks have to say."""
     findings = [*_dead(measurement), *_without_uncertainty(measurement)]
     dropped = {name for finding in findings if finding.weight == "dropped" for name in finding.channels}
     return frozenset(dropped), tuple(findings)
 
 
-def _dead(measurement: MeasurementSet) -> Iterator[Finding]:
+def _dead(measurement: MeasurementSet) -> Iterator[DataFinding]:
     """A sensor whose reading is the same number over different operating points."""
     for name, entry in measurement.channels.items():
         if entry.channel.quantity in STANDING_QUANTITIES:
@@ -28,19 +28,19 @@ def _dead(measurement: MeasurementSet) -> Iterator[Finding]:
         moving = bool(levels.size and np.ptp(levels) > 0.0)
         points = {feature.setting for feature, values in own.items() if np.isfinite(values).any()}
         if not points:
-            yield Finding(
+            yield DataFinding(
                 id="dead_channel", weight="dropped", channels=(name,),
                 text=f"{name}: has no reading at any operating point and is left out",
             )  # fmt: skip
         elif len(points) >= LEAST_POINTS and not moving:
-            yield Finding(
+            yield DataFinding(
                 id="dead_channel", weight="dropped", channels=(name,),
                 text=f"{name}: reads the same number at all {len(points)} operating points and is left out; look at "
                 "sensor and cable",
             )  # fmt: skip
 
 
-def _without_uncertainty(measurement: MeasurementSet) -> Iterator[Finding]:
+def _without_uncertainty(measurement: MeasurementSet) -> Iterator[DataFinding]:
     """A declared uncertainty of zero: repeats stand in, without them the channel cannot be weighed."""
     for name, entry in measurement.channels.items():
         if entry.noise > 0.0:
@@ -51,10 +51,10 @@ def _without_uncertainty(measurement: MeasurementSet) -> Iterator[Finding]:
         )  # fmt: skip
         if scatter:
             text = f"{name}: the declared uncertainty is zero; the scatter of its repeats is taken"
-            yield Finding(id="zero_uncertainty", weight="note", channels=(name,), text=text)
+            yield DataFinding(id="zero_uncertainty", weight="note", channels=(name,), text=text)
         else:
             text = (
                 f"{name}: the declared uncertainty is zero and no repeats say otherwise, so it cannot be weighed and "
                 "is left out; state the uncertainty of one reading"
             )
-            yield Finding(id="zero_uncertainty", weight="dropped", channels=(name,), text=text)
+            yield DataFinding(id="zero_uncertainty", weight="dropped", channels=(name,), text=text)

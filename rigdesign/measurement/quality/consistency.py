@@ -12,7 +12,7 @@ from rigdesign.base.quantity_kinds import KINDS
 from rigdesign.case import Case
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.measurement.quantities import CHANNELS, SETTINGS, to_si
-from rigdesign.measurement.reading.measurement_set import Finding, MeasurementSet
+from rigdesign.measurement.reading.measurement_set import DataFinding, MeasurementSet
 from rigdesign.prediction.model import OperatingCondition
 from rigdesign.properties.oil import MIL_PRF_23699, OILS, ZERO_CELSIUS
 from thermal.housing.surfaces import exact_areas
@@ -40,7 +40,7 @@ FAST, STRONG, FLOWING = 2.0, 5.0, 20.0
 """Most a speed, torque or flow may exceed that of the case before its unit is doubted."""
 
 
-def consistency_findings(measurement: MeasurementSet, data: "Data") -> tuple[Finding, ...]:
+def consistency_findings(measurement: MeasurementSet, data: "Data") -> tuple[DataFinding, ...]:
     """Everything the checks have to say; nothing is left out because of it."""
     return (
         *_temperatures(measurement.case, data),
@@ -53,7 +53,7 @@ def consistency_findings(measurement: MeasurementSet, data: "Data") -> tuple[Fin
     )
 
 
-def _temperatures(case: Case, data: "Data") -> Iterator[Finding]:
+def _temperatures(case: Case, data: "Data") -> Iterator[DataFinding]:
     """Temperatures no rig has, which another unit would explain."""
     rooms = [setting.ambient_temperature or case.ambient.temperature for setting in data.settings]
     hottest = max(
@@ -75,14 +75,14 @@ def _temperatures(case: Case, data: "Data") -> Iterator[Finding]:
         other = [unit for unit in KINDS["temperature"].units
                  if unit != entry.unit and low <= to_si(shown, "temperature", unit) <= high]  # fmt: skip
         hint = f"in {other[0]} it would fit; " if other else ""
-        yield Finding(
+        yield DataFinding(
             id="unit", weight="suspect", channels=(name,),
             text=f"{name}: reads about {shown:.4g} {entry.unit}, outside {units.show(low, 'temperature', digits=3)} to "
             f"{units.show(high, 'temperature', digits=3)}; {hint}look at its unit",
         )  # fmt: skip
 
 
-def _settings(measurement: MeasurementSet, data: "Data") -> Iterator[Finding]:
+def _settings(measurement: MeasurementSet, data: "Data") -> Iterator[DataFinding]:
     """Speeds, torques and flows far beyond the case, which another unit would explain."""
     case = measurement.case
     for column, sensor in measurement.setting_sensors.items():
@@ -106,14 +106,14 @@ def _settings(measurement: MeasurementSet, data: "Data") -> Iterator[Finding]:
         fits = [unit for unit in KINDS[kind].units
                 if usual / 3.0 < to_si(shown, kind, unit) < most * usual and unit != sensor.unit]  # fmt: skip
         hint = f"in {fits[0]} it would fit; " if fits else ""
-        yield Finding(
+        yield DataFinding(
             id="unit", weight="suspect", channels=(column,),
             text=f"{column}: about {shown:.4g} {sensor.unit}, the case has {units.show(usual, kind, digits=4)}; {hint}"
             "look at its unit",
         )  # fmt: skip
 
 
-def _contradictions(data: "Data") -> Iterator[Finding]:
+def _contradictions(data: "Data") -> Iterator[DataFinding]:
     """Points run alike that read otherwise; across a reassembly that is how well assembly repeats."""
     by_point: dict[str, dict[tuple[str, float, str], int]] = {}
     for i, feature in enumerate(data.features):
@@ -135,7 +135,7 @@ def _contradictions(data: "Data") -> Iterator[Finding]:
             continue
         worst = keys[int(np.argmax(np.abs(apart)))][0]
         again = data.assembly[i] != data.assembly[j]
-        yield Finding(
+        yield DataFinding(
             id="reassembly" if again else "contradicting_points", weight="note" if again else "suspect",
             points=(first.name, second.name), channels=(worst,),
             text=f"{first.name} and {second.name} were run alike but read {rms:.2g} standard deviations apart, "
@@ -176,7 +176,7 @@ def _alike(
     )
 
 
-def _same_readings(measurement: MeasurementSet) -> Iterator[Finding]:
+def _same_readings(measurement: MeasurementSet) -> Iterator[DataFinding]:
     """Two channels with the same numbers: one signal exported twice."""
     first_with: dict[bytes, str] = {}
     for name, own in measurement.by_channel.items():
@@ -186,13 +186,13 @@ def _same_readings(measurement: MeasurementSet) -> Iterator[Finding]:
             continue
         first = first_with.setdefault(np.where(np.isfinite(values), values, np.nan).tobytes(), name)
         if first != name:
-            yield Finding(
+            yield DataFinding(
                 id="same_readings", weight="suspect", channels=(first, name),
                 text=f"{first} and {name}: every reading is the same; one signal was exported twice",
             )  # fmt: skip
 
 
-def _scatter(measurement: MeasurementSet) -> Iterator[Finding]:
+def _scatter(measurement: MeasurementSet) -> Iterator[DataFinding]:
     """Repeats that scatter far more than declared."""
     for name, entry in measurement.channels.items():
         squares = freedom = 0.0
@@ -203,13 +203,13 @@ def _scatter(measurement: MeasurementSet) -> Iterator[Finding]:
                 freedom += finite.size - 1
         if freedom >= 3 and entry.noise > 0.0 and math.sqrt(squares / freedom) > SCATTER * entry.noise:
             times = math.sqrt(squares / freedom) / entry.noise
-            yield Finding(
+            yield DataFinding(
                 id="scatter", weight="note", channels=(name,),
                 text=f"{name}: repeats scatter {times:.2g} times more than declared; the scatter is taken",
             )  # fmt: skip
 
 
-def _drive(case: Case, data: "Data") -> Iterator[Finding]:
+def _drive(case: Case, data: "Data") -> Iterator[DataFinding]:
     """Motor power against drive torque times speed, where both are measured and the motor turns as the gear counts."""
     names = {entry.channel.quantity: name for name, entry in data.channels.items()}
     if not {"motor_power", "drive_torque"} <= set(names):
@@ -222,14 +222,14 @@ def _drive(case: Case, data: "Data") -> Iterator[Finding]:
         and means.get((names["drive_torque"], s.name), 0.0) * s.speed != 0.0
     ]
     if ratios and np.ptp(ratios) > METER * abs(float(np.median(ratios))):
-        yield Finding(
+        yield DataFinding(
             id="drive_power", weight="suspect", channels=(names["motor_power"], names["drive_torque"]),
             text=f"motor power over drive torque times speed runs from {min(ratios):.3g} to {max(ratios):.3g} over the "
             "operating points and should be one number; look at both zeros",
         )  # fmt: skip
 
 
-def _heat(case: Case, data: "Data") -> Iterator[Finding]:
+def _heat(case: Case, data: "Data") -> Iterator[DataFinding]:
     """Heat the oil carries away against motor power, where every stream's outlet is measured."""
     outlets = {entry.channel.place: name for name, entry in data.channels.items()
                if entry.channel.quantity == "oil_outlet_temperature"}  # fmt: skip
@@ -251,7 +251,7 @@ def _heat(case: Case, data: "Data") -> Iterator[Finding]:
             wrong.append((setting.name, given, carried))
     if wrong:
         name, given, carried = max(wrong, key=lambda row: abs(row[2] / row[1] - 1.0))
-        yield Finding(
+        yield DataFinding(
             id="energy_balance", weight="suspect", points=tuple(row[0] for row in wrong),
             channels=(power, *outlets.values()),
             text=f"{len(wrong)} of {len(data.settings)} operating points do not balance: at {name} the oil carries "

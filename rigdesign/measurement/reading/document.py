@@ -54,7 +54,7 @@ class Tach(Part):
     """Angle of the reference gear at the index pulse, or where the encoder reads zero."""
 
 
-class Data(Part):
+class DataSection(Part):
     """Files of the set."""
 
     table: Text = "data.csv"
@@ -69,7 +69,7 @@ class Data(Part):
     """Needed for recordings of torque or angle."""
 
     @model_validator(mode="after")
-    def _signs(self) -> "Data":
+    def _signs(self) -> "DataSection":
         if self.delimiter == self.decimal:
             raise fault(
                 "delimiter and decimal are both a comma",
@@ -156,7 +156,7 @@ class MeasurementFile(Part):
     """Healthy set of the same rig, a folder beside this one."""
     case: Name | None = None
     """Name of the case the set belongs to; a set of another one is suspected."""
-    data: Data = Data()
+    data: DataSection = DataSection()
     points: Mapping[Label, Point] = {}
     settings: Mapping[Label, SettingColumn] = Field(min_length=1)
     channels: Mapping[Label, ChannelTable] = Field(min_length=1)

@@ -19,7 +19,7 @@ Weight = Literal["dropped", "suspect", "note"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding:
+class DataFinding:
     """Something about the data that their user has to know."""
 
     id: str
@@ -110,7 +110,7 @@ class MeasurementSet:
     setting_sensors: Mapping[str, SettingSensor]
     points: tuple[MeasuredPoint, ...]
     readings: Mapping[Feature, NDArray[np.float64]]
-    findings: tuple[Finding, ...] = field(default=())
+    findings: tuple[DataFinding, ...] = field(default=())
     hash: str = ""
 
     @cached_property

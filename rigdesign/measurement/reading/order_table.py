@@ -11,7 +11,7 @@ from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case.faults import unknown, written
 from rigdesign.measurement.quantities import CHANNELS, impossible, impossible_text, to_si
 from rigdesign.measurement.reading.document import MeasurementFile
-from rigdesign.measurement.reading.measurement_set import Finding, MeasuredChannel
+from rigdesign.measurement.reading.measurement_set import DataFinding, MeasuredChannel
 from rigdesign.measurement.reading.rows import Rows
 from rigdesign.measurement.reading.table import MOST_FAULTS, numbers, read_table
 from rigdesign.prediction.model import ORDER_QUANTITIES, Feature
@@ -27,7 +27,7 @@ def read_orders(
     channels: Mapping[str, MeasuredChannel],
     rows: Rows,
     known: Mapping[Feature, NDArray[np.float64]],
-    findings: MutableSequence[Finding],
+    findings: MutableSequence[DataFinding],
 ) -> dict[Feature, NDArray[np.float64]]:
     """Readings of all order channels by feature [SI].
 
@@ -117,13 +117,13 @@ def read_orders(
     if faults:
         raise MeasurementError(faults[:MOST_FAULTS])
     findings.extend(
-        Finding(id="unused_order", weight="note", channels=(name,),
+        DataFinding(id="unused_order", weight="note", channels=(name,),
                 text=f"{name}: {len(orders)} orders of {table.file} are not compared ({_shown(orders)}); name them "
                 f"in channels.{name}.orders to use them")
         for name, orders in unused.items()
     )  # fmt: skip
     findings.extend(
-        Finding(id="impossible_reading", weight="dropped", channels=(name,),
+        DataFinding(id="impossible_reading", weight="dropped", channels=(name,),
                 text=f"{parts[0]}: "
                 + impossible_text(CHANNELS[channels[name].channel.quantity], channels[name].unit, len(parts)))
         for name, parts in wrong_parts.items()
@@ -131,13 +131,13 @@ def read_orders(
     findings.extend(_gaps(found, rows.names, table.file))
     if orphans:
         findings.append(
-            Finding(id="cut_file", weight="dropped",
+            DataFinding(id="cut_file", weight="dropped",
                     text=f"{table.file}: {orphans} rows belong to points or repeats that {rows.table.file}, which ends "
                     "early, does not have")
         )  # fmt: skip
     if table.cut:
         text = f"{table.file} {table.cut}; export it again"
-        findings.append(Finding(id="cut_file", weight="dropped", text=text))
+        findings.append(DataFinding(id="cut_file", weight="dropped", text=text))
     return found
 
 
@@ -147,7 +147,7 @@ def _has(rows: Rows, point: str, repeat: float) -> bool:
 
 def _gaps(
     found: Mapping[Feature, NDArray[np.float64]], points: Sequence[str], file: str
-) -> Iterator[Finding]:
+) -> Iterator[DataFinding]:
     """Orders that stand in the table at some points and repeats, but not at all."""
     lines = dict.fromkeys((one.channel, one.order, one.part) for one in found)
     missing: dict[str, list[str]] = {}
@@ -158,7 +158,7 @@ def _gaps(
                 missing.setdefault(channel, []).append(point)
     for channel, where in missing.items():
         shown = tuple(dict.fromkeys(where))
-        yield Finding(
+        yield DataFinding(
             id="missing_order", weight="note", channels=(channel,), points=shown,
             text=f"{channel}: {file} lacks {len(where)} numbers of repeats that were run, at {', '.join(shown[:5])}"
             + (", …" if shown[5:] else ""),

@@ -22,7 +22,7 @@ from rigdesign.measurement.quantities import (
 from rigdesign.measurement.reading.document import MeasurementFile
 from rigdesign.measurement.reading.document import Point as PointTable
 from rigdesign.measurement.reading.measurement_set import (
-    Finding,
+    DataFinding,
     MeasuredChannel,
     MeasuredPoint,
     SettingSensor,
@@ -109,12 +109,12 @@ class Rows:
                 found[Feature(name, point.name)] = self._columns[name][self.rows_of(point.name)]
         return found
 
-    def findings(self, channels: Mapping[str, MeasuredChannel]) -> list[Finding]:
+    def findings(self, channels: Mapping[str, MeasuredChannel]) -> list[DataFinding]:
         """What the table holds that is not used, readings that cannot be, and a last row that was cut."""
         known = {*KEYS, *self._document.settings, *channels}
         unused = [name for name in self.table.names if name not in known]
         found = [
-            Finding(
+            DataFinding(
                 id="impossible_reading", weight="dropped", channels=(name,),
                 points=tuple(dict.fromkeys(self.points[row] for row in rows)),
                 text=self.impossible_cells(name, rows, CHANNELS[channels[name].channel.quantity], channels[name].unit),
@@ -124,10 +124,10 @@ class Rows:
         if unused:
             names = ", ".join(unused[:SHOWN]) + (f" and {len(unused) - SHOWN} more" if unused[SHOWN:] else "")
             text = f"{self.table.file}: no channel is described of column {names}; add [channels.{unused[0]}] to use it"
-            found.append(Finding(id="unused_column", weight="note", text=text))
+            found.append(DataFinding(id="unused_column", weight="note", text=text))
         if self.table.cut:
             text = f"{self.table.file} {self.table.cut}; export it again"
-            found.append(Finding(id="cut_file", weight="dropped", text=text))
+            found.append(DataFinding(id="cut_file", weight="dropped", text=text))
         return found
 
     def _read_keys(self) -> tuple[tuple[str, ...], tuple[int, ...], list[Fault]]:
@@ -210,10 +210,10 @@ class Rows:
 
 def points_of(
     document: MeasurementFile, sensors: Mapping[str, SettingSensor], rows: Rows
-) -> tuple[tuple[MeasuredPoint, ...], list[Finding]]:
+) -> tuple[tuple[MeasuredPoint, ...], list[DataFinding]]:
     """Operating points as run, with a finding for those whose speed or torque is not known."""
     points: list[MeasuredPoint] = []
-    findings: list[Finding] = []
+    findings: list[DataFinding] = []
     for name in rows.names:
         chosen = rows.rows_of(name)
         readings = {column: rows.column(column)[chosen] for column in sensors}
@@ -227,13 +227,13 @@ def points_of(
         if lost or wrong or still:
             why = [*wrong, *still] or [f"no reading of {', '.join(lost)}"]
             findings.append(
-                Finding(id="unknown_setting", weight="dropped", points=(name,),
+                DataFinding(id="unknown_setting", weight="dropped", points=(name,),
                         text=f"{name} is left out: {'; '.join(why)}; complete or correct its rows")
             )  # fmt: skip
             continue
         entry = document.points.get(name, PointTable())
         findings += [
-            Finding(id="unknown_setting", weight="note", points=(name,),
+            DataFinding(id="unknown_setting", weight="note", points=(name,),
                     text=f"{name}: no reading of {column}; taken as in the case")
             for column in sensors if math.isnan(means[column])
         ]  # fmt: skip

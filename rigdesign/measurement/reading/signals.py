@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.errors import Fault, MeasurementError
-from rigdesign.measurement.reading.document import Data
+from rigdesign.measurement.reading.document import DataSection
 from rigdesign.measurement.reading.files import refused, set_file
 from rigdesign.measurement.reading.hdf5_samples import AGAIN, RefusedError, read_datasets
 from rigdesign.measurement.reading.table import MOST_FAULTS, numbers, read_table
@@ -39,7 +39,7 @@ class Signal:
 Signals = Mapping[str, Signal]
 
 
-def read_signals(folder: Path, name: str, data: Data) -> Signals:
+def read_signals(folder: Path, name: str, data: DataSection) -> Signals:
     """All signals of a file by name; where names repeat in groups, by ``group/name``, too.
 
     Raises
@@ -48,7 +48,7 @@ def read_signals(folder: Path, name: str, data: Data) -> Signals:
         No file of the set (`rigdesign.measurement.reading.files.set_file`), an unknown kind of file, content that
         cannot be read, fewer samples than its header states, more than ``data.size_limit``, no time.
     """
-    readers: dict[str, Callable[[Path, str, Data], Signals]] = {
+    readers: dict[str, Callable[[Path, str, DataSection], Signals]] = {
         ".tdms": _tdms, ".h5": _hdf5, ".hdf5": _hdf5, ".mf4": _mdf, ".csv": _csv,
     }  # fmt: skip
     kind = Path(name.replace("\0", "")).suffix.lower()
@@ -76,7 +76,7 @@ def read_signals(folder: Path, name: str, data: Data) -> Signals:
     return signals
 
 
-def _tdms(path: Path, name: str, data: Data) -> Signals:
+def _tdms(path: Path, name: str, data: DataSection) -> Signals:
     from nptdms import TdmsFile
     from nptdms.log import log_manager
 
@@ -112,7 +112,7 @@ def _tdms(path: Path, name: str, data: Data) -> Signals:
     return found
 
 
-def _hdf5(path: Path, name: str, data: Data) -> Signals:
+def _hdf5(path: Path, name: str, data: DataSection) -> Signals:
     try:
         datasets = read_datasets(path, data.size_limit)
     except RefusedError as error:
@@ -147,7 +147,7 @@ def _step(at: str, rate: float) -> float:
     return 1.0 / rate
 
 
-def _mdf(path: Path, name: str, data: Data) -> Signals:
+def _mdf(path: Path, name: str, data: DataSection) -> Signals:
     try:
         from asammdf import MDF
     except ImportError:
@@ -166,7 +166,7 @@ def _mdf(path: Path, name: str, data: Data) -> Signals:
     return found
 
 
-def _csv(path: Path, name: str, data: Data) -> Signals:
+def _csv(path: Path, name: str, data: DataSection) -> Signals:
     table = read_table(path.parent, path.name, data, with_units=True)
     if table.cut:
         raise refused(f"{name} {table.cut}", "the recording was cut off", AGAIN)

@@ -13,7 +13,7 @@ from pathlib import Path
 from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.base.files import foreign
 from rigdesign.case.faults import written
-from rigdesign.measurement.reading.document import Data
+from rigdesign.measurement.reading.document import DataSection
 from rigdesign.measurement.reading.files import refused, set_file
 
 MISSING = frozenset(("", "nan", "n/a", "na", "-", "--", "#n/a"))
@@ -56,7 +56,7 @@ class Table:
         return self.units[self.places[name]]
 
 
-def read_table(folder: Path, name: str, data: Data, *, with_units: bool) -> Table:
+def read_table(folder: Path, name: str, data: DataSection, *, with_units: bool) -> Table:
     """Read a table of the set.
 
     Parameters
@@ -145,7 +145,7 @@ def numbers(table: Table, name: str, decimal: str) -> tuple[list[float], list[Fa
     return values, [Fault(f"{table.file} line {line}, {name}", written(cell), reason + more, remedy)]
 
 
-def _text(path: Path, name: str, data: Data) -> str:
+def _text(path: Path, name: str, data: DataSection) -> str:
     encoding = "utf-8-sig" if data.encoding == "utf-8" else data.encoding
     try:
         content = path.read_bytes()
@@ -163,7 +163,7 @@ def _text(path: Path, name: str, data: Data) -> str:
     return text
 
 
-def _cells(text: str, name: str, data: Data) -> list[tuple[int, list[str]]]:
+def _cells(text: str, name: str, data: DataSection) -> list[tuple[int, list[str]]]:
     """Rows that hold something, each with the line it begins in."""
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=data.delimiter, strict=True)
     found: list[tuple[int, list[str]]] = []
@@ -178,7 +178,7 @@ def _cells(text: str, name: str, data: Data) -> list[tuple[int, list[str]]]:
     return found
 
 
-def _names(file: str, names: Sequence[str], data: Data) -> list[Fault]:
+def _names(file: str, names: Sequence[str], data: DataSection) -> list[Fault]:
     faults = [
         Fault(f"{file} line 1", "", f"column {number} has no name", "name it or remove it")
         for number, name in enumerate(names, start=1)

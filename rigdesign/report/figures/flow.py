@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rigdesign.report.figures.drawing import INK, SERIES, new_figure, plain
-from rigdesign.report.figures.sankey import NODE_WIDTH, Flow, Layout, layout, spread
+from rigdesign.report.figures.sankey import NODE_WIDTH, Flow, SankeyLayout, layout, spread
 from rigdesign.report.numbers import number_text
 from rigdesign.results.result import LossRow, OilRow, ThermalResult
 
@@ -86,7 +86,7 @@ def _words(kind: str) -> str:
     return WORDS.get(kind, kind.replace("_", " "))
 
 
-def _drawn(found: Layout, rows: int) -> "Figure":
+def _drawn(found: SankeyLayout, rows: int) -> "Figure":
     height = max(2.6, 0.9 + 0.34 * rows)
     figure = new_figure(height)
     axes = figure.add_axes((0.21, 0.03, 0.56, 0.92))
@@ -99,13 +99,13 @@ def _drawn(found: Layout, rows: int) -> "Figure":
     return figure
 
 
-def _colours(found: Layout) -> dict[str, str]:
+def _colours(found: SankeyLayout) -> dict[str, str]:
     """Sources each by a colour of their own, everything else in ink."""
     sources = [box.name for box in found.boxes if box.column == 0]
     return {name: SERIES[i % len(SERIES)] for i, name in enumerate(sources)}
 
 
-def _ribbons(axes: "Axes", found: Layout, colours: Mapping[str, str]) -> None:
+def _ribbons(axes: "Axes", found: SankeyLayout, colours: Mapping[str, str]) -> None:
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
@@ -121,7 +121,7 @@ def _ribbons(axes: "Axes", found: Layout, colours: Mapping[str, str]) -> None:
         axes.add_patch(PathPatch(Path(points, codes), facecolor=colour, alpha=0.42, linewidth=0))
 
 
-def _boxes(axes: "Axes", found: Layout, colours: Mapping[str, str]) -> None:
+def _boxes(axes: "Axes", found: SankeyLayout, colours: Mapping[str, str]) -> None:
     from matplotlib.patches import Rectangle
 
     last = max(box.column for box in found.boxes)

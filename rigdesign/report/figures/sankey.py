@@ -41,7 +41,7 @@ class Ribbon:
 
 
 @dataclass(frozen=True)
-class Layout:
+class SankeyLayout:
     """Everything of a flow diagram; ``scale`` is height per unit of flow."""
 
     boxes: tuple[Box, ...]
@@ -51,7 +51,7 @@ class Layout:
 
 def layout(
     columns: Sequence[Sequence[str]], flows: Sequence[Flow], *, gap: float = 0.05, low: Collection[int] = ()
-) -> Layout:
+) -> SankeyLayout:
     """Place nodes and ribbons.
 
     columns : names of the nodes from left to right, each from top to bottom
@@ -85,7 +85,7 @@ def layout(
         for number, names in enumerate(shown)
         for box in _column(names, sizes, scale, gap, x=number * step, number=number, low=number in low)
     }
-    return Layout(tuple(boxes.values()), tuple(_ribbons(kept, boxes, scale)), scale)
+    return SankeyLayout(tuple(boxes.values()), tuple(_ribbons(kept, boxes, scale)), scale)
 
 
 def _column(

@@ -36,7 +36,7 @@ LABEL_ROOM = 1.25
 """Least distance of two time labels in decades."""
 
 
-class Course(Protocol):
+class CurveOverTime(Protocol):
     """What has phases over time: a course of temperatures, a course of oil power."""
 
     @property
@@ -51,7 +51,7 @@ class Course(Protocol):
 
 
 @dataclass(frozen=True)
-class Column:
+class FigureColumn:
     """A phase on the common axis: its entries, and where its decades begin and end."""
 
     phase: str
@@ -59,22 +59,22 @@ class Column:
     start: float
     end: float
 
-    def places(self, curve: Course) -> FloatArray:
+    def places(self, curve: CurveOverTime) -> FloatArray:
         """Place of every entry: decades of the time since the start of the phase, from `EARLIEST`."""
         time = np.array([curve.time_s[i] for i in self.at])
         return np.asarray(self.start + np.log10(np.maximum(time - time[0], EARLIEST) / EARLIEST))
 
 
-def columns_of(curve: Course) -> list[Column]:
+def columns_of(curve: CurveOverTime) -> list[FigureColumn]:
     """Phases side by side, each as wide as its decades of time, so that equal factors are equally long in all."""
-    columns: list[Column] = []
+    columns: list[FigureColumn] = []
     start = 0.0
     for phase in dict.fromkeys(curve.phase):
         at = [i for i, name in enumerate(curve.phase) if name == phase]
         at = [at[0] - 1, *at] if at[0] > 0 else at
         last = curve.time_s[at[-1]] - curve.time_s[at[0]]
         end = start + math.log10(max(last / EARLIEST, LEAST_SPAN))
-        columns.append(Column(phase, at, start, end))
+        columns.append(FigureColumn(phase, at, start, end))
         start = end + APART
     return columns
 
@@ -130,7 +130,7 @@ def oil_power_figure(result: TransientResult, curve: OilPowerCurve) -> "Figure":
     return figure
 
 
-def _divide(axes: "Axes", columns: Sequence[Column]) -> None:
+def _divide(axes: "Axes", columns: Sequence[FigureColumn]) -> None:
     """White gaps with a line between the columns."""
     for column in columns[1:]:
         axes.axvspan(column.start - APART, column.start, color="white", linewidth=0, zorder=1.5)
@@ -149,7 +149,7 @@ def _places(curve: TransientCurve) -> list[str]:
 
 
 def _joined(
-    curve: Course, columns: Sequence[Column], values: Sequence[float]
+    curve: CurveOverTime, columns: Sequence[FigureColumn], values: Sequence[float]
 ) -> tuple[FloatArray, FloatArray]:
     """Places and values of all columns in one line that breaks between them."""
     x = [np.append(column.places(curve), np.nan) for column in columns]
@@ -157,7 +157,7 @@ def _joined(
     return np.concatenate(x), np.concatenate(y)
 
 
-def _temperatures(axes: "Axes", curve: TransientCurve, columns: Sequence[Column]) -> None:
+def _temperatures(axes: "Axes", curve: TransientCurve, columns: Sequence[FigureColumn]) -> None:
     for number, place in enumerate(_places(curve)):
         x, y = _joined(curve, columns, curve.temperatures_degC[place])
         style = "--" if place.endswith("outlet") else "-"
@@ -168,7 +168,7 @@ def _worst_of(
     axes: "Axes",
     worst: Sequence[WorstMoment],
     curve: TransientCurve,
-    columns: Sequence[Column],
+    columns: Sequence[FigureColumn],
     quantity: str,
 ) -> None:
     """The worst place of a quantity at every time, its limit, a ring where a course has its worst moment."""
@@ -185,7 +185,7 @@ def _worst_of(
             _ring(axes, curve, columns, moment)
 
 
-def _ring(axes: "Axes", curve: Course, columns: Sequence[Column], moment: WorstMoment) -> None:
+def _ring(axes: "Axes", curve: CurveOverTime, columns: Sequence[FigureColumn], moment: WorstMoment) -> None:
     """Mark the moment in the column of its phase."""
     for column in columns:
         least = min(range(len(column.at)), key=lambda i: abs(curve.time_s[column.at[i]] - moment.time_s))
@@ -195,7 +195,7 @@ def _ring(axes: "Axes", curve: Course, columns: Sequence[Column], moment: WorstM
             axes.plot([where], [moment.value], "o", mfc="none", mec=SERIES[1], ms=8, mew=1.6)
 
 
-def _phase_names(axes: "Axes", columns: Sequence[Column]) -> None:
+def _phase_names(axes: "Axes", columns: Sequence[FigureColumn]) -> None:
     """Names over the columns, each above its left neighbour where that is wider than its column."""
     per_decade = AXES_CHARACTERS / (columns[-1].end - columns[0].start)
     height = 4
@@ -209,7 +209,7 @@ def _phase_names(axes: "Axes", columns: Sequence[Column]) -> None:
         height = height + 10 * len(lines) if max(map(len, lines)) > room else 4
 
 
-def _time_axis(axes: "Axes", columns: Sequence[Column]) -> None:
+def _time_axis(axes: "Axes", columns: Sequence[FigureColumn]) -> None:
     """Marks of time in every column, those left out that would touch their neighbour."""
     from matplotlib.ticker import NullLocator
 
