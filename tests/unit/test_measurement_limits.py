@@ -12,7 +12,7 @@ import pytest
 from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
 from rigdesign.cli.main import _exit_status
-from rigdesign.measurement import Data, Finding, features, load_measurement
+from rigdesign.measurement import Data, DataFinding, features, load_measurement
 from rigdesign.measurement.reading import hdf5_samples
 from rigdesign.prediction import Feature
 from tests.measurement_example import changed_column, replaced, truth, write_set
@@ -41,7 +41,7 @@ def data_of(folder: Path, case) -> Data:
     return features(load_measurement(folder, case))
 
 
-def found(data: Data, identity: str) -> list[Finding]:
+def found(data: Data, identity: str) -> list[DataFinding]:
     return [finding for finding in data.findings if finding.id == identity]
 
 
