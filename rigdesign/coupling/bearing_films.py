@@ -11,7 +11,7 @@ from rigdesign.case.gears import GearMesh
 from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_oil
+from rigdesign.rig.oil_supply import bearing_feed
 
 GRAVITY = 9.81
 
@@ -39,7 +39,7 @@ def solve_bearings(
     loads = bearing_loads(rig, coupling_state)
     for name, box, entry in rig.bearings():
         box_name, part = name.split(".")
-        oil, inlet = bearing_oil(rig, box_name), box.bearing_oil.inlet_temperature
+        feed = bearing_feed(rig, box_name)
         with named(f"gearboxes.{box_name}.bearings.{part}"):
             states[name] = solve(
                 JournalBearing(
@@ -50,11 +50,11 @@ def solve_bearings(
                 ),
                 loads[name],
                 rig.shaft_speed(entry.shaft, point.speed),
-                inlet,
-                box.bearing_oil.flow,
-                oil.dynamic_viscosity,
-                oil.density(inlet),
-                oil.heat_capacity(inlet),
+                feed.inlet,
+                feed.flow,
+                feed.oil.dynamic_viscosity,
+                feed.oil.density(feed.inlet),
+                feed.oil.heat_capacity(feed.inlet),
                 coupling_state.bearing_heat[name],
                 friction_heat=_imposed_heat(rig, name, entry, point),
                 friction_factor=box.loss_factors.bearing,

@@ -13,7 +13,7 @@ from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.films import plate_film, shaft_film
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_oil, conducting_share, wetted_width
+from rigdesign.rig.oil_supply import bearing_feed, bearing_oil, conducting_share, gear_feed, wetted_width
 from thermal.conditions.boundary import (
     Adiabatic,
     BodySource,
@@ -76,9 +76,9 @@ class _Context:
         if name == "ambient":
             return AIR, self.rig.case.ambient.temperature
         kind, _, which = name.rpartition("_")
-        entry = self.box.oil if kind == GEAR_OIL else self.box.bearing_oil
-        inlet, outlet = entry.inlet_temperature, self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
-        return kind, {"inlet": inlet, "outlet": outlet, "mean": 0.5 * (inlet + outlet)}[which]
+        feed = (gear_feed if kind == GEAR_OIL else bearing_feed)(self.rig, self.name)
+        outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
+        return kind, {"inlet": feed.inlet, "outlet": outlet, "mean": feed.mean(outlet)}[which]
 
     def wetting(self, fluid: laws.Fluid, surface: str) -> float:
         """Share of a given oil film that is left: bubbles conduct less than oil, blocked jets leave flanks dry."""

@@ -1,7 +1,7 @@
 """One pass round the loop at an operating point: warm gears, loads, losses, oil, temperatures, growth."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from dynamics.bearing.journal import BearingState
 from dynamics.response.speed_sweep import CurvePoint
@@ -22,7 +22,7 @@ from rigdesign.coupling.temperatures import (
     solve_housing,
 )
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_oil, gear_oil, wall_flow
+from rigdesign.rig.oil_supply import bearing_feed, gear_feed, wall_flow
 
 ROUGH = 1e-5
 """Heat left over in the fields of a pass that cannot be the last: some millikelvin."""
@@ -213,10 +213,7 @@ def heat_residual(rig: Rig, done: IterationResult) -> float:
 
 def _bearing_capacity(rig: Rig, name: str) -> float:
     """Heat capacity flow rho c Q of the oil of one bearing [W/K]."""
-    box = rig.case.gearboxes[name.split(".")[0]]
-    entry = box.bearing_oil
-    oil = bearing_oil(rig, name.split(".")[0])
-    return oil.density(entry.inlet_temperature) * oil.heat_capacity(entry.inlet_temperature) * entry.flow
+    return bearing_feed(rig, name.split(".")[0]).capacity_rate
 
 
 def _stream_capacity(rig: Rig, name: str) -> float:
@@ -224,11 +221,9 @@ def _stream_capacity(rig: Rig, name: str) -> float:
     box_name, kind = name.split(".")
     box = rig.case.gearboxes[box_name]
     if kind == "gear_oil":
-        oil, inlet, flow = gear_oil(rig, box_name), box.oil.inlet_temperature, wall_flow(box)
-    else:
-        oil, inlet = bearing_oil(rig, box_name), box.bearing_oil.inlet_temperature
-        flow = box.bearing_oil.flow * len(box.bearings)
-    return oil.density(inlet) * oil.heat_capacity(inlet) * flow
+        return replace(gear_feed(rig, box_name), flow=wall_flow(box)).capacity_rate
+    feed = bearing_feed(rig, box_name)
+    return replace(feed, flow=feed.flow * len(box.bearings)).capacity_rate
 
 
 def _film_slope(rig: Rig, done: IterationResult, name: str) -> float:

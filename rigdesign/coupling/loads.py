@@ -34,7 +34,7 @@ from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.properties.oil import Oil
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import gear_oil
+from rigdesign.rig.oil_supply import gear_feed
 
 LEAST_TORQUE = 1.0
 """Pinion torque [N m] below which stiffness and friction are taken at this torque."""
@@ -156,17 +156,16 @@ def mesh_friction(
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
-    oil = gear_oil(rig, name.split(".")[0])
-    stream = f"{name.split('.')[0]}.gear_oil"
-    temperature = 0.5 * (box.oil.inlet_temperature + coupling_state.oil_outlet[stream])
+    feed = gear_feed(rig, name.split(".")[0])
+    temperature = feed.mean(coupling_state.oil_outlet[f"{name.split('.')[0]}.gear_oil"])
     contact = ToothPath.of_pair(pair).contact(
         max(abs(coupling_state.mesh_torque[name]), LEAST_TORQUE),
         rig.shaft_speed(gears[0].shaft, point.speed),
         reference_diameter_1=2.0 * pair.reference_radii[0],
         roughness=0.5 * (gears[0].flank_roughness + gears[1].flank_roughness),
-        viscosity=oil.dynamic_viscosity(temperature),
+        viscosity=feed.oil.dynamic_viscosity(temperature),
     )
-    own = friction_coefficient(contact, friction_law(rig, oil))
+    own = friction_coefficient(contact, friction_law(rig, feed.oil))
     return scaled_friction(own, box.loss_factors.mesh * entry.friction_factor)
 
 

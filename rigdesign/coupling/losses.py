@@ -18,7 +18,7 @@ from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.loads import MeshModel, first_torques
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import gear_oil, injected_flow, jet_velocity
+from rigdesign.rig.oil_supply import gear_feed, gear_oil, injected_flow, jet_velocity
 from rigdesign.rig.shaft_seals import ShaftSeal, shaft_seals
 from thermal.films.air import air
 
@@ -228,7 +228,7 @@ def _windage(
     """Windage of every gear, once however many meshes it is in; a double-helical gear has both its halves."""
     mist = chamber_mist(rig, box_name, coupling_state)
     oil_viscosity = gear_oil(rig, box_name).dynamic_viscosity(
-        _chamber_temperature(box_name, box, coupling_state)
+        _chamber_temperature(rig, box_name, coupling_state)
     )
     share = body_split(rig, box_name).windage_into_gears
     for gear_name, (mesh_name, index) in box.first_meshes().items():
@@ -243,14 +243,14 @@ def _windage(
 
 def chamber_mist(rig: Rig, box_name: str, coupling_state: CouplingState) -> Mist:
     """What the gears and seals turn in: density of the case, viscosity of air at the oil temperature."""
-    gas = air(_chamber_temperature(box_name, rig.case.gearboxes[box_name], coupling_state))
+    gas = air(_chamber_temperature(rig, box_name, coupling_state))
     density = rig.case.losses.chamber_density
     return Mist(density=gas.density if density is None else density, viscosity=gas.viscosity)
 
 
-def _chamber_temperature(box_name: str, box: Gearbox, coupling_state: CouplingState) -> float:
+def _chamber_temperature(rig: Rig, box_name: str, coupling_state: CouplingState) -> float:
     """Of what fills the chamber: the mean of its oil [K]."""
-    return 0.5 * (box.oil.inlet_temperature + coupling_state.oil_outlet[f"{box_name}.gear_oil"])
+    return gear_feed(rig, box_name).mean(coupling_state.oil_outlet[f"{box_name}.gear_oil"])
 
 
 def _oil_jets(

@@ -13,7 +13,7 @@ from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.properties.oil import oil_outlet
 from rigdesign.properties.oil_mixing import Portion, mixed
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_oil, gear_oil, wall_flow
+from rigdesign.rig.oil_supply import bearing_feed, gear_feed, wall_flow
 
 FloatArray = NDArray[np.float64]
 
@@ -81,8 +81,8 @@ def _gear_stream(
     rig: Rig, name: str, box: Gearbox, loss: float, heat: float
 ) -> tuple[OilStream, Portion | None]:
     """The stream of the gears, and what of it leaks to the bearings."""
-    oil, inlet, paths = gear_oil(rig, name), box.oil.inlet_temperature, box.oil_paths
-    flow = box.oil.flow * len(box.meshes)
+    feed, paths = gear_feed(rig, name), box.oil_paths
+    oil, inlet, flow = feed.oil, feed.inlet, feed.flow
     along = wall_flow(box)
     to_walls = 1.0 - paths.short_circuit / (1.0 - paths.bypass)
     outlet = box.oil.outlet_temperature
@@ -111,8 +111,8 @@ def _bearing_stream(
     rig: Rig, name: str, box: Gearbox, loss: float, heat: float, leak: Portion | None
 ) -> OilStream:
     """The stream of the bearings, with what leaks into it from the gears."""
-    oil, inlet = bearing_oil(rig, name), box.bearing_oil.inlet_temperature
-    flow = box.bearing_oil.flow * len(box.bearings)
+    feed = bearing_feed(rig, name)
+    oil, inlet, flow = feed.oil, feed.inlet, feed.flow * len(box.bearings)
     taken = loss + heat
     outlet = box.bearing_oil.outlet_temperature
     if leak is None:

@@ -1,5 +1,7 @@
 """Oil of a gearbox as it is: its state, and what of it reaches meshes, walls and bearings."""
 
+from dataclasses import dataclass
+
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.properties.oil import Oil
 from rigdesign.rig.model import Rig
@@ -15,6 +17,45 @@ def bearing_oil(rig: Rig, name: str) -> Oil:
     """Oil of the bearings of the gearbox ``name``, in its state there."""
     box = rig.case.gearboxes[name]
     return _in_state(rig.oils[box.bearing_oil.oil], box)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OilFeed:
+    """Oil as it is fed to a consumer: in its state there, at its inlet temperature."""
+
+    oil: Oil
+    inlet: float
+    """[K]"""
+    flow: float
+    """[m3/s]"""
+
+    @property
+    def mass_flow(self) -> float:
+        """[kg/s]"""
+        return self.oil.density(self.inlet) * self.flow
+
+    @property
+    def capacity_rate(self) -> float:
+        """Heat that warms it by one kelvin, rho c Q with properties at the inlet [W/K]."""
+        return self.oil.density(self.inlet) * self.oil.heat_capacity(self.inlet) * self.flow
+
+    def mean(self, outlet: float) -> float:
+        """Mean temperature of inlet and ``outlet`` [K]."""
+        return 0.5 * (self.inlet + outlet)
+
+
+def gear_feed(rig: Rig, name: str) -> OilFeed:
+    """Oil fed to all meshes of the gearbox ``name``."""
+    box = rig.case.gearboxes[name]
+    return OilFeed(
+        oil=gear_oil(rig, name), inlet=box.oil.inlet_temperature, flow=box.oil.flow * len(box.meshes)
+    )
+
+
+def bearing_feed(rig: Rig, name: str) -> OilFeed:
+    """Oil fed to each bearing of the gearbox ``name``."""
+    feed = rig.case.gearboxes[name].bearing_oil
+    return OilFeed(oil=bearing_oil(rig, name), inlet=feed.inlet_temperature, flow=feed.flow)
 
 
 def conducting_share(rig: Rig, name: str, stream: str) -> float:

@@ -19,7 +19,7 @@ from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.stage_losses import StageLosses
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_oil, gear_oil, injected_flow, wall_flow
+from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, injected_flow, wall_flow
 from rigdesign.transient.still_air import at_least, still
 from thermal.conditions.boundary import Film
 from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
@@ -117,21 +117,21 @@ def _gear_network(
     oil: bool,
 ) -> StreamNetwork:
     box = rig.case.gearboxes[name]
-    lubricant, inlet = gear_oil(rig, name), box.oil.inlet_temperature
+    fed = replace(gear_feed(rig, name), flow=wall_flow(box))
     outlet = state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
     feed = f"{GEAR_OIL} {FEED}"
-    stream = _films(GEAR_OIL, feed, inlet, wetted, oil)
+    stream = _films(GEAR_OIL, feed, fed.inlet, wetted, oil)
     own = [placed for placed in losses if placed.gearbox == name]
     power = math.fsum(placed.into_oil - placed.into_bearing_oil for placed in own)
     # oil that goes from the meshes straight to the outlet takes its part of their heat along
-    flow = lubricant.density(inlet) * wall_flow(box)
+    flow = fed.mass_flow
     if oil and box.oil_paths.short_circuit:
         power *= wall_flow(box) / (injected_flow(box) * len(box.meshes))
     return StreamNetwork(
-        specific_heat=lubricant.heat_capacity(0.5 * (inlet + outlet)),
+        specific_heat=fed.oil.heat_capacity(fed.mean(outlet)),
         volumes=(Volume(name=GEAR_OIL, power=power),),
         films=stream.films,
-        supplies=(Supply(name=feed, temperature=inlet), *stream.supplies),
+        supplies=(Supply(name=feed, temperature=fed.inlet), *stream.supplies),
         streams=(
             Stream(source=feed, target=GEAR_OIL, mass_flow=flow),
             Stream(source=GEAR_OIL, target=None, mass_flow=flow),
@@ -150,8 +150,7 @@ def _bearing_network(
     oil: bool,
 ) -> StreamNetwork:
     box = rig.case.gearboxes[name]
-    lubricant, inlet = bearing_oil(rig, name), box.bearing_oil.inlet_temperature
-    density, feed = lubricant.density(inlet), f"{BEARING_OIL} {FEED}"
+    fed, feed = bearing_feed(rig, name), f"{BEARING_OIL} {FEED}"
     own = [placed for placed in losses if placed.gearbox == name]
     friction = dict.fromkeys(box.bearings, 0.0)
     for placed in own:
@@ -159,14 +158,14 @@ def _bearing_network(
             friction[placed.part] += placed.loss.power
     beside = math.fsum(placed.into_bearing_oil for placed in own if placed.loss.kind != "bearing")
     parts = [
-        _films(BEARING_OIL, feed, inlet, wetted, oil),
-        *(_films(f"{BEARING_FILM}:{part}", feed, inlet, wetted, oil) for part in box.bearings),
+        _films(BEARING_OIL, feed, fed.inlet, wetted, oil),
+        *(_films(f"{BEARING_FILM}:{part}", feed, fed.inlet, wetted, oil) for part in box.bearings),
     ]
     outlet = state.coupling_state.oil_outlet[f"{name}.{BEARING_OIL}"]
-    specific_heat = lubricant.heat_capacity(0.5 * (inlet + outlet))
-    each = density * box.bearing_oil.flow
+    specific_heat = fed.oil.heat_capacity(fed.mean(outlet))
+    each = fed.mass_flow
     # a film is balanced with the heat capacity of the oil as fed, the stream with that of its mean temperature
-    as_fed = density * lubricant.heat_capacity(inlet) / specific_heat
+    as_fed = fed.oil.density(fed.inlet) * fed.oil.heat_capacity(fed.inlet) / specific_heat
     flows = {part: min(each, as_fed * cooling_flow(box, part, state, name)) for part in box.bearings}
     leak = _leak(rig, name, state, specific_heat) if oil else None
     return StreamNetwork(
@@ -177,7 +176,7 @@ def _bearing_network(
         ),
         films=tuple(film for part in parts for film in part.films),
         supplies=(
-            Supply(name=feed, temperature=inlet),
+            Supply(name=feed, temperature=fed.inlet),
             *(() if leak is None else (Supply(name=LEAK, temperature=leak[0]),)),
             *(supply for part in parts for supply in part.supplies),
         ),
