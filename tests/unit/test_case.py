@@ -266,3 +266,26 @@ def test_errors_survive_pickling(prototype: Case) -> None:
     copy = pickle.loads(pickle.dumps(caught.value))
     assert str(copy) == str(caught.value)
     assert copy.faults == caught.value.faults
+
+
+@pytest.mark.parametrize(
+    ("path", "least", "most"),
+    [
+        ("drivetrain.bracing.spline_friction_coefficient", 0.0, 1.0),
+        ("drivetrain.bracing.temperature_drift", -0.02, 0.02),
+        ("gearboxes.test.gears.pinion.flank.weak_tooth.stiffness", 0.0, 1.0),
+        ("gearboxes.test.gears.pinion.inertia_factor", 0.1, 10.0),
+        ("gearboxes.test.meshes.main.stiffness_factor", 0.1, 10.0),
+        ("gearboxes.test.meshes.main.friction_factor", 0.0, 10.0),
+        ("gearboxes.test.meshes.main.application_factor", 1.0, 5.0),
+        ("losses.squeeze_share", 0.0, 0.1),
+    ],
+)
+def test_a_number_may_reach_its_limits_and_not_pass_them(
+    prototype: Case, path: str, least: float, most: float
+) -> None:
+    for inside in (least, most):
+        prototype.with_value(path, inside)
+    for outside in (least - 1e-3, most + 1e-3):
+        with pytest.raises(CaseError, match=path):
+            prototype.with_value(path, outside)

@@ -157,6 +157,8 @@ def spoiled(kind: str) -> NamedMesh:
             points = mesh.points.copy()
             points[0, 0] = np.nan
             return replace(mesh, points=points)
+        case "fourth coordinate":
+            return replace(mesh, points=np.pad(mesh.points, ((0, 0), (0, 1))))
         case "linear cells":
             return replace(mesh, cells=mesh.cells[:, :4])
         case "empty surface":
@@ -175,6 +177,7 @@ def spoiled(kind: str) -> NamedMesh:
         ("loose node", "1 nodes belong to no cell"),
         ("bad node number", "cells: node number outside of 0 to 26"),
         ("not finite", "finite coordinates"),
+        ("fourth coordinate", r"points of shape \(27, 4\): need \(n_nodes, 3\)"),
         ("linear cells", r"cells of shape \(6, 4\)"),
         ("empty surface", "surface 'none' of shape"),
     ],

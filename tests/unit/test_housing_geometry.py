@@ -1,6 +1,7 @@
 """Which gearboxes can be built, what they are made of, and how refusals read; no mesh, no gmsh."""
 
 import math
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -146,3 +147,31 @@ def test_refused_shafts(change: dict[str, Any], words: tuple[str, ...]) -> None:
 def test_geometry_is_a_key() -> None:
     assert hash(gearbox()) == hash(gearbox())
     assert gearbox() != replace(gearbox(), height=0.29)
+
+
+def refusal(**changes: Any) -> str:
+    """What is said of a gearbox; empty if it can be built."""
+    try:
+        gearbox(**changes)
+    except GeometryError as error:
+        return str(error)
+    return ""
+
+
+@pytest.mark.parametrize(
+    ("part", "said", "change"),
+    [
+        ("width", r"less than (.*) m; widen", lambda room: {"width": 2 * 0.013 + room}),
+        ("height", r"less than (.*) m; raise", lambda room: {"height": 0.015 + 0.012 + room}),
+        (
+            "field", r"0.36 m by (.*) m; enlarge",
+            lambda room: {"field": ClampingField(length=0.36 + room, width=1.2, thickness=0.1)},
+        ),
+    ],
+)  # fmt: skip
+def test_the_limit_that_is_said_is_the_one_that_holds(part: str, said: str, change: Any) -> None:
+    found = re.search(said, refusal(**change(1e-3)))
+    assert found is not None
+    limit = float(found[1])
+    assert re.search(said, refusal(**change(0.999 * limit)))
+    assert not re.search(said, refusal(**change(1.001 * limit)))
