@@ -5,8 +5,10 @@ import pytest
 
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.orders.deviation_response import DeviationResponse, OrderTorque
+from dynamics.orders.tooth_cycle import _Mixing
 from dynamics.orders.tooth_excitation import Motion, excitation, pair_sensitivity, tooth_pattern
 from rigdesign.base.errors import UsageError
+from rigdesign.prediction.exact_orders import ExactMotion
 from rigdesign.prediction.model import Channel
 from rigdesign.prediction.orders import PointOrders, ideal_response, shaft_orders
 from rigdesign.prediction.static_tests import standing_modes, standing_value
@@ -190,3 +192,30 @@ def test_rig_at_rest():
     with pytest.raises(UsageError, match="not measured on the rig at rest"):
         value("torque", "wheel_side")
     assert set(DRAGS) <= set(rig.system.drag_loads)
+
+
+def test_loads_of_a_motion_are_its_fourier_series():
+    """5 + 3 cos(2 phi + 0.3) N m over two turns: a mean, one order, nothing at the others and between them."""
+    phi = 0.4 + np.linspace(0.0, 4.0 * np.pi, 64, endpoint=False)
+    torque = 5.0 + 3.0 * np.cos(2.0 * phi + 0.3)
+    motion = ExactMotion(
+        speed=100.0, turns=2.0, phi=phi, dofs=np.array([7]), torque=torque[None], twist=0.0, drive=0.0
+    )
+    expected = {0.0: 5.0, 0.5: 0.0, 1.9: 0.0, 2.0: 3.0 * np.exp(0.3j), 3.0: 0.0}
+    for order, value in expected.items():
+        loads = motion.loads(order)
+        assert loads.omega == order * 100.0
+        assert loads.torque == pytest.approx(value, abs=1e-12)
+
+
+def test_mixing_solves_a_linear_iteration_in_one_step_more_than_it_has_unknowns():
+    """x = A x + b, whose plain steps run away: the answers of n + 1 motions hold the solution."""
+    n = 4
+    rng = np.random.default_rng(2)
+    matrix = np.diag([-2.0, 0.5, 1.5, -0.3]) + 0.1 * rng.normal(size=(n, n))
+    right = rng.normal(size=n)
+    solution = np.linalg.solve(np.eye(n) - matrix, right)
+    mixing, motion = _Mixing(), np.zeros((1, n))
+    for _ in range(n + 1):
+        motion = mixing.next(motion, motion @ matrix.T + right)
+    assert motion[0] == pytest.approx(solution, rel=1e-6)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.response.speed_sweep import ResponseCurve, refined_response
+from dynamics.response.speed_sweep import ResponseCurve, point_in_time, refined_response
 
 NARROW = 3.0
 """Half width of the resonance below [rad/s], half of the first grid's step."""
@@ -61,3 +61,19 @@ def test_speeds_without_solution_are_asked_once_and_kept() -> None:
     curve = refined_response(solver, np.arange(50.0, 400.0, 6.0))
     assert len(solver.asked) == len(set(solver.asked))
     assert all(235.0 < speed < 240.0 for speed, _ in curve.failed) and curve.failed
+
+
+def test_a_period_marched_in_time_keeps_the_rate_of_approach():
+    """The wheel turns as far behind the pinion as the approach changes: r_1 omega_1 - r_2 omega_2 is its rate."""
+    radius_1, radius_2 = 0.04, 0.05
+    time = np.arange(1, 65) / 64e3
+    phase = 2.0 * np.pi * 1e3 * time
+    result: Any = SimpleNamespace(
+        time=time, angle_1=100.0 * time[None], omega_1=np.full((1, 64), 100.0),
+        approach=1e-6 * np.sin(phase)[None], approach_rate=2e-3 * np.pi * np.cos(phase)[None],
+        torque=np.full((1, 64), 50.0), force=np.ones((1, 64)), friction_loss=np.zeros(1),
+        mesh_damping_loss=np.zeros(1), speed=100.0, residual=0.0, periods=1, twist=0.0, drive_torque=0.0,
+    )  # fmt: skip
+    model: Any = SimpleNamespace(base_radii=np.array([[radius_1, radius_2]]))
+    wave = point_in_time(model, result, 1).wave
+    assert radius_1 * wave.omega_1 - radius_2 * wave.omega_2 == pytest.approx(result.approach_rate, abs=1e-12)

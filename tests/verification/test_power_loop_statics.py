@@ -11,6 +11,7 @@ from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS
 from dynamics.drivetrain.static_loop import port_model, solve_static
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
+from dynamics.response.initial_state import wound_state
 from tests.rig_example import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, SHAFTS, prototype, prototype_laws
 
 
@@ -121,3 +122,20 @@ def test_torque_or_twist_must_be_given() -> None:
         solve_static(port_model(system, laws))
     with pytest.raises(ValueError, match="1 mesh laws for 2 meshes"):
         port_model(system, laws[:1])
+
+
+def test_drag_torques_wind_the_loop_as_every_line_balances() -> None:
+    """The motor carries all drag torques, those of the pinion line through the meshes, at the speeds of the lines."""
+    system, laws = rig()
+    on_pinion, on_wheel = "test_pinion left", "test_wheel right"
+    drags = {on_pinion: 0.7, on_wheel: 0.4}
+    state, drive, _ = wound_state(system, laws, speed=1000.0, torque=180.0, drag_torques=drags)
+    assert drive == pytest.approx(0.4 + 0.7 * 102 / 99, rel=1e-9)
+    torque = [
+        law.base_radius_1
+        * law.mean_stiffness
+        * (law.base_radius_1 * state.angles[pinion] - law.base_radius_2 * state.angles[wheel])
+        for law, (pinion, wheel) in zip(laws, system.mesh_ports)
+    ]
+    assert torque[0] == pytest.approx(180.0, rel=1e-9)
+    assert sum(torque) == pytest.approx(-0.7, rel=1e-7)
