@@ -159,3 +159,15 @@ def test_the_drift_is_widened_along_what_changed_from_set_to_set(pair):
     assert replace(found, widening={}) == drift
     before = differenced(subject, baseline, Amplitudes(), drift).chi_square
     assert found.widening and differenced(subject, baseline, Amplitudes(), found).chi_square < 0.5 * before
+
+
+def test_what_both_sets_share_is_all_that_is_no_noise(pair):
+    """A healthy rig's covariance less noise, scatter and what its answers have wrong: the part that may drift."""
+    subject = pair[0]
+    amplitudes = replace(Amplitudes(), answer=0.0)
+    shared = Change.of(*pair, amplitudes).shared
+    scale = subject.on_the_scale_of(pair[1])
+    alone = np.diag(subject.noise**2) + subject.scatter
+    own = scale.own_spread(amplitudes)
+    assert shared == pytest.approx(scale.covariance(amplitudes).matrix - alone, rel=1e-9)
+    assert own.max() > 1e-3 * np.sqrt(np.diag(shared)).max()

@@ -12,7 +12,7 @@ from rigdesign.coupling.bearing_films import bearing_loads, solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import next_state, run_iteration
-from rigdesign.coupling.loads import brace_cold, mesh_models
+from rigdesign.coupling.loads import brace_cold, mesh_models, shifted_gear
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import held_points
@@ -144,3 +144,11 @@ def test_a_loop_that_is_open_holds_no_torque(boxed: tuple[Rig, OperatingPoint, C
     lines = {shaft: i for i, shaft in enumerate(built.drivetrain.lines())}  # type: ignore[union-attr]
     with pytest.raises(ValueError, match="is in no closed loop"):
         loop_forces(built.case, built.pairs, lines)
+
+
+def test_a_shifted_wheel_turns_the_loop_at_its_own_radius(bare: tuple[Rig, OperatingPoint, Feedback]) -> None:
+    """102 of the 201 teeth of its mesh are its own: so much of the centre distance is its working radius."""
+    gear = shifted_gear(bare[0])
+    assert gear is not None
+    assert bare[0].mesh_names[gear.mesh] == "reference.right"
+    assert gear.working_radius == pytest.approx(99.5e-3 * 102.0 / 201.0, rel=1e-12)

@@ -2,6 +2,8 @@
 
 import math
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from rigdesign.coupling.shaft_torques import swinging_torques, torques_left_out
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.tooth_deviations import averaged_gears, periodic_laws
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.run.warnings import _unlike
 
 POINT = OperatingPoint(stage="test", speed=100.0, torque=200.0)
 PINION = "gearboxes.test.gears.pinion"
@@ -243,3 +246,20 @@ def test_swinging_torques_count_turns_of_the_gear_that_counts() -> None:
 def test_a_swinging_torque_needs_an_order() -> None:
     with pytest.raises(ValueError, match="must be above 0"):
         ShaftTorque(order=0.0, torque=1.0)
+
+
+def warned(case: Case) -> list[str]:
+    """Warnings of a response that leaves out what single teeth and swinging torques do."""
+    rig, models = built(case)
+    point = SimpleNamespace(last=SimpleNamespace(models=models))
+    subject: Any = SimpleNamespace(rig=rig, points=[point])
+    return list(_unlike(subject))
+
+
+def test_what_the_response_averages_is_warned_of() -> None:
+    case = shipped("loop_hunting").with_value(f"{WHEEL}.flank.run_out", "20 um")
+    case = case.with_value("drivetrain.motor.ripple", [{"order": 6, "torque": "0.5 N m"}])
+    teeth, torque = warned(case)
+    assert teeth.startswith("test.wheel: its teeth differ") and "response_period = mesh" in teeth
+    assert torque.startswith("motor order 6: its torque swings")
+    assert warned(case.with_value("numerics.response_period", "hunting_cycle")) == []
