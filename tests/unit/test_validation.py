@@ -2,6 +2,7 @@ import csv
 import json
 import math
 from dataclasses import replace
+from itertools import product
 from types import SimpleNamespace
 from typing import cast
 
@@ -10,11 +11,13 @@ import pytest
 
 from rigdesign import validation
 from rigdesign.base.errors import OutputError, UsageError
+from rigdesign.case import load_case
 from rigdesign.cli import main as cli
 from rigdesign.cli.terminal import print_validation
 from rigdesign.results.result import HeatRow, RunResult
 from rigdesign.validation import (
     benchmarks,
+    films,
     gears,
     headline,
     heat_benchmarks,
@@ -22,6 +25,7 @@ from rigdesign.validation import (
     mechanics,
     p1,
     prototype,
+    response,
     validation_document,
     validation_rows,
     write_validation,
@@ -29,8 +33,9 @@ from rigdesign.validation import (
 from rigdesign.validation.prototype import Prototype, case_folder
 from rigdesign.validation.rows import compare, compare_printed, not_modelled, stated
 from rigdesign.validation.run_rows import run_rows
-from rigdesign.validation.speed_sweeps import SpeedSweep, course, simulation_laws, smooth
+from rigdesign.validation.speed_sweeps import FINE, SpeedSweep, course, simulation_laws, smooth
 from tests.report_example import make_result
+from tests.rig_example import TABLE_2
 
 KEYS = {
     "id", "quantity", "source", "published", "computed", "unit", "deviation", "tolerance", "verdict", "basis",
@@ -173,8 +178,8 @@ def test_what_follows_from_table_2_is_fitted(rows):
     assert all(r.basis == "fitted" and r.free_parameters >= 10 for r in follows)
 
 
-def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
-    """One row per printed number and reading, from the results of runs made up here."""
+def figure_12() -> RunResult:
+    """A run that meets every number of the figure."""
     heat = [
         HeatRow(surface=surface, kind=kind, power_W=-power, area_m2=1.0, mean_temperature_degC=50.0)
         for _, _, power, kind, surfaces in main_rig.HEAT
@@ -185,11 +190,16 @@ def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
         shafts=[{"shaft": shaft, "growth_mm": value} for _, shaft, value in main_rig.GROWTH],
         seal_gaps=[{"hot_min_mm": 0.7}, {"hot_min_mm": 0.6}],
     )
+    return cast(RunResult, SimpleNamespace(thermal=[thermal], growth=[growth]))
+
+
+def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
+    """One row per printed number and reading, from the results of runs made up here."""
     asked = []
 
     def run(reading: str) -> RunResult:
         asked.append(reading)
-        return cast(RunResult, SimpleNamespace(thermal=[thermal], growth=[growth]))
+        return figure_12()
 
     found = list(main_rig.main_rig_rows(run))
     assert asked == ["as_published", "fitted"]
@@ -197,6 +207,92 @@ def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
     goals = {row.id: row.tolerance for row in found}
     assert goals["P2-growth-pinion"] == goals["P2-growth-wheel"] == goals["P2-growth-seal-gap"] == 0.1
     assert all(row.deviation == pytest.approx(0.0, abs=1e-12) and row.basis == "fitted" for row in found)
+
+
+def made_up_course(*_, **__):
+    """One peak of both meshes at 3000 rpm, in place of the periodic response over speed."""
+    factor = 1.0 + 0.3 / (1.0 + ((FINE - 3000.0) / 60.0) ** 2)
+    both = np.column_stack([factor, factor])
+    return SpeedSweep(
+        speed=FINE, factor=both, half=both, mean=np.full(both.shape, 180.0), drive=np.ones(FINE.size)
+    )
+
+
+PRINTED = {
+    # "Comparison of MBS and standard" and Figure 8
+    "P2-nE-TG": 2953.48, "P2-nE-RG": 3069.1, "P2-eps-TG": 1.26, "P2-eps-RG": 5.59,
+    "P2-KV-TG-2500": 1.25, "P2-KV-TG-main": (1.8, 1.9), "P2-KV-TG-super": 0.87, "P2-KV-RG-super": 1.32,
+    "P2-KVsim-TG-sub": 1.5, "P2-KVsim-TG-main": 1.3, "P2-KVsim-TG-super": 1.2, "P2-KVsim-RG-super": 1.008,
+    # torques of Figure 7 and of the drive [N m], resonance speed of the simulation [rpm]
+    "P2-dM-TG-max-mean": 150.0, "P2-dM-TG-max-min": 150.0, "P2-dM-TG-3000-max-mean": 50.0,
+    "P2-dM-TG-3000-max-min": 50.0, "P2-dM-RG-max-mean": 50.0, "P2-dM-RG-max-min": 50.0,
+    "P2-drive": 9.0, "P2-nE-RG-sim": 3069.1,
+    # Figure 11 and Formula 4 [W/(m2 K)], oil flow of Figure 4 [l/min]
+    "P2-alpha-warm": 19.5, "P2-alpha-cold": 15.09, "P2-alpha-field-turbulent": 6.3,
+    "P2-alpha-field-dimensional": 6.3, "P2-alpha-gears": 150.0, "P2-alpha-contact": 75.0, "P2-alpha-nut": 68.0,
+    "P2-alpha-bearing": 1240.41, "P2-oil-flow": 750.0,
+    # Figure 12 [W, degC] and the text beside it [mm]
+    "P2-heat-sum": 4200.0, "P2-heat-field-radiation": 706.0, "P2-heat-housing-radiation": 617.0,
+    "P2-heat-field-convection": 1179.0, "P2-heat-field-radiation-model": 706.0, "P2-heat-housing-warm": 800.0,
+    "P2-heat-housing-cold": 962.0, "P2-heat-housing-radiation-model": 617.0, "P2-heat-bearings": 345.23,
+    "P2-Tmax": 178.59, "P2-growth-pinion": 0.53, "P2-growth-wheel": 0.43, "P2-growth-seal-gap": 0.6,
+}  # fmt: skip
+"""Read off P2, by the row that holds it against ours."""
+
+
+def test_rows_hold_what_the_paper_prints(shipped, monkeypatch):
+    monkeypatch.setattr(response, "course", made_up_course)
+    found = {
+        row.id: row.published
+        for row in (
+            *gears.gear_rows(shipped), *response.response_rows(shipped), *films.film_rows(),
+            *main_rig.main_rig_rows(lambda _: figure_12()),
+        )
+    }  # fmt: skip
+    assert {name: found[name] for name in PRINTED} == PRINTED
+    for name, reading in product(("TG-sub", "TG-main", "TG-super", "RG-super"), response.READINGS):
+        assert found[f"P2-KVsim-{name}-{reading}"] == PRINTED[f"P2-KVsim-{name}"]
+
+
+def test_resonances_are_those_of_table_2(shipped, monkeypatch):
+    """P2 names shaft, mode and harmonic of each: 60 f / (99 h) rpm."""
+    monkeypatch.setattr(response, "course", made_up_course)
+    found = {row.id: row.published for row in response.response_rows(shipped)}
+    for name, shaft, mode, harmonic in (
+        ("TG-2", "test_pinion", 1, 2), ("TG-3", "test_wheel", 1, 2), ("RG-1", "reference_pinion", 1, 2),
+        ("RG-2-h3", "reference_pinion", 2, 3), ("RG-2-h2", "reference_pinion", 2, 2),
+        ("RG-3", "reference_pinion", 1, 1), ("RG-4", "reference_pinion", 2, 1),
+    ):  # fmt: skip
+        speed = 60.0 * TABLE_2[shaft][mode - 1] / (99.0 * harmonic)
+        assert found[f"P2-peak-{name}"] == pytest.approx(speed, abs=0.51)
+
+
+def test_film_of_the_nut_by_hand():
+    """12,000 rpm are 1256.6 rad/s, of a shaft of 80 mm 50.3 m/s; Jungnickel's two films in series."""
+    cylinder = 3.75 * 1256.637**0.7 * 0.040**0.4
+    gap = 0.765 * 50.2655**0.666 / 0.6e-3**0.333
+    nut = next(row for row in films.film_rows() if row.id == "P2-alpha-nut")
+    assert nut.computed == pytest.approx(cylinder * gap / (cylinder + gap), rel=1e-6)
+
+
+IN_VIEW_OF_FIGURE_12 = {
+    "gearboxes.test.housing.height": "gives the printed 19.5",
+    "gearboxes.test.housing.field.thickness": "P2's two heat flows of the field",
+    "gearboxes.test.housing.boundary.plate_air.heat_transfer_coefficient": "top and sides: P2 prints more",
+    "gearboxes.test.bearings.pinion_front.diameter": "P2's 68 W/(m2 K)",
+    "gearboxes.test.bearings.pinion_front.width": "P2's heat flow asks for",
+    "gearboxes.test.housing.shafts.test_pinion.bore_diameter": "more heat to the bearings than P2 prints",
+    "gearboxes.test.housing.shafts.test_pinion.overhang_front": "its growth is 1.23 times that of the wheels",
+    "gearboxes.test.housing.shafts.test_wheel_a.overhang_rear": "0.516 m long",
+}
+"""Values of the main rig as published that P2 leaves open, each with the reason the case gives for it."""
+
+
+def test_free_parameters_of_the_main_rig_are_those_its_case_gives_reasons_for():
+    reasons = {one.path: one.reason for one in load_case("cases/uhcf_main/as_published.toml").assumptions}
+    for path, reason in IN_VIEW_OF_FIGURE_12.items():
+        assert reason in reasons[path]
+    assert main_rig.FREE_PARAMETERS["as_published"] == len(IN_VIEW_OF_FIGURE_12)
 
 
 def test_speeds_without_a_response_are_told():
