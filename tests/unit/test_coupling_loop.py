@@ -42,12 +42,12 @@ def loop(monkeypatch: pytest.MonkeyPatch, slow: str, passes: int = 40) -> coupli
     rig: Any = SimpleNamespace(case=SimpleNamespace(numerics=numerics, drivetrain=None))
     done: list[int] = []
 
-    def one_pass(*_: object, **__: object) -> int:
+    def run_iteration(*_: object, **__: object) -> int:
         done.append(len(done) + 1)
         return done[-1]
 
-    monkeypatch.setattr(coupling, "cold_feedback", lambda *_: state(after(0)))
-    monkeypatch.setattr(coupling, "one_pass", one_pass)
+    monkeypatch.setattr(coupling, "initial_state", lambda *_: state(after(0)))
+    monkeypatch.setattr(coupling, "run_iteration", run_iteration)
     monkeypatch.setattr(coupling, "next_state", lambda _, count: state(after(count)))
     monkeypatch.setattr(coupling, "heat_residual", lambda *_: 0.0)
     return coupling.solve_point(rig, POINT)

@@ -1,6 +1,7 @@
 """diagnosis.json: the contract's keys, sizes with unit and interval, verdicts, picks and refusals."""
 
 import json
+from dataclasses import replace
 from math import atan2, cos, hypot, log, pi, radians, sin
 from pathlib import Path
 
@@ -13,14 +14,16 @@ from rigdesign.case import load_case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.waiting import WAITING
 from rigdesign.diagnosis.decision.naming import Names, formatted
+from rigdesign.diagnosis.decision.proposals import extras_of, proposals
 from rigdesign.diagnosis.document.advice import certainty, headline, steps
 from rigdesign.diagnosis.document.correction import of_data
 from rigdesign.diagnosis.document.document import diagnosis_document, measurement_patch
 from rigdesign.diagnosis.document.outcome import check_pick, outcome
 from rigdesign.diagnosis.effects_page import effects_page
+from rigdesign.diagnosis.library.candidates import SPARE
 from rigdesign.diagnosis.run import Result
 from rigdesign.diagnosis.statistics.next_measurement import Ranked
-from tests.diagnosis_example import story, the_case
+from tests.diagnosis_example import library, story, the_case
 
 CASES = Path(__file__).parents[2] / "cases"
 CONTRACT = {
@@ -306,3 +309,34 @@ def test_what_waits_is_not_in_the_catalogue() -> None:
     kinds = {effect.kind for effect in effects_of(the_case())}
     waiting = {one.name for one in WAITING}
     assert len(waiting) == len(WAITING) and not waiting & kinds
+
+
+def proposed(name: str, *, rivals: int = 3) -> tuple[Ranked, ...]:
+    """What is to be measured next where the run-out of the wheel turns round with its place on the shaft."""
+    result = story(name)
+    extras = extras_of(result.case, result.data.settings)
+    channels = [entry.channel for entry in result.data.channels.values()]
+    offered = library((*result.data.settings, *(extra.setting for extra in extras)), channels)
+    wheel = offered.responses["run_out:test.wheel"]
+    there = np.array([feature.setting == f"{SPARE}re-indexed" for feature in offered.features])
+    turned = replace(wheel, answers=np.where(there, -wheel.answers, wheel.answers))
+    offered = replace(offered, responses={**offered.responses, "run_out:test.wheel": turned})
+    first, *others = result.diagnosis.examinations
+    alone = [one for one in first.evidence if one.hypothesis.family == "physical"]
+    few = replace(first, evidence=tuple(alone[:rivals]))
+    found = replace(result.diagnosis, examinations=(few, *others))
+    return proposals(result.problem, found, offered, extras, result.calibration.amplitudes)
+
+
+def test_the_point_that_tells_members_of_a_group_apart_is_proposed_first() -> None:
+    best, *others = proposed("alias", rivals=2)
+    assert best.title.endswith("put on five teeth further") and best.decides
+    assert [one.separation for one in others] == [0.0] * 3
+
+
+def test_a_single_explanation_has_nothing_to_be_told_from_but_nothing_at_all() -> None:
+    assert proposed("alias", rivals=1) == ()
+    assert proposed("mesh loss") == ()
+    assert proposed("one point", rivals=0) == ()
+    from_nothing = [one.separation for one in proposed("one point", rivals=1)]
+    assert from_nothing and min(from_nothing) > 0.0
