@@ -5,7 +5,7 @@ import pytest
 
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
-from rigdesign.diagnosis.library.build import _responses, run_places
+from rigdesign.diagnosis.library.build import _responses, _together, run_places
 from rigdesign.diagnosis.library.cache import Parts
 
 
@@ -96,3 +96,12 @@ def test_what_the_model_refuses_altogether_is_not_asked_again(tmp_path, monkeypa
     model = Model()
     assert made(model, [one], tmp_path / "parts") == {}
     assert model.asked == []
+
+
+def test_flanks_of_one_gearbox_are_run_in_one_process():
+    """The same deviation of both gears of a mesh meets contacts that were solved before; all else runs by itself."""
+    names = ("slope:test.pinion", "slope:test.wheel", "slope:other.pinion", "crowning:test.pinion")
+    flanks = [effect(name, "tooth", -1.0, 1.0) for name in names]
+    others = [effect(name, "damping", -1.0, 1.0) for name in ("damping:test.a", "damping:test.b")]
+    groups = {frozenset(one.name for one in group) for group in _together([*flanks, *others])}
+    assert groups == {frozenset(names[:2]), *(frozenset([one.name]) for one in (*flanks[2:], *others))}

@@ -7,6 +7,19 @@ import pytest
 import scipy.linalg
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.kernels.contact import DAMP_TIME, R1
+from dynamics.kernels.mesh_solve import left_open
+from dynamics.kernels.mesh_workspace import (
+    CURVED,
+    GUARD,
+    KINKED,
+    N_BOOK,
+    NET,
+    NET_V,
+    NET_X,
+    RATE,
+    REACH,
+)
 from dynamics.response.propagator import discretise, modal_model
 from dynamics.response.time_march import DriveState, MarchDiverged, TimeMarch, drag_loads, slow_loads
 from tests.mesh_example import chain, spur_law, two_bodies
@@ -199,3 +212,18 @@ def test_critical_damping_is_still_accurate() -> None:
     march.advance(given)
     exact = first_order_hold(system, np.zeros(8), torque, 1e-4, 20)
     np.testing.assert_allclose(march.state().speeds, exact[4:], atol=1e-6 * np.abs(exact[4:]).max())
+
+
+@pytest.mark.parametrize(("looked", "known"), [(4e-9, True), (3e-9, False)])
+def test_a_step_of_a_mesh_is_off_its_tangent_by_no_more_than_its_kinks(looked: float, known: bool) -> None:
+    """3.2 nm moved: the contacts that may open or close within, and nothing known where none were looked for so far."""
+    book = np.zeros(N_BOOK)
+    for place, value in {
+        R1: 0.04, DAMP_TIME: 1e-6, REACH: 3e-9, RATE: -2e-4, GUARD: looked, KINKED: 2e8, CURVED: 5e4,
+        NET: 100.0, NET_X: 1e9, NET_V: 1e3,
+    }.items():  # fmt: skip
+        book[place] = value
+    bound = 0.04 * (2e8 * 3.2e-9 + 5e4 * 3e-9 * 2e-4)
+    assert left_open(book, 0) == (pytest.approx(bound) if known else np.inf)
+    assert book[NET] == pytest.approx(100.0 + 1e9 * 3e-9 - 1e3 * 2e-4)
+    assert book[GUARD] == pytest.approx(6.4e-9)
