@@ -63,7 +63,7 @@ def test_speeds_without_solution_are_asked_once_and_kept() -> None:
     assert all(235.0 < speed < 240.0 for speed, _ in curve.failed) and curve.failed
 
 
-def test_a_period_marched_in_time_keeps_the_rate_of_approach():
+def test_a_period_marched_in_time_keeps_the_rate_of_approach() -> None:
     """The wheel turns as far behind the pinion as the approach changes: r_1 omega_1 - r_2 omega_2 is its rate."""
     radius_1, radius_2 = 0.04, 0.05
     time = np.arange(1, 65) / 64e3
