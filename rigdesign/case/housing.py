@@ -21,7 +21,7 @@ from rigdesign.case.fields import (
 )
 from rigdesign.case.joint import FootContact
 from rigdesign.case.mesh import HousingMesh
-from thermal.conduction.audit import RADIATION_INCLUDED
+from thermal.films.law import RADIATION_INCLUDED
 
 Fluid = Literal[
     "ambient",

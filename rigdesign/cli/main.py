@@ -12,11 +12,14 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, CycloptsError, Parameter
 
 from rigdesign import __version__
+
+if TYPE_CHECKING:
+    from rigdesign.case import Case
 
 Fidelity = Literal["quick", "standard", "reference"]
 
@@ -60,12 +63,11 @@ def check(
     fail_on
         Verdict from which the exit status is 1.
     """
-    from rigdesign.case import load_case
+    loaded = _loaded(case)
     from rigdesign.cli.terminal import Progress, print_checks
     from rigdesign.report import prepare_output, results_document, write_results
     from rigdesign.run.main import run_case
 
-    loaded = load_case(case)
     if out is not None:
         prepare_output(out)
     with Progress() as progress, _interrupted(NOTHING_KEPT), _failure_kept(out):
@@ -112,12 +114,11 @@ def study(
     retry
         Run points again that failed before.
     """
-    from rigdesign.case import load_case
+    loaded = _loaded(case)
     from rigdesign.cli.terminal import Progress, print_study
     from rigdesign.report.pages.study import write_study
     from rigdesign.study.run import parse_variation, run_study
 
-    loaded = load_case(case)
     variations = [parse_variation(text) for text in vary]
     with Progress() as progress:
         outcome = run_study(
@@ -157,14 +158,13 @@ def compare(
     json
         Print compare.json on stdout; everything else goes to stderr.
     """
-    from rigdesign.case import load_case
+    loaded = _loaded(case)
     from rigdesign.cli.terminal import Progress, print_comparison
     from rigdesign.measurement.comparison.compare import comparison_document
     from rigdesign.measurement.comparison.comparing import compare_measurement
     from rigdesign.report import prepare_output
     from rigdesign.report.pages.measurement import write_comparison
 
-    loaded = load_case(case)
     if out is not None:
         prepare_output(out)
     with Progress() as progress, _interrupted(NOTHING_KEPT):
@@ -209,7 +209,7 @@ def diagnose(
     """
     if calibrate:
         return _calibrate(case, measurement, out)
-    from rigdesign.case import load_case
+    loaded = _loaded(case)
     from rigdesign.cli.terminal import Progress, print_diagnosis
     from rigdesign.diagnosis.catalogue import effects_of
     from rigdesign.diagnosis.document.document import diagnosis_document
@@ -218,7 +218,6 @@ def diagnose(
     from rigdesign.report import prepare_output
     from rigdesign.report.diagnosis_files import write_diagnosis
 
-    loaded = load_case(case)
     if name is not None:
         check_pick(effects_of(loaded), name)
     prepare_output(out)
@@ -234,14 +233,20 @@ def diagnose(
     return 0
 
 
-def _calibrate(case: Path, measurement: Path, out: Path) -> int:
+def _loaded(path: Path) -> "Case":
+    """The case, before anything else is imported: a fault in it is said at once."""
     from rigdesign.case import load_case
+
+    return load_case(path)
+
+
+def _calibrate(case: Path, measurement: Path, out: Path) -> int:
+    loaded = _loaded(case)
     from rigdesign.cli.terminal import Progress, print_constants
     from rigdesign.diagnosis.run import calibrate_case
     from rigdesign.report import prepare_output
     from rigdesign.report.diagnosis_files import write_calibrated
 
-    loaded = load_case(case)
     prepare_output(out)
     with Progress() as progress, _interrupted(SIMULATIONS_KEPT):
         found = calibrate_case(loaded, measurement, say=progress)
@@ -263,12 +268,11 @@ def mesh(case: Path, *, out: Path, fidelity: Fidelity = "standard") -> int:
     fidelity
         Size of the meshes: quick, standard or reference.
     """
-    from rigdesign.case import load_case
+    loaded = _loaded(case)
     from rigdesign.cli.mesh_export import export_meshes
     from rigdesign.cli.terminal import Progress, print_meshes
     from rigdesign.report import prepare_output
 
-    loaded = load_case(case)
     prepare_output(out)
     with Progress() as progress, _interrupted(NOTHING_KEPT):
         progress("meshing")
@@ -292,10 +296,10 @@ def new_measurement(case: Path, *, out: Path) -> int:
     out
         Folder of the set; files in it are not overwritten.
     """
-    from rigdesign.case import load_case
+    loaded = _loaded(case)
     from rigdesign.measurement.template import write_template
 
-    for path in write_template(load_case(case), out):
+    for path in write_template(loaded, out):
         print(path)
     return 0
 

@@ -179,6 +179,19 @@ def test_help_loads_nothing_heavy() -> None:
     assert help_run()[1:] == []
 
 
+def test_a_case_error_loads_no_solver(write: Write) -> None:
+    """A fault is said within a second and a half: before solvers, mesher and compiled kernels are imported."""
+    case = write(SMALL.replace('"1000 h"', '"1000 kg"'))
+    code = (
+        "import sys\nfrom rigdesign.cli import main as cli\n"
+        f"sys.argv = ['rigdesign', 'check', {str(case)!r}]\n"
+        "try:\n    cli.main()\nexcept SystemExit as end:\n    print(end.code)\n"
+        "print(*[name for name in ('numba', 'skfem', 'gmsh', 'CoolProp', 'matplotlib') if name in sys.modules])\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["2"], done.stderr
+
+
 @pytest.mark.performance
 def test_help_answers_at_once() -> None:
     """Printed, not failed: a busy machine says nothing about the tool."""

@@ -146,7 +146,9 @@ def test_a_loop_that_is_open_holds_no_torque(boxed: tuple[Rig, OperatingPoint, C
         loop_forces(built.case, built.pairs, lines)
 
 
-def test_a_shifted_wheel_turns_the_loop_at_its_own_radius(bare: tuple[Rig, OperatingPoint, CouplingState]) -> None:
+def test_a_shifted_wheel_turns_the_loop_at_its_own_radius(
+    bare: tuple[Rig, OperatingPoint, CouplingState],
+) -> None:
     """102 of the 201 teeth of its mesh are its own: so much of the centre distance is its working radius."""
     gear = shifted_gear(bare[0])
     assert gear is not None

@@ -9,10 +9,7 @@ from collections.abc import Iterable
 from thermal.conditions.boundary import Film, Radiation
 from thermal.conduction.condition_checks import Condition
 from thermal.films.inputs import not_negative, positive
-from thermal.films.law import STEFAN_BOLTZMANN, FilmLaw
-
-RADIATION_INCLUDED = ("niemann_winter",)
-"""Beginnings of the names of film formulas whose coefficient contains radiation already."""
+from thermal.films.law import RADIATION_INCLUDED, STEFAN_BOLTZMANN, FilmLaw
 
 
 def least_radiation(emissivity: float, ambient: float, film: float, convection: float) -> float:
