@@ -1,16 +1,22 @@
 """What a run returns: immutable records, named as they stand in results.json."""
 
-from dataclasses import dataclass, field
-from typing import Any, Literal
+from dataclasses import asdict, dataclass, field
+from difflib import get_close_matches
+from html import escape
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, get_args, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.base.errors import MissingLibraryError
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.results.ranges import RangesResult
 from rigdesign.results.transient import TransientResult
 from rigdesign.results.verdict import Verdict
 from thermal.fe.mesh import NamedMesh
+
+if TYPE_CHECKING:
+    import pandas
 
 Role = Literal["specimen", "rig"]
 
@@ -46,6 +52,26 @@ class Check:
     discretisation_error: float | None = None
     """How far the value may be from that of an infinitely fine housing mesh, in its unit; None where no housing
     mesh enters, or where there is no coarser one to tell."""
+
+
+class Checks(list[Check]):
+    """The checks of a run in the order of the report, by number or by id: ``checks["oil.room"]``."""
+
+    @overload
+    def __getitem__(self, key: SupportsIndex) -> Check: ...
+    @overload
+    def __getitem__(self, key: slice) -> list[Check]: ...
+    @overload
+    def __getitem__(self, key: str) -> Check: ...
+    def __getitem__(self, key: SupportsIndex | slice | str) -> Check | list[Check]:
+        """A check; KeyError names the nearest ids for one that is none."""
+        if not isinstance(key, str):
+            return super().__getitem__(key)
+        found = next((check for check in self if check.id == key), None)
+        if found is None:
+            near = get_close_matches(key, [check.id for check in self], n=3, cutoff=0.4)
+            raise KeyError(f"no check {key!r}; the nearest are {', '.join(near) or 'none'}")
+        return found
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -329,7 +355,7 @@ class TemperatureField:
     """(n_nodes, 3) [W/m2]"""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class RunResult:
     """Result of `rigdesign.run_case`; all of it but ``fields`` goes into results.json."""
 
@@ -337,7 +363,7 @@ class RunResult:
     """{name, path, hash, title}"""
     fidelity: str
     verdict: Literal["pass", "warn", "fail"]
-    checks: list[Check]
+    checks: Checks
     dynamics: DynamicsResult | None
     losses: list[LossRow]
     oil: list[OilRow]
@@ -363,3 +389,46 @@ class RunResult:
     ranges: RangesResult | None = None
     """With `--ranges`: verdicts and margins over the ranges of the assumed inputs."""
     fields: list[TemperatureField] = field(repr=False)
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{number} {verdict}" for verdict, number in self.counts.items() if number)
+        return f"RunResult({self.case['name']}, {self.fidelity}: {self.verdict}; {len(self.checks)} checks: {counts})"
+
+    def _repr_html_(self) -> str:
+        """Verdict and checks as a table, for notebooks."""
+        rows = "".join(
+            f"<tr><td>{escape(check.id)}</td><td>{_shown(check.value)}</td><td>{_shown(check.limit)}</td>"
+            f"<td>{escape(check.unit)}</td><td>{_shown(check.utilisation)}</td><td>{check.verdict}</td></tr>"
+            for check in self.checks
+        )
+        head = "".join(
+            f"<th>{name}</th>" for name in ("check", "value", "limit", "unit", "utilisation", "verdict")
+        )
+        return (
+            f"<p>{escape(repr(self))}</p><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+        )
+
+    @property
+    def counts(self) -> dict[Verdict, int]:
+        """How many checks end with each verdict."""
+        return {
+            verdict: sum(check.verdict == verdict for check in self.checks) for verdict in get_args(Verdict)
+        }
+
+    def to_dataframe(self) -> "pandas.DataFrame":
+        """The checks as a table, one row each, indexed by id.
+
+        Raises
+        ------
+        MissingLibraryError
+            pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError as error:
+            raise MissingLibraryError("to_dataframe needs pandas; run: pip install pandas") from error
+        return pandas.DataFrame([asdict(check) for check in self.checks]).set_index("id")
+
+
+def _shown(value: float | None) -> str:
+    return "" if value is None else f"{value:.4g}"

@@ -25,7 +25,7 @@ from rigdesign.records import heat
 from rigdesign.records.dynamics import dynamics_result
 from rigdesign.records.hand import hand_checks
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import Check, Finding, RunResult
+from rigdesign.results.result import Check, Checks, Finding, RunResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.dynamic_work import DynamicWork
 from rigdesign.run.load_convergence import load_errors
@@ -151,7 +151,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         case=_case_record(case),
         fidelity=rig.fidelity,
         verdict=overall(checks),
-        checks=checks,
+        checks=Checks(checks),
         dynamics=solved.dynamics,
         losses=[row for stage, found in losses.items() for row in heat.loss_rows(stage, found)],
         oil=[row for p in points for row in heat.oil_rows(p.point.stage, p.last.streams)],

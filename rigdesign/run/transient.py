@@ -11,7 +11,7 @@ from rigdesign.checks.omissions import omissions
 from rigdesign.checks.rules import overall, with_omissions
 from rigdesign.checks.transient import transient_checks
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import Check, Finding, RunResult
+from rigdesign.results.result import Check, Checks, Finding, RunResult
 from rigdesign.results.transient import Settling, TransientCurve, TransientResult, WorstMoment
 from rigdesign.rig.model import Rig
 from rigdesign.run.transient_alignment import UNITS, misalignments, worst_misalignments
@@ -59,7 +59,7 @@ def with_transient(
     return replace(
         result,
         transient=record,
-        checks=checks,
+        checks=Checks(checks),
         verdict=overall(checks),
         assumptions=[
             replace(entry, decides=tuple(c.id for c in checks if entry.path in c.assumptions))

@@ -15,7 +15,7 @@ from rigdesign.base.worker_pool import compute_all, worker_count
 from rigdesign.case.model import Case
 from rigdesign.checks.rules import overall
 from rigdesign.results.ranges import LeftOut, RangedInput, RangesResult, TemperatureRange
-from rigdesign.results.result import RunResult
+from rigdesign.results.result import Checks, RunResult
 from rigdesign.uncertainty.plan import RangeEnd, plan
 from rigdesign.uncertainty.point import FIDELITY, EndResult, Reference, settle, solve_end
 from rigdesign.uncertainty.verdicts import (
@@ -109,7 +109,7 @@ def joined(
         max_temperature=_temperatures(result, stated, ends),
         left_out=left,
     )
-    return replace(result, checks=checks, verdict=overall(checks), ranges=ranges)
+    return replace(result, checks=Checks(checks), verdict=overall(checks), ranges=ranges)
 
 
 def _offset(result: RunResult, stated: EndResult) -> float:

@@ -23,6 +23,7 @@ from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.conduction.terms import ConductionProblem
 from thermal.errors import ThermalNotConverged
 from thermal.fe.mesh import NamedMesh
+from thermal.films.inputs import FilmError
 from thermal.films.law import FilmCoefficient
 
 
@@ -139,7 +140,7 @@ def test_warnings_of_film_laws_are_kept_once(mesh: NamedMesh) -> None:
 def test_a_law_with_a_limit_shortens_the_step_or_speaks(mesh: NamedMesh, limit: float) -> None:
     def limited(wall: float, fluid: float) -> FilmCoefficient:
         if wall > limit:
-            raise ValueError(f"wall = {wall:g} K is above {limit:g} K")
+            raise FilmError(f"wall = {wall:g} K is above {limit:g} K")
         return law(4.0, 0.5)(wall, fluid)
 
     names = list(mesh.surfaces)
@@ -149,7 +150,7 @@ def test_a_law_with_a_limit_shortens_the_step_or_speaks(mesh: NamedMesh, limit: 
         solution = solve_steady(mesh, CONDUCTIVITY, heated, 300.1)
         assert solution.temperature.mean() == pytest.approx(300.0 + 187.5 ** (2.0 / 3.0), abs=1.0)
     else:
-        with pytest.raises(ValueError, match="is above 320 K"):
+        with pytest.raises(FilmError, match="is above 320 K"):
             solve_steady(mesh, CONDUCTIVITY, heated, 300.1)
 
 

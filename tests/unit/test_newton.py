@@ -6,8 +6,9 @@ from numpy.testing import assert_allclose
 
 from tests.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, BoundaryCondition, Film, Radiation
+from thermal.conduction import newton
 from thermal.conduction.setup import ConductionSetup
-from thermal.conduction.steady import TemperatureSolution, newton, solve_steady
+from thermal.conduction.steady import TemperatureSolution, solve_steady
 from thermal.conduction.terms import ConductionProblem
 from thermal.fe.mesh import NamedMesh, box_mesh
 

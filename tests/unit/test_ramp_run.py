@@ -47,6 +47,7 @@ def run_of(
     run = SimpleNamespace(
         time=time,
         speed=speed,
+        speed_command=speed,
         angle=turned if angle is None else angle,
         drive_torque=np.full(len(speed), drive),
         drag_torque={"test.pinion": np.full(len(speed), 1.5), "test.wheel": np.full(len(speed), 2.0)},
