@@ -7,18 +7,62 @@ result = run_case(load_case("cases/uhcf_prototype"))
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from rigdesign.base.errors import (
+    CaseError,
+    MeasurementError,
+    MissingLibraryError,
+    NotConvergedError,
+    OutputError,
+    RigdesignError,
+    UsageError,
+)
+from rigdesign.base.version import __version__
+
 if TYPE_CHECKING:
-    from rigdesign.case import load_case
-    from rigdesign.run.main import run_case
+    from rigdesign.api import compare, diagnose, run_case, save, study
+    from rigdesign.case import Case, load_case
+    from rigdesign.prediction.predict import predict
+    from rigdesign.results.result import RunResult
 
-__version__ = "0.1.0"
-__all__ = ["__version__", "load_case", "run_case"]
+__all__ = [
+    "Case",
+    "CaseError",
+    "MeasurementError",
+    "MissingLibraryError",
+    "NotConvergedError",
+    "OutputError",
+    "RigdesignError",
+    "RunResult",
+    "UsageError",
+    "__version__",
+    "compare",
+    "diagnose",
+    "load_case",
+    "predict",
+    "run_case",
+    "save",
+    "study",
+]
 
-_HOMES = {"load_case": "rigdesign.case", "run_case": "rigdesign.run.main"}
+_HOMES = {
+    "Case": "rigdesign.case",
+    "RunResult": "rigdesign.results.result",
+    "compare": "rigdesign.api",
+    "diagnose": "rigdesign.api",
+    "load_case": "rigdesign.case",
+    "predict": "rigdesign.prediction.predict",
+    "run_case": "rigdesign.api",
+    "save": "rigdesign.api",
+    "study": "rigdesign.api",
+}
 
 
 def __getattr__(name: str) -> object:
-    """Import the two entry points on first use, so that `import rigdesign` stays light."""
+    """Import an entry point on first use, so that `import rigdesign` stays light."""
     if name in _HOMES:
         return getattr(import_module(_HOMES[name]), name)
     raise AttributeError(f"module 'rigdesign' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
 
-from rigdesign.study.ledger import Ledger, Record
+from rigdesign.studies.ledger import Ledger, Record
 
 POINTS = 24
 PAGE = 4096

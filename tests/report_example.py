@@ -524,4 +524,5 @@ def make_result(**changes):
         "timings_s": {"total": 21.4, "dynamics": 9.1},
         "fields": [gearbox_field()],
     }
-    return r.RunResult(**{**values, **changes})
+    given = {**values, **changes}
+    return r.RunResult(**{**given, "checks": r.Checks(given["checks"])})

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.report.pages.study import write_study
-from rigdesign.study import run as study
+from rigdesign.studies import run as study
 from tests.report_example import make_check, make_result
 
 run_study = partial(study.run_study, write=write_study)

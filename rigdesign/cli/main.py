@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, CycloptsError, Parameter
 
-from rigdesign import __version__
+from rigdesign.base.version import __version__
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
@@ -117,7 +117,7 @@ def study(
     loaded = _loaded(case)
     from rigdesign.cli.terminal import Progress, print_study
     from rigdesign.report.pages.study import write_study
-    from rigdesign.study.run import parse_variation, run_study
+    from rigdesign.studies.run import parse_variation, run_study
 
     variations = [parse_variation(text) for text in vary]
     with Progress() as progress:

@@ -5,10 +5,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from rigdesign import __version__
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.base.json_text import to_plain, to_text
 from rigdesign.base.output_folder import write_whole
+from rigdesign.base.version import __version__
 
 FAILURE = "failure.json"
 """Written beside the files of an earlier run, which stay; a run that ends well removes it."""

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from rigdesign import __version__
 from rigdesign.base.json_text import to_plain
+from rigdesign.base.version import __version__
 from rigdesign.results.result import CouplingHistory, RunResult
 
 SCHEMA_VERSION = "1"

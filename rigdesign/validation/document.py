@@ -9,8 +9,8 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any, get_args
 
-from rigdesign import __version__
 from rigdesign.base.output_folder import staged
+from rigdesign.base.version import __version__
 from rigdesign.validation.rows import Basis, ValidationRow
 
 SCHEMA_VERSION = 1

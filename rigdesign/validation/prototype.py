@@ -5,7 +5,6 @@ from functools import cached_property
 from math import pi
 from pathlib import Path
 
-import rigdesign
 from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions
 from rigdesign.base.errors import UsageError
@@ -25,7 +24,7 @@ def case_folder(name: str = "uhcf_prototype") -> Path:
 
     Raises UsageError naming the places that were searched.
     """
-    package = Path(rigdesign.__file__).parent
+    package = Path(__file__).parents[1]
     places = [base / "cases" / name for base in (package, package.parent, Path.cwd())]
     for place in places:
         if (place / "case.toml").is_file():

@@ -16,7 +16,7 @@ from rigdesign.base.output_folder import prepare_output
 from rigdesign.case import load_case
 from rigdesign.case.loader import changed_together
 from rigdesign.cli import main as cli
-from rigdesign.study.grid import parse_variation
+from rigdesign.studies.grid import parse_variation
 from tests.unit.test_cli import PROTOTYPE, SMALL, Rigdesign, Write, rigdesign, write
 
 __all__ = ["rigdesign", "write"]

@@ -13,8 +13,8 @@ import pytest
 
 from rigdesign.base.errors import OutputError
 from rigdesign.report import write_results
-from rigdesign.study import run as study
-from rigdesign.study.run import LEDGER_NAME
+from rigdesign.studies import run as study
+from rigdesign.studies.run import LEDGER_NAME
 from tests.killed_writer import REFUSED, WRITTEN
 from tests.study_example import ExampleCase, run_example, run_study
 from tests.unit.test_report_files import small_result

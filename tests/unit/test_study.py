@@ -15,10 +15,10 @@ import pytest
 
 from rigdesign.base import worker_pool as study_pool
 from rigdesign.base.errors import CaseError, OutputError, UsageError
-from rigdesign.study import ledger as study_ledger
-from rigdesign.study.grid import Variation, grid
-from rigdesign.study.ledger import Ledger, point_key
-from rigdesign.study.run import parse_variation
+from rigdesign.studies import ledger as study_ledger
+from rigdesign.studies.grid import Variation, grid
+from rigdesign.studies.ledger import Ledger, point_key
+from rigdesign.studies.run import parse_variation
 from tests.study_example import ExampleCase, run_example, run_study
 
 ROOT = Path(__file__).parents[2]
@@ -230,7 +230,7 @@ DRIVER = """
 import sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from rigdesign.study.run import parse_variation
+from rigdesign.studies.run import parse_variation
 from tests.study_example import run_study
 from tests.study_example import ExampleCase, run_example
 

@@ -13,8 +13,8 @@ import pytest
 from rigdesign.base.errors import OutputError
 from rigdesign.base.file_lock import FileLock, HeldError
 from rigdesign.base.output_folder import staged
-from rigdesign.study import run as study
-from rigdesign.study.run import LEDGER_NAME, LOCK_NAME, parse_variation
+from rigdesign.studies import run as study
+from rigdesign.studies.run import LEDGER_NAME, LOCK_NAME, parse_variation
 from tests.ledger_damage import DAMAGE, POINTS, ROWS, copy_ledger, harm_file, harm_rows, resumed, write_ledger
 from tests.study_example import ExampleCase, run_example, run_study
 

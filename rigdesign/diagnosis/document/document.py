@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from rigdesign import __version__
 from rigdesign.base import units
 from rigdesign.base.json_text import to_plain
+from rigdesign.base.version import __version__
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.naming import Names, Sized, Value, from_evidence, parameter_of, size_value
 from rigdesign.diagnosis.document.advice import certainty, headline, steps

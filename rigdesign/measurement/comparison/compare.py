@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign import __version__
 from rigdesign.base import units
 from rigdesign.base.json_text import to_plain
+from rigdesign.base.version import __version__
 from rigdesign.measurement.comparison.bands import Bands
 from rigdesign.measurement.comparison.locate import VARIABLES, Located, locate
 from rigdesign.measurement.comparison.suspects import swap_findings, unit_findings

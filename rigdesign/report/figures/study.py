@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from rigdesign.study.grid import Variation
-    from rigdesign.study.run import StudyPoint
+    from rigdesign.studies.grid import Variation
+    from rigdesign.studies.run import StudyPoint
 
 NAMED_CURVES = 8
 """Checks drawn in colour with their name: those that move and come nearest to their limit or break it."""

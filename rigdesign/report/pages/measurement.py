@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rigdesign import __version__
 from rigdesign.base.json_text import to_text
 from rigdesign.base.output_folder import staged
+from rigdesign.base.version import __version__
 from rigdesign.measurement.comparison.compare import Comparison, comparison_document, headline, significant
 from rigdesign.report.figures.drawing import drawing_style, inline_svg
 

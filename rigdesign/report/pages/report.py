@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rigdesign import __version__
+from rigdesign.base.version import __version__
 from rigdesign.report import numbers
 from rigdesign.report.figures.drawing import drawing_style, inline_svg
 from rigdesign.report.pages import views

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rigdesign import __version__
 from rigdesign.base.output_folder import staged
+from rigdesign.base.version import __version__
 from rigdesign.report.csv_text import csv_text
 from rigdesign.report.figures.drawing import drawing_style, inline_svg
 from rigdesign.report.numbers import margin_unit
-from rigdesign.study.grid import Variation
-from rigdesign.study.run import StudyPoint
+from rigdesign.studies.grid import Variation
+from rigdesign.studies.run import StudyPoint
 
 if TYPE_CHECKING:
     from rigdesign.case import Case

@@ -14,8 +14,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, NamedTuple
 
-from rigdesign import __version__
 from rigdesign.base.errors import OutputError
+from rigdesign.base.version import __version__
 
 FORMAT = 2
 """Of the table below, kept in the file as user_version; raise it with any change."""

@@ -15,8 +15,8 @@ from rigdesign.base.json_text import to_plain
 from rigdesign.base.output_folder import prepare_output
 from rigdesign.base.worker_pool import compute_all, worker_count
 from rigdesign.results.result import RunResult
-from rigdesign.study.grid import Variation, grid, parse_variation
-from rigdesign.study.ledger import Ledger, Record, point_key
+from rigdesign.studies.grid import Variation, grid, parse_variation
+from rigdesign.studies.ledger import Ledger, Record, point_key
 
 if TYPE_CHECKING:
     from rigdesign.case import Case

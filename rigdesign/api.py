@@ -1,0 +1,136 @@
+"""What the library offers: the commands as functions, on objects in memory.
+
+Nothing is printed. Files are written where a function has ``out``, and by :func:`save`.
+"""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from rigdesign.base.fidelity import Fidelity
+from rigdesign.case import Case
+from rigdesign.diagnosis.catalogue import effects_of
+from rigdesign.diagnosis.document.outcome import Outcome, check_pick, outcome
+from rigdesign.diagnosis.run import diagnose_measurement
+from rigdesign.measurement.comparison.compare import Comparison
+from rigdesign.measurement.comparison.comparing import compare_measurement
+from rigdesign.prediction.predict import Thermal
+from rigdesign.report import write_results
+from rigdesign.report.pages.study import write_study
+from rigdesign.results.result import RunResult
+from rigdesign.run import main
+from rigdesign.studies.run import StudyOutcome, parse_variation, run_study
+from rigdesign.uncertainty.run import with_ranges
+
+Progress = Callable[[str], None]
+
+
+def run_case(
+    case: Case,
+    fidelity: Fidelity = "standard",
+    progress: Progress | None = None,
+    *,
+    transient: bool = False,
+    ranges: bool = False,
+) -> RunResult:
+    """Compute a case and hold it against its limits, as ``rigdesign check`` does.
+
+    Parameters
+    ----------
+    case : from `load_case`
+    fidelity : size of the models
+    progress : called with what is being computed
+    transient : follow temperatures and clearances over the schedule and its events as well
+    ranges : move every assumed input to both ends of its range; a check passes only if it holds there too
+
+    Raises
+    ------
+    CaseError
+        A case that cannot be computed: gears that do not mesh, a loop or housing that does not close.
+    NotConvergedError
+        An iteration that does not settle, a speed the motor does not reach, a result that is NaN or infinite.
+    MissingLibraryError
+        A system library that gmsh needs.
+    """
+    result = main.run_case(case, fidelity, progress, transient=transient)
+    return with_ranges(case, result, progress=progress) if ranges else result
+
+
+def save(result: RunResult, out: str | Path) -> None:
+    """Write results.json, report.html, junit.xml, fields and curves of a run to a folder.
+
+    Raises
+    ------
+    OutputError
+        If the folder cannot be written.
+    """
+    write_results(result, Path(out))
+
+
+def study(
+    case: Case,
+    vary: str | Iterable[str],
+    out: str | Path,
+    *,
+    fidelity: Fidelity = "standard",
+    workers: int | None = None,
+    retry: bool = False,
+    progress: Progress | None = None,
+) -> StudyOutcome:
+    """Run a case over a grid of values; what ``out`` holds already is not computed again.
+
+    Parameters
+    ----------
+    vary : ``"PATH=START:STOP:STEP"`` or ``"PATH=v1,v2"``, one or several that make a grid
+    out : folder of the ledger, results.csv and the plot of margins
+    workers : processes, one thread each; None for one per core
+    retry : compute points again that failed before
+
+    Raises
+    ------
+    UsageError
+        A text that is no variation, a grid that is too large, a folder that cannot be written.
+    CaseError
+        No point of the grid is a valid case.
+    """
+    variations = [parse_variation(text) for text in ([vary] if isinstance(vary, str) else vary)]
+    return run_study(
+        case, variations, Path(out), write=write_study, fidelity=fidelity, workers=workers, retry=retry,
+        progress=progress,
+    )  # fmt: skip
+
+
+def compare(
+    case: Case, measurement: str | Path, *, model: Thermal = "full", fidelity: Fidelity = "quick"
+) -> Comparison:
+    """Where a measurement set and the simulation disagree.
+
+    measurement : folder with measurement.toml
+
+    Raises
+    ------
+    MeasurementError
+        Data of which nothing can be used.
+    CaseError, NotConvergedError, MissingLibraryError
+        As :func:`run_case`.
+    """
+    return compare_measurement(case, Path(measurement), model=model, fidelity=fidelity)
+
+
+def diagnose(case: Case, measurement: str | Path, *, name: str | None = None) -> Outcome:
+    """The effect that the model lacks against a measurement set, or that the data do not identify one.
+
+    measurement : folder with measurement.toml; name : effect to patch where the data leave several
+
+    Raises
+    ------
+    UsageError
+        A name that is no effect of this case, or that these data exclude.
+    MeasurementError
+        Data of which nothing can be used.
+    CaseError, NotConvergedError, MissingLibraryError
+        As :func:`run_case`.
+    """
+    if name is not None:
+        check_pick(effects_of(case), name)
+    found = diagnose_measurement(case, Path(measurement))
+    return outcome(found, pick=name, proposals=found.proposals)
