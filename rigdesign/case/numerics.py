@@ -15,7 +15,7 @@ class Numerics(Part):
     torque_tolerance: Positive
     """Relative."""
     coupling_passes: Count = 30
-    """Most passes of the coupling loop."""
+    """Most iterations of the coupling loop."""
     sample_rate: Frequency
     internal_steps: Annotated[int, Field(ge=8, le=256)] = 8
     """Integration steps per sample."""

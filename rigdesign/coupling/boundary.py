@@ -1,4 +1,4 @@
-"""Boundary conditions of a housing: the case's laws with this pass's fluids, films, speeds and losses."""
+"""Boundary conditions of a housing: the case's laws with this iteration's fluids, films, speeds and losses."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -39,7 +39,7 @@ STORED = "stored"
 
 @dataclass(frozen=True)
 class _Context:
-    """One housing at one pass."""
+    """One housing at one iteration."""
 
     rig: Rig
     name: str

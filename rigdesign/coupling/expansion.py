@@ -28,7 +28,7 @@ class HousingExpansion:
 
 
 def expand_housing(rig: Rig, field: HousingField, start: HousingExpansion | None = None) -> HousingExpansion:
-    """Expand one housing from the temperature its drawing holds at; ``start`` is the growth of an earlier pass.
+    """Expand one housing from the temperature its drawing holds at; ``start`` is the growth of an earlier iteration.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""One pass round the loop at an operating point: warm gears, loads, losses, oil, temperatures, growth."""
+"""One iteration round the loop at an operating point: warm gears, loads, losses, oil, temperatures, growth."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -25,16 +25,16 @@ from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, wall_flow
 
 ROUGH = 1e-5
-"""Heat left over in the fields of a pass that cannot be the last: some millikelvin."""
+"""Heat left over in the fields of an iteration that cannot be the last: some millikelvin."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class IterationResult:
-    """Everything one pass computed from one coupling state."""
+    """Everything one iteration computed from one coupling state."""
 
     point: OperatingPoint
     coupling_state: CouplingState
-    """What the pass started from."""
+    """What the iteration started from."""
     models: tuple[MeshModel, ...]
     bearings: Mapping[str, BearingState]
     drags: Mapping[str, float]
@@ -44,14 +44,14 @@ class IterationResult:
     fields: Mapping[str, HousingField]
     growth: Mapping[str, HousingExpansion]
     bearing_heat: Mapping[str, float]
-    """Heat the solids gave to each film in this pass [W], before relaxation."""
+    """Heat the solids gave to each film in this iteration [W], before relaxation."""
     wall_heat: Mapping[str, float]
     """Heat the solids gave to each oil stream [W], before relaxation."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class IterationParts:
-    """The expensive parts of a pass, each as the function that computes it.
+    """The expensive parts of an iteration, each as the function that computes it.
 
     `rigdesign.prediction` puts others in their place: what is known already, fields and growth projected on few
     shapes.
@@ -79,12 +79,12 @@ def run_iteration(
     fine: bool = True,
     parts: IterationParts = SOLVED,
 ) -> IterationResult:
-    """Compute one pass; ``before`` gives the fields to start from.
+    """Compute one iteration; ``before`` gives the fields to start from.
 
     parts : what computes its expensive parts
     fine : expand the housings and solve the fields to the last digit; else the growth of ``before`` is carried on
-        and the heat of the fields closes to 1e-4, which saves time while the temperatures still move a lot. A pass
-        that ends the loop must be fine.
+        and the heat of the fields closes to 1e-4, which saves time while the temperatures still move a lot. An
+        iteration that ends the loop must be fine.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def _growth(
 
 
 def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) -> CouplingState:
-    """What a pass hands to the next; heats are relaxed by what the oil can take up (`relaxed_heat`)."""
+    """What an iteration hands to the next; heats are relaxed by what the oil can take up (`relaxed_heat`)."""
     old = done.coupling_state
     gear_temperature: dict[str, float] = {}
     centre_distance: dict[str, float] = {}
@@ -192,14 +192,14 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
 def relaxed(old: float, new: float, slope: float) -> float:
     """Heat after a step that stays stable however little oil flows.
 
-    slope : film conductance over heat capacity flow, h A / (rho c Q): how strongly the heat of one pass
+    slope : film conductance over heat capacity flow, h A / (rho c Q): how strongly the heat of one iteration
         answers the oil temperature it caused. The step 1 / (1 + slope) damps at most that answer.
     """
     return old + (new - old) / (1.0 + slope)
 
 
 def heat_residual(rig: Rig, done: IterationResult) -> float:
-    """Largest temperature error [K] that the heats of the last pass would still make in an oil stream or film."""
+    """Largest temperature error [K] that the heats of the last iteration would still make in an oil stream or film."""
     old = done.coupling_state
     films = (
         0.5 * abs(heat - old.bearing_heat[name]) / _bearing_capacity(rig, name)

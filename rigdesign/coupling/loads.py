@@ -62,7 +62,7 @@ def mesh_models(
 
 
 def warm_pair(rig: Rig, name: str, speed: float, coupling_state: CouplingState) -> GearPair:
-    """Gear pair at the bulk temperatures, centre distance and speed [rad/s] of this pass."""
+    """Gear pair at the bulk temperatures, centre distance and speed [rad/s] of this iteration."""
     box, mesh = rig.mesh(name)
     pinion, wheel = rig.mesh_gears(name)
     entry = box.meshes[mesh]

@@ -1,4 +1,4 @@
-"""The coupling loop: passes at one operating point until nothing moves any more."""
+"""The coupling loop: iterations at one operating point until nothing moves any more."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,12 +18,12 @@ from rigdesign.coupling.state import (
 from rigdesign.rig.model import Rig
 
 GROWTH_FROM = 8.0
-"""Change of temperature in a pass [K] below which the next one is fine: it expands the housings afresh."""
+"""Change of temperature in an iteration [K] below which the next one is fine: it expands the housings afresh."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Residual:
-    """Largest changes of one pass: temperature [K], length [m], mean torque relative [-]."""
+    """Largest changes of one iteration: temperature [K], length [m], mean torque relative [-]."""
 
     temperature: float
     growth: float
@@ -56,20 +56,20 @@ def solve_point(
     before: IterationResult | None = None,
     freeze: frozenset[str] = frozenset(),
 ) -> PointResult:
-    """Repeat the pass until temperatures, lengths and torques stay within the tolerances of the case.
+    """Repeat the iteration until temperatures, lengths and torques stay within the tolerances of the case.
 
     Parameters
     ----------
     start : coupling state of a neighbouring point; the cold rig when left out
-    before : last pass of a neighbouring point on the same meshes: first guess of fields and growth
+    before : last iteration of a neighbouring point on the same meshes: first guess of fields and growth
     freeze : arrows of the loop that are cut, by field of `CouplingState`: they keep their initial values
 
     Raises
     ------
     NotConvergedError
-        The passes of the case are used up; the message shows the residuals of the last ones.
+        The iterations of the case are used up; the message shows the residuals of the last ones.
     NonFiniteResultError
-        A loss, temperature, length or torque of a pass is NaN or infinite.
+        A loss, temperature, length or torque of an iteration is NaN or infinite.
     """
     numerics = rig.case.numerics
     cold = initial_state(rig, point)
@@ -115,11 +115,11 @@ def _settled(residual: Residual, rig: Rig) -> bool:
 def _history(point: OperatingPoint, residuals: list[Residual], rig: Rig) -> str:
     numerics = rig.case.numerics
     lines = "; ".join(
-        f"pass {len(residuals) - i}: {r.temperature:.3g} K, {1e6 * r.growth:.3g} um, {r.torque:.2g} of the torque"
+        f"iteration {len(residuals) - i}: {r.temperature:.3g} K, {1e6 * r.growth:.3g} um, {r.torque:.2g} of the torque"
         for i, r in enumerate(reversed(residuals[-4:]))
     )
     return (
-        f"coupling at stage {point.stage!r} did not settle in {len(residuals)} passes (limits "
+        f"coupling at stage {point.stage!r} did not converge in {len(residuals)} iterations (limits "
         f"{numerics.temperature_tolerance:g} K, {1e6 * numerics.growth_tolerance:g} um, "
         f"{numerics.torque_tolerance:g}): {lines}; raise numerics.coupling_passes, or feed more oil if a film or "
         "stream swings"

@@ -1,4 +1,4 @@
-"""What goes round the coupling loop, and what one pass of it returns. SI units throughout.
+"""What goes round the coupling loop, and what one iteration of it returns. SI units throughout.
 
 Parts are named by gearbox and own name: gear ``test.pinion``, mesh ``test.main``, bearing
 ``test.pinion_front``; the two oil streams of a gearbox are ``test.gear_oil`` and ``test.bearing_oil``.
@@ -21,7 +21,7 @@ class OperatingPoint:
 
 @dataclass(frozen=True, kw_only=True)
 class CouplingState:
-    """What a pass takes from the one before: the arrows of the loop, one field each."""
+    """What an iteration takes from the one before: the arrows of the loop, one field each."""
 
     gear_temperature: Values
     """Bulk temperature of each gear [K]: its growth enters backlash and mesh."""
@@ -61,17 +61,17 @@ LENGTHS = ("centre_distance", "bearing_clearance", "tooth_growth")
 
 
 def temperature_change(old: CouplingState, new: CouplingState) -> float:
-    """Largest change of a temperature between two passes [K]."""
+    """Largest change of a temperature between two iterations [K]."""
     return _largest_change(old, new, TEMPERATURES)
 
 
 def growth_change(old: CouplingState, new: CouplingState) -> float:
-    """Largest change of a length between two passes [m]."""
+    """Largest change of a length between two iterations [m]."""
     return _largest_change(old, new, LENGTHS)
 
 
 def torque_change(old: CouplingState, new: CouplingState) -> float:
-    """Largest relative change of a mean mesh torque between two passes [-]."""
+    """Largest relative change of a mean mesh torque between two iterations [-]."""
     changes = (
         abs(new.mesh_torque[name] - value) / max(abs(value), 1e-9) for name, value in old.mesh_torque.items()
     )

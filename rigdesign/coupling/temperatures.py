@@ -47,7 +47,7 @@ def solve_housing(
 ) -> HousingField:
     """Temperature field of the housing of gearbox ``name``.
 
-    start : field of an earlier pass, a good first guess
+    start : field of an earlier iteration, a good first guess
     radiation_included : reading of the film to room air; that of the case when left out
     tolerance : of the heat left over, relative to the heat turned over
 

@@ -1,9 +1,9 @@
-"""Settling a point of the coupling loop in few passes: steps from differences of passes already made.
+"""Settling a point of the coupling loop in few iterations: steps from differences of iterations already made.
 
-The passes are those of `rigdesign.coupling.loop`; only the way to the point where nothing moves is another. The next
-coupling state takes the directions in which earlier passes moved into account (Anderson acceleration, a multi-secant
-quasi-Newton method). Differences of a neighbouring case serve as well, so that a changed case needs two or three
-passes from the settled one.
+The iterations are those of `rigdesign.coupling.loop`; only the way to the point where nothing moves is another. The
+next coupling state takes the directions in which earlier iterations moved into account (Anderson acceleration, a
+multi-secant quasi-Newton method). Differences of a neighbouring case serve as well, so that a changed case needs two
+or three iterations from the settled one.
 Source: Walker, Ni, SIAM J. Numer. Anal. 49 (2011) 1715.
 """
 
@@ -34,9 +34,9 @@ SCALES = {
 }
 """Size of each arrow of the loop that counts as one [K, m, W, N m]."""
 CLOSE = 1e-3
-"""Largest change of a pass, in those sizes, at which a point has settled: a millikelvin, a nanometre."""
+"""Largest change of an iteration, in those sizes, at which a point has settled: a millikelvin, a nanometre."""
 PASSES = 40
-"""Passes at most."""
+"""Iterations at most."""
 MEMORY = 12
 """Differences that are kept."""
 FLOOR = 1e-9
@@ -52,7 +52,7 @@ class SettledPoint(Settled):
     answers: FloatArray
     """(n, k) differences of what came of it."""
     left: FloatArray
-    """(n,) what the last pass would still move, heats not relaxed, in sizes of `SCALES`."""
+    """(n,) what the last iteration would still move, heats not relaxed, in sizes of `SCALES`."""
     passes: int
 
 
@@ -90,7 +90,7 @@ def ordered(coupling_state: CouplingState, like: CouplingState) -> CouplingState
 
 
 def raw(rig: Rig, done: IterationResult, parts: IterationParts, like: CouplingState) -> CouplingState:
-    """What a pass hands on, heats not relaxed, names in the order of ``like``."""
+    """What an iteration hands on, heats not relaxed, names in the order of ``like``."""
     after = next_state(rig, done, parts)
     after = replace(after, bearing_heat=done.bearing_heat, wall_heat=done.wall_heat)
     return ordered(after, like)
@@ -106,11 +106,12 @@ def solve_fixed_point(
     close: float = CLOSE,
     start: CouplingState | None = None,
 ) -> SettledPoint:
-    """Passes until none of them moves anything by more than ``close``.
+    """Iterations until none of them moves anything by more than ``close``.
 
     near : a settled point nearby, to start from; the cold rig when left out
     start : coupling state to start from where there is no point nearby
-    inverse : (n, n) of `PointSlopes` at that point: then each pass is followed by a step of Newton's method with it
+    inverse : (n, n) of `PointSlopes` at that point: then each iteration is followed by a step of Newton's method with
+    it
 
     Raises
     ------
@@ -146,7 +147,7 @@ def solve_fixed_point(
         x = _next(x, after, steps, answers)
         coupling_state = unflat(x, cold)
     raise NotConvergedError(
-        f"coupling at {point.stage!r} did not converge in {PASSES} passes: the last one still moved the state by "
+        f"coupling at {point.stage!r} did not converge in {PASSES} iterations: the last one still moved the state by "
         f"{float(np.abs(left).max()):.3g} (limit {close:g}; kelvin, micrometres, 10 W); feed more oil if a film or "
         "stream swings"
     )

@@ -1,4 +1,4 @@
-"""The housings of a rig in the reduced thermal model: parts of a pass that take the place of the full ones."""
+"""The housings of a rig in the reduced thermal model: parts of an iteration that take the place of the full ones."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -142,5 +142,5 @@ class ReducedHousings:
         return float(self.bases[field.gearbox].reduced.body(body) @ field.coefficients)
 
     def parts(self, others: IterationParts) -> IterationParts:
-        """IterationParts of a pass with the fields and growth of these housings."""
+        """Parts of an iteration with the fields and growth of these housings."""
         return replace(others, field=self.field, growth=self.growth, bulk=self.bulk)

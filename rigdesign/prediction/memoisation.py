@@ -1,4 +1,4 @@
-"""IterationParts of a pass that remember: bearing films, meshes, responses and bracing whose inputs were met before.
+"""Parts of an iteration that remember: bearing films, meshes, responses and bracing whose inputs were met before.
 
 A remembered part is the same numbers, only not computed twice. Each is known by all numbers that enter it and by
 nothing else of the case, so that a change finds again whatever it leaves alone. Gaps of the teeth count as the same
@@ -43,14 +43,14 @@ SAME_GAP = 13
 
 
 class Memoisation:
-    """What passes of one rig and its variants found out."""
+    """What iterations of one rig and its variants found out."""
 
     def __init__(self) -> None:
         self._known: dict[str, dict[Any, Any]] = {kind: {} for kind in MOST}
 
     @property
     def parts(self) -> IterationParts:
-        """The parts of a pass that remember."""
+        """The parts of an iteration that remember."""
         return IterationParts(models=self.models, bearings=self.bearings, response=self.response)
 
     def bearings(

@@ -229,7 +229,7 @@ def ideal_response(
 
 
 def is_ideal(rig: Rig) -> bool:
-    """Whether the response of a pass is the ideal one: it takes all teeth alike where it runs over one mesh."""
+    """Whether the response of an iteration is the ideal one: it takes all teeth alike where it runs over one mesh."""
     return rig.case.numerics.response_period == "mesh" and not (rig.system and rig.system.shaft_torques)
 
 

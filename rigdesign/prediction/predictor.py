@@ -1,7 +1,7 @@
 """Many predictions of one rig at the same operating points: base, changed cases, derivatives.
 
 A `Predictor` settles all operating points once with the reduced thermal model and keeps what neighbouring cases can
-use. A changed case is settled anew from there with the same passes; what a change leaves alone is not computed
+use. A changed case is settled anew from there with the same iterations; what a change leaves alone is not computed
 twice.
 """
 
@@ -143,7 +143,7 @@ class Predictor:
             return found
 
     def response(self, changes: Changes | Sequence[Changes]) -> FloatArray:
-        """(n_features,) first-order prediction for a changed case: one pass a point, the loop followed linearly.
+        """(n_features,) first-order prediction for a changed case: one iteration a point, the loop followed linearly.
 
         changes : as `values`
 
@@ -152,7 +152,7 @@ class Predictor:
         CaseError
             As `values`.
         NotConvergedError
-            A pass that does not converge, or teeth so unlike that their contacts have to be followed exactly, as
+            An iteration that does not converge, or teeth so unlike that their contacts have to be followed exactly, as
             `values` does.
         """
         made = self._changed_rigs(changes)
@@ -383,7 +383,7 @@ class Predictor:
         return found
 
     def _states(self) -> dict[str, list[Sequence[Condition]]]:
-        """Conditions of every housing after a pass at the operating points that lie furthest apart."""
+        """Conditions of every housing after an iteration at the operating points that lie furthest apart."""
         found: dict[str, list[Sequence[Condition]]] = {name: [] for name in self._rig.models}
         for setting in _apart(self.settings, STATES) if found else ():
             rig, point = rig_at(self._rig, setting), operating_point(setting)

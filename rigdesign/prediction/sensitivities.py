@@ -1,9 +1,9 @@
 """First-order answers of a settled point: what a small change anywhere does once the loop has followed.
 
-With the coupling state x of a point, the passes x -> g(x) and the readings y(x), a change that moves g by dg and the
-readings by dy at a fixed x moves the settled readings by dy + Y (1 - G)^-1 dg, G and Y the slopes of g and y by x.
-These come from one pass per number of the coupling state; what is changed in the housings (conductances, sources) is
-answered on the temperature shapes.
+With the coupling state x of a point, the iterations x -> g(x) and the readings y(x), a change that moves g by dg and
+the readings by dy at a fixed x moves the settled readings by dy + Y (1 - G)^-1 dg, G and Y the slopes of g and y by
+x. These come from one iteration per number of the coupling state; what is changed in the housings (conductances,
+sources) is answered on the temperature shapes.
 """
 
 from collections.abc import Mapping, Sequence
@@ -52,9 +52,9 @@ class Directions:
 
 @dataclass(frozen=True)
 class SensitivityNumbers:
-    """What the passes of a point found out: plain numbers, so that another process can send them.
+    """What the iterations of a point found out: plain numbers, so that another process can send them.
 
-    loop : (n, n) slope of a pass by its coupling state; follow : (f, n) of the readings; near : answers of
+    loop : (n, n) slope of an iteration by its coupling state; follow : (f, n) of the readings; near : answers of
     `LinearisedDrag`
     """
 
@@ -65,7 +65,7 @@ class SensitivityNumbers:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a pass near a settled point gives.
+    """What an iteration near a settled point gives.
 
     readings : (f,); handed : (n,) what it hands on, in sizes of `SCALES`
     same_loop : whether the loop is that of the point but for its drags and the friction of its teeth
@@ -108,13 +108,14 @@ class PointSensitivities:
         self.index = _index(self.coupling_state)
         numbers = known or self._found()
         self.loop = numbers.loop
-        """(n, n) slope of a pass by its coupling state."""
+        """(n, n) slope of an iteration by its coupling state."""
         self.follow = numbers.follow
         """(f, n) slope of the readings by the coupling state."""
         self.inverse = np.linalg.inv(np.eye(len(self._g)) - self.loop)
-        """(n, n) how far the coupling state moves until the loop has settled, per change of what a pass hands on."""
+        """(n, n) how far the coupling state moves until the loop has settled, per change of what an iteration hands
+        on."""
         self._closed = self.follow @ self.inverse
-        """(f, n) settled readings per change of what a pass hands on."""
+        """(f, n) settled readings per change of what an iteration hands on."""
 
     @property
     def numbers(self) -> SensitivityNumbers:
@@ -122,7 +123,7 @@ class PointSensitivities:
         return SensitivityNumbers(self.loop, self.follow, self.near.slopes)
 
     def _found(self) -> SensitivityNumbers:
-        """The slopes, from one pass per number of the coupling state."""
+        """The slopes, from one iteration per number of the coupling state."""
         x = flat(self.coupling_state)
         slopes, readings = [], []
         for number in self.index.values():
@@ -141,7 +142,7 @@ class PointSensitivities:
         return self._y
 
     def answer(self, handed: FloatArray, read: FloatArray) -> FloatArray:
-        """(f, ...) settled answer to changes of what a pass hands on (n, ...) and of the readings (f, ...)."""
+        """(f, ...) settled answer to changes of what an iteration hands on (n, ...) and of the readings (f, ...)."""
         return np.asarray(read + self._closed @ handed)
 
     def corrected(self, point: SettledPoint) -> FloatArray:
@@ -149,7 +150,7 @@ class PointSensitivities:
         return np.asarray(self._closed @ (point.left - self.settled.left))
 
     def changed(self, rig: Rig, point: OperatingPoint, bracing: Bracing | None) -> Answer:
-        """Settled readings of a rig or setting nearby, from one pass of it."""
+        """Settled readings of a rig or setting nearby, from one iteration of it."""
         done = self._pass(rig, point, self.coupling_state, bracing)
         return replace(done, readings=self._y + self.answer(done.handed - self._g, done.readings - self._y))
 
@@ -179,7 +180,7 @@ class PointSensitivities:
     ) -> FloatArray:
         """(f,) answer where turning parts are wetted by gear oil as it leaves the teeth, not by its mean.
 
-        by_field : (n, m) what a pass hands on by the coefficients of the housing
+        by_field : (n, m) what an iteration hands on by the coefficients of the housing
         """
         reduced = self._housings.bases[name].reduced
         hotter = _fresh_over_mean(self.rig, name, self.settled.last)
@@ -244,7 +245,7 @@ class PointSensitivities:
         return [(name, field) for name, field in fields.items() if isinstance(field, ReducedField)]
 
     def _handed(self, name: str, links: Sequence[Link]) -> FloatArray:
-        """(n, m) what a pass hands on by the coefficients of a housing: growth, gear bulk, heats of its films."""
+        """(n, m) what an iteration hands on by the coefficients of a housing: growth, gear bulk, heats of its films."""
         handed = self._directions[name].coupling_state.copy()
         for link in links:
             heat = self._heat_of(name, link)
@@ -264,7 +265,8 @@ class PointSensitivities:
     def _pass(
         self, rig: Rig, point: OperatingPoint, coupling_state: CouplingState, bracing: Bracing | None
     ) -> Answer:
-        """A pass with what it hands on and what is read of it; the loop to first order where it is nearly the same."""
+        """An iteration with what it hands on and what is read of it; the loop to first order where it is nearly the
+        same."""
         causes: dict[Cause, float] | None = None
 
         def response(
@@ -297,7 +299,7 @@ class PointSensitivities:
         return Answer(readings=np.array(read), handed=handed, same_loop=near is not None)
 
     def _orders(self, rig: Rig, done: IterationResult, bracing: Bracing | None) -> Orders:
-        """Orders after a pass. Raises NotConverged where contacts would have to be followed exactly."""
+        """Orders after an iteration. Raises NotConverged where contacts would have to be followed exactly."""
         read = [channel for channel, _ in self._reads if channel.quantity in ORDER_QUANTITIES]
         if not read:
             return {}

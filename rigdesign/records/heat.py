@@ -268,7 +268,7 @@ def _bearings(rig: Rig, result: PointResult, name: str, shape: Expansion) -> lis
 
 
 def coupling_history(result: PointResult) -> CouplingHistory:
-    """Residuals of every pass."""
+    """Residuals of every iteration."""
     return CouplingHistory(
         stage=result.point.stage,
         iterations=len(result.residuals),

@@ -324,12 +324,12 @@ class MeshShift:
 
 @dataclass(frozen=True, kw_only=True)
 class CouplingHistory:
-    """Residuals of every pass of the coupling loop of one stage."""
+    """Residuals of every iteration of the coupling loop of one stage."""
 
     stage: str
     iterations: int
     residuals: list[dict[str, float]]
-    """{temperature_K, growth_um, torque_relative} by pass."""
+    """{temperature_K, growth_um, torque_relative} by iteration."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -33,7 +33,7 @@ from thermal.housing.surfaces import surface_names
 
 @dataclass(frozen=True)
 class Rig:
-    """Everything that stays the same over operating points and passes.
+    """Everything that stays the same over operating points and iterations.
 
     pairs : cold gear pair by ``gearbox.mesh``; oils, materials : by the name the case uses
     coarsening : of the loop, for estimates of its discretisation error

@@ -98,7 +98,7 @@ def solve_case(
     with DynamicWork(rig, settled) as dynamics:
         points = settled
         if wanted is not rig:
-            say(f"last pass on the {fidelity} mesh")
+            say(f"last iteration on the {fidelity} mesh")
             with dynamics.sharing():
                 points = [on_mesh(wanted, point, rig) for point in settled]
             lap("last_pass")

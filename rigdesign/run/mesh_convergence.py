@@ -79,7 +79,7 @@ def discretisation(
             meshes.append(numbers(other, [on_mesh(other, point, source) for point in settled], governing))
         except (ThermalError, DynamicsError, RigdesignError) as error:
             lost = f"; no result on the mesh of {other.fidelity} fidelity: {error}"
-    # after a last pass on a finer mesh the points come from one more pass, as those of the coarser meshes do
+    # after a last iteration on a finer mesh the points come from one more iteration, as those of the coarser meshes do
     ours = points if rig is not source or not meshes else [on_mesh(rig, point, rig) for point in settled]
     rows = [_energy_row(rig, field, last.point.stage, lost) for field in last.last.fields.values()]
     meshes.append(numbers(rig, ours, governing))

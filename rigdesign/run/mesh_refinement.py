@@ -1,7 +1,7 @@
-"""A settled operating point on another mesh: one more pass, with the loads and losses it settled on.
+"""A settled operating point on another mesh: one more iteration, with the loads and losses it settled on.
 
-At reference the loop runs on the standard mesh and this pass on the fine one ends it. The same pass on coarser
-meshes tells how far mesh and result hang together (`rigdesign.run.mesh_convergence`).
+At reference the loop runs on the standard mesh and this iteration on the fine one ends it. The same iteration on
+coarser meshes tells how far mesh and result hang together (`rigdesign.run.mesh_convergence`).
 """
 
 from collections.abc import Sequence
@@ -90,10 +90,10 @@ def _meshed(rig: Rig, fidelity: Fidelity, *, needed: bool) -> dict[str, GearboxM
 
 
 def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
-    """One more pass of a settled point on the mesh of ``rig``: fields, growth, oil, warm gears and bearings.
+    """One more iteration of a settled point on the mesh of ``rig``: fields, growth, oil, warm gears and bearings.
 
     The periodic response and the losses are those the point settled on. The residual that is added is the
-    change of this pass: the shift from mesh to mesh.
+    change of this iteration: the shift from mesh to mesh.
 
     source : the rig on which the point settled
 
@@ -146,7 +146,7 @@ def _carried(field: HousingField, old: NamedMesh, new: NamedMesh) -> HousingFiel
 
 
 def _warmed(rig: Rig, done: IterationResult, after: CouplingState) -> IterationResult:
-    """The pass with gears and bearings at the lengths and temperatures it ended with."""
+    """The iteration with gears and bearings at the lengths and temperatures it ended with."""
     coupling_state = replace(
         done.coupling_state,
         gear_temperature=after.gear_temperature,

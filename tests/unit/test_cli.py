@@ -254,7 +254,7 @@ def test_status_3_where_the_loop_does_not_settle(rigdesign: Rigdesign, write: Wr
     case = write(SMALL + "[numerics]\ncoupling_passes = 1\n")
     ended = rigdesign("check", case, "--fidelity", "quick", "--out", tmp_path / "out")
     assert ended.status == 3
-    assert "did not settle in 1 passes" in ended.err and "limits 0.05 K" in ended.err
+    assert "did not converge in 1 iterations" in ended.err and "limits 0.05 K" in ended.err
     failure = json.loads((tmp_path / "out" / "failure.json").read_text(encoding="utf-8"))
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["failure.json"]
     assert str(tmp_path / "out" / "failure.json") in ended.err

@@ -65,7 +65,7 @@ def test_the_loop_goes_on_until_the_slowest_has_settled(
 
 @pytest.mark.parametrize("slow", ["temperature", "length", "torque"])
 def test_a_loop_that_runs_out_of_passes_says_so(slow: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(NotConvergedError, match="did not settle in 5 passes"):
+    with pytest.raises(NotConvergedError, match="did not converge in 5 iterations"):
         loop(monkeypatch, slow, passes=5)
 
 

@@ -440,7 +440,7 @@ def test_passes_settle_to_the_tolerances() -> None:
 def test_too_few_passes_show_their_residuals() -> None:
     rig = build_rig(shipped().with_value("numerics.coupling_passes", 1), "quick")
     with pytest.raises(
-        NotConvergedError, match=r"did not settle in 1 passes.*pass 1: [\d.]+ K, [\d.]+ um"
+        NotConvergedError, match=r"did not converge in 1 iterations.*iteration 1: [\d.]+ K, [\d.]+ um"
     ) as caught:
         solve_point(rig, held_points(rig)[-1])
     assert caught.value.exit_code == 3
