@@ -7,6 +7,7 @@ from typing import Any
 from rigdesign.base.errors import CaseError, shortened
 from rigdesign.base.files import RefusedFileError, check_regular, foreign, read_regular
 from rigdesign.case.provenance import is_marked
+from rigdesign.case.shipped import shipped_cases
 
 CASE_FILE = "case.toml"
 LARGEST_CASE = 5_000_000
@@ -14,11 +15,15 @@ LARGEST_CASE = 5_000_000
 
 
 def case_file(path: Path) -> Path:
-    """The case file of a folder, or the file itself.
+    """The case file of a folder, or the file itself; a plain name that is neither may be that of a shipped case.
 
     Raises CaseError when there is none, and for a device, a pipe or a file of more than LARGEST_CASE bytes.
     """
     remedy = f"give a case folder or its {CASE_FILE}"
+    if path.parts == (path.name,) and not path.suffix and not path.exists():
+        shipped = shipped_cases()
+        path = shipped.get(path.name, path)
+        remedy += f", or the name of a shipped case: {', '.join(shipped)}"
     try:
         file = path / CASE_FILE if path.is_dir() else path
         check_regular(file, LARGEST_CASE)

@@ -45,6 +45,7 @@ def validation_rows(
 
 
 def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
+    from rigdesign.case.shipped import case_folder
     from rigdesign.validation import (
         benchmarks,
         films,
@@ -57,7 +58,7 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
         response,
         shafts,
     )
-    from rigdesign.validation.prototype import Prototype, case_folder
+    from rigdesign.validation.prototype import Prototype
 
     prototype = Prototype(case_folder())
     topics: list[Topic] = [
@@ -80,9 +81,9 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
 
 def _main_rig(with_run: bool) -> Iterable[ValidationRow]:
     from rigdesign.case import load_case
+    from rigdesign.case.shipped import case_folder
     from rigdesign.run.main import run_case
     from rigdesign.validation.main_rig import main_rig_rows, rows_without_run
-    from rigdesign.validation.prototype import case_folder
 
     if not with_run:
         return rows_without_run()

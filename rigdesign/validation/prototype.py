@@ -7,7 +7,6 @@ from pathlib import Path
 
 from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions
-from rigdesign.base.errors import UsageError
 from rigdesign.case import Case, load_case
 from rigdesign.rig.gears import build_pair
 from rigdesign.rig.model import Rig, build_rig
@@ -17,22 +16,6 @@ RPM = pi / 30.0
 TEST_TORQUE = 180.0
 """Torque of the test pinion in P2's simulation [N m]."""
 TEST_MESH, REFERENCE_MESH = "test.main", "reference.main"
-
-
-def case_folder(name: str = "uhcf_prototype") -> Path:
-    """Folder of a shipped case: in the package, beside it in a checkout, or in the working directory.
-
-    Raises UsageError naming the places that were searched.
-    """
-    package = Path(__file__).parents[1]
-    places = [base / "cases" / name for base in (package, package.parent, Path.cwd())]
-    for place in places:
-        if (place / "case.toml").is_file():
-            return place
-    raise UsageError(
-        f"shipped case {name!r} not found in {', '.join(map(str, places))}; run the command from a checkout "
-        "of the project"
-    )
 
 
 @dataclass(frozen=True)

@@ -82,3 +82,15 @@ def test_a_result_is_saved_as_check_writes_it(tmp_path: Path) -> None:
     stored = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
     assert [check["id"] for check in stored["checks"]] == [check.id for check in result.checks]
     assert (tmp_path / "out" / "report.html").is_file() and (tmp_path / "out" / "junit.xml").is_file()
+
+
+def test_a_shipped_case_is_found_by_its_name_from_anywhere(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert rigdesign.load_case("uhcf_prototype").path.parent.name == "uhcf_prototype"
+    with pytest.raises(rigdesign.CaseError, match="name of a shipped case: loop_1to1, .*uhcf_prototype"):
+        rigdesign.load_case("uhcf_protoype")
+    (tmp_path / "uhcf_prototype").mkdir()
+    with pytest.raises(rigdesign.CaseError, match=r"no case\.toml in this folder"):
+        rigdesign.load_case("uhcf_prototype")

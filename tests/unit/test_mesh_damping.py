@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from rigdesign.case import load_case
+from rigdesign.case.shipped import case_folder
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.prediction.memoisation import Memoisation
 from rigdesign.records.heat import cooler, loss_rows
 from rigdesign.run.main import losses_by_stage
-from rigdesign.validation.prototype import Prototype, case_folder
+from rigdesign.validation.prototype import Prototype
 from rigdesign.validation.speed_sweeps import closing, course, simulation_laws
 from tests.warm_prototype import base, drive_power, lost, lost_in_all, open_share, outlet, settled
 

@@ -12,6 +12,7 @@ import pytest
 from rigdesign import validation
 from rigdesign.base.errors import OutputError, UsageError
 from rigdesign.case import load_case
+from rigdesign.case.shipped import case_folder
 from rigdesign.cli import main as cli
 from rigdesign.cli.terminal import print_validation
 from rigdesign.results.result import HeatRow, RunResult
@@ -30,7 +31,7 @@ from rigdesign.validation import (
     validation_rows,
     write_validation,
 )
-from rigdesign.validation.prototype import Prototype, case_folder
+from rigdesign.validation.prototype import Prototype
 from rigdesign.validation.rows import compare, compare_printed, not_modelled, stated
 from rigdesign.validation.run_rows import run_rows
 from rigdesign.validation.speed_sweeps import FINE, SpeedSweep, course, simulation_laws, smooth
