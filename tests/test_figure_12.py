@@ -51,9 +51,9 @@ def test_the_residual_sits_at_the_bearings(document) -> None:
 
 def test_a_joint_behind_the_shells_comes_first(document) -> None:
     """And cannot do it all: at its bound it ends, P2 asks for 0.036 m2 K/W, a millimetre of air."""
-    weighed = [row for row in document["alternatives"] if row["family"] != "none"]
-    assert weighed[0]["explanation"] == document["suspects"][0]["effect"] == "shell_contact:test"
-    catalogue = [row["gain"] for row in weighed if row["family"] == "physical"]
+    evaluated = [row for row in document["alternatives"] if row["family"] != "none"]
+    assert evaluated[0]["explanation"] == document["suspects"][0]["effect"] == "shell_contact:test"
+    catalogue = [row["gain"] for row in evaluated if row["family"] == "physical"]
     assert catalogue[0] > 1.3 * max(catalogue[1:])
     [resistance] = document["suspects"][0]["parameters"]
     assert resistance["interval_open"] and resistance["interval_95"][1] == resistance["value"]

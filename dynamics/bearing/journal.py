@@ -47,7 +47,7 @@ class JournalBearing:
     transition_constant : C in Vogelpohl's transition speed, 1 to 2 [-]
     feed_share : share of the fed oil that cools the film, 0 to 1 [-]; the rest leaves past it. 1 is the
         assumption of ISO 7902-1, 0 leaves only the oil that the film itself drives out of its ends. Not less
-        than that ever flows through the film as long as it is fed. Assumed, weigh its range: it decides the
+        than that ever flows through the film as long as it is fed. Assumed, look at its range: it decides the
         film temperature of a bearing fed far beyond its own demand
     """
 

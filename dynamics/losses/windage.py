@@ -262,7 +262,7 @@ def _pitch_warning(gear: GearRotor) -> tuple[str, ...]:
         return ()
     return (
         f"windage: pitch radius = {gear.pitch_radius * 1e3:.1f} mm, {gear.teeth} teeth: the tooth part was "
-        "tested at 100 to 200 mm and 30 to 102 teeth; weigh it by the range of the chamber density",
+        "tested at 100 to 200 mm and 30 to 102 teeth; judge it by the range of the chamber density",
     )
 
 

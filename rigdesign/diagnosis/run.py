@@ -72,7 +72,7 @@ def diagnose_measurement(
             seed=measurement.hash,
             repeated=data.strength == "proven",
         )
-        say("weighing explanations")
+        say("evaluating hypotheses")
         channels = tuple(entry.channel for entry in data.channels.values())
         rerun = FullRun(case=case, settings=data.settings, channels=channels, effects=effects, say=say)
         found = diagnose(problem, calibration, rerun)

@@ -18,7 +18,7 @@ from rigdesign.diagnosis.document.document import diagnosis_document
 from rigdesign.diagnosis.document.outcome import outcome
 from rigdesign.diagnosis.library.library import Response
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import Hypothesis, weigh
+from rigdesign.diagnosis.statistics.evidence import Hypothesis, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
 from rigdesign.prediction import Channel, OperatingCondition
 from rigdesign.prediction.changes import changed_case
@@ -241,7 +241,9 @@ def traces(columns, *, noise=None, assembly=None):
         for name, column in zip("abc", columns.T)
     ]
     assembly = [()] * len(columns) if assembly is None else assembly
-    return Traces(space=space, explanations=[weigh(space, one) for one in effects], assembly=assembly)
+    return Traces(
+        space=space, explanations=[evaluate_hypothesis(space, one) for one in effects], assembly=assembly
+    )
 
 
 def test_the_group_begins_at_a_correlation_of_95_per_cent():
@@ -273,13 +275,15 @@ def test_a_second_group_is_not_apart_from_the_first():
         Hypothesis(name=name, family="physical", parts=(name,), columns=column[:, None], half=20.0)
         for name, column in zip("abcde", columns.T)
     ]
-    weighed = [weigh(space, one) for one in effects]
-    found = [weighed[0], weighed[2], weighed[4]]
+    evaluated = [evaluate_hypothesis(space, one) for one in effects]
+    found = [evaluated[0], evaluated[2], evaluated[4]]
     sizes = dict.fromkeys("ace", (9.0,))
-    decision = _group(found, sizes, Traces(space=space, explanations=weighed, assembly=[()] * 6))
+    decision = _group(found, sizes, Traces(space=space, explanations=evaluated, assembly=[()] * 6))
     assert decision is not None and decision.named == ("a", "b") and decision.apart == ("e",)
     assert "b leaves the trace of a" in decision.reason and "d leaves the trace of c" in decision.reason
-    assert _group([weighed[4]], sizes, Traces(space=space, explanations=weighed, assembly=[()] * 6)) is None
+    assert (
+        _group([evaluated[4]], sizes, Traces(space=space, explanations=evaluated, assembly=[()] * 6)) is None
+    )
 
 
 def test_offset_and_scale_of_one_sensor_are_one_finding():
@@ -287,19 +291,21 @@ def test_offset_and_scale_of_one_sensor_are_one_finding():
     found = traces(columns)
     names = ("sensor_offset:T1", "sensor_scale:T1")
     for other, alike in (("sensor_scale:T1", []), ("sensor_scale:T2", ["sensor_scale:T2"])):
-        weighed = [
+        evaluated = [
             replace(one, hypothesis=replace(one.hypothesis, family="sensor", parts=(name,)))
             for one, name in zip(found.explanations, (names[0], other))
         ]
-        rivals = Traces(space=found.space, explanations=weighed, assembly=[()] * 3).like("a", (9.0,))
+        rivals = Traces(space=found.space, explanations=evaluated, assembly=[()] * 3).like("a", (9.0,))
         assert [name for name, _ in rivals] == alike
 
 
 def test_what_its_bounds_keep_too_small_cannot_stand_for_a_name():
-    weighed = traces([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 0.1, 1.0]]).explanations
+    evaluated = traces([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 0.1, 1.0]]).explanations
     space = traces([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 0.1, 1.0]]).space
-    small = replace(weighed[1].hypothesis, half=2.0)
-    again = Traces(space=space, explanations=[weighed[0], weigh(space, small)], assembly=[()] * 3)
+    small = replace(evaluated[1].hypothesis, half=2.0)
+    again = Traces(
+        space=space, explanations=[evaluated[0], evaluate_hypothesis(space, small)], assembly=[()] * 3
+    )
     assert (
         traces([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 0.1, 1.0]]).like("a", (9.0,))
         and again.like("a", (9.0,)) == []

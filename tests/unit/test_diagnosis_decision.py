@@ -1,4 +1,4 @@
-"""From weighed explanations to a verdict: what a name needs beside its posterior."""
+"""From evaluated explanations to a verdict: what a name needs beside its posterior."""
 
 import numpy as np
 import pytest
@@ -21,8 +21,8 @@ def evidence(name, log_bayes, family="physical"):
 USUAL = Thresholds()
 
 
-def verdict(*weighed, thresholds=USUAL, loop=(), sensors=(), left=0.0):
-    ordered = sorted(weighed, key=lambda one: -one.log_bayes)
+def verdict(*evaluated, thresholds=USUAL, loop=(), sensors=(), left=0.0):
+    ordered = sorted(evaluated, key=lambda one: -one.log_bayes)
     return decide(
         ordered,
         posterior(ordered, COUNTS),

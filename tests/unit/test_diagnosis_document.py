@@ -217,7 +217,7 @@ def test_refusals_say_why_and_what_to_do() -> None:
     assert any("baseline" in text for text in asked)
     healthy = document("healthy")
     assert healthy["patch"]["case"] is None and healthy["unexplained"]["groups"] == []
-    assert "healthy rig leaves as much" in healthy["headline"]
+    assert "residual of a healthy rig is as large" in healthy["headline"]
 
 
 def test_exchanged_channels_are_put_right_in_the_measurement() -> None:

@@ -12,11 +12,11 @@ from rigdesign.diagnosis.statistics.covariance import Covariance, Release, White
 from rigdesign.diagnosis.statistics.evidence import (
     Curve,
     Hypothesis,
+    evaluate_hypothesis,
+    evaluate_pair,
     graded,
     mixture_density,
     release_of,
-    weigh,
-    weigh_pair,
 )
 
 N = 120
@@ -93,11 +93,11 @@ def test_quadrature_of_a_straight_curve_equals_the_closed_form():
     assert np.sum(weights * np.exp(mixture_density(grid, half))) == pytest.approx(1.0, abs=2e-3)
     # the same prior: a curve's spreads follow its bounds, those here are four times the half
     straight = Hypothesis(name="e", family="physical", parts=("e",), columns=white[:, None], half=4.0 * half)
-    one = weigh(space, straight)
-    other = weigh(space, Hypothesis(name="e", family="physical", parts=("e",), curve=curve))
+    one = evaluate_hypothesis(space, straight)
+    other = evaluate_hypothesis(space, Hypothesis(name="e", family="physical", parts=("e",), curve=curve))
     assert other.coordinates[0] == pytest.approx(one.coordinates[0], rel=1e-6)
     assert other.log_bayes == pytest.approx(one.log_bayes, abs=0.1)
-    assert weigh(space, closed).log_bayes > other.log_bayes - 2.0
+    assert evaluate_hypothesis(space, closed).log_bayes > other.log_bayes - 2.0
 
 
 def test_nothing_is_named_in_healthy_sets():
@@ -246,14 +246,14 @@ def test_a_pair_of_two_that_look_alike_gains_as_one_of_them_whatever_their_units
 
     def alone(name, factor):
         columns = covariance.whiten(factor * effects[:, [1]])
-        return weigh(
+        return evaluate_hypothesis(
             space,
             Hypothesis(name=name, family="physical", parts=(name,), columns=columns, half=100.0 / factor),
         )
 
     first, twin, other_unit = alone("a", 1.0), alone("b", 1.0 + 1e-14), alone("c", 3e6)
     for one in (twin, other_unit):
-        pair = weigh_pair(space, first, one)
+        pair = evaluate_pair(space, first, one)
         assert pair.gain == pytest.approx(first.gain, rel=1e-8)
         assert pair.coordinates[0] == pytest.approx(0.5 * first.coordinates[0], rel=1e-6)
     apart = Hypothesis(
@@ -262,5 +262,5 @@ def test_a_pair_of_two_that_look_alike_gains_as_one_of_them_whatever_their_units
     both = np.stack([effects[:, 1], effects[:, 2]], axis=1)
     white = covariance.whiten(both)
     best = np.linalg.lstsq(white, space.residual, rcond=None)[0]
-    pair = weigh_pair(space, first, weigh(space, apart))
+    pair = evaluate_pair(space, first, evaluate_hypothesis(space, apart))
     assert pair.coordinates == pytest.approx((best[0], 1e-7 * best[1]), rel=1e-8)

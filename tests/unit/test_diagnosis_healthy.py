@@ -12,7 +12,7 @@ from rigdesign.diagnosis.residual.covariance_inflation import LARGEST, WIDEN_ABO
 from rigdesign.diagnosis.residual.healthy import TREND, answer_error, healthy_columns, relative_speed
 from rigdesign.diagnosis.residual.residual_problem import plain
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, weigh
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.support import support
 from rigdesign.prediction.model import Channel, OperatingCondition, features_of
 from tests.diagnosis_example import DESIGN, story
@@ -96,7 +96,7 @@ def test_error_of_answers_is_coherent_in_a_series_and_grows_along_the_speed():
 def explained(space, raw):
     whole = space.covariance.whiten(raw)
     hypothesis = Hypothesis(name="e", family="physical", parts=("e",), columns=whole[:, None], half=10.0)
-    return weigh(space, hypothesis)
+    return evaluate_hypothesis(space, hypothesis)
 
 
 def test_support_is_what_the_other_points_say():

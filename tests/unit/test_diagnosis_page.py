@@ -107,7 +107,7 @@ def test_the_terminal_names_verdict_and_report(
 
 def run_command(monkeypatch: pytest.MonkeyPatch, name: str, *arguments: str) -> int:
     def instead(case, folder, *, say=lambda message: None, **keys):
-        say("weighing explanations")
+        say("evaluating hypotheses")
         return story(name)
 
     monkeypatch.setattr(run, "diagnose_measurement", instead)
@@ -124,7 +124,7 @@ def test_the_command_writes_all_and_prints_one_document(
     printed = capsys.readouterr()
     document = json.loads(printed.out)
     assert document == json.loads((tmp_path / "out" / "diagnosis.json").read_text(encoding="utf-8"))
-    assert "weighing explanations" in printed.err
+    assert "evaluating hypotheses" in printed.err
     names = sorted(path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*"))
     assert names == ["case.patch.json", "diagnosis.html", "diagnosis.json", "patched/case.toml"]
 
@@ -143,7 +143,7 @@ def test_a_wrong_name_is_refused_before_anything_is_computed(
     )
     assert status == 2 and not (tmp_path / "out").exists()
     text = capsys.readouterr().err
-    assert "did you mean run_out:test.pinion" in text and "weighing" not in text
+    assert "did you mean run_out:test.pinion" in text and "evaluating" not in text
 
 
 def test_an_out_that_is_a_file_is_refused_before_anything_is_computed(
@@ -151,7 +151,7 @@ def test_an_out_that_is_a_file_is_refused_before_anything_is_computed(
 ) -> None:
     (tmp_path / "out").write_text("mine", encoding="utf-8")
     assert run_command(monkeypatch, "alias", "set", "--out", str(tmp_path / "out")) == 2
-    assert "weighing" not in capsys.readouterr().err
+    assert "evaluating" not in capsys.readouterr().err
     assert (tmp_path / "out").read_text(encoding="utf-8") == "mine"
 
 

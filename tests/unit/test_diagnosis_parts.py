@@ -13,7 +13,7 @@ from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.detectability import aliases, detectabilities
-from rigdesign.diagnosis.statistics.evidence import Curve, Hypothesis, weigh
+from rigdesign.diagnosis.statistics.evidence import Curve, Hypothesis, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import gap, held_out
 from rigdesign.diagnosis.statistics.intervals import fit_together
 from rigdesign.diagnosis.statistics.next_measurement import Proposal, Rival, ranked
@@ -102,7 +102,7 @@ def test_intervals_cover_as_often_as_they_say():
         rng = np.random.default_rng(seed)
         residual = lower @ rng.normal(size=60) + columns @ [2.0, -1.0]
         space = Whitened.of(covariance, residual)
-        found = [weigh(space, plane(f"e{i}", covariance, columns[:, [i]])) for i in range(2)]
+        found = [evaluate_hypothesis(space, plane(f"e{i}", covariance, columns[:, [i]])) for i in range(2)]
         fit = fit_together(space, found, {"": 0.0}, [[(-10.0, 10.0)]] * 2)
         low, high = fit.sizes[0].interval
         inside += low <= 2.0 <= high
@@ -118,10 +118,12 @@ def test_where_an_answer_saturates_its_size_is_known_worse():
     hypothesis = Hypothesis(name="joint", family="physical", parts=("joint",), curve=curve)
     space = Whitened.of(covariance, 0.5 * direction)
     widths = {"": 0.33 / 1.96}
-    (size,) = fit_together(space, [weigh(space, hypothesis)], widths, [[(0.0, 5.0)]]).sizes
+    (size,) = fit_together(space, [evaluate_hypothesis(space, hypothesis)], widths, [[(0.0, 5.0)]]).sizes
     assert size.coordinate == pytest.approx(1.0, abs=1e-3)
     assert size.interval == pytest.approx((0.504, 1.985), rel=0.01)
-    (open_end,) = fit_together(space, [weigh(space, hypothesis)], {"": 0.4}, [[(0.0, 5.0)]]).sizes
+    (open_end,) = fit_together(
+        space, [evaluate_hypothesis(space, hypothesis)], {"": 0.4}, [[(0.0, 5.0)]]
+    ).sizes
     assert open_end.interval[1] == 5.0 and open_end.at_bound
 
 

@@ -6,7 +6,7 @@ import pytest
 from rigdesign.diagnosis.residual.signature import Contest, Signature
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
-from rigdesign.diagnosis.statistics.evidence import Hypothesis, weigh, weigh_pair
+from rigdesign.diagnosis.statistics.evidence import Hypothesis, evaluate_hypothesis, evaluate_pair
 from rigdesign.diagnosis.statistics.model_error import OwnError
 from rigdesign.prediction.model import Feature
 
@@ -62,7 +62,7 @@ def direct(
     kept = tuple(column for column in covariance.columns if column.effect != "film:x")
     wide = Covariance(base=covariance.base, columns=kept, amplitudes={}).with_extra(errors)
     space, plain = Whitened.of(wide, residual), Whitened.of(covariance, residual)
-    found = weigh(space, hypothesis_of(wide))
+    found = evaluate_hypothesis(space, hypothesis_of(wide))
     return (
         found.log_bayes
         + 0.5 * (plain.chi_square - space.chi_square)
@@ -77,7 +77,7 @@ def test_low_rank_algebra_is_the_whole_covariance(own, alone):
     covariance = healthy(own)
     residual = 6.0 * trace() + np.random.default_rng(5).normal(size=len(FEATURES))
     space = Whitened.of(covariance, residual)
-    first = weigh(space, plane(covariance, trace()))
+    first = evaluate_hypothesis(space, plane(covariance, trace()))
     found = Contest(space, signature(alone)).again(first)
     answer = covariance.lower @ first.answer
     wanted = direct(covariance, residual, answer, lambda wide: plane(wide, trace()), alone)
@@ -94,12 +94,12 @@ def test_an_answer_that_is_a_share_off_is_forgiven_and_noise_is_not():
     right, other = (
         plane(covariance, values, name) for values, name in ((trace(), "film:x"), (rival, "loss:y"))
     )
-    both = weigh_pair(space, weigh(space, right), weigh(space, other))
-    assert both.log_bayes > weigh(space, right).log_bayes + 5.0
+    both = evaluate_pair(space, evaluate_hypothesis(space, right), evaluate_hypothesis(space, other))
+    assert both.log_bayes > evaluate_hypothesis(space, right).log_bayes + 5.0
     # what is left of that is less than the priors of a pair cost
-    assert contest.again(both).log_bayes < contest.again(weigh(space, right)).log_bayes + 1.0
-    left = space.chi_square - contest.again(weigh(space, right)).gain
-    assert left < 2.0 * len(FEATURES) < space.chi_square - weigh(space, right).gain
+    assert contest.again(both).log_bayes < contest.again(evaluate_hypothesis(space, right)).log_bayes + 1.0
+    left = space.chi_square - contest.again(evaluate_hypothesis(space, right)).gain
+    assert left < 2.0 * len(FEATURES) < space.chi_square - evaluate_hypothesis(space, right).gain
 
 
 def test_an_order_near_a_resonance_is_off_by_a_share_of_its_amplitude():
@@ -118,7 +118,7 @@ def test_exact_explanations_keep_their_evidence():
     space = Whitened.of(covariance, 5.0 * trace())
     contest = Contest(space, signature())
     for hypothesis in (plane(covariance, trace(), "offset", "sensor"), plane(covariance, trace(), "known:x")):
-        one = weigh(space, hypothesis)
+        one = evaluate_hypothesis(space, hypothesis)
         assert contest.again(one) is one
-    none = weigh(Whitened.of(covariance, np.zeros(len(FEATURES))), plane(covariance, trace()))
+    none = evaluate_hypothesis(Whitened.of(covariance, np.zeros(len(FEATURES))), plane(covariance, trace()))
     assert contest.again(none) is none

@@ -93,7 +93,7 @@ def posterior(
 ) -> Posterior:
     """Masses from log Bayes factors and prior weights.
 
-    members : how many explanations each family has, those that were not worth weighing included: its prior weight
+    members : how many explanations each family has, those that were not worth evaluating included: its prior weight
         is split evenly among them
     """
     logs = [float(np.log(priors["none"]))]

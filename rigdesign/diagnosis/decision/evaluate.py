@@ -1,4 +1,4 @@
-"""One look at a residual: every explanation weighed, the best of them joined in pairs, a verdict."""
+"""One look at a residual: every explanation evaluated, the best of them joined in pairs, a verdict."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +17,7 @@ from rigdesign.diagnosis.decision.decision import (
 from rigdesign.diagnosis.residual.signature import Contest, Signature
 from rigdesign.diagnosis.statistics.covariance import Whitened
 from rigdesign.diagnosis.statistics.detectability import Detectability, detectabilities
-from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, weigh, weigh_pair
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, evaluate_hypothesis, evaluate_pair
 from rigdesign.diagnosis.statistics.support import support
 
 LEADERS = 12
@@ -82,7 +82,7 @@ def evaluate(
     explained: float = 0.0,
     earlier: "Earlier | None" = None,
 ) -> Examination:
-    """Weigh everything and decide.
+    """Evaluate every hypothesis and decide.
 
     points : (n,) operating point of each number; left out, a name may depend on one
     loop : names of effects that show in orders and natural frequencies
@@ -95,9 +95,9 @@ def evaluate(
     if table is None:
         table = detectabilities(space, known, explanations.anonymous)
     contest = None if signature is None else Contest(space, signature)
-    singles = _judged(contest, [weigh(space, one) for one in (*known, *explanations.anonymous)])
+    singles = _judged(contest, [evaluate_hypothesis(space, one) for one in (*known, *explanations.anonymous)])
     singles = _without_copies(singles)
-    data = [weigh(space, one) for one in explanations.data]
+    data = [evaluate_hypothesis(space, one) for one in explanations.data]
     pairs = _judged(contest, _pairs(space, singles))
     evidence = sorted((*singles, *data, *pairs), key=lambda one: -one.log_bayes)
     weights = posterior(evidence, explanations.members, priors)
@@ -237,7 +237,7 @@ def _pairs(space: Whitened, singles: Sequence[Evidence]) -> list[Evidence]:
             key = frozenset((first.hypothesis.name, second.hypothesis.name))
             if len(key) == 2 and key not in done:
                 done.add(key)
-                pairs.append(weigh_pair(space, first, second))
+                pairs.append(evaluate_pair(space, first, second))
     return pairs
 
 

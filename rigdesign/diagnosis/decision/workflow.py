@@ -27,7 +27,7 @@ from rigdesign.diagnosis.residual.unmodelled_cause import anonymous
 from rigdesign.diagnosis.statistics.columns import Array, Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.detectability import Detectability, aliases
-from rigdesign.diagnosis.statistics.evidence import Evidence, weigh
+from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import Gap, held_out
 from rigdesign.diagnosis.statistics.intervals import JointFit, fit_together
 from rigdesign.diagnosis.statistics.model_error import OwnError
@@ -56,7 +56,7 @@ class Problem:
 
 @dataclass(frozen=True, kw_only=True)
 class Alternative:
-    """An explanation that was weighed, with its posterior mass."""
+    """An explanation that was evaluated, with its posterior mass."""
 
     name: str
     parts: tuple[str, ...]
@@ -199,7 +199,7 @@ def _assemblies(subject: ResidualProblem) -> list[tuple[tuple[str, int], ...]]:
 def _explanations(
     problem: Problem, subject: ResidualProblem, space: Whitened, *, rivals: bool = True, data: bool = True
 ) -> Explanations:
-    """All explanations; without the anonymous ``rivals`` where only data and catalogue are weighed, and without wrong
+    """All explanations; without the anonymous ``rivals`` where only data and catalogue are evaluated, and without wrong
     ``data`` where those were looked at before."""
     covariance = space.covariance
     expected = subject.values - space.raw
@@ -337,7 +337,7 @@ def _wrong_data(
     everything = _explanations(problem, subject, whole, rivals=False)
     singles = (*everything.physical, *everything.sensor, *everything.data)
     contest = Contest(whole, _signature(problem, subject, calibration))
-    judged = contest.judged([weigh(whole, one) for one in singles])
+    judged = contest.judged([evaluate_hypothesis(whole, one) for one in singles])
     evidence = sorted(judged, key=lambda one: -one.log_bayes)
     weights = posterior(evidence, everything.members)
     if weights.families.get("input", 0.0) <= calibration.thresholds(problem.baseline is not None).input:

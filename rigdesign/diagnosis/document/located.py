@@ -16,7 +16,7 @@ from rigdesign.measurement.comparison.locate import Located, locate
 def located(result: Result, residual: Array) -> tuple[Located, ...]:
     """Groups of the numbers that were kept, the most conspicuous first.
 
-    residual : (n_kept,). A group is weighed by its own block of the covariance of a healthy rig, so that numbers
+    residual : (n_kept,). A group is evaluated by its own block of the covariance of a healthy rig, so that numbers
     that go up and down together count once: ``rms`` is 1 in the mean of healthy rigs, ``excess`` the probability that
     the residual of a healthy rig is as large.
     """
@@ -28,8 +28,8 @@ def located(result: Result, residual: Array) -> tuple[Located, ...]:
         features, residual, np.sqrt(np.diagonal(matrix)), [bands.of(feature) for feature in features],
         result.data.settings, result.case.ambient.temperature,
     )  # fmt: skip
-    weighed = [_weighed(item, residual, matrix) for item in items]
-    return tuple(sorted(weighed, key=lambda item: -item.rms))
+    evaluated = [_weighed(item, residual, matrix) for item in items]
+    return tuple(sorted(evaluated, key=lambda item: -item.rms))
 
 
 def _weighed(item: Located, residual: Array, matrix: Array) -> Located:

@@ -102,7 +102,7 @@ def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Rank
     Raises
     ------
     UsageError
-        An effect picked that these data do not weigh, or that is not among the named ones.
+        An effect picked that these data do not evaluate, or that is not among the named ones.
     """
     found = result.diagnosis
     names = Names(result.effects, result.problem.subject.errors)
@@ -209,12 +209,14 @@ def _picked(result: Result, names: Names, fitted: Sequence[Sized], pick: str) ->
         raise UsageError(f"--name {pick}: the data name {named}; leave --name out or pick of them")
     best = _best(result, names, pick)
     if best is None:
-        weighed = [
+        evaluated = [
             one.hypothesis.name
             for one in result.diagnosis.examinations[0].evidence
             if names.entry(one.hypothesis.name) is not None
         ]
-        raise UsageError(f"--name {pick}: these sensors and points do not see it; {_nearest(pick, weighed)}")
+        raise UsageError(
+            f"--name {pick}: these sensors and points do not see it; {_nearest(pick, evaluated)}"
+        )
     return from_evidence(names, best, result.calibration.signature_error)
 
 

@@ -145,12 +145,12 @@ def _misfit(group: Group, amplitudes: Mapping[str, float], names: Sequence[str])
     lower = np.linalg.cholesky(matrix)
     inverse = np.linalg.inv(lower)
     precision = inverse.T @ inverse
-    weighed = precision @ group.products @ precision
+    weighted = precision @ group.products @ precision
     value = group.count * float(np.log(np.diagonal(lower)).sum()) + 0.5 * float(
         np.sum(precision * group.products)
     )
     slopes = [
-        amplitudes[name] ** 2 * float(np.sum((group.count * precision - weighed) * group.parts[name]))
+        amplitudes[name] ** 2 * float(np.sum((group.count * precision - weighted) * group.parts[name]))
         if name in group.parts
         else 0.0
         for name in names

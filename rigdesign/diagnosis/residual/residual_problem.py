@@ -1,7 +1,7 @@
 """What is to be explained: readings less prediction, and the covariance of the residual of a healthy rig.
 
 What is left given a healthy set of the same rig is in `rigdesign.diagnosis.residual.baseline`. What the model answers
-wrongly to a right cause is weighed with each cause (`rigdesign.diagnosis.residual.signature`).
+wrongly to a right cause is evaluated with each cause (`rigdesign.diagnosis.residual.signature`).
 """
 
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,7 @@
 """What a model may answer wrongly to a right cause, admitted to every explanation alike.
 
 A cause in the model never leaves exactly the trace it leaves on the rig. An explanation with the answer a is
-therefore weighed under C + E E': every series of numbers (one channel, one order) may be off by a share of its own
+therefore evaluated under C + E E': every series of numbers (one channel, one order) may be off by a share of its own
 answer, the same over all points and along the speed, and orders by themselves
 (`rigdesign.diagnosis.statistics.model_error`). With no cause there is no answer and no such error, so that a small
 effect is not hidden by it; rivals that differ by less than the model's own error are told apart by their priors
@@ -131,7 +131,7 @@ class Contest:
     signature: Signature
 
     def judged(self, evidence: Sequence[Evidence]) -> list[Evidence]:
-        """The best of them weighed again, the others as they were."""
+        """The best of them evaluated again, the others as they were."""
         ordered = sorted(evidence, key=lambda one: -one.log_bayes)
         return [self.again(one) for one in ordered[:CONTENDERS]] + ordered[CONTENDERS:]
 

@@ -145,7 +145,7 @@ def release_of(space: Whitened, own: Sequence[str]) -> Release:
     return Release.of(space.columns[:, places])
 
 
-def weigh(space: Whitened, hypothesis: Hypothesis) -> Evidence:
+def evaluate_hypothesis(space: Whitened, hypothesis: Hypothesis) -> Evidence:
     """Evidence of one hypothesis."""
     if hypothesis.residual is not None:
         return _weigh_data(space, hypothesis)
@@ -324,7 +324,7 @@ def deviations_of(inverse: Array) -> tuple[float, ...]:
     return tuple(float(value) for value in np.sqrt(np.maximum(np.diagonal(inverse), 0.0)))
 
 
-def weigh_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
+def evaluate_pair(space: Whitened, first: Evidence, second: Evidence) -> Evidence:
     """Two explanations at once, in closed form around the best fit of the first.
 
     The first is taken at its own best size with the slope there; of the second the slope at its best size. The

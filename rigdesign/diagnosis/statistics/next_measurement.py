@@ -1,7 +1,7 @@
 """The measurement that would tell rivals apart: separation by what is already known, per cost.
 
 Two rivals, each at its best fit, foresee different readings of a new sensor or point. What they disagree on is
-weighed by the covariance of those readings given the ones there are, each rival free to change its size within what
+evaluated by the covariance of those readings given the ones there are, each rival free to change its size within what
 the data leave it (T-optimal design for rival models, Atkinson and Fedorov, Biometrika 62, 1975, 57).
 """
 
