@@ -33,7 +33,7 @@ BINARY_PARENTS = ("arith_expr", "term", "power")
 """Elsewhere ``*`` and ``**`` unpack."""
 LARGEST = 1e3
 """Of a constant that is moved by one: more of it would not be seen in any result."""
-DRAWING = re.compile(r"rigdesign/report/(drawing|sankey|mesh_views|views|figures_\w+|\w+_figures)\.py")
+DRAWING = re.compile(r"rigdesign/report/(figures/\w+|pages/views)\.py")
 """Line widths and places on paper: looked at, not computed with."""
 
 
