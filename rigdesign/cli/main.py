@@ -7,16 +7,14 @@ data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy impor
 """
 
 import json
-import os
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, Parameter
 
 from rigdesign.base.version import __version__
+from rigdesign.cli.ending import NOTHING_KEPT, SIMULATIONS_KEPT, exit_status, failure_kept, interrupted
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
@@ -70,7 +68,7 @@ def check(
 
     if out is not None:
         prepare_output(out)
-    with Progress() as progress, _interrupted(NOTHING_KEPT), _failure_kept(out):
+    with Progress() as progress, interrupted(NOTHING_KEPT), failure_kept(out):
         result = run_case(loaded, fidelity=fidelity, progress=progress, transient=transient)
         if ranges:
             from rigdesign.uncertainty.run import with_ranges
@@ -167,7 +165,7 @@ def compare(
 
     if out is not None:
         prepare_output(out)
-    with Progress() as progress, _interrupted(NOTHING_KEPT):
+    with Progress() as progress, interrupted(NOTHING_KEPT):
         comparison = compare_measurement(loaded, measurement, model=model, fidelity=fidelity, say=progress)
         if out is not None:
             progress("writing report")
@@ -221,7 +219,7 @@ def diagnose(
     if name is not None:
         check_pick(effects_of(loaded), name)
     prepare_output(out)
-    with Progress() as progress, _interrupted(SIMULATIONS_KEPT):
+    with Progress() as progress, interrupted(SIMULATIONS_KEPT):
         found = diagnose_measurement(loaded, measurement, say=progress)
         told = outcome(found, pick=name, proposals=found.proposals)
         progress("writing report")
@@ -248,7 +246,7 @@ def _calibrate(case: Path, measurement: Path, out: Path) -> int:
     from rigdesign.report.diagnosis_files import write_calibrated
 
     prepare_output(out)
-    with Progress() as progress, _interrupted(SIMULATIONS_KEPT):
+    with Progress() as progress, interrupted(SIMULATIONS_KEPT):
         found = calibrate_case(loaded, measurement, say=progress)
         write_calibrated(found, out)
     print_constants(found, out)
@@ -274,7 +272,7 @@ def mesh(case: Path, *, out: Path, fidelity: Fidelity = "standard") -> int:
     from rigdesign.report import prepare_output
 
     prepare_output(out)
-    with Progress() as progress, _interrupted(NOTHING_KEPT):
+    with Progress() as progress, interrupted(NOTHING_KEPT):
         progress("meshing")
         written = export_meshes(loaded, out, fidelity)
     print_meshes(written)
@@ -323,7 +321,7 @@ def validate(*, out: Path | None = None, json: bool = False, quick: bool = False
 
     if out is not None:
         prepare_output(out)
-    with Progress() as progress, _interrupted(NOTHING_KEPT):
+    with Progress() as progress, interrupted(NOTHING_KEPT):
         rows = validation_rows(with_run=not quick, progress=progress)
     if out is not None:
         write_validation(rows, out)
@@ -354,92 +352,9 @@ def doctor() -> int:
     return 0 if all(finding.ok for finding in findings) else 4
 
 
-NOTHING_KEPT = "nothing was written; the same command starts again from the beginning"
-SIMULATIONS_KEPT = (
-    "no report was written; finished simulations are stored, the same command goes on from there"
-)
-
-
-@contextmanager
-def _interrupted(remains: str) -> Iterator[None]:
-    """Say what an interrupt leaves and how to go on."""
-    try:
-        yield
-    except KeyboardInterrupt as stop:
-        stop.add_note(remains)
-        raise
-
-
-@contextmanager
-def _failure_kept(out: Path | None) -> Iterator[None]:
-    """Write what a run without convergence leaves, and say where it is."""
-    from rigdesign.base.errors import NotConvergedError
-
-    try:
-        yield
-    except NotConvergedError as error:
-        from rigdesign.report import write_failure
-
-        file = None if out is None else write_failure(error, out)
-        if file is not None:
-            error.args = (f"{error}; its history is in {file}", *error.args[1:])
-        raise
-
-
 def main() -> None:
     """Entry point of the `rigdesign` command."""
-    sys.exit(_exit_status(lambda: app(result_action="return_value")))
-
-
-def _exit_status(command: Callable[[], object]) -> int:
-    """Run a command and turn the tool's errors into messages and exit status."""
-    from rigdesign.base.errors import WIDEST_PLACE, RigdesignError, shortened
-
-    try:
-        status = command()
-        sys.stdout.flush()
-    except CycloptsError as error:
-        print(f"rigdesign: {shortened(str(error), WIDEST_PLACE)}", file=sys.stderr)
-        return 2
-    except RigdesignError as error:
-        print(f"rigdesign: {error}", file=sys.stderr)
-        return error.exit_code
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-    except KeyboardInterrupt as stop:
-        print("; ".join(["rigdesign: interrupted", *getattr(stop, "__notes__", [])]), file=sys.stderr)
-        return 130
-    except Exception as error:
-        print(_defect(error), file=sys.stderr)
-        return 70
-    return status if isinstance(status, int) else 0
-
-
-def _defect(error: Exception) -> str:
-    """One line on an error that nobody raised on purpose; its traceback goes to a file."""
-    import platform
-    import tempfile
-    import traceback
-
-    from rigdesign.base.errors import WIDEST_PLACE, shortened
-
-    text = (
-        f"rigdesign {__version__}, Python {platform.python_version()}, {platform.platform()}\n"
-        f"{sys.argv!r}\n\n{''.join(traceback.format_exception(error))}"
-    )
-    what = shortened(f"{type(error).__name__}: {error}".replace("\n", " "), WIDEST_PLACE)
-    try:
-        with tempfile.NamedTemporaryFile(
-            "w", prefix="rigdesign-defect-", suffix=".txt", delete=False, encoding="utf-8"
-        ) as file:
-            file.write(text)
-    except OSError:
-        return f"{text}\nrigdesign: internal error, a defect of rigdesign and not of your files: {what}"
-    return (
-        f"rigdesign: internal error, a defect of rigdesign and not of your files: {what}; "
-        f"please report it with the traceback in {file.name}"
-    )
+    sys.exit(exit_status(lambda: app(result_action="return_value")))
 
 
 def _print_json(document: object) -> None:

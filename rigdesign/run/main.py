@@ -45,24 +45,7 @@ def run_case(
     *,
     transient: bool = False,
 ) -> RunResult:
-    """Compute a case and hold it against its limits.
-
-    Parameters
-    ----------
-    case : from `load_case`
-    fidelity : size of the models
-    progress : called with what is being computed
-    transient : follow temperatures and clearances over the schedule and its events as well
-
-    Raises
-    ------
-    CaseError
-        A case that cannot be computed: gears that do not mesh, a loop or housing that does not close.
-    NotConvergedError
-        An iteration that does not settle, a speed the motor does not reach, a result that is NaN or infinite.
-    MissingLibraryError
-        A system library that gmsh needs.
-    """
+    """Compute a case and hold it against its limits; parameters and errors are those of `rigdesign.api.run_case`."""
     say = progress or (lambda message: None)
     clock = _Clock()
     with solver_errors(case), threadpool_limits(limits=1):

@@ -21,6 +21,7 @@ from typing import Any
 import pytest
 
 from rigdesign.base.system import APT_LINE
+from rigdesign.cli import ending
 from rigdesign.cli import main as cli
 from tests.unit.test_case_schema import complaints
 
@@ -109,7 +110,7 @@ def rigdesign(capsys: pytest.CaptureFixture[str]) -> Rigdesign:
 
     def call(*arguments: object) -> Ended:
         tokens = [str(argument) for argument in arguments]
-        status = cli._exit_status(lambda: cli.app(tokens, result_action="return_value"))
+        status = ending.exit_status(lambda: cli.app(tokens, result_action="return_value"))
         return Ended(status, *capsys.readouterr())
 
     return call

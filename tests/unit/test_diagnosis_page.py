@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign.cli import ending
 from rigdesign.cli import main as cli
 from rigdesign.cli.terminal import print_diagnosis
 from rigdesign.diagnosis import run
@@ -111,7 +112,7 @@ def run_command(monkeypatch: pytest.MonkeyPatch, name: str, *arguments: str) -> 
         return story(name)
 
     monkeypatch.setattr(run, "diagnose_measurement", instead)
-    return cli._exit_status(
+    return ending.exit_status(
         lambda: cli.app(["diagnose", str(CASE), *arguments], result_action="return_value")
     )
 

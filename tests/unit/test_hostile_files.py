@@ -15,7 +15,7 @@ from rigdesign.base.files import RefusedFileError, foreign, read_regular
 from rigdesign.base.output_folder import prepare_output
 from rigdesign.case import load_case
 from rigdesign.case.loader import changed_together
-from rigdesign.cli import main as cli
+from rigdesign.cli import ending
 from rigdesign.studies.grid import parse_variation
 from tests.unit.test_cli import PROTOTYPE, SMALL, Rigdesign, Write, rigdesign, write
 
@@ -273,8 +273,8 @@ def test_an_interrupted_check_leaves_nothing_and_says_so(tmp_path: Path, write: 
 
 def test_what_an_interrupt_leaves_is_told_by_every_long_command(capsys: pytest.CaptureFixture[str]) -> None:
     def stopped() -> object:
-        with cli._interrupted(cli.SIMULATIONS_KEPT):
+        with ending.interrupted(ending.SIMULATIONS_KEPT):
             raise KeyboardInterrupt
 
-    assert cli._exit_status(stopped) == 130
+    assert ending.exit_status(stopped) == 130
     assert "finished simulations are stored, the same command goes on from there" in capsys.readouterr().err

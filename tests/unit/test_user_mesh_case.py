@@ -10,6 +10,7 @@ from numpy.testing import assert_array_equal
 from rigdesign import load_case, run_case
 from rigdesign.base.errors import CaseError, UsageError
 from rigdesign.case.model import Case
+from rigdesign.cli import ending
 from rigdesign.cli import main as cli
 from rigdesign.cli.mesh_export import export_meshes
 from rigdesign.results.result import RunResult
@@ -110,7 +111,7 @@ def test_the_exported_mesh_works_when_given_back(tmp_path: Path, capsys: pytest.
     """`rigdesign mesh` writes the box with all its names: the same temperatures, clearances and verdicts."""
     whole, mesh = box()
     tokens = ["mesh", str(GIVEN), "--fidelity", "quick", "--out", str(tmp_path)]
-    assert cli._exit_status(lambda: cli.app(tokens, result_action="return_value")) == 0
+    assert ending.exit_status(lambda: cli.app(tokens, result_action="return_value")) == 0
     assert 'mesh_file = "test.msh" reads it' in capsys.readouterr().out
     assert [path.name for path in tmp_path.iterdir()] == ["test.msh"]
     read = read_mesh(tmp_path / "test.msh")

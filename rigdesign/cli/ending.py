@@ -1,0 +1,93 @@
+"""How a command ends: errors as messages and exit status, what an interrupt or a failed run leaves."""
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from cyclopts import CycloptsError
+
+from rigdesign.base.version import __version__
+
+NOTHING_KEPT = "nothing was written; the same command starts again from the beginning"
+SIMULATIONS_KEPT = (
+    "no report was written; finished simulations are stored, the same command goes on from there"
+)
+
+
+@contextmanager
+def interrupted(remains: str) -> Iterator[None]:
+    """Say what an interrupt leaves and how to go on."""
+    try:
+        yield
+    except KeyboardInterrupt as stop:
+        stop.add_note(remains)
+        raise
+
+
+@contextmanager
+def failure_kept(out: Path | None) -> Iterator[None]:
+    """Write what a run without convergence leaves, and say where it is."""
+    from rigdesign.base.errors import NotConvergedError
+
+    try:
+        yield
+    except NotConvergedError as error:
+        from rigdesign.report import write_failure
+
+        file = None if out is None else write_failure(error, out)
+        if file is not None:
+            error.args = (f"{error}; its history is in {file}", *error.args[1:])
+        raise
+
+
+def exit_status(command: Callable[[], object]) -> int:
+    """Run a command and turn the tool's errors into messages and exit status."""
+    from rigdesign.base.errors import WIDEST_PLACE, RigdesignError, shortened
+
+    try:
+        status = command()
+        sys.stdout.flush()
+    except CycloptsError as error:
+        print(f"rigdesign: {shortened(str(error), WIDEST_PLACE)}", file=sys.stderr)
+        return 2
+    except RigdesignError as error:
+        print(f"rigdesign: {error}", file=sys.stderr)
+        return error.exit_code
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt as stop:
+        print("; ".join(["rigdesign: interrupted", *getattr(stop, "__notes__", [])]), file=sys.stderr)
+        return 130
+    except Exception as error:
+        print(_defect(error), file=sys.stderr)
+        return 70
+    return status if isinstance(status, int) else 0
+
+
+def _defect(error: Exception) -> str:
+    """One line on an error that nobody raised on purpose; its traceback goes to a file."""
+    import platform
+    import tempfile
+    import traceback
+
+    from rigdesign.base.errors import WIDEST_PLACE, shortened
+
+    text = (
+        f"rigdesign {__version__}, Python {platform.python_version()}, {platform.platform()}\n"
+        f"{sys.argv!r}\n\n{''.join(traceback.format_exception(error))}"
+    )
+    what = shortened(f"{type(error).__name__}: {error}".replace("\n", " "), WIDEST_PLACE)
+    try:
+        with tempfile.NamedTemporaryFile(
+            "w", prefix="rigdesign-defect-", suffix=".txt", delete=False, encoding="utf-8"
+        ) as file:
+            file.write(text)
+    except OSError:
+        return f"{text}\nrigdesign: internal error, a defect of rigdesign and not of your files: {what}"
+    return (
+        f"rigdesign: internal error, a defect of rigdesign and not of your files: {what}; "
+        f"please report it with the traceback in {file.name}"
+    )
