@@ -20,11 +20,11 @@ def case_file(path: Path) -> Path:
     Raises CaseError when there is none, and for a device, a pipe or a file of more than LARGEST_CASE bytes.
     """
     remedy = f"give a case folder or its {CASE_FILE}"
-    if path.parts == (path.name,) and not path.suffix and not path.exists():
-        shipped = shipped_cases()
-        path = shipped.get(path.name, path)
-        remedy += f", or the name of a shipped case: {', '.join(shipped)}"
     try:
+        if path.parts == (path.name,) and not path.suffix and not path.exists():
+            shipped = shipped_cases()
+            path = shipped.get(path.name, path)
+            remedy += f", or the name of a shipped case: {', '.join(shipped)}"
         file = path / CASE_FILE if path.is_dir() else path
         check_regular(file, LARGEST_CASE)
     except RefusedFileError as error:
