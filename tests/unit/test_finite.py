@@ -10,6 +10,7 @@ import pytest
 from rigdesign import load_case, run_case
 from rigdesign.base.errors import NonFiniteResultError
 from rigdesign.base.finite import require_finite
+from rigdesign.cli import ending
 from rigdesign.cli import main as cli
 from rigdesign.coupling import iteration as passes
 from rigdesign.results.result import RunResult
@@ -82,5 +83,5 @@ def test_a_run_without_output_folder_refuses_it_too(
 
     monkeypatch.setattr(run_module, "_assemble", broken)
     command = ["check", str(case_file), "--fidelity", "quick"]
-    assert cli._exit_status(lambda: cli.app(command, result_action="return_value")) == 3
+    assert ending.exit_status(lambda: cli.app(command, result_action="return_value")) == 3
     assert "oil[0].outlet_degC = nan" in " ".join(capsys.readouterr().err.split())

@@ -11,7 +11,7 @@ import pytest
 
 from rigdesign.base.errors import MeasurementError
 from rigdesign.case import load_case
-from rigdesign.cli.main import _exit_status
+from rigdesign.cli.ending import exit_status
 from rigdesign.measurement import Data, DataFinding, features, load_measurement
 from rigdesign.measurement.reading import hdf5_samples
 from rigdesign.prediction import Feature
@@ -47,7 +47,7 @@ def found(data: Data, identity: str) -> list[DataFinding]:
 
 def refused(folder: Path, case) -> str:
     """The words of the refusal; it ends with exit status 5."""
-    assert _exit_status(lambda: load_measurement(folder, case)) == 5
+    assert exit_status(lambda: load_measurement(folder, case)) == 5
     with pytest.raises(MeasurementError) as caught:
         load_measurement(folder, case)
     return str(caught.value)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rigdesign.case import load_case
+from rigdesign.cli import ending
 from rigdesign.cli import main as cli
 from rigdesign.properties.oil import MIL_PRF_23699
 from rigdesign.report import results_document, write_results
@@ -196,7 +197,7 @@ def test_a_rig_without_a_housing_says_so(tmp_path: Path, capsys: pytest.CaptureF
     file = tmp_path / "case.toml"
     file.write_text(WITHOUT_HOUSING)
     arguments = ["check", str(file), "--fidelity", "quick", "--transient", "--json"]
-    status = cli._exit_status(lambda: cli.app(arguments, result_action="return_value"))
+    status = ending.exit_status(lambda: cli.app(arguments, result_action="return_value"))
     document = json.loads(capsys.readouterr().out)
     assert status in (0, 1)
     assert "transient" not in document
