@@ -1,7 +1,10 @@
 """The page of effects, made from the catalogue: what can be named, with bounds and signature, and what waits."""
 
+import sys
 from collections.abc import Sequence
+from pathlib import Path
 
+from rigdesign.case import load_case
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
@@ -11,7 +14,7 @@ from rigdesign.diagnosis.residual.sensors import TIMES
 
 HEAD = """# Effects that a diagnosis can name
 
-Written by `python -m rigdesign.diagnosis.catalogue CASE ...`; do not edit by hand.
+Written by `python -m rigdesign.diagnosis.effects_page CASE ...`; do not edit by hand.
 
 `rigdesign diagnose` names an effect of this page, a few that the data cannot tell apart, or nothing. An entry is named
 `kind:place`. It changes the case, and the ordinary model computes what follows; bounds are what is believed of a rig, a
@@ -133,3 +136,7 @@ def _size(effect: Effect, size: float) -> str:
         return f"{100.0 * size:.3g} %"
     scale, unit = display_scale(parameter.unit, False)
     return f"{scale * size:.3g} {unit}"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(effects_page([load_case(Path(name)) for name in sys.argv[1:]]))

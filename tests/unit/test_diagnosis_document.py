@@ -300,7 +300,7 @@ def test_the_page_of_effects_is_that_of_the_catalogue() -> None:
     cases = [load_case(CASES / name) for name in ("loop_1to1", "loop_hunting", "uhcf_prototype", "uhcf_main")]
     written = (CASES / "effects.md").read_text(encoding="utf-8")
     assert written == effects_page(cases), (
-        "python -m rigdesign.diagnosis.catalogue cases/loop_1to1 cases/loop_hunting cases/uhcf_prototype "
+        "python -m rigdesign.diagnosis.effects_page cases/loop_1to1 cases/loop_hunting cases/uhcf_prototype "
         "cases/uhcf_main > cases/effects.md"
     )
 
