@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
+from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.version import __version__
 from rigdesign.cli.ending import NOTHING_KEPT, SIMULATIONS_KEPT, exit_status, failure_kept, interrupted
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
 
-Fidelity = Literal["quick", "standard", "reference"]
 
 app = App(
     name="rigdesign",
