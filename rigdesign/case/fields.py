@@ -32,7 +32,7 @@ def fault(problem: str, remedy: str) -> PydanticCustomError:
 class Quantity:
     """A number with a unit; the field holds it in SI.
 
-    kind : name in ``rigdesign.KINDS``
+    kind : name in `rigdesign.base.quantity_kinds.KINDS`
     above, at_least, at_most, below : limits, written as a user would
     example : one of the usual size, for messages; that of the kind when left out
     """

@@ -3,7 +3,7 @@
 A held check with an omission is at best a warning that names it, unless the size of the omission is known and below
 the margin (`rules.with_omissions`). What stands here depends on the case: a part that it states and no model follows,
 an effect that another part of the run computes and the value does not count, a search with gaps. Simplifications that
-all rigs share are listed in the report (`assemble.findings.not_modelled`); contributions that could only add to the
+all rigs share are listed in the report (`run.warnings.not_modelled`); contributions that could only add to the
 margin, as the heat that a housing would take from the cooler, are none.
 """
 

@@ -110,8 +110,8 @@ def solve_fixed_point(
 
     near : a settled point nearby, to start from; the cold rig when left out
     start : coupling state to start from where there is no point nearby
-    inverse : (n, n) of `PointSlopes` at that point: then each iteration is followed by a step of Newton's method with
-    it
+    inverse : (n, n) of `PointSensitivities` at that point: then each iteration is followed by a step of Newton's
+    method with it
 
     Raises
     ------

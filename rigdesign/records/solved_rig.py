@@ -30,7 +30,7 @@ class SolvedRig:
     thermal: Sequence[ThermalResult]
     growth: Sequence[GrowthResult]
     cooler: Sequence[Mapping[str, float | str]]
-    """Where the heat goes, one row for each held stage (`assemble.heat.cooler`)."""
+    """Where the heat goes, one row for each held stage (`records.heat.cooler`)."""
     discretisation: Sequence[DiscretisationRow] = ()
     mesh_shifts: Sequence[MeshShift] = ()
 
