@@ -7,7 +7,7 @@ from math import pi
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import BracingState, MeshModel, brace_cold, mesh_models
+from rigdesign.coupling.loads import BracingState, MeshModel, brace_initial, mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig, build_rig
@@ -44,7 +44,7 @@ def settled(case: Case, rpm: float, torque: float) -> Settled:
     rig = build_rig(case, "quick")
     point = OperatingPoint(stage="test", speed=rpm * pi / 30.0, torque=torque)
     cold = initial_state(rig, point)
-    return Settled(rig, point, mesh_models(rig, point, cold), brace_cold(rig, point, cold))
+    return Settled(rig, point, mesh_models(rig, point, cold), brace_initial(rig, point, cold))
 
 
 def channels(*orders: float) -> tuple[Channel, ...]:

@@ -361,7 +361,7 @@ def losses():
     ]
 
 
-def thermal_and_growth():
+def thermal_and_expansion():
     film = {
         "value": 19.5,
         "formula": "niemann_winter",
@@ -407,7 +407,7 @@ def thermal_and_growth():
         for shaft in ("pinion", "wheel")
         for side, phase in (("left", 0), ("right", 60))
     ]
-    growth = r.GrowthResult(
+    expansion = r.ExpansionResult(
         gearbox="test",
         stage="dwell",
         seal_gaps=seals,
@@ -433,12 +433,12 @@ def thermal_and_growth():
         ],
         bearings=[{"bearing": "1", "diametral_clearance_cold_um": 60.0, "diametral_clearance_hot_um": 48.0}],
     )
-    return thermal, growth
+    return thermal, expansion
 
 
 def make_result(**changes):
     """A complete result; ``changes`` replaces fields."""
-    thermal, growth = thermal_and_growth()
+    thermal, expansion = thermal_and_expansion()
     values = {
         "case": {
             "name": "uhcf_prototype",
@@ -485,7 +485,7 @@ def make_result(**changes):
             }
         ],
         "thermal": [thermal],
-        "growth": [growth],
+        "expansion": [expansion],
         "coupling": [
             r.CouplingHistory(
                 stage="dwell",

@@ -55,7 +55,7 @@ def run_example(case, *, fidelity):
             make_check("seal_gap", gap, limit, comparison=">="),
             make_check("oil_outlet", inlet + 11, 150.0, unit="degC"),
         ],
-        verdict="fail" if gap < limit else "pass", dynamics=None, growth=[], fields=[],
+        verdict="fail" if gap < limit else "pass", dynamics=None, expansion=[], fields=[],
     )  # fmt: skip
     _log(case, "end")
     return result

@@ -32,7 +32,7 @@ class _Copy:
     pipe: BinaryIO
 
 
-class Beside(Generic[T]):
+class BackgroundTasks(Generic[T]):
     """Starts the works, a share of them on each core; `results` waits for them, `end` stops what still runs."""
 
     def __init__(self, works: Sequence[Callable[[], T]]) -> None:

@@ -21,7 +21,7 @@ class AlignmentKind(NamedTuple):
     scale: float
     """Unit per SI."""
     rows: str
-    """Field of the growth record."""
+    """Field of the record of thermal expansion."""
     place: str
     """Key of the place in a row."""
     entry: str
@@ -49,9 +49,9 @@ def checks(solved: SolvedRig) -> Iterator[Check]:
     """One check for every quantity, two for every coupling."""
     for quantity, kind in KINDS.items():
         values = (
-            (abs(row[kind.entry]), f"{row[kind.place]}, stage {growth.stage}")
-            for growth in solved.growth
-            for row in getattr(growth, kind.rows)
+            (abs(row[kind.entry]), f"{row[kind.place]}, stage {expansion.stage}")
+            for expansion in solved.expansion
+            for row in getattr(expansion, kind.rows)
         )
         limit = getattr(solved.case.limits.alignment, f"{quantity}_maximum")
         rule = Rule(
@@ -76,13 +76,13 @@ def _coupling(solved: SolvedRig, name: str, coupling: CouplingInput) -> Iterator
             limit=None if limit is None else 1e3 * limit,
         )  # fmt: skip
         values = [
-            (float(row[f"{key}_{state}_{unit}"]), _where(row, state, growth.stage))
-            for growth in solved.growth
-            for row in growth.couplings
+            (float(row[f"{key}_{state}_{unit}"]), _where(row, state, expansion.stage))
+            for expansion in solved.expansion
+            for row in expansion.couplings
             if row["coupling"] == name
             for state in ("hot", "cold")
         ]
-        yield _held(rule, values, solved.no_clearances if not solved.growth else NO_END)
+        yield _held(rule, values, solved.no_clearances if not solved.expansion else NO_END)
 
 
 def _where(row: dict[str, object], state: str, stage: str) -> str:

@@ -151,9 +151,9 @@ def _seal_velocity(solved: SolvedRig, part: str) -> Found:
     return worst(speeds) if speeds else (None, NO_SEAL)
 
 
-def _shaft_growth(solved: SolvedRig, part: str) -> Found:
+def _shaft_expansion(solved: SolvedRig, part: str) -> Found:
     box, shafts = part.split(".")[1], shafts_of(solved.case, part)
-    rows = [row for result in solved.growth if result.gearbox == box for row in result.shafts]
+    rows = [row for result in solved.expansion if result.gearbox == box for row in result.shafts]
     if not rows:
         return None, NO_HOUSING
     return worst((1e-3 * row["growth_mm"], row["shaft"]) for row in rows if row["shaft"] in shafts)
@@ -188,7 +188,7 @@ RESULTS: dict[ResultQuantity, Callable[[SolvedRig, str], Found]] = {
     "actuator_force": _actuator_force,
     "circulating_power": _circulating_power,
     "seal_surface_velocity": _seal_velocity,
-    "shaft_growth": _shaft_growth,
+    "shaft_growth": _shaft_expansion,
     "oil_flow": _oil_flow,
     "temperature_maximum": _temperature,
 }

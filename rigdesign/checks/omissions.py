@@ -196,7 +196,7 @@ def _gaps(solved: SolvedRig, check: Check) -> Found:
 
 def _tilted(solved: SolvedRig, check: Check) -> Found:
     """The tilt of a shaft in its bore, which the expansion knows and the film does not."""
-    rows = [row for growth in solved.growth for row in growth.bores]
+    rows = [row for expansion in solved.expansion for row in expansion.bores]
     if rows:
         worst = max(rows, key=lambda row: float(row["tilt_over_width_um"]))
         size = 0.5 * float(worst["tilt_over_width_um"])
@@ -265,7 +265,7 @@ def _saturated(solved: SolvedRig, check: Check) -> Found:
         )
 
 
-GROWTH = "thermal expansion of gearbox {box}: {why}"
+EXPANSION = "thermal expansion of gearbox {box}: {why}"
 
 OMISSIONS: tuple[tuple[tuple[str, ...], Finder], ...] = (
     (("oil.room",), _of_boxes("heat that gearbox {box} gives to the room: it has no housing", _bare)),
@@ -297,14 +297,14 @@ OMISSIONS: tuple[tuple[tuple[str, ...], Finder], ...] = (
     ),
     (("bearing.specific_load",), _thrust_load),
     (("bearing.minimum_film",), _tilted),
-    (("clearance.seal_gap", "transient.seal_gap"), _of_boxes(GROWTH, _sealed)),
-    (("clearance.axial_play", "transient.axial_play"), _of_boxes(GROWTH, _with_play)),
+    (("clearance.seal_gap", "transient.seal_gap"), _of_boxes(EXPANSION, _sealed)),
+    (("clearance.axial_play", "transient.axial_play"), _of_boxes(EXPANSION, _with_play)),
     (
         (
             *(f"*.{key}" for key in ("backlash", "tip_clearance", "bearing_clearance")),
             *(f"*.{key}" for key in ("bearing_tilt", "bore_out_of_round", "axis_inclination", "axis_skew")),
         ),
-        _of_boxes(GROWTH, _unexpanded),
+        _of_boxes(EXPANSION, _unexpanded),
     ),
     (("alignment.coupling_*", "transient.coupling_*"), _coupled),
     (("temperature.*", "clearance.*", "alignment.*", "bearing.*", "oil.heater", "oil.cooler", "oil.room"), _warming),

@@ -184,7 +184,7 @@ def _pairs(solved: SolvedRig) -> Iterator[tuple[str, MeshModel]]:
 
 def _seal_gaps(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     """Hot gap of every seal [mm]; cold where the housing is not expanded."""
-    for row in solved.growth:
+    for row in solved.expansion:
         for seal in row.seal_gaps:
             yield seal["hot_min_mm"], f"{seal['seal']} at {seal['angle_of_min_deg']:.0f} deg"
     for name in solved.unexpanded:
@@ -195,7 +195,7 @@ def _seal_gaps(solved: SolvedRig) -> Iterator[tuple[float, str]]:
 
 def _plays(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     """Hot axial play of every shaft between stops [mm]; cold where the housing is not expanded."""
-    for row in solved.growth:
+    for row in solved.expansion:
         for shaft in row.shafts:
             if shaft["axial_play_cold_mm"] > 0.0:
                 yield shaft["axial_play_hot_mm"], shaft["shaft"]
@@ -207,11 +207,11 @@ def _plays(solved: SolvedRig) -> Iterator[tuple[float, str]]:
 
 def _seal_travel(solved: SolvedRig) -> Iterator[Check]:
     """Axial movement of every shaft in its seals against what they take, the worst of the held stages."""
-    for box in dict.fromkeys(row.gearbox for row in solved.growth):
+    for box in dict.fromkeys(row.gearbox for row in solved.expansion):
         for name, seals in solved.case.gearboxes[box].seals.items():
             values = (
                 (abs(seal["axial_shift_mm"]), f"{seal['seal']}, stage {row.stage}")
-                for row in solved.growth
+                for row in solved.expansion
                 if row.gearbox == box
                 for seal in row.seal_gaps
                 if seal["shaft"] == seals.shaft

@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.standards.iso1328_1_2013 import tolerances
 from rigdesign.case.drivetrain import CouplingInput
-from rigdesign.coupling.expansion import axes_of, bearing_growth
+from rigdesign.coupling.expansion import axes_of, bearing_expansion
 from rigdesign.rig.model import Rig
 from thermal.expansion.alignment import Across, ShaftAxis, ShaftPair, axis_tolerances, shaft_pair
 from thermal.expansion.expansion import Expansion
@@ -31,9 +31,9 @@ def alignment(rig: Rig, name: str, shape: Expansion, clearances: Mapping[str, fl
     tilts, rounds = {}, {}
     for part, entry in box.bearings.items():
         full = f"{name}.{part}"
-        growth = bearing_growth(rig, name, shape, entry)
-        tilts[full] = growth.tilt
-        rounds[full] = clearance_share(growth.bore_roundness.peak_to_valley, clearances[full])
+        expansion = bearing_expansion(rig, name, shape, entry)
+        tilts[full] = expansion.tilt
+        rounds[full] = clearance_share(expansion.bore_roundness.peak_to_valley, clearances[full])
     deviations = {mesh: axis_deviation(rig, name, mesh, shape) for mesh in box.meshes}
     return {
         "bearing_tilt": tilts,
@@ -171,6 +171,7 @@ def axial_closing(place: CouplingPlace, shapes: Mapping[str, Expansion]) -> floa
 
 
 def _outward_travel(end: CouplingEnd, shape: Expansion) -> float:
-    """Travel of an end face out of its machine [m]: growth from the locating bearing and travel of that bearing."""
+    """Travel of an end face out of its machine [m]: thermal expansion from the locating bearing and travel of that
+    bearing."""
     shaft = shape.shafts[end.shaft]
     return (shaft.end if end.outward > 0.0 else shaft.start) + end.outward * shaft.datum

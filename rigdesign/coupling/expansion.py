@@ -20,15 +20,16 @@ class HousingExpansion:
     """Hot shape of one housing, read by the names of the case."""
 
     gearbox: str
-    expansion: Expansion
+    deformed: Expansion
     centre_distance: Mapping[str, float]
     """Hot centre distance by ``gearbox.mesh`` [m]."""
-    tooth_growth: Mapping[str, float]
+    axial_expansion: Mapping[str, float]
     """Axial travel of the pinion of a helical mesh against its wheel, by ``gearbox.mesh`` [m]."""
 
 
 def expand_housing(rig: Rig, field: HousingField, start: HousingExpansion | None = None) -> HousingExpansion:
-    """Expand one housing from the temperature its drawing holds at; ``start`` is the growth of an earlier iteration.
+    """Expand one housing from the temperature its drawing holds at; ``start`` is the thermal expansion of an earlier
+    iteration.
 
     Raises
     ------
@@ -44,12 +45,12 @@ def expand_housing(rig: Rig, field: HousingField, start: HousingExpansion | None
         setup.elastic.elastic,
         reuse=setup,
         tolerance=TOLERANCE,
-        start=None if start is None else start.expansion,
+        start=None if start is None else start.deformed,
     )
-    return read_growth(rig, name, shape)
+    return named_expansion(rig, name, shape)
 
 
-def read_growth(rig: Rig, name: str, shape: Expansion) -> HousingExpansion:
+def named_expansion(rig: Rig, name: str, shape: Expansion) -> HousingExpansion:
     """A hot shape read by the names of the case."""
     box = rig.case.gearboxes[name]
     distances, travels = {}, {}
@@ -61,7 +62,7 @@ def read_growth(rig: Rig, name: str, shape: Expansion) -> HousingExpansion:
         if mesh.helix_angle and not mesh.double_helical:
             travel = _axial(rig, name, shape, shafts[0]) - _axial(rig, name, shape, shafts[1])
         travels[full] = travel
-    return HousingExpansion(gearbox=name, expansion=shape, centre_distance=distances, tooth_growth=travels)
+    return HousingExpansion(gearbox=name, deformed=shape, centre_distance=distances, axial_expansion=travels)
 
 
 def axes_of(rig: Rig, name: str, shape: Expansion, shafts: tuple[str, str]) -> CentreDistance:
@@ -74,29 +75,29 @@ def axes_of(rig: Rig, name: str, shape: Expansion, shafts: tuple[str, str]) -> C
     )
 
 
-def bearing_growth(rig: Rig, name: str, shape: Expansion, entry: JournalBearingInput) -> BearingGrowth:
+def bearing_expansion(rig: Rig, name: str, shape: Expansion, entry: JournalBearingInput) -> BearingGrowth:
     """Growth of the bearing of the case at one end of a shaft."""
     surface = f"bearing_bore_{entry.shaft}_{entry.side}"
     station = next(b for b in rig.models[name].bearings if b.bore_surface == surface)
     return shape.bearings[station.name]
 
 
-def hot_clearances(rig: Rig, speed: float, growth: Mapping[str, HousingExpansion]) -> dict[str, float]:
-    """Hot diametral clearance of every bearing [m]: thermal growth of bore and journal, spin of the journal.
+def hot_clearances(rig: Rig, speed: float, expansion: Mapping[str, HousingExpansion]) -> dict[str, float]:
+    """Hot diametral clearance of every bearing [m]: thermal expansion of bore and journal, centrifugal of the journal.
 
     A gearbox without a housing has journal and shell at one temperature: only the spin counts.
     """
     clearances = {}
     for full, _, entry in rig.bearings():
         name = full.split(".")[0]
-        change = -spin_growth(rig, entry, speed)
-        if name in growth:
-            change += bearing_growth(rig, name, growth[name].expansion, entry).clearance_change
+        change = -centrifugal_expansion(rig, entry, speed)
+        if name in expansion:
+            change += bearing_expansion(rig, name, expansion[name].deformed, entry).clearance_change
         clearances[full] = entry.diametral_clearance + change
     return clearances
 
 
-def spin_growth(rig: Rig, entry: JournalBearingInput, speed: float) -> float:
+def centrifugal_expansion(rig: Rig, entry: JournalBearingInput, speed: float) -> float:
     """Growth of the journal diameter by rotation [m]: solid disc, rho w^2 R^3 (1 - nu) / (4 E) on the radius.
 
     Source: Timoshenko and Goodier, Theory of Elasticity, section 32.
@@ -111,7 +112,7 @@ def spin_growth(rig: Rig, entry: JournalBearingInput, speed: float) -> float:
     return steel.density * omega**2 * radius**3 * (1.0 - steel.poisson_ratio) / (2.0 * steel.elastic_modulus)
 
 
-def uniform_growth(rig: Rig, name: str, temperature: float) -> dict[str, float]:
+def uniform_expansion(rig: Rig, name: str, temperature: float) -> dict[str, float]:
     """Hot centre distances of a gearbox without a housing: all of it at one temperature [K]."""
     steel = rig.materials["structural_steel"]
     strain = steel.expansion_coefficient * (temperature - rig.case.ambient.reference_temperature)

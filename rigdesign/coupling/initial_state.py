@@ -1,6 +1,6 @@
 """Where the coupling loop starts: the cold rig at its oil inlet temperatures."""
 
-from rigdesign.coupling.expansion import uniform_growth
+from rigdesign.coupling.expansion import uniform_expansion
 from rigdesign.coupling.loads import first_torques
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
@@ -19,12 +19,12 @@ def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
         centre_distance={
             mesh: distance
             for box in case.gearboxes
-            for mesh, distance in uniform_growth(rig, box, case.ambient.temperature).items()
+            for mesh, distance in uniform_expansion(rig, box, case.ambient.temperature).items()
         },
         bearing_clearance={name: entry.diametral_clearance for name, _, entry in rig.bearings()},
         bearing_heat={name: 0.0 for name, _, _ in rig.bearings()},
         wall_heat=dict.fromkeys(streams, 0.0),
         oil_outlet=streams,
         mesh_torque=first_torques(rig, point),
-        tooth_growth=dict.fromkeys(rig.pairs, 0.0),
+        axial_expansion=dict.fromkeys(rig.pairs, 0.0),
     )

@@ -1,4 +1,5 @@
-"""One iteration round the loop at an operating point: warm gears, loads, losses, oil, temperatures, growth."""
+"""One iteration round the loop at an operating point: warm gears, loads, losses, oil, temperatures, thermal
+expansion."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -8,7 +9,7 @@ from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.finite import finite
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_torques
-from rigdesign.coupling.expansion import HousingExpansion, expand_housing, hot_clearances, uniform_growth
+from rigdesign.coupling.expansion import HousingExpansion, expand_housing, hot_clearances, uniform_expansion
 from rigdesign.coupling.loads import BracingState, MeshModel, mesh_models, respond
 from rigdesign.coupling.losses import PlacedLoss, mesh_losses, rotating_losses
 from rigdesign.coupling.oil import OilStream, oil_streams
@@ -42,7 +43,7 @@ class IterationResult:
     losses: tuple[PlacedLoss, ...]
     streams: tuple[OilStream, ...]
     fields: Mapping[str, HousingField]
-    growth: Mapping[str, HousingExpansion]
+    expansion: Mapping[str, HousingExpansion]
     bearing_heat: Mapping[str, float]
     """Heat the solids gave to each film in this iteration [W], before relaxation."""
     wall_heat: Mapping[str, float]
@@ -53,15 +54,15 @@ class IterationResult:
 class IterationParts:
     """The expensive parts of an iteration, each as the function that computes it.
 
-    `rigdesign.prediction` puts others in their place: what is known already, fields and growth projected on few
-    shapes.
+    `rigdesign.prediction` puts others in their place: what is known already, fields and thermal expansion projected
+    on few shapes.
     """
 
     models: Callable[..., tuple[MeshModel, ...]] = mesh_models
     bearings: Callable[..., dict[str, BearingState]] = solve_bearings
     response: Callable[..., CurvePoint] = respond
     field: Callable[..., HousingField] = solve_housing
-    growth: Callable[..., HousingExpansion] = expand_housing
+    expansion: Callable[..., HousingExpansion] = expand_housing
     bulk: Callable[[Rig, HousingField, str], float] = body_mean
 
 
@@ -82,7 +83,8 @@ def run_iteration(
     """Compute one iteration; ``before`` gives the fields to start from.
 
     parts : what computes its expensive parts
-    fine : expand the housings and solve the fields to the last digit; else the growth of ``before`` is carried on
+    fine : expand the housings and solve the fields to the last digit; else the thermal expansion of ``before`` is
+    carried on
         and the heat of the fields closes to 1e-4, which saves time while the temperatures still move a lot. An
         iteration that ends the loop must be fine.
 
@@ -122,13 +124,13 @@ def run_iteration(
         losses=losses,
         streams=tuple(oil_streams(rig, losses, coupling_state.bearing_heat, coupling_state.wall_heat)),
         fields=fields,
-        growth=_growth(rig, fields, before, fine, parts),
+        expansion=_expansion(rig, fields, before, fine, parts),
         bearing_heat=bearing_heat,
         wall_heat=wall_heat,
     )
 
 
-def _growth(
+def _expansion(
     rig: Rig,
     fields: Mapping[str, HousingField],
     before: IterationResult | None,
@@ -136,9 +138,9 @@ def _growth(
     parts: IterationParts,
 ) -> dict[str, HousingExpansion]:
     if before is not None and not fine:
-        return dict(before.growth)
+        return dict(before.expansion)
     return {
-        name: parts.growth(rig, field, None if before is None else before.growth[name])
+        name: parts.expansion(rig, field, None if before is None else before.expansion[name])
         for name, field in fields.items()
         if not rig.models[name].no_expansion
     }
@@ -150,7 +152,7 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
     gear_temperature: dict[str, float] = {}
     centre_distance: dict[str, float] = {}
     clearance: dict[str, float] = {}
-    tooth_growth = dict.fromkeys(rig.pairs, 0.0)
+    axial_expansion = dict.fromkeys(rig.pairs, 0.0)
     for name, box in rig.case.gearboxes.items():
         streams = {stream.name: stream for stream in done.streams}
         bulk = streams[f"{name}.gear_oil"].chamber
@@ -161,12 +163,12 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
                 for gear, entry in box.gears.items()
                 if f"gear_{entry.shaft}" in rig.models[name].mesh.bodies
             }
-        if name in done.growth:
-            centre_distance |= done.growth[name].centre_distance
-            tooth_growth |= done.growth[name].tooth_growth
+        if name in done.expansion:
+            centre_distance |= done.expansion[name].centre_distance
+            axial_expansion |= done.expansion[name].axial_expansion
         else:
-            centre_distance |= uniform_growth(rig, name, streams[f"{name}.bearing_oil"].chamber)
-    clearance |= hot_clearances(rig, done.point.speed, done.growth)
+            centre_distance |= uniform_expansion(rig, name, streams[f"{name}.bearing_oil"].chamber)
+    clearance |= hot_clearances(rig, done.point.speed, done.expansion)
     torque = old.mesh_torque
     if done.response is not None:
         signed = done.response.flank * done.response.mean
@@ -185,7 +187,7 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
         },
         oil_outlet={stream.name: stream.chamber for stream in done.streams},
         mesh_torque=torque,
-        tooth_growth=tooth_growth,
+        axial_expansion=axial_expansion,
     )
 
 

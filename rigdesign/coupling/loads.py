@@ -108,8 +108,8 @@ def mesh_model(
         damping=entry.damping,
         damping_acts_on=entry.damping_acts_on,
         friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
-        offset=coupling_state.tooth_growth[name] * math.tan(pair.base_helix_angle)
-        + flank_growth(rig.pairs[name], pair),
+        offset=coupling_state.axial_expansion[name] * math.tan(pair.base_helix_angle)
+        + flank_expansion(rig.pairs[name], pair),
         phase=mesh_phase(rig, name),
         tooth_offset_2=entry.tooth_offset % gears[1].teeth,
     )
@@ -140,7 +140,7 @@ def _slices(rig: Rig, pair: GearPair, micro: tuple[Microgeometry, Microgeometry]
     return math.ceil((stated or default_slices(pair, micro)) / rig.coarsening.slices)
 
 
-def flank_growth(cold: GearPair, warm: GearPair) -> float:
+def flank_expansion(cold: GearPair, warm: GearPair) -> float:
     """Approach by which the front flanks of a warm pair touch earlier than cold [m].
 
     Teeth grow on both sides of their middle, so half of the lost backlash comes off each flank; in a held
@@ -303,7 +303,7 @@ def shifted_gear(rig: Rig) -> ShiftedGear | None:
     )
 
 
-def brace_cold(
+def brace_initial(
     rig: Rig, point: OperatingPoint, cold: CouplingState, models: Sequence[MeshModel] | None = None
 ) -> BracingState:
     """BracingState that makes the asked torque in the cold loop; held ever after in the held modes.

@@ -7,17 +7,17 @@ from rigdesign.base.errors import NotConvergedError
 from rigdesign.base.finite import require_finite
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import IterationResult, heat_residual, next_state, run_iteration
-from rigdesign.coupling.loads import BracingState, brace_cold
+from rigdesign.coupling.loads import BracingState, brace_initial
 from rigdesign.coupling.state import (
     CouplingState,
     OperatingPoint,
-    growth_change,
+    length_change,
     temperature_change,
     torque_change,
 )
 from rigdesign.rig.model import Rig
 
-GROWTH_FROM = 8.0
+EXPANSION_FROM = 8.0
 """Change of temperature in an iteration [K] below which the next one is fine: it expands the housings afresh."""
 
 
@@ -26,7 +26,7 @@ class Residual:
     """Largest changes of one iteration: temperature [K], length [m], mean torque relative [-]."""
 
     temperature: float
-    growth: float
+    length: float
     torque: float
 
 
@@ -61,7 +61,7 @@ def solve_point(
     Parameters
     ----------
     start : coupling state of a neighbouring point; the cold rig when left out
-    before : last iteration of a neighbouring point on the same meshes: first guess of fields and growth
+    before : last iteration of a neighbouring point on the same meshes: first guess of fields and thermal expansion
     freeze : arrows of the loop that are cut, by field of `CouplingState`: they keep their initial values
 
     Raises
@@ -73,12 +73,12 @@ def solve_point(
     """
     numerics = rig.case.numerics
     cold = initial_state(rig, point)
-    setting = None if rig.case.drivetrain is None else brace_cold(rig, point, cold)
+    setting = None if rig.case.drivetrain is None else brace_initial(rig, point, cold)
     coupling_state = cold if start is None else start.freeze(freeze, cold)
     residuals: list[Residual] = []
     done = before
     for _ in range(numerics.coupling_passes):
-        fine = not residuals or residuals[-1].temperature < GROWTH_FROM
+        fine = not residuals or residuals[-1].temperature < EXPANSION_FROM
         done = run_iteration(rig, point, coupling_state, setting, done, fine=fine)
         after = next_state(rig, done).freeze(freeze, cold)
         require_finite(after, f"stage {point.stage}")
@@ -86,7 +86,7 @@ def solve_point(
         residuals.append(
             Residual(
                 temperature=max(temperature_change(coupling_state, after), heat),
-                growth=growth_change(coupling_state, after),
+                length=length_change(coupling_state, after),
                 torque=torque_change(coupling_state, after),
             )
         )
@@ -96,7 +96,7 @@ def solve_point(
     history = {
         "stage": point.stage,
         "residuals": [
-            {"temperature_K": r.temperature, "growth_um": 1e6 * r.growth, "torque_relative": r.torque}
+            {"temperature_K": r.temperature, "growth_um": 1e6 * r.length, "torque_relative": r.torque}
             for r in residuals
         ],
     }
@@ -107,7 +107,7 @@ def _settled(residual: Residual, rig: Rig) -> bool:
     numerics = rig.case.numerics
     return (
         residual.temperature <= numerics.temperature_tolerance
-        and residual.growth <= numerics.growth_tolerance
+        and residual.length <= numerics.growth_tolerance
         and residual.torque <= numerics.torque_tolerance
     )
 
@@ -115,7 +115,7 @@ def _settled(residual: Residual, rig: Rig) -> bool:
 def _history(point: OperatingPoint, residuals: list[Residual], rig: Rig) -> str:
     numerics = rig.case.numerics
     lines = "; ".join(
-        f"iteration {len(residuals) - i}: {r.temperature:.3g} K, {1e6 * r.growth:.3g} um, {r.torque:.2g} of the torque"
+        f"iteration {len(residuals) - i}: {r.temperature:.3g} K, {1e6 * r.length:.3g} um, {r.torque:.2g} of the torque"
         for i, r in enumerate(reversed(residuals[-4:]))
     )
     return (

@@ -24,11 +24,11 @@ class CouplingState:
     """What an iteration takes from the one before: the arrows of the loop, one field each."""
 
     gear_temperature: Values
-    """Bulk temperature of each gear [K]: its growth enters backlash and mesh."""
+    """Bulk temperature of each gear [K]: its expansion enters backlash and mesh."""
     centre_distance: Values
     """Hot centre distance of each mesh [m]."""
     bearing_clearance: Values
-    """Hot diametral clearance of each bearing, centrifugal growth included [m]."""
+    """Hot diametral clearance of each bearing, centrifugal expansion included [m]."""
     bearing_heat: Values
     """Heat that shaft and shell give to the film of each bearing [W]."""
     wall_heat: Values
@@ -37,8 +37,8 @@ class CouplingState:
     """Temperature with which each oil stream leaves its chamber [K]: it wets the walls and thins the tooth film."""
     mesh_torque: Values
     """Mean torque of each mesh at its pinion [N m], positive where the pinion drives: it loads the bearings."""
-    tooth_growth: Values
-    """Axial growth that shifts a helical gear against its partner, by mesh [m]: it changes the bracing."""
+    axial_expansion: Values
+    """Axial expansion that shifts a helical gear against its partner, by mesh [m]: it changes the bracing."""
 
     def freeze(self, arrows: frozenset[str], cold: "CouplingState") -> "CouplingState":
         """This coupling state with the named arrows cut: those fields stay as in ``cold``.
@@ -57,7 +57,7 @@ class CouplingState:
 
 
 TEMPERATURES = ("gear_temperature", "oil_outlet")
-LENGTHS = ("centre_distance", "bearing_clearance", "tooth_growth")
+LENGTHS = ("centre_distance", "bearing_clearance", "axial_expansion")
 
 
 def temperature_change(old: CouplingState, new: CouplingState) -> float:
@@ -65,7 +65,7 @@ def temperature_change(old: CouplingState, new: CouplingState) -> float:
     return _largest_change(old, new, TEMPERATURES)
 
 
-def growth_change(old: CouplingState, new: CouplingState) -> float:
+def length_change(old: CouplingState, new: CouplingState) -> float:
     """Largest change of a length between two iterations [m]."""
     return _largest_change(old, new, LENGTHS)
 

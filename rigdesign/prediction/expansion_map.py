@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from rigdesign.coupling.expansion import HousingExpansion, read_growth
+from rigdesign.coupling.expansion import HousingExpansion, named_expansion
 from rigdesign.prediction.parallel_fields import fields_in_parallel
 from rigdesign.rig.model import Rig
 from thermal.expansion.expansion import read_expansion
@@ -39,11 +39,11 @@ class ExpansionMap:
         start = setup.elastic.solve(field, cold, EXACT, None).values
 
         def read(temperature: FloatArray, supported: FloatArray) -> HousingExpansion:
-            return read_growth(rig, name, read_expansion(setup, temperature, cold, supported))
+            return named_expansion(rig, name, read_expansion(setup, temperature, cold, supported))
 
-        self.growth = read(field, start)
+        self.expansion = read(field, start)
         """At the base."""
-        first = numbers_of(self.growth)
+        first = numbers_of(self.expansion)
 
         def follows(shape: FloatArray, size: float) -> FloatArray:
             if size < LEAST:
@@ -54,24 +54,24 @@ class ExpansionMap:
 
         works = [partial(follows, shape, size) for shape, size in zip(shapes.T, sizes.tolist())]
         self.first, self.slope = first, np.array(fields_in_parallel(len(field), works)).T
-        """Numbers of the growth at the base, and (k, m) how they follow the coefficients [m/K]."""
+        """Numbers of the thermal expansion at the base, and (k, m) how they follow the coefficients [m/K]."""
 
     def at(self, coefficients: FloatArray) -> HousingExpansion:
         """Growth of the field with these coefficients (m,)."""
-        return with_numbers(self.growth, self.first + self.slope @ (coefficients - self._base))
+        return with_numbers(self.expansion, self.first + self.slope @ (coefficients - self._base))
 
 
-def numbers_of(growth: HousingExpansion) -> FloatArray:
+def numbers_of(expansion: HousingExpansion) -> FloatArray:
     """Bores and journals, seal gaps, centre distances, axial travels, in this order [m]."""
-    shape = growth.expansion
+    shape = expansion.deformed
     parts = [np.array([(b.bore_growth, b.journal_growth) for b in shape.bearings.values()]).ravel()]
     parts += [seal.gaps.ravel() for seal in shape.seals.values()]
-    parts.append(np.array([*growth.centre_distance.values(), *growth.tooth_growth.values()]))
+    parts.append(np.array([*expansion.centre_distance.values(), *expansion.axial_expansion.values()]))
     return np.concatenate(parts)
 
 
-def with_numbers(growth: HousingExpansion, numbers: FloatArray) -> HousingExpansion:
-    """The growth with other numbers; displacements and what else depends on them stay those of the base."""
+def with_numbers(expansion: HousingExpansion, numbers: FloatArray) -> HousingExpansion:
+    """The thermal expansion with other numbers; displacements and what else depends on them stay those of the base."""
     left = numbers
 
     def take(count: int) -> FloatArray:
@@ -80,18 +80,18 @@ def with_numbers(growth: HousingExpansion, numbers: FloatArray) -> HousingExpans
         return taken
 
     bearings = {}
-    for name, bearing in growth.expansion.bearings.items():
+    for name, bearing in expansion.deformed.bearings.items():
         bore, journal = map(float, take(2))
         bearings[name] = replace(bearing, bore_growth=bore, journal_growth=journal)
     seals = {
         name: replace(seal, gaps=take(seal.gaps.size).reshape(seal.gaps.shape))
-        for name, seal in growth.expansion.seals.items()
+        for name, seal in expansion.deformed.seals.items()
     }
-    distance = dict(zip(growth.centre_distance, map(float, take(len(growth.centre_distance)))))
-    travel = dict(zip(growth.tooth_growth, map(float, take(len(growth.tooth_growth)))))
+    distance = dict(zip(expansion.centre_distance, map(float, take(len(expansion.centre_distance)))))
+    travel = dict(zip(expansion.axial_expansion, map(float, take(len(expansion.axial_expansion)))))
     return replace(
-        growth,
-        expansion=replace(growth.expansion, bearings=bearings, seals=seals),
+        expansion,
+        deformed=replace(expansion.deformed, bearings=bearings, seals=seals),
         centre_distance=distance,
-        tooth_growth=travel,
+        axial_expansion=travel,
     )

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import IterationParts, IterationResult, next_state, run_iteration
-from rigdesign.coupling.loads import brace_cold
+from rigdesign.coupling.loads import brace_initial
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.prediction.readings import Settled
 from rigdesign.rig.model import Rig
@@ -27,7 +27,7 @@ SCALES = {
     "oil_outlet": 1.0,
     "centre_distance": 1e-6,
     "bearing_clearance": 1e-6,
-    "tooth_growth": 1e-6,
+    "axial_expansion": 1e-6,
     "bearing_heat": 10.0,
     "wall_heat": 10.0,
     "mesh_torque": 1.0,
@@ -119,7 +119,7 @@ def solve_fixed_point(
         `PASSES` are used up.
     """
     cold = initial_state(rig, point)
-    bracing = None if rig.case.drivetrain is None else brace_cold(rig, point, cold)
+    bracing = None if rig.case.drivetrain is None else brace_initial(rig, point, cold)
     given = start if near is None else near.last.coupling_state
     coupling_state = cold if given is None else ordered(given, cold)
     done = None if near is None else near.last

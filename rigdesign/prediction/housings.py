@@ -33,7 +33,7 @@ class ReducedField(HousingField):
 
 
 class ReducedHousings:
-    """Shapes and growth of every housing of a rig; good for every case that leaves its housings as they are.
+    """Shapes and thermal expansion of every housing of a rig; good for every case that leaves its housings as they are.
 
     states : by gearbox, conditions of some operating points among which those wanted lie
     readers : by gearbox, sensors at points
@@ -46,7 +46,7 @@ class ReducedHousings:
         readers: Mapping[str, Sequence[Weights]],
     ) -> None:
         self.bases: dict[str, Basis] = {}
-        self.growths: dict[str, ExpansionMap] = {}
+        self.expansions: dict[str, ExpansionMap] = {}
         self._start: dict[str, FloatArray] = {}
         for name, conditions in states.items():
             basis = build_basis(rig.conduction[name], conditions, readers.get(name, ()))
@@ -55,12 +55,18 @@ class ReducedHousings:
             start = basis.reduced.solve(conditions[0], start).coefficients
             self.bases[name], self._start[name] = basis, start
             if not rig.models[name].no_expansion:
-                self.growths[name] = ExpansionMap(rig, name, basis.reduced.shapes, basis.sizes, start)
+                self.expansions[name] = ExpansionMap(rig, name, basis.reduced.shapes, basis.sizes, start)
 
     def numbers(self) -> dict[str, tuple[FloatArray, FloatArray, float, ExpansionMap | None, FloatArray]]:
-        """Shapes, their sizes, error, growth and start by gearbox: what another process needs."""
+        """Shapes, their sizes, error, thermal expansion and start by gearbox: what another process needs."""
         return {
-            name: (basis.reduced.shapes, basis.sizes, basis.error, self.growths.get(name), self._start[name])
+            name: (
+                basis.reduced.shapes,
+                basis.sizes,
+                basis.error,
+                self.expansions.get(name),
+                self._start[name],
+            )
             for name, basis in self.bases.items()
         }
 
@@ -72,11 +78,11 @@ class ReducedHousings:
     ) -> "ReducedHousings":
         """The housings of the same rig from their numbers."""
         made = cls(rig, {}, {})
-        for name, (shapes, sizes, error, growth, start) in numbers.items():
+        for name, (shapes, sizes, error, expansion, start) in numbers.items():
             made.bases[name] = Basis(ReducedConduction(rig.conduction[name], shapes), sizes, error)
             made._start[name] = start
-            if growth is not None:
-                made.growths[name] = growth
+            if expansion is not None:
+                made.expansions[name] = expansion
         return made
 
     @property
@@ -131,10 +137,12 @@ class ReducedHousings:
         )
         return ReducedField(name, conditions, solution, found.coefficients, found.factor)
 
-    def growth(self, _: Rig, field: HousingField, start: HousingExpansion | None = None) -> HousingExpansion:
+    def expansion(
+        self, _: Rig, field: HousingField, start: HousingExpansion | None = None
+    ) -> HousingExpansion:
         """Growth of a projected field; ``start`` is not needed."""
         assert isinstance(field, ReducedField)
-        return self.growths[field.gearbox].at(field.coefficients)
+        return self.expansions[field.gearbox].at(field.coefficients)
 
     def bulk(self, _: Rig, field: HousingField, body: str) -> float:
         """Volume mean of a body [K]."""
@@ -142,5 +150,5 @@ class ReducedHousings:
         return float(self.bases[field.gearbox].reduced.body(body) @ field.coefficients)
 
     def parts(self, others: IterationParts) -> IterationParts:
-        """Parts of an iteration with the fields and growth of these housings."""
-        return replace(others, field=self.field, growth=self.growth, bulk=self.bulk)
+        """Parts of an iteration with the fields and thermal expansion of these housings."""
+        return replace(others, field=self.field, expansion=self.expansion, bulk=self.bulk)

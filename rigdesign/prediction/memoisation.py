@@ -23,7 +23,7 @@ from rigdesign.coupling.iteration import IterationParts
 from rigdesign.coupling.loads import (
     BracingState,
     MeshModel,
-    brace_cold,
+    brace_initial,
     laws_of,
     mesh_friction,
     mesh_model,
@@ -88,7 +88,7 @@ class Memoisation:
         return replace(model, friction=friction, law=law)
 
     def bracing(self, rig: Rig, point: OperatingPoint) -> BracingState | None:
-        """As `brace_cold`; None without a drivetrain."""
+        """As `brace_initial`; None without a drivetrain."""
         if rig.case.drivetrain is None:
             return None
         cold = initial_state(rig, point)
@@ -104,7 +104,7 @@ class Memoisation:
         )
         known = self._room("bracings")
         if key not in known:
-            known[key] = brace_cold(rig, point, cold, models)
+            known[key] = brace_initial(rig, point, cold, models)
         found: BracingState = known[key]
         return found
 
@@ -164,7 +164,7 @@ def _shape_key(
         coupling_state.gear_temperature[pinion],
         coupling_state.gear_temperature[wheel],
         coupling_state.centre_distance[name],
-        coupling_state.tooth_growth[name],
+        coupling_state.axial_expansion[name],
         coupling_state.mesh_torque[name],
     )
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from rigdesign.base.parallel import Beside
+from rigdesign.base.parallel import BackgroundTasks
 from thermal.fe.kernels import THREADED
 
 T = TypeVar("T")
@@ -13,5 +13,5 @@ def fields_in_parallel(nodes: int, works: Sequence[Callable[[], T]]) -> list[T]:
     """Results of works on fields of so many nodes, in their order; the same bits on any number of cores."""
     if nodes >= THREADED:
         return [work() for work in works]
-    with Beside(works) as beside:
+    with BackgroundTasks(works) as beside:
         return beside.results()

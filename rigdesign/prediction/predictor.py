@@ -17,12 +17,12 @@ from threadpoolctl import threadpool_limits
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.base.parallel import Beside
+from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.case.model import Case
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import IterationParts, next_state, run_iteration
 from rigdesign.coupling.loads import BracingState as Bracing
-from rigdesign.coupling.loads import brace_cold
+from rigdesign.coupling.loads import brace_initial
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.changes import Changes, changed_case
 from rigdesign.prediction.fixed_point import CLOSE, SettledPoint, solve_fixed_point
@@ -309,7 +309,7 @@ class Predictor:
             )
             made = partial(_slopes_at, self._housings, self._parts, self._reads, directions)
             works = [partial(_numbers_at, made, rig, point) for rig, point in zip(self._rigs, self._points)]
-            with Beside(works) as beside:
+            with BackgroundTasks(works) as beside:
                 numbers = beside.results()
             self._made_slopes = [
                 made(rig, point, known) for rig, point, known in zip(self._rigs, self._points, numbers)
@@ -388,7 +388,7 @@ class Predictor:
         for setting in _apart(self.settings, STATES) if found else ():
             rig, point = rig_at(self._rig, setting), operating_point(setting)
             coupling_state = initial_state(rig, point)
-            bracing = None if rig.case.drivetrain is None else brace_cold(rig, point, coupling_state)
+            bracing = None if rig.case.drivetrain is None else brace_initial(rig, point, coupling_state)
             done = run_iteration(rig, point, coupling_state, bracing)
             done = run_iteration(rig, point, next_state(rig, done), bracing, done, fine=False)
             for name, field in done.fields.items():

@@ -34,7 +34,7 @@ class Settled:
 
     def seals(self, gearbox: str) -> Mapping[str, SealGrowth]:
         """Hot seals of a housing."""
-        return self.last.growth[gearbox].expansion.seals
+        return self.last.expansion[gearbox].deformed.seals
 
 
 Numbers = tuple[float, ...]

@@ -245,7 +245,8 @@ class PointSensitivities:
         return [(name, field) for name, field in fields.items() if isinstance(field, ReducedField)]
 
     def _handed(self, name: str, links: Sequence[Link]) -> FloatArray:
-        """(n, m) what an iteration hands on by the coefficients of a housing: growth, gear bulk, heats of its films."""
+        """(n, m) what an iteration hands on by the coefficients of a housing: thermal expansion, gear bulk, heats of
+        its films."""
         handed = self._directions[name].coupling_state.copy()
         for link in links:
             heat = self._heat_of(name, link)
@@ -357,7 +358,7 @@ def directions_of(
     for name, field in last.fields.items():
         assert isinstance(field, ReducedField)
         shapes = housings.bases[name].reduced.shapes
-        growth: ExpansionMap | None = housings.growths.get(name)
+        expansion: ExpansionMap | None = housings.expansions.get(name)
         by_feedback, by_readings = [], []
         for number in range(shapes.shape[1]):
             coefficients = field.coefficients.copy()
@@ -366,8 +367,10 @@ def directions_of(
             moved = replace(
                 field, coefficients=coefficients, solution=replace(field.solution, temperature=temperature)
             )
-            grown = last.growth if growth is None else {**last.growth, name: growth.at(coefficients)}
-            done = replace(last, fields={**last.fields, name: moved}, growth=grown)
+            expanded = (
+                last.expansion if expansion is None else {**last.expansion, name: expansion.at(coefficients)}
+            )
+            done = replace(last, fields={**last.fields, name: moved}, expansion=expanded)
             by_feedback.append((flat(raw(rig, done, parts, like)) - first) / STEP)
             by_readings.append((readings(done) - here) / STEP)
         found[name] = Directions(np.array(by_feedback).T, np.array(by_readings).T)

@@ -17,7 +17,7 @@ from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import brace_cold, mesh_models, shifted_laws, signed_torque
+from rigdesign.coupling.loads import brace_initial, mesh_models, shifted_laws, signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig
@@ -81,7 +81,7 @@ def standing_laws(rig: Rig) -> list[MeshLaw]:
     cold = initial_state(rig, point)
     laws = [
         alike_teeth(law)
-        for law in shifted_laws(rig, mesh_models(rig, point, cold), brace_cold(rig, point, cold))
+        for law in shifted_laws(rig, mesh_models(rig, point, cold), brace_initial(rig, point, cold))
     ]
     loop = port_model(rig.system, laws)
     state = solve_static(loop, torque=signed_torque(rig, point))

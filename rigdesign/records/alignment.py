@@ -11,7 +11,7 @@ from rigdesign.coupling.alignment import (
     coupled_ends,
     coupling_places,
 )
-from rigdesign.coupling.expansion import axes_of, bearing_growth
+from rigdesign.coupling.expansion import axes_of, bearing_expansion
 from rigdesign.coupling.loop import PointResult
 from rigdesign.rig.model import Rig
 from thermal.expansion.expansion import Expansion
@@ -24,16 +24,16 @@ def bore_rows(rig: Rig, result: PointResult, name: str, shape: Expansion) -> lis
     rows = []
     for part, entry in rig.case.gearboxes[name].bearings.items():
         full = f"{name}.{part}"
-        growth = bearing_growth(rig, name, shape, entry)
-        found = growth.bore_roundness
+        expansion = bearing_expansion(rig, name, shape, entry)
+        found = expansion.bore_roundness
         share = clearance_share(found.peak_to_valley, result.last.coupling_state.bearing_clearance[full])
         rows.append(
             {
                 "bearing": full,
-                "tilt_mrad": MRAD * growth.tilt,
-                "tilt_lateral_mrad": MRAD * growth.misalignment[0],
-                "tilt_vertical_mrad": MRAD * growth.misalignment[1],
-                "tilt_over_width_um": UM * growth.tilt * entry.width,
+                "tilt_mrad": MRAD * expansion.tilt,
+                "tilt_lateral_mrad": MRAD * expansion.misalignment[0],
+                "tilt_vertical_mrad": MRAD * expansion.misalignment[1],
+                "tilt_over_width_um": UM * expansion.tilt * entry.width,
                 "out_of_round_um": UM * found.peak_to_valley,
                 "second_harmonic_um": UM * found.second_harmonic,
                 "long_axis_deg": math.degrees(found.long_axis),
@@ -66,7 +66,7 @@ def axis_rows(rig: Rig, name: str, shape: Expansion) -> list[dict[str, Any]]:
 
 def coupling_rows(rig: Rig, result: PointResult, name: str) -> list[dict[str, Any]]:
     """Alignment of every coupling that gearbox ``name`` tells of, cold and hot."""
-    shapes = {box: growth.expansion for box, growth in result.last.growth.items()}
+    shapes = {box: expansion.deformed for box, expansion in result.last.expansion.items()}
     axes = {box: shape.axes for box, shape in shapes.items()}
     rows = []
     for place in (place for place in coupling_places(rig) if place.gearbox == name):

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from rigdesign.coupling.expansion import spin_growth
+from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.loads import MeshModel
 from rigdesign.coupling.losses import ANDERSON_LOEWENTHAL
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import GrowthResult
+from rigdesign.results.result import ExpansionResult
 from thermal.conduction.heat_rows import HeatFlow
 
 PLATE = (
@@ -19,9 +19,9 @@ PLATE = (
 )
 RING = "s + R [alpha_h (T_h - T_0) - alpha_s (T_s - T_0)], T_h of the bore; a warmer wall round it widens it further"
 BORE = (
-    "C + D [alpha_h (T_w - T_0) - alpha_s (T_j - T_0)] less the growth by spin, T_w the mean of the end wall, T_j of "
-    "the journal: a wall that is warmer away from its bore widens it more than the temperature of the bore itself; a "
-    "warmer box behind the wall stretches it further, the bore by 2/(1 - nu) times that stretch"
+    "C + D [alpha_h (T_w - T_0) - alpha_s (T_j - T_0)] less the centrifugal expansion, T_w the mean of the end wall, "
+    "T_j of the journal: a wall that is warmer away from its bore widens it more than the temperature of the bore "
+    "itself; a warmer box behind the wall stretches it further, the bore by 2/(1 - nu) times that stretch"
 )
 
 WINDAGE = (
@@ -38,7 +38,7 @@ RISE = (
 
 def hand_checks(solved: SolvedRig) -> list[dict[str, Any]]:
     """quantity, computed, by_hand, unit, formula; in the order of the report."""
-    return [*_loads(solved), *_losses(solved), *_growth(solved)]
+    return [*_loads(solved), *_losses(solved), *_expansion(solved)]
 
 
 def _row(quantity: str, computed: float, by_hand: float, unit: str, formula: str) -> dict[str, Any]:
@@ -119,9 +119,9 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
     return rows
 
 
-def _growth(solved: SolvedRig) -> list[dict[str, Any]]:
+def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
     rows = []
-    for result in solved.growth:
+    for result in solved.expansion:
         rows += [
             _row(
                 f"growth of {shaft['shaft']}", shaft["growth_mm"], shaft["free_expansion_mm"], "mm",
@@ -154,7 +154,7 @@ def _growth(solved: SolvedRig) -> list[dict[str, Any]]:
     return rows
 
 
-def axis_rise(solved: SolvedRig, result: GrowthResult) -> float:
+def axis_rise(solved: SolvedRig, result: ExpansionResult) -> float:
     """Free expansion of the housing and of the field under it up to the shaft axes [mm], by their mean temperatures."""
     name = result.gearbox
     housing = solved.case.gearboxes[name].housing
@@ -176,7 +176,7 @@ def axis_rise(solved: SolvedRig, result: GrowthResult) -> float:
     return 1e3 * rise
 
 
-def partition_gap(solved: SolvedRig, result: GrowthResult, seal: str) -> float | None:
+def partition_gap(solved: SolvedRig, result: ExpansionResult, seal: str) -> float | None:
     """Hot gap [m] of a seal in a partition: a free plate widens its bore by its mean strain, however its warmth lies.
 
     None for the seals at the ends, whose walls have no surfaces of their own. Source: disc with a free bore,
@@ -200,7 +200,7 @@ def partition_gap(solved: SolvedRig, result: GrowthResult, seal: str) -> float |
     return gap + 0.5 * entry.seal_diameter * (wide - thick)
 
 
-def end_wall_clearance(solved: SolvedRig, result: GrowthResult, full: str) -> float | None:
+def end_wall_clearance(solved: SolvedRig, result: ExpansionResult, full: str) -> float | None:
     """Hot diametral clearance [m] of the bearing ``gearbox.bearing``: its end wall widens the bore by its mean strain.
 
     None for a user's mesh that has no material where the box has its end wall. Source: as `partition_gap`.
@@ -224,7 +224,7 @@ def end_wall_clearance(solved: SolvedRig, result: GrowthResult, full: str) -> fl
     cold, materials = solved.case.ambient.reference_temperature, rig.materials
     wide = materials[box.housing.material].expansion_coefficient * (wall - cold)
     thick = materials[box.housing.shafts[entry.shaft].material].expansion_coefficient * (journal - cold)
-    spin = spin_growth(rig, entry, point.point.speed)
+    spin = centrifugal_expansion(rig, entry, point.point.speed)
     return entry.diametral_clearance + entry.diameter * (wide - thick) - spin
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from rigdesign.coupling.expansion import axes_of, bearing_growth
+from rigdesign.coupling.expansion import axes_of, bearing_expansion
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import PlacedLoss
@@ -17,7 +17,7 @@ from rigdesign.records.alignment import axis_rows, bore_rows, coupling_rows
 from rigdesign.records.heat_split import COMPARED, heat_split_rows
 from rigdesign.results.result import (
     CouplingHistory,
-    GrowthResult,
+    ExpansionResult,
     HeatRow,
     LossRow,
     OilRow,
@@ -161,10 +161,10 @@ def _heat_row(row: SolvedRow) -> HeatRow:
     )
 
 
-def growth_result(rig: Rig, result: PointResult, name: str) -> GrowthResult:
+def expansion_result(rig: Rig, result: PointResult, name: str) -> ExpansionResult:
     """Clearances of one housing, cold and hot."""
-    shape = result.last.growth[name].expansion
-    return GrowthResult(
+    shape = result.last.expansion[name].deformed
+    return ExpansionResult(
         gearbox=name,
         stage=result.point.stage,
         seal_gaps=_seal_gaps(rig, name, shape),
@@ -251,13 +251,13 @@ def _bearings(rig: Rig, result: PointResult, name: str, shape: Expansion) -> lis
     for part, entry in rig.case.gearboxes[name].bearings.items():
         full = f"{name}.{part}"
         state = result.last.bearings[full]
-        growth = bearing_growth(rig, name, shape, entry)
+        expansion = bearing_expansion(rig, name, shape, entry)
         rows.append(
             {
                 "bearing": full,
                 "diametral_clearance_cold_um": UM * entry.diametral_clearance,
                 "diametral_clearance_hot_um": UM * result.last.coupling_state.bearing_clearance[full],
-                "bore_ovality_um": UM * growth.bore_ovality,
+                "bore_ovality_um": UM * expansion.bore_ovality,
                 "minimum_film_um": UM * state.minimum_film,
                 "film_temperature_degC": state.film_temperature - ZERO,
                 "specific_load_MPa": 1e-6 * state.specific_load,
@@ -275,7 +275,7 @@ def coupling_history(result: PointResult) -> CouplingHistory:
         residuals=[
             {
                 "temperature_K": residual.temperature,
-                "growth_um": UM * residual.growth,
+                "growth_um": UM * residual.length,
                 "torque_relative": residual.torque,
             }
             for residual in result.residuals
@@ -291,8 +291,8 @@ def fields_of(rig: Rig, result: PointResult) -> list[TemperatureField]:
             result.point.stage,
             rig.models[name].mesh,
             field.temperature,
-            result.last.growth[name].expansion.displacement
-            if name in result.last.growth
+            result.last.expansion[name].deformed.displacement
+            if name in result.last.expansion
             else np.zeros_like(rig.models[name].mesh.points),
             heat_flux(rig.conduction[name], field.temperature),
         )

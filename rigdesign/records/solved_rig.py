@@ -10,7 +10,7 @@ from rigdesign.records.dynamics import DynamicRun
 from rigdesign.results.result import (
     DiscretisationRow,
     DynamicsResult,
-    GrowthResult,
+    ExpansionResult,
     MeshShift,
     Role,
     ThermalResult,
@@ -28,7 +28,7 @@ class SolvedRig:
     """None when the losses are given: no drivetrain, no loads."""
     dynamics: DynamicsResult | None
     thermal: Sequence[ThermalResult]
-    growth: Sequence[GrowthResult]
+    expansion: Sequence[ExpansionResult]
     cooler: Sequence[Mapping[str, float | str]]
     """Where the heat goes, one row for each held stage (`records.heat.cooler`)."""
     discretisation: Sequence[DiscretisationRow] = ()

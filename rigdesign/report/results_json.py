@@ -32,7 +32,7 @@ def results_document(result: RunResult) -> dict[str, Any]:
         "oil": result.oil,
         "cooler": result.cooler,
         "thermal": result.thermal,
-        "growth": result.growth,
+        "growth": result.expansion,
         "coupling": _coupling(result.coupling),
         "discretisation": result.discretisation,
         "reference_shift": result.reference_shift,

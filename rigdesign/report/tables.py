@@ -21,7 +21,7 @@ def curve_tables(result: RunResult) -> dict[str, str]:
     tables = {"checks.csv": _checks(result), "losses.csv": _losses(result), "oil.csv": _oil(result)}
     if result.thermal:
         tables["heat.csv"] = _heat(result)
-    if result.growth:
+    if result.expansion:
         tables["seal_gaps.csv"] = _seal_gaps(result)
     if result.dynamics is not None:
         tables.update(_dynamics(result.dynamics))
@@ -123,9 +123,9 @@ def _coefficient(row: HeatRow) -> tuple[Any, ...]:
 def _seal_gaps(result: RunResult) -> str:
     header = ("gearbox", "stage", "seal", "angle [deg]", "cold gap [mm]", "hot gap [mm]")
     rows = (
-        (growth.gearbox, growth.stage, seal["seal"], angle, seal["cold_mm"], gap)
-        for growth in result.growth
-        for seal in growth.seal_gaps
+        (expansion.gearbox, expansion.stage, seal["seal"], angle, seal["cold_mm"], gap)
+        for expansion in result.expansion
+        for seal in expansion.seal_gaps
         for angle, gap in zip(seal.get("angle_deg", ()), seal.get("hot_mm", ()), strict=True)
     )
     return csv_text(header, rows)

@@ -266,7 +266,7 @@ class ThermalResult:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GrowthResult:
+class ExpansionResult:
     """Expansion of one gearbox at one held stage; every entry carries cold, hot and unit."""
 
     gearbox: str
@@ -372,7 +372,7 @@ class RunResult:
     the shafts, jets of the pump and heaters put in what cooler and room take out; losses that are no heat stand
     apart."""
     thermal: list[ThermalResult]
-    growth: list[GrowthResult]
+    expansion: list[ExpansionResult]
     coupling: list[CouplingHistory]
     discretisation: list[DiscretisationRow] = field(default_factory=list)
     reference_shift: list[MeshShift] = field(default_factory=list)

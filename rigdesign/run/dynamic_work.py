@@ -7,7 +7,7 @@ from typing import Self
 
 from dynamics.response.speed_sweep import ResponseCurve
 from dynamics.response.time_response import TimeResponse
-from rigdesign.base.parallel import Beside
+from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.time_run import run_ramp
 from rigdesign.records.curves import CurvePlan, plan_curves
@@ -34,7 +34,7 @@ class DynamicWork:
             self._plan = plan_curves(rig, test.last)
             ramp = partial(run_ramp, rig, test.last, test.setting, test.last.coupling_state)
             works = [ramp, *self._plan.works.values()]
-        self._works = Beside(works)
+        self._works = BackgroundTasks(works)
 
     def __enter__(self) -> Self:
         return self

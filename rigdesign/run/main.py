@@ -102,7 +102,7 @@ def solve_case(
         run=run,
         dynamics=None if run is None else dynamics_result(wanted, run),
         thermal=thermal,
-        growth=[heat.growth_result(wanted, p, name) for p in points for name in p.last.growth],
+        expansion=[heat.expansion_result(wanted, p, name) for p in points for name in p.last.expansion],
         cooler=[heat.cooler(wanted, point.last) for point in points],
         discretisation=meshes.rows,
         mesh_shifts=meshes.shifts,
@@ -118,7 +118,7 @@ def _settled(rig: Rig, say: Progress) -> list[PointResult]:
     """Every held point, each from the one before."""
     settled: list[PointResult] = []
     for point in held_points(rig):
-        say(f"coupling loads, losses, temperatures and growth at stage {point.stage}")
+        say(f"coupling loads, losses, temperatures and thermal expansion at stage {point.stage}")
         start = settled[-1].last.coupling_state if settled else None
         settled.append(solve_point(rig, point, start=start))
     return settled
@@ -140,7 +140,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         oil=[row for p in points for row in heat.oil_rows(p.point.stage, p.last.streams)],
         cooler=[dict(row) for row in solved.cooler],
         thermal=list(solved.thermal),
-        growth=list(solved.growth),
+        expansion=list(solved.expansion),
         coupling=[heat.coupling_history(p) for p in points],
         discretisation=list(solved.discretisation),
         reference_shift=list(solved.mesh_shifts),

@@ -101,7 +101,7 @@ def numbers(rig: Rig, points: Sequence[PointResult], governing: int) -> Numbers:
     values = {
         (quantity, name): (value, unit)
         for name, field in last.fields.items()
-        for (quantity, unit), value in _measured(rig, field, last.growth.get(name)).items()
+        for (quantity, unit), value in _measured(rig, field, last.expansion.get(name)).items()
     }
     values |= {(check.id, ""): (_value(check), check.unit) for check in checked(rig, points).values()}
     return Numbers({**nodes, "": sum(nodes.values())}, values)
@@ -112,7 +112,9 @@ def _value(check: Check) -> float:
     return check.value
 
 
-def _measured(rig: Rig, field: HousingField, growth: HousingExpansion | None) -> dict[tuple[str, str], float]:
+def _measured(
+    rig: Rig, field: HousingField, expansion: HousingExpansion | None
+) -> dict[tuple[str, str], float]:
     """Every number of a housing that a check or the heat table shows, by quantity and unit."""
     name, mesh = field.gearbox, rig.models[field.gearbox].mesh
     housing = field.temperature[mesh.cells[mesh.bodies.get("housing", slice(None))]]
@@ -126,9 +128,9 @@ def _measured(rig: Rig, field: HousingField, growth: HousingExpansion | None) ->
         values[f"{gear}.bulk_temperature", "degC"] = body_mean(rig, field, f"gear_{entry.shaft}") - ZERO
     for kind, power in field.solution.balance.by_kind().items():
         values[f"heat.{kind}", "W"] = power
-    if growth is None:
+    if expansion is None:
         return values
-    shape = growth.expansion
+    shape = expansion.deformed
     for seal in shape.seals.values():
         values[f"{seal.name}.seal_gap", "mm"] = MM * seal.minimum
         values[f"{seal.name}.axial_shift", "mm"] = MM * seal.axial_shift
@@ -137,7 +139,7 @@ def _measured(rig: Rig, field: HousingField, growth: HousingExpansion | None) ->
         values[f"{shaft.name}.axial_play_change", "mm"] = MM * shaft.axial_play_change
     for bearing in shape.bearings.values():
         values[f"{bearing.name}.clearance_change", "um"] = UM * bearing.clearance_change
-    for full, distance in growth.centre_distance.items():
+    for full, distance in expansion.centre_distance.items():
         values[f"{full.split('.')[1]}.centre_distance", "mm"] = MM * distance
     return values
 

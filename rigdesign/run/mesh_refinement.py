@@ -13,7 +13,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.base.parallel import Beside
+from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.checks import alignment, thermal
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.expansion import expand_housing
@@ -21,7 +21,7 @@ from rigdesign.coupling.iteration import IterationResult, next_state
 from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.loop import PointResult, Residual
 from rigdesign.coupling.oil import oil_streams
-from rigdesign.coupling.state import CouplingState, growth_change, temperature_change
+from rigdesign.coupling.state import CouplingState, length_change, temperature_change
 from rigdesign.coupling.temperatures import HousingField, heat_into_films, heat_into_oil, solve_housing
 from rigdesign.records import heat
 from rigdesign.records.heat_split import split_as_solved
@@ -55,7 +55,7 @@ class BackgroundMeshing:
         fidelities = (*COARSER[rig.fidelity], rig.fidelity)
         self._others = tuple(f for f in fidelities if f != source.fidelity)
         works = [partial(_meshed, source, f, needed=f == rig.fidelity) for f in self._others]
-        self._works: Beside[dict[str, GearboxModel] | None] = Beside(works)
+        self._works: BackgroundTasks[dict[str, GearboxModel] | None] = BackgroundTasks(works)
 
     def __enter__(self) -> Self:
         return self
@@ -90,7 +90,8 @@ def _meshed(rig: Rig, fidelity: Fidelity, *, needed: bool) -> dict[str, GearboxM
 
 
 def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
-    """One more iteration of a settled point on the mesh of ``rig``: fields, growth, oil, warm gears and bearings.
+    """One more iteration of a settled point on the mesh of ``rig``: fields, thermal expansion, oil, warm gears and
+    bearings.
 
     The periodic response and the losses are those the point settled on. The residual that is added is the
     change of this iteration: the shift from mesh to mesh.
@@ -103,7 +104,7 @@ def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
         A solve stalls on that mesh.
     """
     last = settled.last
-    fields, growth = {}, {}
+    fields, expansion = {}, {}
     for name, field in last.fields.items():
         meshes = source.models[name].mesh, rig.models[name].mesh
         same = meshes[0] is meshes[1]
@@ -111,8 +112,8 @@ def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
         fields[name] = solve_housing(
             rig, name, last.point, last.coupling_state, last.bearings, last.losses, guess
         )
-        if name in last.growth:
-            growth[name] = expand_housing(rig, fields[name], last.growth[name] if same else None)
+        if name in last.expansion:
+            expansion[name] = expand_housing(rig, fields[name], last.expansion[name] if same else None)
     bearing_heat = dict(last.bearing_heat)
     wall_heat = dict(last.wall_heat)
     for field in fields.values():
@@ -121,7 +122,7 @@ def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
     done = replace(
         last,
         fields=fields,
-        growth=growth,
+        expansion=expansion,
         bearing_heat=bearing_heat,
         wall_heat=wall_heat,
         streams=tuple(oil_streams(rig, last.losses, bearing_heat, wall_heat)),
@@ -129,7 +130,7 @@ def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
     after = next_state(rig, done)
     change = Residual(
         temperature=temperature_change(done.coupling_state, after),
-        growth=growth_change(done.coupling_state, after),
+        length=length_change(done.coupling_state, after),
         torque=0.0,
     )
     return replace(settled, last=_warmed(rig, done, after), residuals=(*settled.residuals, change))
@@ -152,7 +153,7 @@ def _warmed(rig: Rig, done: IterationResult, after: CouplingState) -> IterationR
         gear_temperature=after.gear_temperature,
         centre_distance=after.centre_distance,
         bearing_clearance=after.bearing_clearance,
-        tooth_growth=after.tooth_growth,
+        axial_expansion=after.axial_expansion,
         bearing_heat=done.bearing_heat,
     )
     return replace(
@@ -164,14 +165,15 @@ def _warmed(rig: Rig, done: IterationResult, after: CouplingState) -> IterationR
 
 
 def checked(rig: Rig, points: Sequence[PointResult]) -> dict[str, Check]:
-    """The checks that depend on temperatures, growth and oil, by id, as ``points`` on the mesh of ``rig`` have them."""
+    """The checks that depend on temperatures, thermal expansion and oil, by id, as ``points`` on the mesh of ``rig``
+    have them."""
     solved = SolvedRig(
         rig=rig,
         points=points,
         run=None,
         dynamics=None,
         thermal=[_temperatures(rig, p, field) for p in points for field in p.last.fields.values()],
-        growth=[heat.growth_result(rig, p, name) for p in points for name in p.last.growth],
+        expansion=[heat.expansion_result(rig, p, name) for p in points for name in p.last.expansion],
         cooler=[heat.cooler(rig, point.last) for point in points],
     )
     found = (*thermal.checks(solved), *alignment.checks(solved))

@@ -170,13 +170,13 @@ def _least(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> Iter
 def _steady(solved: SolvedRig, quantity: Quantity) -> float | None:
     """Worst steady clearance of the held stages [mm]."""
     rows = {
-        "seal_gap": [s["hot_min_mm"] for g in solved.growth for s in g.seal_gaps],
-        "axial_play": [s["axial_play_hot_mm"] for g in solved.growth for s in g.shafts],
+        "seal_gap": [s["hot_min_mm"] for g in solved.expansion for s in g.seal_gaps],
+        "axial_play": [s["axial_play_hot_mm"] for g in solved.expansion for s in g.shafts],
         "bearing_clearance": [
-            1e-3 * b["diametral_clearance_hot_um"] for g in solved.growth for b in g.bearings
+            1e-3 * b["diametral_clearance_hot_um"] for g in solved.expansion for b in g.bearings
         ],
-        "backlash": [gear["backlash_hot_mm"] for g in solved.growth for gear in g.gears],
-        "tip_clearance": [gear["tip_clearance_hot_mm"] for g in solved.growth for gear in g.gears],
+        "backlash": [gear["backlash_hot_mm"] for g in solved.expansion for gear in g.gears],
+        "tip_clearance": [gear["tip_clearance_hot_mm"] for g in solved.expansion for gear in g.gears],
     }
     return min(rows[quantity], default=None)
 

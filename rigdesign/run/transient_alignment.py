@@ -130,13 +130,19 @@ def limit_of(case: Case, quantity: Misalignment, place: str) -> float | None:
 def _steady(solved: SolvedRig, quantity: Misalignment, coupling: str) -> float | None:
     """Largest steady value of the held stages, of one coupling where it is one's."""
     rows = {
-        "bearing_tilt": [row["tilt_mrad"] for growth in solved.growth for row in growth.bores],
-        "bore_out_of_round": [row["out_of_round_share"] for growth in solved.growth for row in growth.bores],
-        "axis_inclination": [abs(row["inclination_um"]) for growth in solved.growth for row in growth.axes],
-        "axis_skew": [abs(row["skew_um"]) for growth in solved.growth for row in growth.axes],
+        "bearing_tilt": [row["tilt_mrad"] for expansion in solved.expansion for row in expansion.bores],
+        "bore_out_of_round": [
+            row["out_of_round_share"] for expansion in solved.expansion for row in expansion.bores
+        ],
+        "axis_inclination": [
+            abs(row["inclination_um"]) for expansion in solved.expansion for row in expansion.axes
+        ],
+        "axis_skew": [abs(row["skew_um"]) for expansion in solved.expansion for row in expansion.axes],
     }
     if quantity in rows:
         return max(rows[quantity], default=None)
     key = "offset_hot_mm" if quantity == "coupling_offset" else "angle_hot_mrad"
-    coupled = (row for growth in solved.growth for row in growth.couplings if row["coupling"] == coupling)
+    coupled = (
+        row for expansion in solved.expansion for row in expansion.couplings if row["coupling"] == coupling
+    )
     return max((row[key] for row in coupled), default=None)

@@ -6,7 +6,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.coupling.expansion import hot_clearances, read_growth
+from rigdesign.coupling.expansion import hot_clearances, named_expansion
 from rigdesign.rig.model import Rig
 from thermal.expansion.expansion import Expansion
 
@@ -23,7 +23,7 @@ def clearances(
 
     Gears grow with the mean temperature of their bodies and with their speed, journals with theirs.
     """
-    growth = read_growth(rig, name, shape)
+    expansion = named_expansion(rig, name, shape)
     box = rig.case.gearboxes[name]
     bulk = {
         gear: rig.conduction[name].elements.body_mean(temperature, f"gear_{entry.shaft}")
@@ -37,14 +37,14 @@ def clearances(
         pair = rig.pairs[full].warm(
             bulk[mesh.pinion],
             bulk[mesh.wheel],
-            growth.centre_distance[full],
+            expansion.centre_distance[full],
             reference_temperature=rig.case.ambient.reference_temperature,
             expansion_coefficients=(first, second),
             speed=rig.shaft_speed(gears[0].shaft, speed),
         )
         backlash[full], tip[full] = pair.transverse_backlash, min(pair.tip_clearances)
     play = {b.shaft: b.axial_play for b in box.bearings.values() if b.locating}
-    bearings = hot_clearances(rig, speed, {name: growth})
+    bearings = hot_clearances(rig, speed, {name: expansion})
     return {
         "seal_gap": {seal.name: seal.minimum for seal in shape.seals.values()},
         "axial_play": {s.name: play[s.name] - s.axial_play_change for s in shape.shafts.values()},

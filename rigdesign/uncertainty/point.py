@@ -32,7 +32,7 @@ DRIVE = ("drive_torque", "drive_power")
 """Quantities of bought parts that follow the losses of the whole run."""
 ACTUATOR = ("actuator_force",)
 """Quantities of bought parts that follow the setting of the bracing, hot."""
-LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "tooth_growth": 2e-6}
+LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "axial_expansion": 2e-6}
 """Change of a field of `CouplingState` [K, m] beyond which the loads are solved again: on the prototype half a
 kelvin moves a check on loads by up to 0.001 of its limit, `ranges_verdicts.LEAST_MOVE`, and 5 um do."""
 GEOMETRY = ("models", "conduction", "expansion")
@@ -226,7 +226,7 @@ def _subject(
         run=run,
         dynamics=dynamics,
         thermal=[heat.solved_temperatures(rig, p, field) for p in points for field in p.last.fields.values()],
-        growth=[heat.growth_result(rig, p, name) for p in points for name in p.last.growth],
+        expansion=[heat.expansion_result(rig, p, name) for p in points for name in p.last.expansion],
         cooler=[heat.cooler(rig, point.last) for point in points],
     )
 

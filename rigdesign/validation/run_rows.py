@@ -100,12 +100,12 @@ def _drive(result: RunResult) -> Iterator[ValidationRow]:
 
 
 def _seal_gaps(result: RunResult) -> Iterator[ValidationRow]:
-    for growth in result.growth:
-        gaps = [float(seal["hot_min_mm"]) for seal in growth.seal_gaps]
+    for expansion in result.expansion:
+        gaps = [float(seal["hot_min_mm"]) for seal in expansion.seal_gaps]
         if gaps:
             yield compare(
-                id=f"run-seal-gap-{growth.gearbox}-{growth.stage}",
-                quantity=f"smallest hot seal gap, {growth.gearbox} gearbox, {growth.stage}",
+                id=f"run-seal-gap-{expansion.gearbox}-{expansion.stage}",
+                quantity=f"smallest hot seal gap, {expansion.gearbox} gearbox, {expansion.stage}",
                 source="P2, text (main rig)", published=0.6, published_text="still 0.6", computed=min(gaps),
                 unit="mm",
                 basis="predicted", free_parameters=1,

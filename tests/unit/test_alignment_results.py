@@ -24,7 +24,7 @@ from rigdesign.coupling.alignment import (
 )
 from rigdesign.records.alignment import axis_rows, bore_rows, coupling_rows
 from rigdesign.records.hand import axis_rise
-from rigdesign.results.result import Check, GrowthResult
+from rigdesign.results.result import Check, ExpansionResult
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run import transient_alignment
 from rigdesign.run.transient_alignment import misalignments, worst_misalignments
@@ -58,7 +58,7 @@ def shape(rig: Rig) -> Expansion:
 def point(rig: Rig, shape: Expansion) -> Any:
     clearances = {f"test.{name}": 60e-6 for name in rig.case.gearboxes["test"].bearings}
     last = SimpleNamespace(
-        growth={"test": SimpleNamespace(expansion=shape)},
+        expansion={"test": SimpleNamespace(deformed=shape)},
         coupling_state=SimpleNamespace(bearing_clearance=clearances),
     )
     return SimpleNamespace(last=last)
@@ -97,7 +97,7 @@ def test_the_rise_of_a_shaft_is_that_by_hand_where_all_is_evenly_warm(rig: Rig, 
     subject: Any = SimpleNamespace(
         case=rig.case, rig=rig, points=[SimpleNamespace(point=SimpleNamespace(stage="test"), last=last)]
     )
-    by_hand = axis_rise(subject, growth("test", 0.0, 0.0, (0.0, 0.0)))
+    by_hand = axis_rise(subject, expansion("test", 0.0, 0.0, (0.0, 0.0)))
     for row in coupling_rows(rig, point, "test"):
         assert row["vertical_hot_mm"] == pytest.approx(by_hand, rel=1e-4)
 
@@ -144,9 +144,9 @@ def test_share_of_the_clearance_is_finite_where_none_is_left() -> None:
     assert clearance_share(3e-6, 0.0) == clearance_share(3e-6, -1e-6) == clearance_share(3e-6, 1e-9) == 10.0
 
 
-def growth(stage: str, tilt: float, share: float, offset: tuple[float, float]) -> GrowthResult:
+def expansion(stage: str, tilt: float, share: float, offset: tuple[float, float]) -> ExpansionResult:
     """Records of one stage; offset : of the coupling, cold and hot [mm]."""
-    return GrowthResult(
+    return ExpansionResult(
         gearbox="test", stage=stage, seal_gaps=[], shafts=[], gears=[], bearings=[],
         bores=[{"bearing": "test.front", "tilt_mrad": tilt, "out_of_round_share": share}],
         axes=[{"gear_pair": "test.main", "inclination_um": -6.0, "skew_um": 1.0}],
@@ -160,13 +160,13 @@ def growth(stage: str, tilt: float, share: float, offset: tuple[float, float]) -
     )  # fmt: skip
 
 
-def held(case: Case, *rows: GrowthResult) -> dict[str, Check]:
-    subject: Any = SimpleNamespace(case=case, growth=list(rows), no_clearances="no gearbox has a housing")
+def held(case: Case, *rows: ExpansionResult) -> dict[str, Check]:
+    subject: Any = SimpleNamespace(case=case, expansion=list(rows), no_clearances="no gearbox has a housing")
     return {check.id: check for check in checks(subject)}
 
 
 def test_the_worst_stage_is_held_against_each_limit(case: Case) -> None:
-    found = held(case, growth("low", 0.1, 0.3, (0.0, 0.1)), growth("test", 0.2, 0.1, (0.0, 0.2)))
+    found = held(case, expansion("low", 0.1, 0.3, (0.0, 0.1)), expansion("test", 0.2, 0.1, (0.0, 0.2)))
     tilt, bores, axes = (
         found[f"alignment.{key}"] for key in ("bearing_tilt", "bore_out_of_round", "axis_inclination")
     )
@@ -178,8 +178,8 @@ def test_the_worst_stage_is_held_against_each_limit(case: Case) -> None:
 
 
 def test_a_coupling_is_held_cold_and_hot_and_told_its_cold_offset(case: Case) -> None:
-    hot = held(case, growth("test", 0.1, 0.1, (0.1, 0.2)))["alignment.coupling_offset.pinion_side"]
-    cold = held(case, growth("test", 0.1, 0.1, (0.4, 0.2)))["alignment.coupling_offset.pinion_side"]
+    hot = held(case, expansion("test", 0.1, 0.1, (0.1, 0.2)))["alignment.coupling_offset.pinion_side"]
+    cold = held(case, expansion("test", 0.1, 0.1, (0.4, 0.2)))["alignment.coupling_offset.pinion_side"]
     assert (hot.value, hot.verdict) == (0.2, "pass")
     assert "stage test" in hot.reason and "-0.160 mm up" in hot.reason
     assert (cold.value, cold.verdict) == (0.4, "fail")
@@ -189,7 +189,7 @@ def test_a_coupling_is_held_cold_and_hot_and_told_its_cold_offset(case: Case) ->
 
 def test_limits_and_housings_that_are_not_there_leave_checks_out(case: Case) -> None:
     bare = case.model_copy(update={"limits": case.limits.model_copy(update={"alignment": AlignmentLimits()})})
-    found = held(bare, growth("test", 0.1, 0.1, (0.0, 0.2)))
+    found = held(bare, expansion("test", 0.1, 0.1, (0.0, 0.2)))
     assert found["alignment.bearing_tilt"].verdict == "not applicable"
     assert found["alignment.bearing_tilt"].reason == "the case states no limit"
     nothing = held(case)
@@ -197,7 +197,7 @@ def test_limits_and_housings_that_are_not_there_leave_checks_out(case: Case) -> 
     assert nothing["alignment.coupling_angle.wheel_side"].reason == "no gearbox has a housing"
     assert (
         "neither of its shafts"
-        in held(case, growth("test", 0.1, 0.1, (0.0, 0.2)))["alignment.coupling_angle.wheel_side"].reason
+        in held(case, expansion("test", 0.1, 0.1, (0.0, 0.2)))["alignment.coupling_angle.wheel_side"].reason
     )
 
 
@@ -243,7 +243,7 @@ def test_two_hot_machines_move_against_each_other_in_time() -> None:
 @pytest.mark.usefixtures("between")
 def test_worst_moments_carry_limit_and_steady_value_into_the_checks(case: Case) -> None:
     course = branch("a", [0.0, 10.0, 20.0], [0.0, 4e-4, 2e-4])
-    subject: Any = SimpleNamespace(case=case, rig=None, growth=[growth("test", 0.25, 0.1, (0.0, 0.15))])
+    subject: Any = SimpleNamespace(case=case, rig=None, expansion=[expansion("test", 0.25, 0.1, (0.0, 0.15))])
     found = {m.quantity: m for m in worst_misalignments(subject, [course], [course], planned=True)}
     assert set(found) == {"bearing_tilt", "coupling_offset", "coupling_angle"}
     offset = found["coupling_offset"]

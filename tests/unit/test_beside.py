@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rigdesign.base import parallel as beside
-from rigdesign.base.parallel import Beside
+from rigdesign.base.parallel import BackgroundTasks
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 
@@ -24,7 +24,7 @@ def test_results_come_in_order_and_are_those_computed_here(
     count: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(beside, "cores", lambda: count)
-    with Beside([partial(waves, 400_000), os.getpid, partial(waves, 3)]) as works:
+    with BackgroundTasks([partial(waves, 400_000), os.getpid, partial(waves, 3)]) as works:
         first, process, last = works.results()
     assert np.array_equal(first, waves(400_000)) and np.array_equal(last, waves(3))
     assert (process == os.getpid()) == (count == 1 or not hasattr(os, "fork"))
@@ -45,7 +45,7 @@ def fails() -> None:
 @pytest.mark.parametrize("count", [1, 2])
 def test_an_error_of_a_work_is_raised_here_in_full(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(beside, "cores", lambda: count)
-    with pytest.raises(TwoPartError, match="no result") as caught, Beside([fails]) as works:
+    with pytest.raises(TwoPartError, match="no result") as caught, BackgroundTasks([fails]) as works:
         works.results()
     assert caught.value.history == (1.0, 0.5)
 
@@ -60,7 +60,7 @@ def test_a_copy_that_dies_is_replaced_by_work_done_here(monkeypatch: pytest.Monk
             os._exit(9)
         return 7
 
-    with Beside([dies_elsewhere]) as works:
+    with BackgroundTasks([dies_elsewhere]) as works:
         assert works.results() == [7]
 
 
@@ -74,7 +74,7 @@ def test_leaving_early_ends_the_copies(tmp_path: Path, monkeypatch: pytest.Monke
         trace.touch()
 
     began = time.perf_counter()
-    with pytest.raises(KeyError), Beside([late]):
+    with pytest.raises(KeyError), BackgroundTasks([late]):
         raise KeyError
     assert time.perf_counter() - began < 0.4
     time.sleep(0.6)

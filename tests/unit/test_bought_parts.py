@@ -36,7 +36,7 @@ def subject_of(case: Case) -> SolvedRig:
         drive_torque=np.array([15.0]), speed=np.array([12000.0 * RPM]), time=np.array([10.0])
     )
     return SolvedRig(
-        rig=rig, points=(), run=SimpleNamespace(ramp=ramp), thermal=(), growth=(), cooler=(),
+        rig=rig, points=(), run=SimpleNamespace(ramp=ramp), thermal=(), expansion=(), cooler=(),
         dynamics=SimpleNamespace(gearboxes=boxes, bracing=bracing),
     )  # type: ignore[arg-type]  # fmt: skip
 

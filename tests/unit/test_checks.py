@@ -58,7 +58,7 @@ def solved(points: Any = None, crossings: Any = (), **changes: Any) -> SolvedRig
     results: Any = SimpleNamespace(gearboxes={"test": box, "reference": box}, loop_crossings=crossings)
     held_points = points or [held("test", (1.1, 1.2))]
     return SolvedRig(
-        rig=rig(), points=held_points, run=run, dynamics=results, thermal=[], growth=[], cooler=[]
+        rig=rig(), points=held_points, run=run, dynamics=results, thermal=[], expansion=[], cooler=[]
     )
 
 
@@ -164,7 +164,7 @@ def test_a_ramp_rule_without_its_limit_does_not_apply(left_out: tuple[str, str],
     assert len(found) == 4
 
 
-def growth(stage: str, shifts: dict[str, tuple[str, float]]) -> Any:
+def expansion(stage: str, shifts: dict[str, tuple[str, float]]) -> Any:
     seals = [
         {"seal": seal, "shaft": shaft, "axial_shift_mm": shift} for seal, (shaft, shift) in shifts.items()
     ]
@@ -175,11 +175,11 @@ def test_one_check_of_the_seal_travel_for_every_shaft_over_all_held_stages() -> 
     """A shaft whose name begins like another's keeps to its own seals."""
     two = replace(
         solved(),
-        growth=[
-            growth(
+        expansion=[
+            expansion(
                 "first", {"a": ("test_pinion", -0.2), "b": ("test_wheel", 0.1), "c": ("test_pinion_2", 0.9)}
             ),
-            growth(
+            expansion(
                 "second", {"a": ("test_pinion", 0.1), "b": ("test_wheel", 0.3), "c": ("test_pinion_2", 0.9)}
             ),
         ],

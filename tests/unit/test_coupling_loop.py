@@ -25,7 +25,7 @@ def state(open_at: dict[str, float]) -> CouplingState:
     return CouplingState(
         gear_temperature={"g": 400.0 + open_at["temperature"]}, centre_distance={"m": 0.1 + open_at["length"]},
         bearing_clearance=rest, bearing_heat=rest, wall_heat=rest, oil_outlet=rest,
-        mesh_torque={"m": 100.0 / (1.0 + open_at["torque"])}, tooth_growth=rest,
+        mesh_torque={"m": 100.0 / (1.0 + open_at["torque"])}, axial_expansion=rest,
     )  # fmt: skip
 
 

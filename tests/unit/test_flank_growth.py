@@ -6,7 +6,7 @@ import pytest
 
 from dynamics.gear.pair import GearPair
 from rigdesign.case import load_case
-from rigdesign.coupling.loads import flank_growth
+from rigdesign.coupling.loads import flank_expansion
 from rigdesign.rig.model import build_rig
 
 
@@ -16,13 +16,13 @@ def cold() -> GearPair:
 
 
 def test_cold_teeth_have_not_grown(cold: GearPair) -> None:
-    assert flank_growth(cold, cold) == 0.0
+    assert flank_expansion(cold, cold) == 0.0
 
 
 def test_half_of_the_lost_backlash_is_approach_of_the_front_flank(cold: GearPair) -> None:
     """The middle of the play stays where it is: front contact comes as much earlier as back contact later."""
     warm = replace(cold, growth=(1.2e-3, 0.9e-3))
-    approach = flank_growth(cold, warm)
+    approach = flank_expansion(cold, warm)
     front, back = -approach, -warm.backlash_along_path - approach
     assert approach > 0.0
     assert front + back == pytest.approx(-cold.backlash_along_path, rel=1e-12)
@@ -31,4 +31,4 @@ def test_half_of_the_lost_backlash_is_approach_of_the_front_flank(cold: GearPair
 def test_jammed_teeth_have_lost_no_more_than_their_backlash(cold: GearPair) -> None:
     jammed = replace(cold, growth=(9e-3, 9e-3))
     assert jammed.backlash_along_path < 0.0
-    assert flank_growth(cold, jammed) == pytest.approx(0.5 * cold.backlash_along_path, rel=1e-12)
+    assert flank_expansion(cold, jammed) == pytest.approx(0.5 * cold.backlash_along_path, rel=1e-12)

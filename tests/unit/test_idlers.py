@@ -12,7 +12,7 @@ from rigdesign.coupling.bearing_films import bearing_loads, solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import next_state, run_iteration
-from rigdesign.coupling.loads import brace_cold, mesh_models, shifted_gear
+from rigdesign.coupling.loads import brace_initial, mesh_models, shifted_gear
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import held_points
@@ -127,7 +127,7 @@ def _windage(built: Rig, point: OperatingPoint, coupling_state: CouplingState) -
 def test_one_pass_hands_signed_torques_on(bare: tuple[Rig, OperatingPoint, CouplingState]) -> None:
     """Losses of the shafts between come off the torque on the way round from the motor."""
     built, point, coupling_state = bare
-    done = run_iteration(built, point, coupling_state, brace_cold(built, point, coupling_state))
+    done = run_iteration(built, point, coupling_state, brace_initial(built, point, coupling_state))
     torque = next_state(built, done).mesh_torque
     assert [math.copysign(1.0, t) for t in torque.values()] == [1.0, -1.0, -1.0, 1.0]
     assert torque["test.left"] == pytest.approx(TORQUE, rel=1e-4)

@@ -21,8 +21,8 @@ def axial_play(*plays: tuple[float, float]) -> Check:
         {"shaft": f"s{i}", "axial_play_cold_mm": cold, "axial_play_hot_mm": hot}
         for i, (cold, hot) in enumerate(plays)
     ]
-    growth = [SimpleNamespace(gearbox="test", stage="test", gears=[], seal_gaps=[], shafts=shafts)]
-    subject: Any = SimpleNamespace(case=load_case(PROTOTYPE), growth=growth, points=(), unexpanded=())
+    expansion = [SimpleNamespace(gearbox="test", stage="test", gears=[], seal_gaps=[], shafts=shafts)]
+    subject: Any = SimpleNamespace(case=load_case(PROTOTYPE), expansion=expansion, points=(), unexpanded=())
     return next(check for check in _clearances(subject) if check.id == "clearance.axial_play")
 
 

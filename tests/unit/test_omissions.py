@@ -114,7 +114,7 @@ def as_solved_rig(rig: Rig, point: PointResult) -> SolvedRig:
         run=None,
         dynamics=None,
         thermal=[heat.solved_temperatures(rig, point, field) for field in point.last.fields.values()],
-        growth=[heat.growth_result(rig, point, name) for name in point.last.growth],
+        expansion=[heat.expansion_result(rig, point, name) for name in point.last.expansion],
         cooler=[heat.cooler(rig, point.last)],
     )
 

@@ -60,7 +60,9 @@ def test_a_dwell_is_that_of_the_check_to_nine_digits(rig, checked, predicted):
     assert predicted["wall"] == pytest.approx(wall.mean_temperature_degC + 273.15, rel=1e-9)
     pinion = thermal.bodies["gear_test_pinion"]["mean_degC"] + 273.15
     assert predicted["pinion"] == pytest.approx(pinion, rel=1e-9)
-    seal = next(row for row in checked.growth[0].seal_gaps if row["seal"] == rig.models["test"].seals[0].name)
+    seal = next(
+        row for row in checked.expansion[0].seal_gaps if row["seal"] == rig.models["test"].seals[0].name
+    )
     assert predicted["seal"] == pytest.approx(1e-3 * seal["hot_mean_mm"], rel=1e-9)
 
 

@@ -32,7 +32,7 @@ def outcome(hottest: float | None = 150.0, error: str | None = None, **checks: C
 
 def ranged(stated: EndResult, ends: list[tuple[RangeEnd, EndResult]], *checks: Check) -> RunResult:
     slim = make_result(
-        checks=list(checks), verdict="pass", dynamics=None, fields=[], growth=[], losses=[], oil=[]
+        checks=list(checks), verdict="pass", dynamics=None, fields=[], expansion=[], losses=[], oil=[]
     )
     return joined(slim, stated, ends, [])
 
@@ -152,7 +152,7 @@ def test_an_input_solves_again_what_it_touches_and_an_unknown_one_everything(
 
 
 def test_report_and_json_have_the_ranges_only_where_they_were_evaluated() -> None:
-    plain = make_result(dynamics=None, fields=[], growth=[], losses=[], oil=[])
+    plain = make_result(dynamics=None, fields=[], expansion=[], losses=[], oil=[])
     assert "ranges" not in results_document(plain)
     assert "Verdicts over the ranges" not in report_html(plain)
     broken, lost = outcome(142.0, seal_gap=at(-0.03, 1.06, "fail")), outcome(None, "did <not> settle")

@@ -20,7 +20,7 @@ from rigdesign.report.figures.transient import (
 from rigdesign.report.numbers import power_text
 from rigdesign.report.pages.transient_section import transient_tables
 from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
-from tests.report_example import thermal_and_growth
+from tests.report_example import thermal_and_expansion
 
 TIMES = [0.0, 10.0, 1000.0, 1001.0, 1010.0, 4610.0, 90000.0]
 PHASES = ["warm_up"] * 3 + ["bracing to full_torque"] * 2 + ["test"] * 2
@@ -135,22 +135,22 @@ def test_oil_power_is_drawn_and_tabled_with_its_worst_moment(curve: TransientCur
 
 
 def test_seals_are_closed_round_the_shaft_and_their_least_gap_is_marked() -> None:
-    _, growth = thermal_and_growth()
+    _, expansion = thermal_and_expansion()
     with drawing_style():
-        over = seal_gap_figure([growth]).axes[0]
-        round_figure = seal_round_figure(growth, 0.3)
-    for line in over.get_lines()[: len(growth.seal_gaps)]:
+        over = seal_gap_figure([expansion]).axes[0]
+        round_figure = seal_round_figure(expansion, 0.3)
+    for line in over.get_lines()[: len(expansion.seal_gaps)]:
         assert (line.get_xdata()[0], line.get_xdata()[-1]) == (0.0, 360.0)
         assert line.get_ydata()[0] == pytest.approx(line.get_ydata()[-1])
     axes = round_figure.axes[0]
     texts = [text.get_text() for text in axes.texts]
-    assert sum("least 0.571 mm at 90°" in text for text in texts) == len(growth.seal_gaps)
+    assert sum("least 0.571 mm at 90°" in text for text in texts) == len(expansion.seal_gaps)
     marks = [line for line in axes.get_lines() if line.get_color() == "#b3261e"]
     for line in marks:
         x, y = line.get_xdata(), line.get_ydata()
         assert x[0] == pytest.approx(x[1])  # 90 degrees: straight up
         assert y[1] > y[0]
-    assert len(marks) == len(growth.seal_gaps)
+    assert len(marks) == len(expansion.seal_gaps)
 
 
 @pytest.mark.parametrize(

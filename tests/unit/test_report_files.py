@@ -19,7 +19,7 @@ from tests.report_example import gearbox_field, make_check, make_result
 
 def small_result(**changes):
     """A result with few pictures, for tests that are not about them."""
-    without = {"dynamics": None, "growth": [], "thermal": [], "fields": [], "coupling": [], "oil": []}
+    without = {"dynamics": None, "expansion": [], "thermal": [], "fields": [], "coupling": [], "oil": []}
     return make_result(**{**without, **changes})
 
 
@@ -81,7 +81,7 @@ def test_two_writes_are_the_same_bytes(written, tmp_path):
 
 
 def test_case_without_drivetrain_keeps_the_keys(tmp_path):
-    document = results_document(make_result(dynamics=None, growth=[], thermal=[], fields=[], coupling=[]))
+    document = results_document(make_result(dynamics=None, expansion=[], thermal=[], fields=[], coupling=[]))
     assert document["dynamics"] == {"gearboxes": {}}
     assert document["coupling"] == {"iterations": 0, "residuals": []}
 

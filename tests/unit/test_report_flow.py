@@ -8,7 +8,7 @@ import pytest
 from rigdesign.report.figures.drawing import drawing_style, inline_svg, new_figure
 from rigdesign.report.figures.flow import body_flow_figure, rig_flow_figure
 from rigdesign.report.figures.sankey import Flow, layout, spread
-from tests.report_example import make_result, thermal_and_growth
+from tests.report_example import make_result, thermal_and_expansion
 
 COLUMNS = [["a", "b", "c"], ["oil", "bodies"], ["cooler", "room"]]
 FLOWS = [
@@ -98,7 +98,7 @@ def test_heat_of_the_rig_goes_where_the_balance_says() -> None:
 
 
 def test_heat_through_the_bodies_is_drawn_by_kind() -> None:
-    thermal, _ = thermal_and_growth()
+    thermal, _ = thermal_and_expansion()
     with drawing_style():
         found = labels(body_flow_figure(thermal))
     assert found["oil"] == "2300 W"

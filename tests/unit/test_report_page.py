@@ -156,9 +156,9 @@ def test_everything_from_the_case_is_escaped():
         thermal=[
             replace(item, gearbox=nasty, stage=nasty, max_temperature_body=nasty) for item in base.thermal
         ],
-        growth=[
+        expansion=[
             replace(item, gearbox=nasty, seal_gaps=[{**seal, "seal": nasty} for seal in item.seal_gaps])
-            for item in base.growth
+            for item in base.expansion
         ],
         fields=[replace(item, gearbox=nasty, stage=nasty) for item in base.fields],
         coupling=[replace(item, stage=nasty) for item in base.coupling],
@@ -176,7 +176,7 @@ def test_everything_from_the_case_is_escaped():
     "changes",
     [
         {"dynamics": None},
-        {"thermal": [], "growth": [], "fields": [], "coupling": []},
+        {"thermal": [], "expansion": [], "fields": [], "coupling": []},
         {"losses": [], "oil": [], "cooler": [], "dynamics": None},
         {
             "checks": [],

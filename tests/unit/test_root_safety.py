@@ -72,7 +72,7 @@ def rated(rig: Rig, meshes: int) -> SolvedRig:
     box = gearbox("specimen", 0.1, [])
     results: Any = SimpleNamespace(gearboxes={rig.mesh_labels[name]: box for name in rig.mesh_names})
     run: Any = SimpleNamespace()
-    return SolvedRig(rig=rig, points=[point], run=run, dynamics=results, thermal=[], growth=[], cooler=[])
+    return SolvedRig(rig=rig, points=[point], run=run, dynamics=results, thermal=[], expansion=[], cooler=[])
 
 
 def test_safety_of_a_rig_gear_takes_sharing_and_cycles(prototype: Rig) -> None:

@@ -71,14 +71,14 @@ def test_the_dwell_ends_in_the_coupled_steady_state(result: RunResult, planned: 
     for oil in ("gear_oil", "bearing_oil"):
         found = planned.temperatures_degC[f"{oil}_outlet"][at]
         assert found == pytest.approx(outlets[f"test.{oil}"], abs=0.3)
-    (growth,) = result.growth
+    (expansion,) = result.expansion
     backlash = planned.clearances_mm["backlash"]["test.main"][at]
-    assert backlash == pytest.approx(growth.gears[0]["backlash_hot_mm"], abs=5e-4)
-    for seal in growth.seal_gaps:
+    assert backlash == pytest.approx(expansion.gears[0]["backlash_hot_mm"], abs=5e-4)
+    for seal in expansion.seal_gaps:
         assert planned.clearances_mm["seal_gap"][seal["seal"]][at] == pytest.approx(
             seal["hot_min_mm"], abs=1e-3
         )
-    for bearing in growth.bearings:
+    for bearing in expansion.bearings:
         warm = 1e3 * planned.clearances_mm["bearing_clearance"][bearing["bearing"]][at]
         assert warm == pytest.approx(bearing["diametral_clearance_hot_um"], abs=0.5)
 
@@ -128,12 +128,12 @@ def test_the_warm_up_asks_more_of_the_heater_than_the_steady_rig(
 
 def test_the_cold_rig_has_its_cold_clearances(result: RunResult, planned: TransientCurve) -> None:
     """The first entry: everything at ambient temperature and at rest."""
-    (growth,) = result.growth
+    (expansion,) = result.expansion
     assert planned.temperatures_degC["housing"][0] == pytest.approx(20.0, abs=1e-9)
     assert planned.clearances_mm["backlash"]["test.main"][0] == pytest.approx(
-        growth.gears[0]["backlash_cold_mm"], abs=1e-6
+        expansion.gears[0]["backlash_cold_mm"], abs=1e-6
     )
-    for seal in growth.seal_gaps:
+    for seal in expansion.seal_gaps:
         assert planned.clearances_mm["seal_gap"][seal["seal"]][0] == pytest.approx(seal["cold_mm"], abs=1e-6)
 
 
@@ -210,8 +210,8 @@ def test_alignment_starts_straight_and_ends_in_the_steady_state(
     result: RunResult, course: TransientResult, planned: TransientCurve
 ) -> None:
     at = last(planned, "test")
-    (growth,) = result.growth
-    for row in growth.bores:
+    (expansion,) = result.expansion
+    for row in expansion.bores:
         tilt, share = (
             planned.alignment[key][row["bearing"]] for key in ("bearing_tilt_mrad", "bore_out_of_round")
         )

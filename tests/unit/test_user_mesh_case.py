@@ -50,7 +50,7 @@ def test_the_mesh_of_the_box_gives_the_results_of_the_box(tmp_path: Path) -> Non
         {row.surface: row.power_W for row in ours.heat}, rel=1e-4, abs=1e-3
     )
     gaps = [
-        {gap["seal"]: gap["hot_min_mm"] for gap in result.growth[0].seal_gaps} for result in (whole, found)
+        {gap["seal"]: gap["hot_min_mm"] for gap in result.expansion[0].seal_gaps} for result in (whole, found)
     ]
     assert gaps[1] == pytest.approx(gaps[0], abs=2e-5)
     assert [check.verdict for check in found.checks] == [check.verdict for check in whole.checks]
@@ -70,7 +70,7 @@ def test_without_its_stations_heat_is_solved_and_clearances_are_those_of_the_dra
     assert found.thermal[0].max_temperature_degC == pytest.approx(
         whole.thermal[0].max_temperature_degC, abs=1.0
     )
-    assert found.growth == []
+    assert found.expansion == []
     gap = next(check for check in found.checks if check.id == "clearance.seal_gap")
     assert (gap.verdict, gap.value) == ("warn", pytest.approx(1e3 * _least_cold_gap(on_file(tmp_path))))
     assert f"thermal expansion of gearbox test: clearances need surface {END}" in gap.left_out

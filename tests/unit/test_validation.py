@@ -146,12 +146,12 @@ def test_what_the_case_states_is_no_gate(rows):
 )
 def test_expansion_of_the_main_rig_is_held_to_one_goal(gap, wheel, verdicts):
     """0.44 mm for the printed 0.6 is 27 % off, 0.38 mm for 0.43 12 %: both miss; 0.55 and 0.39 do not."""
-    growth = SimpleNamespace(
+    expansion = SimpleNamespace(
         shafts=[{"shaft": "test_pinion", "growth_mm": 0.53}, {"shaft": "test_wheel_a", "growth_mm": wheel}],
         seal_gaps=[{"hot_min_mm": gap}],
     )
     thermal = SimpleNamespace(heat=[], max_temperature_degC=178.0, max_temperature_body="gear")
-    result = cast(RunResult, SimpleNamespace(thermal=[thermal], growth=[growth]))
+    result = cast(RunResult, SimpleNamespace(thermal=[thermal], expansion=[expansion]))
     found = {row.id: row.verdict for row in main_rig.main_rig_rows(lambda _: result)}
     assert found["P2-growth-pinion"] == "goal met"
     assert found["P2-growth-wheel"] == found["P2-growth-seal-gap"] == verdicts
@@ -187,11 +187,11 @@ def figure_12() -> RunResult:
         for surface in (surfaces[0],)
     ]
     thermal = SimpleNamespace(heat=heat, max_temperature_degC=178.59, max_temperature_body="gear")
-    growth = SimpleNamespace(
-        shafts=[{"shaft": shaft, "growth_mm": value} for _, shaft, value in main_rig.GROWTH],
+    expansion = SimpleNamespace(
+        shafts=[{"shaft": shaft, "growth_mm": value} for _, shaft, value in main_rig.EXPANSION],
         seal_gaps=[{"hot_min_mm": 0.7}, {"hot_min_mm": 0.6}],
     )
-    return cast(RunResult, SimpleNamespace(thermal=[thermal], growth=[growth]))
+    return cast(RunResult, SimpleNamespace(thermal=[thermal], expansion=[expansion]))
 
 
 def test_figure_12_is_shown_for_both_readings_of_the_main_rig():

@@ -103,12 +103,12 @@ def test_gear_temperature_takes_up_backlash() -> None:
     """
     coupling_state, room = warm().last.coupling_state, held_rig().case.ambient.temperature
     whole, without = warm().last.models[0].pair, cut("gear_temperature").last.models[0].pair
-    grown = sum(
+    expanded = sum(
         radius * 11.5e-6 * (coupling_state.gear_temperature[name] - room)
         for radius, name in zip(without.working_radii, ("test.pinion", "test.wheel"))
     )
     apart = warm().last.coupling_state.centre_distance["test.main"] - without.centre_distance
-    by_hand = 2.0 * math.tan(without.working_pressure_angle) * (apart - grown)
+    by_hand = 2.0 * math.tan(without.working_pressure_angle) * (apart - expanded)
     moved = whole.transverse_backlash - without.transverse_backlash
     assert moved == pytest.approx(by_hand, rel=0.02)
     assert moved < -CLEAR * LENGTH
@@ -125,12 +125,12 @@ def test_centre_distance_opens_the_backlash() -> None:
     whole, without = warm().last.models[0].pair, cut("centre_distance").last.models[0].pair
     steel = held_rig().materials["case_hardened_steel"].expansion_coefficient
     after, before = warm().last.coupling_state, cut("centre_distance").last.coupling_state
-    grown = sum(
+    expanded = sum(
         radius * steel * (after.gear_temperature[name] - before.gear_temperature[name])
         for radius, name in zip(without.working_radii, ("test.pinion", "test.wheel"))
     )
     change = whole.centre_distance - without.centre_distance
-    by_hand = 2.0 * math.tan(without.working_pressure_angle) * (change - grown)
+    by_hand = 2.0 * math.tan(without.working_pressure_angle) * (change - expanded)
     moved = whole.transverse_backlash - without.transverse_backlash
     assert change > CLEAR * LENGTH
     assert moved == pytest.approx(by_hand, rel=0.02)
@@ -313,8 +313,8 @@ def test_tooth_growth_winds_up_a_helical_loop(tmp_path: Path) -> None:
     rig = build_rig(load_case(file), "quick")
     point = held_points(rig)[-1]
     whole = solve_point(rig, point)
-    without = solve_point(rig, point, freeze=frozenset({"tooth_growth"}), start=whole.last.coupling_state)
-    travel = whole.last.coupling_state.tooth_growth["test.main"]
+    without = solve_point(rig, point, freeze=frozenset({"axial_expansion"}), start=whole.last.coupling_state)
+    travel = whole.last.coupling_state.axial_expansion["test.main"]
     free = 11.5e-6 * sum(
         reach * (whole.last.coupling_state.gear_temperature[gear] - rig.case.ambient.temperature)
         for reach, gear in ((0.11234, "test.pinion"), (0.12786, "test.wheel"))
@@ -411,8 +411,8 @@ def test_friction_brakes_the_motor_as_much_as_it_heats(tmp_path: Path) -> None:
     point = solve_point(rough, base.point, start=base.last.coupling_state)
     assert base.last.response is not None and point.last.response is not None
     for index, model in enumerate(base.last.models):
-        grown = point.last.response.friction_power[index] / base.last.response.friction_power[index]
-        assert grown == pytest.approx(0.08 / model.friction.value, rel=0.05)
+        ratio = point.last.response.friction_power[index] / base.last.response.friction_power[index]
+        assert ratio == pytest.approx(0.08 / model.friction.value, rel=0.05)
     speed = rig.drive_speed(base.point.speed)
     lost = [math.fsum(row.loss.power for row in result.last.losses) for result in (base, point)]
     driven = point.last.response.drive_torque - base.last.response.drive_torque
@@ -428,9 +428,9 @@ def test_passes_settle_to_the_tolerances() -> None:
     """
     for residuals in (controlled()[1].residuals, warm().residuals):
         first, last = residuals[0], residuals[-1]
-        assert first.temperature > 100.0 and first.growth > 10e-6 and first.torque > 0.01
+        assert first.temperature > 100.0 and first.length > 10e-6 and first.torque > 0.01
         assert last.temperature <= TEMPERATURE
-        assert last.growth <= LENGTH
+        assert last.length <= LENGTH
         assert last.torque <= TORQUE
         assert len(residuals) <= 20
         steps = [residual.temperature for residual in residuals]

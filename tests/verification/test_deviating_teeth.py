@@ -18,7 +18,7 @@ from dynamics.response.time_response import Command, run_schedule
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import MeshModel, brace_cold, laws_of, mesh_models
+from rigdesign.coupling.loads import MeshModel, brace_initial, laws_of, mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig, build_rig
 
@@ -59,7 +59,7 @@ def turn(case: Case, steps: int = 28 * 24) -> tuple[np.ndarray, np.ndarray]:
     rig, models = built(case)
     assert rig.system is not None
     model = port_model(rig.system, laws_of(models))
-    twist = brace_cold(rig, POINT, initial_state(rig, POINT)).twist
+    twist = brace_initial(rig, POINT, initial_state(rig, POINT)).twist
     angles = np.arange(steps) * 2.0 * math.pi / steps
     state = solve_static(model, twist=twist, angles=angles)  # at no speed: without friction
     return np.asarray(state.torque[:, 0]), np.asarray(state.approach[:, 0])
@@ -175,7 +175,7 @@ def swung(method: str, path: str, number: int, torque: float) -> complex:
     case = loop().with_value(path, [{"order": number, "torque": f"{torque} N m", "phase": "30 deg"}])
     rig, models = built(case)
     assert rig.system is not None
-    twist = brace_cold(rig, POINT, initial_state(rig, POINT)).twist
+    twist = brace_initial(rig, POINT, initial_state(rig, POINT)).twist
     found = periodic_response(
         rig.system, laws_of(models), [200.0], None, twist=twist, period="revolution", methods=(method,)
     )
@@ -201,7 +201,7 @@ def test_run_in_time_swings_as_the_periodic_response() -> None:
     case = loop().with_value(EXCITATION, [{"order": 2, "torque": "5 N m", "phase": "30 deg"}])
     rig, models = built(case)
     assert rig.system is not None
-    twist = brace_cold(rig, POINT, initial_state(rig, POINT)).twist
+    twist = brace_initial(rig, POINT, initial_state(rig, POINT)).twist
     time = np.array([0.0, 0.8])
     run = run_schedule(
         rig.system, laws_of(models), Command(time=time, speed=np.full(2, 200.0), twist=np.full(2, twist)),
@@ -227,7 +227,7 @@ def test_motor_ripple_swings_the_speed_of_the_whole_rig() -> None:
     case = loop().with_value("drivetrain.motor.ripple", [{"order": 1, "torque": "2 N m"}])
     rig, models = built(case)
     assert rig.system is not None
-    twist = brace_cold(rig, POINT, initial_state(rig, POINT)).twist
+    twist = brace_initial(rig, POINT, initial_state(rig, POINT)).twist
     found = periodic_response(
         rig.system,
         laws_of(models),

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from dynamics.losses.windage import anderson_loewenthal
 from rigdesign import load_case
-from rigdesign.coupling.expansion import spin_growth
+from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import brace_cold, mesh_models, respond
+from rigdesign.coupling.loads import brace_initial, mesh_models, respond
 from rigdesign.coupling.loop import solve_point
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.time_run import held_points
@@ -30,7 +30,7 @@ def test_crowning_belongs_to_the_mean_deflection() -> None:
     point = held_points(rig)[0]
     cold = initial_state(rig, point)
     models = mesh_models(rig, point, cold)
-    response = respond(rig, point, models, {}, brace_cold(rig, point, cold))
+    response = respond(rig, point, models, {}, brace_initial(rig, point, cold))
     for index, model in enumerate(models):
         approach = abs(float(response.wave.approach[index].mean()))
         if response.flank[index] < 0:
@@ -51,8 +51,8 @@ def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
     """
     rig, result = base()
     subject: Any = SimpleNamespace(case=rig.case, rig=rig, points=(result,))
-    growth: Any = SimpleNamespace(gearbox="test", stage=result.point.stage)
-    field, bores = result.last.fields["test"], result.last.growth["test"].expansion.bearings
+    expansion: Any = SimpleNamespace(gearbox="test", stage=result.point.stage)
+    field, bores = result.last.fields["test"], result.last.expansion["test"].deformed.bearings
     rows = {row.surface: row.mean_temperature for row in field.solution.balance.rows}
     mesh, setup, geometry = rig.models["test"].mesh, rig.expansion["test"], rig.geometries["test"]
     nodes = np.unique(mesh.cells[mesh.bodies["housing"]])
@@ -65,15 +65,15 @@ def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
         bore, journal = rows[f"bearing_bore_{station}"], rows[f"shaft_{entry.shaft}_journal_{entry.side}"]
         own = strain * entry.diameter * (bore - journal)
         computed = bores[station].clearance_change
-        by_hand = end_wall_clearance(subject, growth, f"test.{name}")
+        by_hand = end_wall_clearance(subject, expansion, f"test.{name}")
         assert by_hand is not None
-        by_hand += spin_growth(rig, entry, result.point.speed) - entry.diametral_clearance
+        by_hand += centrifugal_expansion(rig, entry, result.point.speed) - entry.diametral_clearance
         assert own < 1.5e-6
         assert computed > 7e-6
         assert own < by_hand < computed
         assert abs(computed - by_hand) < 0.6 * abs(computed - own)
 
-    def grown(temperature: NDArray[np.float64]) -> dict[str, float]:
+    def expanded(temperature: NDArray[np.float64]) -> dict[str, float]:
         shape = expand(
             rig.models["test"], temperature, 293.15, setup.elastic.elastic, reuse=setup, tolerance=1e-6
         )
@@ -82,22 +82,26 @@ def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
     even = field.temperature.copy()
     even[nodes] = 325.0
     diameter = 0.04008
-    assert list(grown(even).values()) == pytest.approx([strain * diameter * (325.0 - 293.15)] * 4, rel=0.05)
+    assert list(expanded(even).values()) == pytest.approx(
+        [strain * diameter * (325.0 - 293.15)] * 4, rel=0.05
+    )
     depth = np.minimum(mesh.points[nodes, 0], geometry.length - mesh.points[nodes, 0])
     ends = [at < geometry.end_wall_thickness, at > geometry.length - geometry.end_wall_thickness]
     mean = float(np.mean([np.average(values[end], weights=volumes[end]) for end in ends]))
     plates = field.temperature.copy()
     plates[nodes[depth > geometry.end_wall_thickness + 1e-9]] = mean
-    assert list(grown(plates).values()) == pytest.approx([strain * diameter * (mean - 293.15)] * 4, rel=0.05)
+    assert list(expanded(plates).values()) == pytest.approx(
+        [strain * diameter * (mean - 293.15)] * 4, rel=0.05
+    )
 
 
 def test_a_plate_warmer_at_its_bore_narrows_the_gap_by_hand_too() -> None:
     rig = build_rig(load_case(PROTOTYPE / "given_losses.toml"), "quick")
     result = solve_point(rig, held_points(rig)[0])
     subject: Any = SimpleNamespace(case=rig.case, rig=rig, points=(result,))
-    growth: Any = SimpleNamespace(gearbox="test", stage=result.point.stage)
-    for name, seal in result.last.growth["test"].expansion.seals.items():
-        by_hand = partition_gap(subject, growth, name)
+    expansion: Any = SimpleNamespace(gearbox="test", stage=result.point.stage)
+    for name, seal in result.last.expansion["test"].deformed.seals.items():
+        by_hand = partition_gap(subject, expansion, name)
         if by_hand is not None:
             assert abs(seal.mean - by_hand) < abs(seal.mean - seal.gap_by_hand)
 

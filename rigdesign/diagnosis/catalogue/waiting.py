@@ -175,9 +175,9 @@ WAITING = (
     ),
     Waiting(
         "heat_misalignment",
-        "misalignment by uneven growth of the housing",
+        "misalignment by uneven thermal expansion of the housing",
         "follows temperature, not time",
-        f"{FACE}; growth of the housing at every point",
+        f"{FACE}; thermal expansion of the housing at every point",
     ),
 )
 """In the order of the page."""

@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from rigdesign.base.parallel import Beside
+from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.decision.naming import Names
@@ -69,7 +69,7 @@ class FullRun:
         self.say(
             f"full model at {', '.join(one.name for one in settings)}, without and with {' and '.join(sizes)}"
         )
-        with Beside([partial(predict, case, settings, channels) for case in cases]) as beside:
+        with BackgroundTasks([partial(predict, case, settings, channels) for case in cases]) as beside:
             before, after = beside.results()
         place = {feature: row for row, feature in enumerate(before.features)}
         rows = np.array([place[feature] for feature in features], dtype=np.intp)

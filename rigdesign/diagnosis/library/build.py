@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.base.errors import RigdesignError
-from rigdesign.base.parallel import Beside, cores
+from rigdesign.base.parallel import BackgroundTasks, cores
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import DYNAMIC, Effect
 from rigdesign.diagnosis.library.cache import Parts
@@ -120,7 +120,7 @@ def _responses(
     size = BATCH * cores()
     for start in range(0, len(works), size):
         say(f"response {len(effects) - len(left) + 1} of {len(effects)}")
-        with Beside(works[start : start + size]) as beside:
+        with BackgroundTasks(works[start : start + size]) as beside:
             new = {name: one for made in beside.results() for name, one in made.items()}
         parts.keep(new)
         found |= new

@@ -169,7 +169,7 @@ def _name(content: bytes) -> str:
 
 
 def _store(folder: Path, what: object) -> None:
-    """Beside, then renamed; a folder that cannot be written to costs time, not the result."""
+    """BackgroundTasks, then renamed; a folder that cannot be written to costs time, not the result."""
     content = pickle.dumps(what, protocol=5)
     beside = folder / f".{os.getpid()}.part"
     try:

@@ -6,7 +6,7 @@ import numpy as np
 
 from rigdesign.report.figures.drawing import INK, MUTED, SERIES, finish, legend_right, new_figure, plain
 from rigdesign.report.numbers import number_text
-from rigdesign.results.result import GrowthResult
+from rigdesign.results.result import ExpansionResult
 from thermal.fe.mesh import FloatArray
 
 if TYPE_CHECKING:
@@ -22,9 +22,9 @@ PITCH = 2.75
 ROWS_APART = 2.85
 
 
-def seal_gap_figure(growth: list[GrowthResult]) -> "Figure":
+def seal_gap_figure(expansion: list[ExpansionResult]) -> "Figure":
     """Radial gap of every seal over the angle, hot against cold [mm]."""
-    shown = [item for item in growth if _seals(item)]
+    shown = [item for item in expansion if _seals(item)]
     height = 0.4 + 2.2 * len(shown)
     figure = new_figure(height)
     for axes, item in zip(figure.subplots(len(shown), 1, squeeze=False)[:, 0], shown, strict=True):
@@ -40,7 +40,7 @@ def seal_gap_figure(growth: list[GrowthResult]) -> "Figure":
     return figure
 
 
-def seal_round_figure(item: GrowthResult, limit: float | None) -> "Figure":
+def seal_round_figure(item: ExpansionResult, limit: float | None) -> "Figure":
     """Gap of every seal of a gearbox round its shaft, seen along x, in one radial scale.
 
     limit : least gap allowed [mm], if there is one
@@ -62,12 +62,12 @@ def seal_round_figure(item: GrowthResult, limit: float | None) -> "Figure":
     return figure
 
 
-def _seals(item: GrowthResult) -> list[dict[str, Any]]:
+def _seals(item: ExpansionResult) -> list[dict[str, Any]]:
     """Seals whose gap is given round the circumference."""
     return [seal for seal in item.seal_gaps if seal.get("hot_mm")]
 
 
-def _over_angle(axes: "Axes", item: GrowthResult) -> None:
+def _over_angle(axes: "Axes", item: ExpansionResult) -> None:
     seals = _seals(item)
     for number, seal in enumerate(seals):
         angle, gap = _closed(seal)

@@ -171,9 +171,9 @@ def _heat_figures(result: RunResult, draw: Callable[["Figure", str], "Markup"]) 
         shown["oil"] = draw(
             figures_heat.oil_figure(result.oil, oil_stage), f"Oil inlet and outlet at stage {oil_stage}"
         )
-    if any(seal.get("hot_mm") for growth in result.growth for seal in growth.seal_gaps):
+    if any(seal.get("hot_mm") for expansion in result.expansion for seal in expansion.seal_gaps):
         shown["seal_gaps"] = draw(
-            figures_seals.seal_gap_figure(result.growth), "Seal gap over the angle, hot and cold"
+            figures_seals.seal_gap_figure(result.expansion), "Seal gap over the angle, hot and cold"
         )
     if any(history.residuals for history in result.coupling):
         shown["convergence"] = draw(
@@ -244,6 +244,6 @@ def _seals_round(
             seal_round_figure(item, limit),
             f"Seal gaps round the shafts of gearbox {item.gearbox} at stage {item.stage}",
         )
-        for item in result.growth
+        for item in result.expansion
         if any(seal.get("hot_mm") for seal in item.seal_gaps)
     }
