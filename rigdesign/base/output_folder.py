@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -135,3 +136,8 @@ def _publish(scratch: Path, out: Path) -> None:
 
 def _message(out: Path, what: str) -> str:
     return f"output folder {shortened(str(out), WIDEST_PLACE)}: {what}; give another folder with --out"
+
+
+def file_stem(*names: str) -> str:
+    """A file name made of the names a user gave: anything but letters, digits, dot, dash is an underscore."""
+    return "_".join(re.sub(r"[^A-Za-z0-9.-]+", "_", name).strip("._") or "unnamed" for name in names)

@@ -6,7 +6,7 @@ from typing import Any
 
 from rigdesign.base.errors import NonFiniteResultError, OutputError
 from rigdesign.base.json_text import to_text
-from rigdesign.base.output_folder import prepare_output, remove_published, staged, write_whole
+from rigdesign.base.output_folder import file_stem, prepare_output, remove_published, staged, write_whole
 from rigdesign.report.failure import FAILURE, write_failure
 from rigdesign.report.results_json import results_document
 from rigdesign.results.result import RunResult
@@ -48,7 +48,7 @@ def write_results(result: RunResult, out: Path) -> None:
 
 
 def _write_fields(result: RunResult, folder: Path) -> list[dict[str, Any]]:
-    from rigdesign.report.fields import file_stem, write_field
+    from rigdesign.report.fields import write_field
 
     (folder / "fields").mkdir()
     entries = []

@@ -1,6 +1,5 @@
 """Fields as .vtu, for ParaView and the like."""
 
-import re
 from pathlib import Path
 from typing import Any
 
@@ -9,11 +8,6 @@ import numpy as np
 from rigdesign.results.result import TemperatureField
 
 ZERO_CELSIUS = 273.15
-
-
-def file_stem(*names: str) -> str:
-    """A file name made of the names a user gave: anything but letters, digits, dot, dash is an underscore."""
-    return "_".join(re.sub(r"[^A-Za-z0-9.-]+", "_", name).strip("._") or "unnamed" for name in names)
 
 
 def write_field(field: TemperatureField, path: Path) -> dict[str, Any]:

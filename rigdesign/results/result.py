@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from rigdesign.base.errors import MissingLibraryError
 from rigdesign.case.assumptions import AssumptionRecord
+from rigdesign.results.curves import curves_of
 from rigdesign.results.ranges import RangesResult
 from rigdesign.results.transient import TransientResult
 from rigdesign.results.verdict import Verdict
 from thermal.fe.mesh import NamedMesh
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import pandas
 
 Role = Literal["specimen", "rig"]
@@ -414,6 +417,26 @@ class RunResult:
         return {
             verdict: sum(check.verdict == verdict for check in self.checks) for verdict in get_args(Verdict)
         }
+
+    @property
+    def curves(self) -> dict[str, dict[str, NDArray[Any]]]:
+        """Every curve of the run by name, each its columns by ``quantity [unit]``: ``curves["ramp"]["time [s]"]``."""
+        return {
+            name: {header: np.asarray(values) for header, values in columns.items()}
+            for name, columns in curves_of(self).items()
+        }
+
+    def save(self, out: "str | Path") -> None:
+        """Write what ``rigdesign check --out`` writes to the folder ``out``.
+
+        Raises
+        ------
+        OutputError
+            If the folder cannot be written.
+        """
+        from rigdesign import save
+
+        save(self, out)
 
     def to_dataframe(self) -> "pandas.DataFrame":
         """The checks as a table, one row each, indexed by id.

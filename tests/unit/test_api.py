@@ -1,10 +1,12 @@
 """The library as a user meets it: names, a short result, checks by id, saving."""
 
+import csv
 import json
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import rigdesign
@@ -94,3 +96,21 @@ def test_a_shipped_case_is_found_by_its_name_from_anywhere(
     (tmp_path / "uhcf_prototype").mkdir()
     with pytest.raises(rigdesign.CaseError, match=r"no case\.toml in this folder"):
         rigdesign.load_case("uhcf_prototype")
+
+
+def test_a_result_saves_itself(tmp_path: Path) -> None:
+    make_result().save(tmp_path / "out")
+    assert (tmp_path / "out" / "results.json").is_file()
+
+
+def test_curves_are_arrays_by_quantity_and_unit(tmp_path: Path) -> None:
+    """The same columns as in curves/*.csv."""
+    result = make_result()
+    ramp = result.curves["ramp"]
+    assert isinstance(ramp["time [s]"], np.ndarray) and ramp["time [s]"].dtype == np.float64
+    assert ramp["speed [rpm]"].shape == ramp["time [s]"].shape
+    result.save(tmp_path / "out")
+    files = {path.stem for path in (tmp_path / "out" / "curves").iterdir()}
+    assert set(result.curves) == files - {"checks", "losses", "oil", "heat"}
+    with (tmp_path / "out" / "curves" / "ramp.csv").open(encoding="utf-8") as stream:
+        assert next(csv.reader(stream)) == list(ramp)

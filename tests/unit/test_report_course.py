@@ -1,7 +1,5 @@
 """Pictures of the thermal course and of the seals: what is drawn lies where the numbers say."""
 
-import csv
-import io
 import math
 from dataclasses import replace
 
@@ -18,7 +16,7 @@ from rigdesign.report.figures.transient import (
     transient_figure,
 )
 from rigdesign.report.numbers import power_text
-from rigdesign.report.pages.transient_section import transient_tables
+from rigdesign.results.curves import transient_curves
 from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 from tests.report_example import thermal_and_expansion
 
@@ -101,11 +99,10 @@ def test_a_course_without_a_coupling_has_no_row_for_it(curve: TransientCurve) ->
 
 
 def test_tables_name_quantity_place_and_unit(curve: TransientCurve) -> None:
-    ((name, text),) = transient_tables(result(curve))
-    assert name == "transient_test_schedule.csv"
-    header = text.splitlines()[0].split(",")
+    ((name, columns),) = transient_curves(result(curve))
+    assert name == "transient_test_schedule"
     assert {"coupling_offset a_side [mm]", "bore_out_of_round test.front [1]", "seal_gap front [mm]"} <= set(
-        header
+        columns
     )
 
 
@@ -128,10 +125,9 @@ def test_oil_power_is_drawn_and_tabled_with_its_worst_moment(curve: TransientCur
     )
     limits = [line for line in axes.get_lines() if list(line.get_ydata()) == [3.0, 3.0]]
     assert len(limits) == 1
-    tables = dict(transient_tables(whole))
-    rows = list(csv.DictReader(io.StringIO(tables["transient_oil_power_schedule.csv"])))
-    assert float(rows[1]["heater [W]"]) == 6700.0
-    assert float(rows[1]["heat into test.gear_oil [W]"]) == -6700.0
+    columns = dict(transient_curves(whole))["transient_oil_power_schedule"]
+    assert columns["heater [W]"][1] == 6700.0
+    assert columns["heat into test.gear_oil [W]"][1] == -6700.0
 
 
 def test_seals_are_closed_round_the_shaft_and_their_least_gap_is_marked() -> None:

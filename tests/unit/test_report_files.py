@@ -10,10 +10,9 @@ import pytest
 
 from rigdesign.base.errors import OutputError
 from rigdesign.base.json_text import to_plain, to_text
-from rigdesign.base.output_folder import staged
+from rigdesign.base.output_folder import file_stem, staged
 from rigdesign.report import NonFiniteResultError, prepare_output, results_document, write_results
 from rigdesign.report.csv_text import csv_text
-from rigdesign.report.fields import file_stem
 from tests.report_example import gearbox_field, make_check, make_result
 
 

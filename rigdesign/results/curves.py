@@ -1,0 +1,153 @@
+"""The curves of a result as columns: what curves/*.csv holds and `RunResult.curves` gives as arrays."""
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from rigdesign.base.output_folder import file_stem
+from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult
+
+if TYPE_CHECKING:
+    from rigdesign.results.result import (
+        DynamicsResult,
+        ExpansionResult,
+        GearboxDynamics,
+        RampHistory,
+        RunResult,
+    )
+
+Columns = dict[str, list[Any]]
+"""Values of one length by ``quantity [unit]``."""
+
+
+def curves_of(result: "RunResult") -> dict[str, Columns]:
+    """Every curve of a result by the stem of its file, in a fixed order."""
+    found: dict[str, Columns] = {}
+    if result.expansion:
+        found["seal_gaps"] = _seal_gaps(result.expansion)
+    if result.dynamics is not None:
+        found.update(_dynamics(result.dynamics))
+    if result.transient is not None:
+        found.update(transient_curves(result.transient))
+    return found
+
+
+def transient_curves(result: TransientResult) -> Iterator[tuple[str, Columns]]:
+    """Temperatures and clearances, heaters and cooler over the schedule and its events."""
+    for curve in result.curves:
+        yield file_stem("transient", curve.gearbox, curve.branch), _thermal_history(curve)
+    for power in result.oil_power:
+        yield file_stem("transient", "oil_power", power.branch), _oil_power(power)
+
+
+def _columns(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> Columns:
+    names = list(header)
+    columns: Columns = {name: [] for name in names}
+    for row in rows:
+        for name, value in zip(names, row, strict=True):
+            columns[name].append(value)
+    return columns
+
+
+def _seal_gaps(expansion: "list[ExpansionResult]") -> Columns:
+    header = ("gearbox", "stage", "seal", "angle [deg]", "cold gap [mm]", "hot gap [mm]")
+    return _columns(
+        header,
+        (
+            (item.gearbox, item.stage, seal["seal"], angle, seal["cold_mm"], gap)
+            for item in expansion
+            for seal in item.seal_gaps
+            for angle, gap in zip(seal.get("angle_deg", ()), seal.get("hot_mm", ()), strict=True)
+        ),
+    )
+
+
+def _dynamics(dynamics: "DynamicsResult") -> Iterator[tuple[str, Columns]]:
+    for name, gearbox in dynamics.gearboxes.items():
+        yield file_stem("dynamic_factor", name), _dynamic_factor(gearbox)
+        for history in gearbox.root_stress:
+            yield (
+                file_stem("root_stress", name, history.gear),
+                {
+                    "rolling angle [deg]": history.rolling_angle_deg,
+                    "dynamic [N/mm2]": history.dynamic_MPa,
+                    "quasi-static [N/mm2]": history.quasi_static_MPa,
+                },
+            )
+    if dynamics.ramp is not None:
+        yield "ramp", _ramp(dynamics.ramp)
+
+
+def _dynamic_factor(gearbox: "GearboxDynamics") -> Columns:
+    """K_V(n): the curves of all torques and variants below each other, told apart by the last two columns."""
+    header = (
+        "speed [rpm]", "max/mean [1]", "half peak-to-peak [1]", "ISO 6336-1 method B [1]", "method", "torque",
+        "variant",
+    )  # fmt: skip
+    main = gearbox.torque
+    curves = [
+        (main, "", gearbox.dynamic_factor),
+        *((torque, "", points) for torque, points in gearbox.dynamic_factor_at.items()),
+        *((main, variant, points) for variant, points in gearbox.dynamic_factor_variants.items()),
+    ]
+    return _columns(
+        header,
+        (
+            (
+                point.speed_rpm, point.simulated, point.simulated_half_peak_to_peak,
+                point.iso_6336_1_method_b, point.method, torque, variant,
+            )
+            for torque, variant, points in curves
+            for point in points
+        ),
+    )  # fmt: skip
+
+
+def _ramp(ramp: "RampHistory") -> Columns:
+    return {
+        "time [s]": ramp.time_s,
+        "stage": list(ramp.stage),
+        "speed [rpm]": ramp.speed_rpm,
+        "target torque [Nm]": ramp.target_torque_Nm,
+        "drive torque [Nm]": ramp.drive_torque_Nm,
+        **{
+            f"{name} {bound} [Nm]": values
+            for name, envelopes in ramp.torque.items()
+            for bound, values in envelopes.items()
+        },
+    }
+
+
+def _oil_power(power: OilPowerCurve) -> Columns:
+    return {
+        "time [s]": power.time_s,
+        "phase": list(power.phase),
+        "heater [W]": power.heater_W,
+        "cooler [W]": power.cooler_W,
+        **{f"heat into {name} [W]": values for name, values in power.streams_W.items()},
+    }
+
+
+def _thermal_history(curve: TransientCurve) -> Columns:
+    return {
+        "time [s]": curve.time_s,
+        "phase": list(curve.phase),
+        "speed [rpm]": curve.speed_rpm,
+        **{f"{place} [degC]": values for place, values in curve.temperatures_degC.items()},
+        **{
+            f"{quantity} {place} [mm]": values
+            for quantity, places in curve.clearances_mm.items()
+            for place, values in places.items()
+        },
+        **{
+            f"{quantity} {place} [{unit}]": values
+            for key, places in curve.alignment.items()
+            for quantity, unit in (_quantity_and_unit(key),)
+            for place, values in places.items()
+        },
+    }
+
+
+def _quantity_and_unit(key: str) -> tuple[str, str]:
+    """Quantity and unit of a key of the alignment: ``bearing_tilt_mrad``, ``bore_out_of_round``."""
+    quantity, _, unit = key.rpartition("_")
+    return (quantity, unit) if unit in ("mrad", "um", "mm") else (key, "1")
