@@ -1,11 +1,15 @@
 """What the README says is true: its script runs, its package line is the one the doctor prints."""
 
 import re
+import runpy
 from pathlib import Path
+
+import pytest
 
 from rigdesign.base.system import GMSH_LIBRARIES
 
-README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
 def test_the_library_script_runs(capsys) -> None:
@@ -29,3 +33,15 @@ def test_there_are_exactly_two_commands_for_a_fresh_machine() -> None:
         (True, False),
         (False, True),
     ]
+
+
+def test_the_notebook_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(ROOT / "cases" / "loop_1to1" / "notebook.py"))
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("RunResult(loop_1to1, quick: ")
+    assert sum(line.startswith("oil at ") for line in lines) == 2
+    assert 'a number without a unit; give it a unit, e.g. "140 degC"' in lines[-1]
+    assert {"dynamic_factor.png", "results.json", "report.html"} <= {
+        path.name for path in (tmp_path / "out").iterdir()
+    }

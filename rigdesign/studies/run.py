@@ -29,7 +29,7 @@ CHECK_KEYS = ("id", "title", "value", "limit", "upper_limit", "unit", "margin", 
 
 
 class Writer(Protocol):
-    """What writes the files of a study from its settled points; `rigdesign.report.pages.study.write_study`."""
+    """What writes the files of a study from its computed points; `rigdesign.report.pages.study.write_study`."""
 
     def __call__(
         self,
@@ -143,7 +143,7 @@ def run_study(
         missing = list(
             {task.key: task for task in tasks if task is not None and task.key not in stored}.values()
         )
-        say(f"{len(points)} points, {len(points) - len(missing)} of them settled, {count} workers")
+        say(f"{len(points)} points, {len(points) - len(missing)} of them known already, {count} workers")
         try:
             with closing(_compute(missing, fidelity, count, run)) as finished:
                 for task, failed, record in _stored(ledger, finished, fidelity):
@@ -152,19 +152,19 @@ def run_study(
         except KeyboardInterrupt as stop:
             left = sum(task.key not in stored for task in missing)
             stop.add_note(
-                f"{len(points) - left} of {len(points)} points are settled ({out / LEDGER_NAME}); the same command "
+                f"{len(points) - left} of {len(points)} points are computed ({out / LEDGER_NAME}); the same command "
                 f"computes the other {left}"
             )
             raise
-        settled = [
+        computed = [
             StudyPoint(values=values, failed=True, record={"error": error})
             if task is None
             else StudyPoint(values=values, failed=stored[task.key][0], record=stored[task.key][1])
             for values, task, error in zip(points, tasks, invalid, strict=True)
         ]
-        write(case, variations, settled, fidelity, out)
+        write(case, variations, computed, fidelity, out)
     reused = sum(task is not None for task in tasks) - len(missing)
-    return StudyOutcome(points=settled, completed=len(missing), reused=reused)
+    return StudyOutcome(points=computed, completed=len(missing), reused=reused)
 
 
 @contextmanager

@@ -87,3 +87,9 @@ def test_other_readings_are_not_passed_over(done: Path) -> None:
     (other / "run.csv").write_text("\n".join([head, units, *rows]) + "\n", encoding="utf-8")
     assert app(["diagnose", "cases/loop_1to1", "other", "--out", "out"], result_action="return_value") == 0
     assert document(done, "out/diagnosis.json")["verdict"] != "within_noise"
+
+
+def test_the_first_case_is_checked_and_studied(done: Path) -> None:
+    assert document(done, "first/results.json")["case"]["name"] == "my_rig"
+    rows = (done / "study" / "results.csv").read_text(encoding="utf-8").splitlines()
+    assert len(rows) == 1 + 3 and (done / "study" / "study.html").is_file()

@@ -223,6 +223,6 @@ def test_an_interrupt_says_what_is_stored_and_how_to_go_on(
         run_study(ExampleCase(log=str(tmp_path / "log")), VARIED, tmp_path, run=run_example)
     (note,) = stop.value.__notes__
     assert note == (
-        f"1 of 3 points are settled ({tmp_path / LEDGER_NAME}); the same command computes the other 2"
+        f"1 of 3 points are computed ({tmp_path / LEDGER_NAME}); the same command computes the other 2"
     )
     assert not (tmp_path / LOCK_NAME).exists()
