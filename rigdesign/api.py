@@ -47,7 +47,7 @@ def run_case(
     CaseError
         A case that cannot be computed: gears that do not mesh, a loop or housing that does not close.
     NotConvergedError
-        An iteration that does not settle, a speed the motor does not reach, a result that is NaN or infinite.
+        An iteration that does not converge, a speed the motor does not reach, a result that is NaN or infinite.
     MissingLibraryError
         A system library that gmsh needs.
     """

@@ -27,7 +27,7 @@ def entries() -> dict[str, Entry]:
             for k in range(40)
         ]
         done: Record = {"verdict": "pass", "max_temperature_degC": 100.0 + number, "checks": checks}
-        failed: Record = {"error": f"point {number} did not settle", "kind": "NotConvergedError"}
+        failed: Record = {"error": f"point {number} did not converge", "kind": "NotConvergedError"}
         found[f"{number:064x}"] = (number % 5 == 0, failed if number % 5 == 0 else done)
     return found
 

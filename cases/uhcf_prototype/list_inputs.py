@@ -68,7 +68,7 @@ def _interleave(parts: list[str], names: Iterable[str]) -> Iterator[str]:
 def _note(mark: Mark) -> str:
     parts = [mark.source, mark.assumed]
     if mark.range is not None:
-        parts.append(f"believable {mark.range[0]} to {mark.range[1]}")
+        parts.append(f"plausible {mark.range[0]} to {mark.range[1]}")
     return "; ".join(part for part in parts if part).replace("|", "\\|")
 
 

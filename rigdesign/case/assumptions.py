@@ -26,5 +26,5 @@ def implied_assumptions(gearboxes: Mapping[str, Gearbox]) -> Iterator[Assumption
                 path=f"gearboxes.{name}.housing.foot_contact",
                 value="perfect",
                 reason="not stated: foot and field share their nodes, no joint holds heat back and the field holds "
-                "the foot; write a conductance (bolted machined faces about 2000 W/(m2 K), 75 to 7000 believable)",
+                "the foot; write a conductance (bolted machined faces about 2000 W/(m2 K), 75 to 7000 plausible)",
             )

@@ -25,7 +25,7 @@ class Mark:
     path : dotted path of the value
     value : the value as written
     assumed : reason of an assumption
-    range : lowest and highest believable value, as written
+    range : lowest and highest plausible value, as written
     source : where it is printed
     measured : the measurement that replaces a computed or printed value
     """

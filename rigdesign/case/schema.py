@@ -10,7 +10,7 @@ _MARK_PROPERTIES: dict[str, Any] = {
         "type": "array",
         "minItems": 2,
         "maxItems": 2,
-        "description": "lowest and highest believable value",
+        "description": "lowest and highest plausible value",
     },
     "source": {"type": "string", "description": "where the value is printed"},
     "measured": {

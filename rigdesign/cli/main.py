@@ -221,13 +221,13 @@ def diagnose(
     prepare_output(out)
     with Progress() as progress, interrupted(SIMULATIONS_KEPT):
         found = diagnose_measurement(loaded, measurement, say=progress)
-        told = outcome(found, pick=name, proposals=found.proposals)
+        reported = outcome(found, pick=name, proposals=found.proposals)
         progress("writing report")
-        write_diagnosis(told, out)
+        write_diagnosis(reported, out)
     if json:
-        _print_json(diagnosis_document(told))
+        _print_json(diagnosis_document(reported))
     else:
-        print_diagnosis(told, out)
+        print_diagnosis(reported, out)
     return 0
 
 
@@ -304,7 +304,7 @@ def new_measurement(case: Path, *, out: Path) -> int:
 
 @app.command
 def validate(*, out: Path | None = None, json: bool = False, quick: bool = False) -> int:
-    """Print every published number beside ours, with the assumption it depends on.
+    """Print every published number against ours, with the assumption it depends on.
 
     Parameters
     ----------

@@ -256,7 +256,7 @@ def print_validation(rows: Sequence["ValidationRow"]) -> None:
     console = _console(wrap=True)
     if not console.is_terminal:
         console = _console(wrap=True, width=FILE_WIDTH)
-    table = Table(title="published numbers beside ours", title_justify="left", pad_edge=False)
+    table = Table(title="published numbers against ours", title_justify="left", pad_edge=False)
     for heading, justify in (
         ("id", "left"), ("quantity", "left"), ("published", "right"), ("computed", "right"), ("unit", "left"),
         ("deviation", "right"), ("verdict", "left"), ("basis", "left"),

@@ -152,7 +152,7 @@ class Oil:
         if not 0.0 <= air_content <= 0.3:
             raise OilError(
                 f"oil {self.name!r}: air_content = {air_content:.3g}: must lie within 0 to 0.3, beyond that it "
-                "is foam; let the oil settle"
+                "is foam; let the oil rest"
             )
         if (air_content, viscosity_factor, heat_capacity_factor) == (0.0, 1.0, 1.0):
             return self

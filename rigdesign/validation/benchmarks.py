@@ -45,8 +45,8 @@ def heat_rows() -> Iterator[ValidationRow]:
 def stress_rows() -> Iterator[ValidationRow]:
     """T1 and LE11, on bricks of 20 nodes."""
     yield _row(
-        "T1", "hot spot in a membrane, stress beside the spot", 50.0, t1_stress("hexahedron20") / MEGAPASCAL,
-        "MPa", STRESS_GATE, "thin plate with a pinhole in the spot; Lame's field fitted beside the edge of the spot",
+        "T1", "hot spot in a membrane, stress next to the spot", 50.0, t1_stress("hexahedron20") / MEGAPASCAL,
+        "MPa", STRESS_GATE, "thin plate with a pinhole in the spot; Lame's field fitted next to the edge of the spot",
     )  # fmt: skip
     yield _row(
         "LE11", "axial stress at A of cylinder, taper and sphere", -105.0, le11_stress("hexahedron20") / MEGAPASCAL,

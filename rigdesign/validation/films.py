@@ -5,7 +5,7 @@ Found by these rows:
    temperature difference is 45 K; P2 says about 40 K, which gives 14.69.
  - 6.3 W/m2K of the clamping field is met by two correlations that part at smaller differences; it was taken
    at 100 K while the field is solved with some 20 to 30 K.
- - The field's radiation of 706 W is impossible beside 1179 W of convection at 6.3 W/m2K with eps 0.94, one
+ - The field's radiation of 706 W is impossible with 1179 W of convection at 6.3 W/m2K with eps 0.94, one
    surface and one ambient: any temperature field radiates at least 1005 W (about 1.5 times as much
    convecting as radiating surface would explain it).
  - The listed flows add up to 4264 W, printed as 4.2 kW; 733 l/min are printed as well as "more than 750
@@ -127,7 +127,7 @@ def _heat_arithmetic() -> Iterator[ValidationRow]:
     )  # fmt: skip
     least = least_radiation(0.94, AMBIENT, 6.3, HEAT_FLOWS["field convection"])
     yield compare(
-        id="P2-heat-field-radiation", quantity="least radiation of the clamping field beside its convection",
+        id="P2-heat-field-radiation", quantity="least radiation of the clamping field for its convection",
         source=FIGURE_12, published=HEAT_FLOWS["field radiation"], computed=least, unit="W",
         basis="arithmetic",
         assumptions="4 eps sigma T0^3 / alpha of the convection, a lower bound for every temperature field: "
@@ -136,7 +136,7 @@ def _heat_arithmetic() -> Iterator[ValidationRow]:
     least = least_radiation(0.6, AMBIENT, 19.5, HEAT_FLOWS["housing warm"])
     least += least_radiation(0.6, AMBIENT, 15.09, HEAT_FLOWS["housing cold"])
     yield compare(
-        id="P2-heat-housing-radiation", quantity="least radiation of the housing beside its convection",
+        id="P2-heat-housing-radiation", quantity="least radiation of the housing for its convection",
         source=FIGURE_12, published=HEAT_FLOWS["housing radiation"], computed=least, unit="W",
         basis="arithmetic",
         assumptions="a lower bound that the printed value keeps; Formula 2 most likely contains radiation "

@@ -1,4 +1,4 @@
-"""Rows of the dynamics solvers: energy of the mesh law, static closure of the loop; the oscillator beside them."""
+"""Rows of the dynamics solvers: energy of the mesh law, static closure of the loop; and of the oscillator."""
 
 from collections.abc import Callable, Iterator
 

@@ -1,4 +1,4 @@
-"""One row of `rigdesign validate`: a published number beside ours, with what it is worth."""
+"""One row of `rigdesign validate`: a published number against ours, with what it is worth."""
 
 from dataclasses import dataclass
 from typing import Literal

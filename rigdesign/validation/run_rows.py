@@ -61,7 +61,7 @@ def _losses(result: RunResult) -> Iterator[ValidationRow]:
                 id=f"run-loss-{row.place}", quantity=f"loss of mesh {row.place}, {stage}",
                 source="P2, structure of the thermal model (main rig)", published=500.0, computed=row.power_W,
                 unit="W", basis="predicted", free_parameters=2,
-                assumptions="500 W is what P2 puts into the FE model of the main rig, beside 80 kW "
+                assumptions="500 W is what P2 puts into the FE model of the main rig, for 80 kW "
                 "dissipated by the meshes; depends on the split of the profile shifts and on the friction "
                 "coefficient",
             )  # fmt: skip

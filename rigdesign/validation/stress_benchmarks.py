@@ -1,8 +1,8 @@
 """The thermo-elastic benchmarks of NAFEMS, T1 and LE11, each computed on a small mesh of either cell.
 
-The Standard NAFEMS Benchmarks (1990): T1 membrane with a hot spot, 50 MPa beside it; LE11 cylinder, taper and
+The Standard NAFEMS Benchmarks (1990): T1 membrane with a hot spot, 50 MPa next to it; LE11 cylinder, taper and
 sphere under a linear temperature, -105 MPa at A. The converged axisymmetric value of LE11 is -106.0 MPa. At the
-edge of the spot a plate of finite thickness is no membrane, so the stress beside it is read from Lame's field
+edge of the spot a plate of finite thickness is no membrane, so the stress next to it is read from Lame's field
 a / r^2 + b fitted a few thicknesses away; the finite plate adds about (1/10)^2 of 50 MPa.
 """
 
@@ -22,7 +22,7 @@ HOLE, EDGE, THICKNESS = 0.02, 10.0, 0.05
 
 
 def t1_stress(cell: CellName = "tetra10") -> float:
-    """T1: hoop stress beside the spot [Pa]; E 100 GPa, nu 0.3, alpha 1e-3 in the spot, 1 K. Analytic: 50 MPa."""
+    """T1: hoop stress next to the spot [Pa]; E 100 GPa, nu 0.3, alpha 1e-3 in the spot, 1 K. Analytic: 50 MPa."""
     mesh = _hot_spot(cell)
     elements = FiniteElements(mesh)
     materials = {"spot": (100e9, 0.3, 1e-3), "rest": (100e9, 0.3, 0.0)}

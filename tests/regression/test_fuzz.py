@@ -123,11 +123,11 @@ def run_outcome(name: str, path: str, value: object, out: Path) -> Run:
     document = json.loads((out / "results.json").read_text(encoding="utf-8"))
     assert {"results.json", "report.html", "junit.xml"} <= {entry.name for entry in out.iterdir()}
     assert not list(out.parent.glob(".rigdesign-writing*"))
-    _believable(document, name, path, value)
+    _plausible(document, name, path, value)
     return Run(name, path, value, document["verdict"], time.perf_counter() - started)
 
 
-def _believable(document: dict[str, object], name: str, path: str, value: object) -> None:
+def _plausible(document: dict[str, object], name: str, path: str, value: object) -> None:
     """No pass with a number nobody can believe."""
     where = (name, path, value)
     checks, thermal = document["checks"], document["thermal"]

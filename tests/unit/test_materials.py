@@ -8,7 +8,7 @@ from rigdesign.properties.materials import CASE_HARDENED_STEEL, MATERIALS, Mater
 
 
 @pytest.mark.parametrize("material", list(MATERIALS.values()), ids=list(MATERIALS))
-def test_built_in_materials_are_believable(material: Material) -> None:
+def test_built_in_materials_are_plausible(material: Material) -> None:
     assert material.source
     assert 25.0 < material.conductivity < 200.0
     assert 10e-6 < material.expansion_coefficient < 24e-6

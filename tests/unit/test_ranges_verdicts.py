@@ -92,12 +92,14 @@ def test_a_check_that_fails_as_stated_stays_failed_and_says_where_it_would_hold(
 def test_an_end_without_a_result_makes_what_rests_on_it_warn() -> None:
     other = replace(make_check("backlash", 0.1, 0.02, comparison=">="), assumptions=(OIL,))
     stated = outcome(seal_gap=at(0.04, 0.9), backlash=at(0.08, 0.2))
-    lost = outcome(None, "coupling did not settle\nin 30 passes")
+    lost = outcome(None, "coupling did not converge\nin 30 passes")
     result = ranged(stated, both(GAP, lost, stated), GAP_CHECK, other)
     assert [check.verdict for check in result.checks] == ["warn", "pass"]
-    assert f"no result at {GAP} = 4 mm, on which it rests: coupling did not settle" in result.checks[0].reason
+    assert (
+        f"no result at {GAP} = 4 mm, on which it rests: coupling did not converge" in result.checks[0].reason
+    )
     assert result.ranges is not None
-    assert result.ranges.inputs[0].low_error == "coupling did not settle\nin 30 passes"
+    assert result.ranges.inputs[0].low_error == "coupling did not converge\nin 30 passes"
     assert result.ranges.inputs[0].max_temperature_low_degC is None
 
 
