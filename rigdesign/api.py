@@ -18,7 +18,7 @@ from rigdesign.report import write_results
 from rigdesign.report.pages.study import write_study
 from rigdesign.results.result import RunResult
 from rigdesign.run import main
-from rigdesign.studies.run import StudyOutcome, parse_variation, run_study
+from rigdesign.studies.run import Execution, StudyOutcome, parse_variation, run_study
 from rigdesign.uncertainty.run import with_ranges
 
 Progress = Callable[[str], None]
@@ -93,10 +93,8 @@ def study(
         No point of the grid is a valid case.
     """
     variations = [parse_variation(text) for text in ([vary] if isinstance(vary, str) else vary)]
-    return run_study(
-        case, variations, Path(out), write=write_study, fidelity=fidelity, workers=workers, retry=retry,
-        progress=progress,
-    )  # fmt: skip
+    execution = Execution(workers=workers, retry=retry, progress=progress)
+    return run_study(case, variations, Path(out), write=write_study, fidelity=fidelity, execution=execution)
 
 
 def compare(

@@ -4,7 +4,6 @@ import json
 import os
 import time
 from dataclasses import dataclass, field, replace
-from functools import partial
 from hashlib import sha256
 from pathlib import Path
 
@@ -13,7 +12,12 @@ from rigdesign.report.pages.study import write_study
 from rigdesign.studies import run as study
 from tests.report_example import make_check, make_result
 
-run_study = partial(study.run_study, write=write_study)
+
+def run_study(case, variations, out, *, fidelity="standard", **execution):
+    """A study with the page of the report, its execution by keywords."""
+    return study.run_study(
+        case, variations, out, write=write_study, fidelity=fidelity, execution=study.Execution(**execution)
+    )
 
 
 @dataclass(frozen=True)

@@ -115,14 +115,14 @@ def study(
     loaded = _loaded(case)
     from rigdesign.cli.terminal import Progress, print_study
     from rigdesign.report.pages.study import write_study
-    from rigdesign.studies.run import parse_variation, run_study
+    from rigdesign.studies.run import Execution, parse_variation, run_study
 
     variations = [parse_variation(text) for text in vary]
     with Progress() as progress:
+        execution = Execution(workers=workers, retry=retry, progress=progress, note=progress.note)
         outcome = run_study(
-            loaded, variations, out, write=write_study, fidelity=fidelity, workers=workers, retry=retry,
-            progress=progress, note=progress.note,
-        )  # fmt: skip
+            loaded, variations, out, write=write_study, fidelity=fidelity, execution=execution
+        )
     print_study(outcome, out)
     return 0
 

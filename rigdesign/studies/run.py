@@ -21,7 +21,7 @@ from rigdesign.studies.ledger import Ledger, Record, point_key
 if TYPE_CHECKING:
     from rigdesign.case import Case
 
-__all__ = ["StudyOutcome", "StudyPoint", "Variation", "parse_variation", "run_study"]
+__all__ = ["Execution", "StudyOutcome", "StudyPoint", "Variation", "parse_variation", "run_study"]
 
 LEDGER_NAME = "ledger.sqlite"
 LOCK_NAME = ".rigdesign-study.lock"
@@ -81,6 +81,33 @@ class StudyOutcome:
         ]
 
 
+@dataclass(frozen=True, kw_only=True)
+class Execution:
+    """How a study is computed, which changes nothing in its points.
+
+    workers : processes, one thread each; None for one per core
+    retry : compute points again that failed before
+    progress : called with one line per finished point
+    note : called with what the user has to know of, such as a damaged ledger; ``progress`` if left out
+    run : picklable stand-in for `rigdesign.run_case`
+    """
+
+    workers: int | None = None
+    retry: bool = False
+    progress: Callable[[str], None] | None = None
+    note: Callable[[str], None] | None = None
+    run: Run | None = None
+
+    def say(self, line: str) -> None:
+        """Pass a line of progress on."""
+        if self.progress is not None:
+            self.progress(line)
+
+
+DEFAULT = Execution()
+"""One process per core, silent."""
+
+
 @dataclass(frozen=True)
 class _Task:
     case: Any
@@ -95,11 +122,7 @@ def run_study(
     *,
     write: Writer,
     fidelity: Fidelity = "standard",
-    workers: int | None = None,
-    retry: bool = False,
-    progress: Callable[[str], None] | None = None,
-    note: Callable[[str], None] | None = None,
-    run: Run | None = None,
+    execution: Execution = DEFAULT,
 ) -> StudyOutcome:
     """Run a case over the grid of ``variations`` and write its files to ``out``.
 
@@ -111,11 +134,7 @@ def run_study(
     ----------
     case : base case; ``with_value(path, value)`` makes a point of it
     write : writes the files while the folder is still locked
-    workers : processes, one thread each; None for one per core
-    retry : compute points again that failed before
-    progress : called with one line per finished point
-    note : called with what the user has to know of, such as a damaged ledger; ``progress`` if left out
-    run : picklable stand-in for `rigdesign.run_case`
+    execution : processes, progress, points to compute again
 
     Raises
     ------
@@ -130,22 +149,22 @@ def run_study(
         With a note that says what is stored and how to go on.
     """
     combinations = grid(variations)
-    count = worker_count(workers)
+    count = worker_count(execution.workers)
     points = [dict(zip((v.path for v in variations), values, strict=True)) for values in combinations]
     tasks, invalid = _tasks(case, points, fidelity)
     prepare_output(out)
     out.mkdir(parents=True, exist_ok=True)
-    say = progress or (lambda message: None)
+    say = execution.say
     with _alone_in(out), Ledger(out / LEDGER_NAME) as ledger:
         if ledger.repaired:
-            (note or say)(ledger.repaired)
-        stored = {key: entry for key, entry in ledger.stored().items() if not (retry and entry[0])}
+            (execution.note or say)(ledger.repaired)
+        stored = {key: entry for key, entry in ledger.stored().items() if not (execution.retry and entry[0])}
         missing = list(
             {task.key: task for task in tasks if task is not None and task.key not in stored}.values()
         )
         say(f"{len(points)} points, {len(points) - len(missing)} of them known already, {count} workers")
         try:
-            with closing(_compute(missing, fidelity, count, run)) as finished:
+            with closing(_compute(missing, fidelity, count, execution.run)) as finished:
                 for task, failed, record in _stored(ledger, finished, fidelity):
                     stored[task.key] = (failed, record)
                     say(_progress_line(task, failed, record))
