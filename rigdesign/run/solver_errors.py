@@ -1,6 +1,6 @@
 """The boundary between the solvers and the user: which of their errors are the case's, and which no convergence.
 
-Only the errors that the solvers raise on purpose iteration: everything below `thermal.errors.ThermalError` and
+Only what the solvers raise on purpose is turned into such an error: everything below `thermal.errors.ThermalError` and
 `dynamics.errors.DynamicsError`, and what an oil or material refuses. Anything else is a defect of the tool and is
 left as it is.
 """
