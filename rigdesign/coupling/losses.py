@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from dynamics.bearing.journal import BearingState
+from dynamics.bearing.protocol import BearingState
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import Loss, ToothPath, mesh_loss, squeeze_loss
 from dynamics.losses.oil_jet import JET_ANGLES, jet_power, oil_acceleration
@@ -194,6 +194,18 @@ def _squeezing(rig: Rig, point: OperatingPoint, models: Sequence[MeshModel]) -> 
         yield PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=0.0)
 
 
+def bearing_ratings(state: BearingState) -> dict[str, float]:
+    """Entries of a record for what a bearing is rated by; those its kind knows nothing of are left out."""
+    ratings = {}
+    if state.specific_load is not None:
+        ratings["specific_load_MPa"] = 1e-6 * state.specific_load
+    if state.minimum_film is not None:
+        ratings["minimum_film_um"] = 1e6 * state.minimum_film
+    if state.transition_speed is not None:
+        ratings["transition_speed_rpm"] = state.transition_speed * 30.0 / math.pi
+    return ratings
+
+
 def _bearing_loss(
     rig: Rig, box_name: str, part: str, point: OperatingPoint, state: BearingState
 ) -> PlacedLoss:
@@ -205,12 +217,10 @@ def _bearing_loss(
         power=state.power if drag is None else drag,
         details={
             "load_N": state.load,
-            "specific_load_MPa": 1e-6 * state.specific_load,
-            "minimum_film_um": 1e6 * state.minimum_film,
+            **bearing_ratings(state),
             "film_temperature_degC": state.film_temperature - 273.15,
             "torsional_damping_Nms_rad": state.torsional_damping,
-            "transition_speed_rpm": state.transition_speed * 30.0 / math.pi,
-            "source": "ISO 7902-1 / DIN 31652-1, film solved",
+            "source": state.source,
         },
         warnings=state.warnings,
     )
