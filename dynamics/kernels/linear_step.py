@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
 from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 
-# compiled from sources 2da5a92f
+# compiled from sources d4d3ec2c
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -99,22 +99,22 @@ class DiscreteModes(NamedTuple):
 
 @njit(cache=True, fastmath=LOOSE)
 def slow_targets(
-    given: Array, control: Array, memory: Array, speed: float, torque: float, target: Array
+    given: Array, control: Array, controller: Array, speed: float, torque: float, target: Array
 ) -> None:
     """Fill the slow inputs at the end of a sample: controlled motor torque and twist, then what is given."""
     target[0] = given[0]
     if control[2] > 0.0:
-        memory[3] += control[3] * (speed - memory[3])
-        error = given[2] - memory[3]
-        wish = given[0] + control[0] * error + memory[0]
+        controller[3] += control[3] * (speed - controller[3])
+        error = given[2] - controller[3]
+        wish = given[0] + control[0] * error + controller[0]
         target[0] = min(max(wish, -control[2]), control[2])
         if target[0] == wish or error * wish < 0.0:
-            memory[0] += control[1] * error
+            controller[0] += control[1] * error
     if control[4] > 0.0:
-        memory[2] += control[5] * (torque - memory[2])
-        memory[4] += control[5] * (given[3] - memory[4])
-        memory[1] += control[4] * (memory[4] - memory[2])
-    target[1] = given[1] + memory[1]
+        controller[2] += control[5] * (torque - controller[2])
+        controller[4] += control[5] * (given[3] - controller[4])
+        controller[1] += control[4] * (controller[4] - controller[2])
+    target[1] = given[1] + controller[1]
     for k in range(2, target.shape[0]):
         target[k] = given[2 + k]
 

@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 2da5a92f
+# compiled from sources d4d3ec2c
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -108,7 +108,7 @@ class Carried(NamedTuple):
     """(n_drags,) drag torques."""
     offset: Array
     """(n_meshes,) imposed approach."""
-    memory: Array
+    controller: Array
     """Integral of the speed controller, correction of the twist, then averages: torque, speed, asked torque."""
     speeds: Array
     """(n_slow + n_drags,) speed of the load of every slow input and drag."""
@@ -308,13 +308,18 @@ def _march(
 
     _begin(book, carried.ports, modes.port_new, give)
     put_state(blocks, state, bank)
-    mean_torque = carried.memory[2]
+    mean_torque = carried.controller[2]
     torque_share = book[R1] / substeps
     unsettled = 0
     now = 0
     for sample in range(orders.given.shape[0]):
         slow_targets(
-            orders.given[sample], orders.control, carried.memory, carried.speeds[0], mean_torque, work.target
+            orders.given[sample],
+            orders.control,
+            carried.controller,
+            carried.speeds[0],
+            mean_torque,
+            work.target,
         )
         by_slow[:] = 0.0
         hold_slow(modes.slow_outputs, slow, work.target, substeps, by_slow)

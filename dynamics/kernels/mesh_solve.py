@@ -60,7 +60,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 2da5a92f
+# compiled from sources d4d3ec2c
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

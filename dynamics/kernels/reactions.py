@@ -35,7 +35,7 @@ from dynamics.kernels.contact import (
     sliding_direction,
 )
 
-# compiled from sources 2da5a92f
+# compiled from sources d4d3ec2c
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -4,7 +4,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from dynamics.drivetrain.bracing import Mode, ShiftedGear, brace
+from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsNotConverged
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
@@ -28,7 +29,7 @@ from dynamics.mesh.friction import (
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
-from dynamics.response.speed_sweep import CurvePoint, periodic_response
+from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
 from rigdesign.case.gears import FlankModification, Gear
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
@@ -318,7 +319,7 @@ def brace_cold(
         return BracingState(mode=mode)
     met = mesh_models(rig, point, cold) if models is None else models
     laws = [alike_teeth(law) for law in laws_of(met)]
-    state = brace(rig.system, laws, signed_torque(rig, point), mode, gear=shifted_gear(rig))
+    state = brace(rig.system, laws, signed_torque(rig, point), LoopBracing(mode=mode, gear=shifted_gear(rig)))
     return BracingState(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
 
 
@@ -342,11 +343,12 @@ def respond(
         rig.system,
         periodic_laws(rig, shifted_laws(rig, models, setting)),
         [rig.pinion_speed(point.speed)],
-        signed_torque(rig, point) if controlled else None,
-        twist=None if controlled else setting.twist,
-        period=rig.case.numerics.response_period,
+        LoopLoad(
+            torque=signed_torque(rig, point) if controlled else None,
+            twist=None if controlled else setting.twist,
+        ),
         drag_torques=drags,
-        cutoff=rig.highest_mode,
+        settings=SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
     )
     if curve.failed:
         raise DynamicsNotConverged(f"periodic response at stage {point.stage!r}: {curve.failed[0][1]}")

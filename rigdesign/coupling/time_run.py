@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.response.propagator import DEFAULT_CUTOFF
+from dynamics.response.command import Command as RunCommand
+from dynamics.response.command import DragCurve, MotorDrive, Sampling
+from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.schedule import Kind, Schedule, Stage, StageCommand, s_function
-from dynamics.response.time_response import Command as RunCommand
-from dynamics.response.time_response import DragCurve, TimeResponse, run_schedule
+from dynamics.response.time_response import TimeResponse, run_schedule
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_films import solve_bearings
@@ -88,14 +89,16 @@ def run_ramp(
             torque=np.maximum(command.torque * locked_share(rig), LEAST_TORQUE) if controlled else None,
             twist=None if controlled else np.full_like(command.time, setting.twist),
         ),
-        torque_limit=torque_limits(rig)[command.stage],
         drags=drag_curves(rig, warm, coupling_state),
-        sample_rate=numerics.sample_rate,
-        substeps=numerics.internal_steps,
-        slot=SLOT,
-        keep_channels=False,
-        keep_accounts=False,
-        cutoff=QUICK_CUTOFF if rig.fidelity == "quick" else DEFAULT_CUTOFF,
+        motor=MotorDrive(torque_limit=torque_limits(rig)[command.stage]),
+        sampling=Sampling(
+            sample_rate=numerics.sample_rate,
+            substeps=numerics.internal_steps,
+            slot=SLOT,
+            keep_channels=False,
+            keep_accounts=False,
+            cutoff=QUICK_CUTOFF if rig.fidelity == "quick" else DEFAULT_CUTOFF,
+        ),
     )
     require_speeds(rig, schedule, response)
     return response

@@ -8,7 +8,7 @@ from functools import cached_property
 from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, assemble, joints
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.gear.pair import GearPair
-from dynamics.response.propagator import DEFAULT_CUTOFF
+from dynamics.response.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.gearbox import BearingInput, Gearbox
 from rigdesign.case.gears import Gear

@@ -11,7 +11,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.response.time_response import DragCurve, TimeResponse
+from dynamics.response.command import DragCurve
+from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.drag_torques import drag_shafts
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.time_run import drag_curves, schedule_of, torque_limits

@@ -13,13 +13,15 @@ import pytest
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.flank import Microgeometry, mesh_law
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.stiffness import pair_stiffness
 from dynamics.rating.iso_rating import mesh_stiffness
 from dynamics.response.initial_state import wound_state
-from dynamics.response.time_march import DriveState, TimeMarch
+from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
+from dynamics.response.time_march import TimeMarch
 from tests.mesh_example import wavy_law
 from tests.rig_example import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, prototype
 
@@ -109,10 +111,9 @@ def march_time(
             system,
             laws,
             start,
-            step=1.0 / SAMPLE_RATE / substeps,
-            substeps=substeps,
-            accounts=False,
-            record_all=False,
+            settings=MarchSettings(
+                step=1.0 / SAMPLE_RATE / substeps, substeps=substeps, accounts=False, record_all=False
+            ),
         )
         march.advance(given[:50])
         before = process_time()
@@ -124,10 +125,10 @@ def march_time(
 
 def test_shipped_law_on_the_prototype() -> None:
     system, laws = rig(), shipped_laws()
-    start, _, _ = wound_state(system, laws, speed=SPEED, torque=TORQUE)
+    start, _, _ = wound_state(system, laws, speed=SPEED, load=LoopLoad(torque=TORQUE))
     step = march_time(system, laws, start, 8, 8000)
     rate = 1e-6 / step
-    modes = len(TimeMarch(system, laws, start, step=1e-6).model.eigenvalues)
+    modes = len(TimeMarch(system, laws, start, settings=MarchSettings(step=1e-6)).model.eigenvalues)
     print(
         f"\nshipped law, {len(system.inertia)} freedoms, {modes} modes, 5 + 12 slices: "
         f"{rate:.2f} million steps/s (wanted 2), {320e3 * step:.3f} s per simulated second"
@@ -142,12 +143,14 @@ def forces_of_march(
         system,
         phase_laws(),
         start,
-        step=1.0 / SAMPLE_RATE / substeps,
-        substeps=substeps,
-        accounts=False,
-        record_all=False,
-        derivative_torques=False,
-        drive_torque=drive,
+        settings=MarchSettings(
+            step=1.0 / SAMPLE_RATE / substeps,
+            substeps=substeps,
+            accounts=False,
+            record_all=False,
+            derivative_torques=False,
+        ),
+        loads=DriveLoads(drive_torque=drive),
     )
     force = march.advance(np.tile([drive, start.twist, 0.0, 0.0], (samples, 1))).force
     return force[:, substeps - 1 :: substeps]
@@ -280,7 +283,7 @@ def test_phase_law_against_exudyn() -> None:
     pytest.importorskip("exudyn")
     system, laws = rig(), phase_laws()
     speed = 3000.0 * np.pi / 30.0
-    start, drive, _ = wound_state(system, laws, speed=speed, torque=TORQUE)
+    start, drive, _ = wound_state(system, laws, speed=speed, load=LoopLoad(torque=TORQUE))
     step = march_time(system, laws, start, 8, 8000)
     print(f"\nk(phi) law: {1e-6 / step:.2f} million steps/s (wanted 5)")
     samples = 400

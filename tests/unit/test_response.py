@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.graph import assemble
+from dynamics.response.command import Command, DragCurve, MotorDrive, Sampling
 from dynamics.response.envelopes import SlotStatistics, split_lift_off
-from dynamics.response.time_response import Command, DragCurve, LowPass, TimeResponse, run_schedule
+from dynamics.response.low_pass import LowPass
+from dynamics.response.time_response import TimeResponse, run_schedule
 from tests.mesh_example import spur_law
 from tests.rig_example import prototype, prototype_laws
 
@@ -27,7 +29,9 @@ def run(torque_limit: float = 60.0, friction: float = 0.04) -> TimeResponse:
         torque=np.array([20.0, 20.0, 20.0, 90.0, 90.0]),
     )
     name = next(iter(system.drag_loads))
-    return run_schedule(system, laws, command, torque_limit=torque_limit, drags={name: DRAG})
+    return run_schedule(
+        system, laws, command, drags={name: DRAG}, motor=MotorDrive(torque_limit=torque_limit)
+    )
 
 
 def test_speed_and_torque_follow_the_command() -> None:
@@ -77,7 +81,9 @@ def test_run_is_reproducible_to_the_last_bit() -> None:
     system = assemble(prototype())
     laws = prototype_laws()
     command = Command(time=np.array([0.0, 0.02]), speed=np.array([10.0, 12.0]), twist=np.array([6e-3, 6e-3]))
-    first, second = (run_schedule(system, laws, command, torque_limit=50.0) for _ in range(2))
+    first, second = (
+        run_schedule(system, laws, command, motor=MotorDrive(torque_limit=50.0)) for _ in range(2)
+    )
     assert np.array_equal(first.torque, second.torque)
     assert first.energy.losses == second.energy.losses
     assert np.array_equal(first.end.speeds, second.end.speeds)
@@ -99,7 +105,7 @@ def test_imposed_offset_moves_the_torque_in_a_held_loop() -> None:
     offsets[2:, 0] = 10e-6
     twist = np.full(4, 6e-3)
     command = Command(time=time, speed=np.full(4, 20.0), twist=twist, offsets=offsets)
-    means = run_schedule(system, laws, command, torque_limit=50.0).slots.mean[0]
+    means = run_schedule(system, laws, command, motor=MotorDrive(torque_limit=50.0)).slots.mean[0]
     assert means[-1] - means[1] > 1.0
 
 
@@ -121,9 +127,12 @@ def test_each_time_has_its_own_torque_limit() -> None:
     time = np.linspace(0.0, 0.06, 61)
     command = Command(time=time, speed=np.full(61, 200.0) + 4000.0 * time, torque=np.full(61, 60.0))
     response = run_schedule(
-        assemble(prototype()), prototype_laws(), command, torque_limit=np.where(time < 0.03, 5.0, 12.0),
-        keep_channels=False, keep_accounts=False,
-    )  # fmt: skip
+        assemble(prototype()),
+        prototype_laws(),
+        command,
+        motor=MotorDrive(torque_limit=np.where(time < 0.03, 5.0, 12.0)),
+        sampling=Sampling(keep_channels=False, keep_accounts=False),
+    )
     early, late = response.time < 0.0299, response.time > 0.0301
     assert np.abs(response.drive_torque[early]).max() == pytest.approx(5.0)
     assert np.abs(response.drive_torque[late]).max() == pytest.approx(12.0)
@@ -189,10 +198,21 @@ def test_a_gap_is_measured_by_the_mesh_period_of_its_own_pair() -> None:
 def test_impossible_commands_are_refused(change: dict[str, object], words: str) -> None:
     command = Command(time=np.array([0.0, 0.1]), speed=np.zeros(2), twist=np.full(2, 1e-2))
     with pytest.raises(ValueError, match=words):
-        run_schedule(assemble(prototype()), prototype_laws(), replace(command, **change), torque_limit=10.0)
+        run_schedule(
+            assemble(prototype()),
+            prototype_laws(),
+            replace(command, **change),
+            motor=MotorDrive(torque_limit=10.0),
+        )
 
 
 def test_sample_rate_is_no_integration_step() -> None:
     command = Command(time=np.array([0.0, 0.1]), speed=np.zeros(2), twist=np.full(2, 1e-2))
     with pytest.raises(ValueError, match="no integration step"):
-        run_schedule(assemble(prototype()), prototype_laws(), command, torque_limit=10.0, substeps=4)
+        run_schedule(
+            assemble(prototype()),
+            prototype_laws(),
+            command,
+            motor=MotorDrive(torque_limit=10.0),
+            sampling=Sampling(substeps=4),
+        )
