@@ -5,7 +5,7 @@ from functools import cached_property
 from math import acos, cos, pi, radians, tan
 from typing import Literal, Self, TypedDict, Unpack
 
-from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError, Rack, involute
+from dynamics.gear.cylindrical_gear import CylindricalGear, Rack, involute
 from dynamics.gear.line_of_action import (
     PathOfContact,
     TipCut,
@@ -28,6 +28,23 @@ class GearBodies(TypedDict, total=False):
     youngs_moduli: Pair
     poisson_ratios: Pair
     densities: Pair
+
+
+@dataclass(frozen=True, kw_only=True)
+class TipShortening:
+    """How far the tips of a pair are shortened.
+
+    shortening : on the radius, pinion first [m]
+    contact_ratio : transverse contact ratio to which the tips are cut after that; None: not cut
+    cut_gear : the gear that is cut, or both by the same amount
+    """
+
+    shortening: Pair = (0.0, 0.0)
+    contact_ratio: float | None = None
+    cut_gear: TipCut = "both"
+
+
+FULL_TIPS = TipShortening()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,28 +80,25 @@ class PairGeometry:
         teeth: tuple[int, int],
         centre_distance: float,
         face_widths: Pair,
-        profile_shift_1: float | None = None,
-        split: Literal["equal"] | None = None,
-        tip_shortening: Pair = (0.0, 0.0),
-        contact_ratio: float | None = None,
-        tip_cut: TipCut = "both",
+        profile_shift_1: float | Literal["equal"],
+        tips: TipShortening = FULL_TIPS,
         **bodies: Unpack[GearBodies],
     ) -> Self:
         """Pair whose profile-shift sum meshes without backlash on the centre distance (before allowances).
 
-        Give either ``profile_shift_1`` or ``split="equal"``. Tips are at d + 2 m_n (h_aP + x), shortened on
-        the radius by ``tip_shortening`` [m] and then as far as the transverse ``contact_ratio`` wants,
-        equally on both gears or on one (``tip_cut``). Raises GearGeometryError.
+        Parameters
+        ----------
+        normal_module, centre_distance : [m]; teeth, face_widths [m] : pinion first
+        profile_shift_1 : of the pinion, in modules; ``equal``: half of the sum on each gear
+        tips : shortening of the tips, which are at d + 2 m_n (h_aP + x) otherwise
+
+        Raises GearGeometryError for a pair that cannot mesh.
         """
-        if (profile_shift_1 is None) == (split is None):
-            raise GearGeometryError(
-                f"profile_shift_1 = {profile_shift_1} and split = {split!r}: give exactly one of them"
-            )
         pressure_angle = bodies.setdefault("pressure_angle", radians(20.0))
         helix_angle = bodies.setdefault("helix_angle", 0.0)
         racks = bodies.setdefault("racks", (Rack(), Rack()))
         total = shift_sum(normal_module, pressure_angle, helix_angle, teeth, centre_distance)
-        first = 0.5 * total if profile_shift_1 is None else profile_shift_1
+        first = 0.5 * total if profile_shift_1 == "equal" else profile_shift_1
         shifts = (first, total - first)
         allowances = bodies.get("thickness_allowances", (0.0, 0.0))
         pinion, wheel = (
@@ -96,15 +110,17 @@ class PairGeometry:
                 profile_shift=shifts[i],
                 tip_diameter=normal_module
                 * (teeth[i] / cos(helix_angle) + 2.0 * (racks[i].addendum + shifts[i]))
-                - 2.0 * tip_shortening[i],
+                - 2.0 * tips.shortening[i],
                 rack=racks[i],
                 thickness_allowance=allowances[i],
             )
             for i in (0, 1)
         )
         cut = (0.0, 0.0)
-        if contact_ratio is not None:
-            cut = tip_cut_for_contact_ratio((pinion, wheel), centre_distance, contact_ratio, tip_cut)
+        if tips.contact_ratio is not None:
+            cut = tip_cut_for_contact_ratio(
+                (pinion, wheel), centre_distance, tips.contact_ratio, tips.cut_gear
+            )
         return cls(
             normal_module=normal_module,
             teeth=teeth,

@@ -71,7 +71,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources d4d3ec2c
+# compiled from sources 896f0027
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -6,7 +6,7 @@ was just written is still at hand. The book has a last row for the mesh that sta
 
 from dynamics.kernels.contact import N_VALUES
 
-# compiled from sources d4d3ec2c
+# compiled from sources 896f0027
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]

@@ -35,7 +35,7 @@ from dynamics.kernels.contact import (
     sliding_direction,
 )
 
-# compiled from sources d4d3ec2c
+# compiled from sources 896f0027
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

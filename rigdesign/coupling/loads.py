@@ -10,12 +10,12 @@ from dynamics.errors import DynamicsNotConverged
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import (
-    Microgeometry,
+    ContactDiscretisation,
+    MeshDissipation,
+    MeshPosition,
     alike_teeth,
-    cumulative_pitch,
     default_slices,
     mesh_law,
-    pitch_waves,
 )
 from dynamics.mesh.friction import (
     Doleschel,
@@ -27,6 +27,7 @@ from dynamics.mesh.friction import (
     friction_coefficient,
 )
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
@@ -103,16 +104,20 @@ def mesh_model(
     micro = microgeometry(gears[0], pair, 0), microgeometry(gears[1], pair, 1, entry.tooth_offset)
     law = mesh_law(
         pair,
-        stiffness=shape,
+        shape,
         micro=micro,
-        n_slices=_slices(rig, pair, micro),
-        damping=entry.damping,
-        damping_acts_on=entry.damping_acts_on,
-        friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
-        offset=coupling_state.tooth_growth[name] * math.tan(pair.base_helix_angle)
-        + flank_growth(rig.pairs[name], pair),
-        phase=mesh_phase(rig, name),
-        tooth_offset_2=entry.tooth_offset % gears[1].teeth,
+        position=MeshPosition(
+            offset=coupling_state.tooth_growth[name] * math.tan(pair.base_helix_angle)
+            + flank_growth(rig.pairs[name], pair),
+            phase=mesh_phase(rig, name),
+            tooth_offset_2=entry.tooth_offset % gears[1].teeth,
+        ),
+        dissipation=MeshDissipation(
+            damping=entry.damping,
+            damping_acts_on=entry.damping_acts_on,
+            friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
+        ),
+        discretisation=ContactDiscretisation(n_slices=_slices(rig, pair, micro)),
     )
     return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law)
 

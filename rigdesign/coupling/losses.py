@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from dynamics.bearing.protocol import BearingState
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import Loss, ToothPath, mesh_loss, squeeze_loss
-from dynamics.losses.oil_jet import JET_ANGLES, jet_power, oil_acceleration
-from dynamics.losses.seal_loss import gap_seal_loss, lip_seal_loss
+from dynamics.losses.oil_jet import JET_ANGLES, OilJet, oil_acceleration
+from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals
@@ -270,16 +270,14 @@ def _oil_jets(
     for mesh_name, mesh in box.meshes.items():
         name = f"{box_name}.{mesh_name}"
         omega = rig.shaft_speed(box.gears[mesh.pinion].shaft, point.speed)
-        loss = oil_acceleration(
-            name,
-            injected_flow(box),
-            oil.density(box.oil.inlet_temperature),
-            omega * pairs[name].working_radii[0],
-            jet_velocity(box),
-            JET_ANGLES[box.oil.jet_direction],
+        jet = OilJet(
+            flow=injected_flow(box),
+            density=oil.density(box.oil.inlet_temperature),
+            speed=jet_velocity(box),
+            angle=JET_ANGLES[box.oil.jet_direction],
         )
-        pumped = jet_power(injected_flow(box), oil.density(box.oil.inlet_temperature), jet_velocity(box))
-        yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0, pumped=pumped)
+        loss = oil_acceleration(name, jet, omega * pairs[name].working_radii[0])
+        yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0, pumped=jet.power)
 
 
 def _seals(
@@ -327,8 +325,8 @@ def _seal_losses(
         if seal.leaves and seals.kind == "radial_lip":
             found.append((seal, lip_seal_loss(place, seal.diameter, omega)))
         elif seal.length is not None:
-            gap = seals.radial_gap, seal.length
-            loss = gap_seal_loss(place, 0.5 * seal.diameter, *gap, omega, mist.density, mist.viscosity)
+            gap = SealGap(radius=0.5 * seal.diameter, gap=seals.radial_gap, length=seal.length)
+            loss = gap_seal_loss(place, gap, omega, mist.density, mist.viscosity)
             found.append((seal, loss))
     return found
 

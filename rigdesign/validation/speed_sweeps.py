@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.mesh.flank import mesh_law
+from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import Method, SweepSettings, periodic_response
 from rigdesign.coupling.initial_state import initial_state
@@ -145,13 +145,16 @@ def reshaped(
         laws.append(
             mesh_law(
                 model.pair,
-                stiffness=model.stiffness,
+                model.stiffness,
                 micro=(first, second),
-                n_slices=len(model.law.slice_shift),
-                damping=model.law.damping,
-                damping_acts_on=model.law.damping_acts_on,
-                friction=model.law.friction,
-                engagement=engagement,
+                dissipation=MeshDissipation(
+                    damping=model.law.damping,
+                    damping_acts_on=model.law.damping_acts_on,
+                    friction=model.law.friction,
+                ),
+                discretisation=ContactDiscretisation(
+                    n_slices=len(model.law.slice_shift), engagement=engagement
+                ),
             )
         )
     return laws

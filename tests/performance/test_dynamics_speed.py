@@ -15,8 +15,10 @@ from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.gear.pair import GearPair
-from dynamics.mesh.flank import Microgeometry, mesh_law
+from dynamics.gear.pair_geometry import TipShortening
+from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.microgeometry import Microgeometry
 from dynamics.mesh.stiffness import pair_stiffness
 from dynamics.rating.iso_rating import mesh_stiffness
 from dynamics.response.initial_state import wound_state
@@ -49,9 +51,8 @@ def shipped_laws() -> list[MeshLaw]:
         centre_distance=99.5e-3,
         face_widths=(7e-3, 15e-3),
         profile_shift_1=0.0,
-        contact_ratio=1.26,
-        tip_cut="wheel",
         thickness_allowances=(40e-6, 60e-6),
+        tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
     )
     reference = GearPair.from_centre_distance(
         normal_module=0.95e-3,
@@ -60,8 +61,8 @@ def shipped_laws() -> list[MeshLaw]:
         helix_angle=radians(18.0),
         face_widths=(40e-3, 40e-3),
         profile_shift_1=0.0,
-        contact_ratio=1.448,
         thickness_allowances=(40e-6, 60e-6),
+        tips=TipShortening(contact_ratio=1.448),
     )
     micro = (
         Microgeometry(profile_crowning=7e-6, lead_crowning=5e-6),
@@ -73,7 +74,11 @@ def shipped_laws() -> list[MeshLaw]:
         shape = pair_stiffness(pair, load).scaled_to(mesh_stiffness(pair, TORQUE))
         laws.append(
             mesh_law(
-                pair, stiffness=shape, micro=(relief, relief), n_slices=slices, damping=DAMPING, friction=0.04
+                pair,
+                shape,
+                micro=(relief, relief),
+                dissipation=MeshDissipation(damping=DAMPING, friction=0.04),
+                discretisation=ContactDiscretisation(n_slices=slices),
             )
         )
     return laws

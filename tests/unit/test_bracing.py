@@ -5,6 +5,8 @@ import pytest
 from dynamics.drivetrain import bracing
 from dynamics.drivetrain.bracing import LoopBracing, ShiftedGear, brace, drift
 from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import PortModel
 from dynamics.errors import DynamicsNotConverged
 from tests.rig_example import TRANSVERSE_ANGLE, prototype, prototype_laws
 
@@ -138,10 +140,10 @@ def test_a_stalled_solve_is_not_reported_as_open_flanks(monkeypatch: pytest.Monk
     system, laws = assemble(prototype()), prototype_laws()
     solve = bracing.solve_static
 
-    def stalling(*args: object, **options: object) -> object:
-        if "twist" in options:
+    def stalling(model: PortModel, load: LoopLoad, **options: object) -> object:
+        if load.twist is not None:
             raise DynamicsNotConverged("static loop: residual 1")
-        return solve(*args, **options)  # type: ignore[arg-type]
+        return solve(model, load, **options)  # type: ignore[arg-type]
 
     monkeypatch.setattr(bracing, "solve_static", stalling)
     with pytest.raises(DynamicsNotConverged, match="residual 1"):
