@@ -48,8 +48,8 @@ class PathOfContact:
 
 def path_between(pinion: CylindricalGear, wheel: CylindricalGear, centre_distance: float) -> PathOfContact:
     """Path of contact of two gears on ``centre_distance`` [m] from tip circles and generated form circles."""
-    slope = tan(acos((pinion.base_radius + wheel.base_radius) / centre_distance))
-    reach_1, reach_2 = pinion.base_radius * slope, wheel.base_radius * slope
+    ratio = tan(acos((pinion.base_radius + wheel.base_radius) / centre_distance))
+    reach_1, reach_2 = pinion.base_radius * ratio, wheel.base_radius * ratio
     tip_end = pinion.roll_length(pinion.tip_radius) - reach_1
     tip_start = reach_2 - wheel.roll_length(wheel.tip_radius)
     return PathOfContact(

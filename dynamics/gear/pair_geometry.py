@@ -1,4 +1,4 @@
-"""Geometry of a cylindrical gear pair, cold or warm (ISO 21771:2007)."""
+"""Geometry of a cylindrical gear pair at reference or operating temperature (ISO 21771:2007)."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -51,8 +51,8 @@ FULL_TIPS = TipShortening()
 class PairGeometry:
     """Two external cylindrical gears on a fixed centre distance. Lengths [m], angles [rad], pinion first.
 
-    Tip diameters, shifts, widths, bores and allowances are those of the cold gears; ``growth`` is the
-    relative linear growth of each gear body, set by :meth:`warm`, and every property includes it.
+    Tip diameters, shifts, widths, bores and allowances are those at the reference temperature; ``expansion`` is the
+    relative linear expansion of each gear body, set by :meth:`warm`, and every property includes it.
     Whether they can mesh is asked by `dynamics.gear.pair.GearPair`.
     """
 
@@ -70,7 +70,7 @@ class PairGeometry:
     youngs_moduli: Pair = (206e9, 206e9)
     poisson_ratios: Pair = (0.3, 0.3)
     densities: Pair = (7830.0, 7830.0)
-    growth: Pair = (0.0, 0.0)
+    expansion: Pair = (0.0, 0.0)
 
     @classmethod
     def from_centre_distance(
@@ -136,14 +136,14 @@ class PairGeometry:
         """Pinion and wheel at their present size."""
         first, second = (
             CylindricalGear(
-                normal_module=self.normal_module * (1.0 + self.growth[i]),
+                normal_module=self.normal_module * (1.0 + self.expansion[i]),
                 pressure_angle=self.pressure_angle,
                 helix_angle=self.helix_angle,
                 teeth=self.teeth[i],
                 profile_shift=self.profile_shifts[i],
-                tip_diameter=self.tip_diameters[i] * (1.0 + self.growth[i]),
+                tip_diameter=self.tip_diameters[i] * (1.0 + self.expansion[i]),
                 rack=self.racks[i],
-                thickness_allowance=self.thickness_allowances[i] * (1.0 + self.growth[i]),
+                thickness_allowance=self.thickness_allowances[i] * (1.0 + self.expansion[i]),
             )
             for i in (0, 1)
         )
@@ -210,7 +210,7 @@ class PairGeometry:
 
     @property
     def base_pitch(self) -> float:
-        """Transverse base pitch p_bt, mean of both gears when they differ by growth [m]."""
+        """Transverse base pitch p_bt, mean of both gears when they differ by thermal expansion [m]."""
         return 0.5 * (self.gears[0].base_pitch + self.gears[1].base_pitch)
 
     @property
@@ -221,8 +221,8 @@ class PairGeometry:
     @property
     def rolling_radii(self) -> Pair:
         """Distances of the pitch point from the base tangent points, T1C and T2C [m]."""
-        slope = tan(self.working_pressure_angle)
-        return self.base_radii[0] * slope, self.base_radii[1] * slope
+        ratio = tan(self.working_pressure_angle)
+        return self.base_radii[0] * ratio, self.base_radii[1] * ratio
 
     @cached_property
     def path(self) -> PathOfContact:
@@ -309,21 +309,21 @@ class PairGeometry:
         expansion_coefficients: Pair = (11.5e-6, 11.5e-6),
         speed: float = 0.0,
     ) -> Self:
-        """The cold gears at body temperatures [K], on a hot centre distance [m], at pinion ``speed`` [rad/s].
+        """The gears at body temperatures [K], on the centre distance at temperature [m], at pinion ``speed`` [rad/s].
 
-        Growth is that of the free body: thermal strain plus the centrifugal strain of the reference circle.
-        Calling it on a warm pair starts again from the cold gears.
+        Expansion is that of the free body: thermal strain plus the centrifugal strain of the reference circle.
+        A pair that is warm already starts again from its reference temperature.
         """
         speeds = (speed, speed / self.gear_ratio)
-        growth_1, growth_2 = (
+        expansion_1, expansion_2 = (
             expansion_coefficients[i] * ((temperature_1, temperature_2)[i] - reference_temperature)
             + self.centrifugal_strain(i, speeds[i])
             for i in (0, 1)
         )
-        return replace(self, growth=(growth_1, growth_2), centre_distance=centre_distance)
+        return replace(self, expansion=(expansion_1, expansion_2), centre_distance=centre_distance)
 
     def centrifugal_strain(self, index: int, speed: float) -> float:
-        """Relative growth of the reference circle of gear ``index`` spinning at ``speed`` [rad/s].
+        """Relative centrifugal expansion of the reference circle of gear ``index`` spinning at ``speed`` [rad/s].
 
         Source: rotating disc of constant thickness with a free bore, plane stress (Timoshenko and Goodier,
         Theory of Elasticity, section 32): u/R = rho w^2 [(1 - nu) R^2 + (3 + nu) r_i^2] / (4 E).

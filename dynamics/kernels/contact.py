@@ -13,9 +13,9 @@ takes in either case. The damping grows with ``g = min(1, d / damping depth)``, 
 ``-mu F sgn(v_g) rho_1`` and ``+mu F sgn(v_g) rho_2`` with the sliding speed ``v_g = omega_1 rho_1 - omega_2
 rho_2``, ``rho_1 = T1C + s``, ``rho_2 = T2C - s``.
 
-All contacts of a flank stand beside each other in a table with N_PHASE rows, so that the compiler makes vector
-instructions of a loop over them. Teeth that are all alike are tabulated over the phase within one base pitch; with
-individual teeth every contact is looked up on the path and such a table is written for the moment.
+All contacts of a flank are columns of a table with N_PHASE rows, so that the compiler makes vector
+instructions of a loop over them. Equal teeth are tabulated over the phase within one base pitch; with
+individual teeth every contact is looked up on the path and such a table is written for each step.
 """
 
 import math
@@ -74,7 +74,7 @@ VECTOR = 8
 of no stiffness."""
 POSITIVE = (
     1 << 40
-) - 1  # masks a first index, so that the compiler knows it and what is added to be positive
+) - 1  # masks a first index, so that the compiler knows that it and sums with it are positive
 
 # NaN and infinity keep their meaning; only the order of sums is free
 LOOSE = {"reassoc", "contract", "nsz", "arcp"}
@@ -88,12 +88,12 @@ def inlined(function: Function) -> Function:
 
 
 class Flank(NamedTuple):
-    """Contacts of one flank in a table, and where the flank stands: what a pass over them needs besides the law."""
+    """Contacts of one flank in a table, and the position of the flank: what a sum over them needs besides the law."""
 
     first: int
     """First number of the table."""
     stride: int
-    """Contacts beside each other, the length of a row."""
+    """Contacts in a row of the table."""
     n: int
     """Contacts to look at."""
     place: float
@@ -118,20 +118,20 @@ def sliding_direction(ratio: float) -> float:
 
 @inlined
 def flank_in_phase(
-    book: Array, at: int, counts: Integers, starts: Integers, least: Array, m: int, sign: float, within: float,
+    space: Array, at: int, counts: Integers, starts: Integers, least: Array, m: int, sign: float, within: float,
     theta_1: float, omega_1: float, omega_2: float,
 ) -> Flank:  # fmt: skip
     """Return the contacts of one flank of mesh ``m``, all teeth alike, at the angle ``theta_1``.
 
-    ``book`` holds the numbers of the law, the columns of ``PackedMeshes.values``, from ``at`` on.
+    ``space`` holds the numbers of the law, the columns of ``PackedMeshes.values``, from ``at`` on.
 
     Contacts whose gap stays above ``within`` in this phase cell are left out (the last ones of the cell).
     """
     n_phases = counts[m, N_PHASES]
-    origin = book[at + PHASE] if sign > 0.0 else book[at + BACK_PHASE]
-    turned = (origin + sign * book[at + R1] * theta_1) * book[at + PER_PITCH]
+    origin = space[at + PHASE] if sign > 0.0 else space[at + BACK_PHASE]
+    turned = (origin + sign * space[at + R1] * theta_1) * space[at + PER_PITCH]
     place = (turned - np.floor(turned)) * n_phases
-    j = max(0, min(int(place), n_phases - 1))  # also where a run that left the finite numbers asks
+    j = max(0, min(int(place), n_phases - 1))  # also for a run that left the finite numbers
     place -= j
     row = ((counts[m, FRONT_AT] if sign > 0.0 else counts[m, BACK_AT]) + j) & POSITIVE
     start = starts[row] & POSITIVE
@@ -142,16 +142,16 @@ def flank_in_phase(
         while near < n and least[start + near] < within:
             near += VECTOR
         n = near
-    along = place * book[at + PHASE_STEP]
+    along = place * space[at + PHASE_STEP]
     return Flank(
-        N_PHASE * start, stride, n, place, book[at + PER_PHASE_STEP], book[at + ROLL_1] + along,
-        book[at + ROLL_2] - along, omega_1, omega_2,
+        N_PHASE * start, stride, n, place, space[at + PER_PHASE_STEP], space[at + ROLL_1] + along,
+        space[at + ROLL_2] - along, omega_1, omega_2,
     )  # fmt: skip
 
 
 @njit(cache=True, fastmath=LOOSE)
 def list_on_path(
-    book: Array, at: int, counts: Integers, cells: Array, shifts: Array, deviations: Array, scales: Array, m: int,
+    space: Array, at: int, counts: Integers, cells: Array, shifts: Array, deviations: Array, scales: Array, m: int,
     sign: float, theta_1: float, out: Array, first: int, stride: int, pairs: Integers,
 ) -> int:  # fmt: skip
     """Write the contacts of a flank with individual teeth into the table ``out`` from ``first`` on.
@@ -160,10 +160,10 @@ def list_on_path(
     and slice of each. Returns the number of contacts; the table goes on with zeros to a whole turn.
     """
     n_cells = counts[m, N_CELLS]
-    per_step = book[at + PER_STEP]
-    pitch = book[at + PITCH] * per_step
-    origin = (book[at + PHASE] if sign > 0.0 else book[at + BACK_PHASE]) - book[at + START]
-    travel = origin + sign * book[at + R1] * theta_1
+    per_step = space[at + PER_STEP]
+    pitch = space[at + PITCH] * per_step
+    origin = (space[at + PHASE] if sign > 0.0 else space[at + BACK_PHASE]) - space[at + START]
+    travel = origin + sign * space[at + R1] * theta_1
     deviation_1 = counts[m, DEVIATION_1_AT] if sign > 0.0 else counts[m, BACK_DEVIATION_1_AT]
     deviation_2 = counts[m, DEVIATION_2_AT] if sign > 0.0 else counts[m, BACK_DEVIATION_2_AT]
     offset_2 = counts[m, OFFSET_2] if sign > 0.0 else counts[m, OFFSET_2] + 1
@@ -199,7 +199,7 @@ def list_on_path(
             out[to + (ROW_K + 1) * stride] = dk * scale * per_step
             out[to + ROW_E * stride] = e
             out[to + (ROW_E + 1) * stride] = de * per_step
-            out[to + ROW_S * stride] = book[at + START] + place / per_step
+            out[to + ROW_S * stride] = space[at + START] + place / per_step
             if pairs.shape[1] > 0:
                 pairs[0, column] = pair
                 pairs[1, column] = i
@@ -214,11 +214,11 @@ def list_on_path(
 
 @inlined
 def flank_on_path(
-    book: Array, at: int, first: int, stride: int, found: int, omega_1: float, omega_2: float
+    space: Array, at: int, first: int, stride: int, found: int, omega_1: float, omega_2: float
 ) -> Flank:  # fmt: skip
     """Return the contacts that ``list_on_path`` has written, filled up to whole turns."""
     n = VECTOR * ((found + VECTOR - 1) // VECTOR)
-    return Flank(first, stride, n, 0.0, 1.0, book[at + ROLL_1], book[at + ROLL_2], omega_1, omega_2)
+    return Flank(first, stride, n, 0.0, 1.0, space[at + ROLL_1], space[at + ROLL_2], omega_1, omega_2)
 
 
 class Pressed(NamedTuple):
@@ -230,11 +230,11 @@ class Pressed(NamedTuple):
     a_2: float
     """sum F m_2"""
     force_x: float
-    """Slopes over the reach"""
+    """Derivatives over the reach"""
     a_1_x: float
     a_2_x: float
     force_v: float
-    """Slopes over the rate"""
+    """Derivatives over the rate"""
     a_1_v: float
     a_2_v: float
     kinked: float
@@ -244,7 +244,7 @@ class Pressed(NamedTuple):
 
 
 class _Pass(NamedTuple):
-    """What a pass over the contacts of a flank holds the same for all of them."""
+    """What is the same for all contacts of a flank."""
 
     f: float
     f_2: float
@@ -268,7 +268,7 @@ class _Pass(NamedTuple):
 
 @inlined
 def _press_contact(table: Array, c: int, stride: int, same: _Pass) -> Pressed:
-    """Return what the contact in column ``c`` does; slopes over the rate per damping time.
+    """Return what the contact in column ``c`` does; derivatives over the rate per damping time.
 
     The lever factors ``m_1 = 1 - e' +- mu rho_1 / r_b1`` and ``m_2 = 1 +- mu rho_2 / r_b2`` carry the slope of the
     gap and the friction.
@@ -307,18 +307,18 @@ def _press_contact(table: Array, c: int, stride: int, same: _Pass) -> Pressed:
 
 @inlined
 def press_flank(
-    table: Array, flank: Flank, book: Array, at: int, sign: float, reach: float, rate: float, omega_1: float,
+    table: Array, flank: Flank, space: Array, at: int, sign: float, reach: float, rate: float, omega_1: float,
     guard: float,
 ) -> Pressed:  # fmt: skip
     """Sum the contacts of one flank, pressed by ``reach`` and closing with ``rate``, both seen from this flank."""
-    damp_time, per_reversal, closes = book[at + DAMP_TIME], book[at + PER_REVERSAL], book[at + CLOSING]
+    damp_time, per_reversal, closes = space[at + DAMP_TIME], space[at + PER_REVERSAL], space[at + CLOSING]
     same = _Pass(
         flank.place, 2.0 * flank.place, 3.0 * flank.place * flank.place, reach, damp_time * rate,
-        damp_time * closes * sign * book[at + R1] * omega_1 * flank.per_metre, book[at + DERIVATIVE] * flank.per_metre,
-        (1.0 - closes) * book[at + DERIVATIVE] * flank.per_metre,
+        damp_time * closes * sign * space[at + R1] * omega_1 * flank.per_metre,
+        space[at + DERIVATIVE] * flank.per_metre, (1.0 - closes) * space[at + DERIVATIVE] * flank.per_metre,
         (flank.omega_1 * flank.roll_1 - flank.omega_2 * flank.roll_2) * per_reversal,
-        (flank.omega_1 + flank.omega_2) * per_reversal, sign * book[at + MU_1], sign * book[at + MU_2], flank.roll_1,
-        flank.roll_2, book[at + PER_DEPTH], book[at + DEPTH], guard,
+        (flank.omega_1 + flank.omega_2) * per_reversal, sign * space[at + MU_1], sign * space[at + MU_2], flank.roll_1,
+        flank.roll_2, space[at + PER_DEPTH], space[at + DEPTH], guard,
     )  # fmt: skip
     first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     force, a_1, a_2 = 0.0, 0.0, 0.0
@@ -352,7 +352,7 @@ def press_flank(
 
 
 class MeshContact(NamedTuple):
-    """One column of a phase table at the place of its flank; slopes over the fraction of a cell."""
+    """One column of a phase table at the place of its flank; derivatives over the fraction of a cell."""
 
     position: float
     stiffness: float
@@ -377,13 +377,13 @@ def contact_at(table: Array, c: int, stride: int, f: float) -> MeshContact:
 
 @inlined
 def flank_powers(
-    table: Array, flank: Flank, book: Array, at: int, sign: float, reach: float, rate: float, omega_1: float
+    table: Array, flank: Flank, space: Array, at: int, sign: float, reach: float, rate: float, omega_1: float
 ) -> tuple[float, float, float]:
     """Return friction power, damping power and damping force of one flank, arguments as in ``press_flank``."""
     friction_power, damping_power, damping_force = 0.0, 0.0, 0.0
     f = flank.place
-    damp_time, per_depth = book[at + DAMP_TIME], book[at + PER_DEPTH]
-    path_speed = book[at + CLOSING] * sign * book[at + R1] * omega_1 * flank.per_metre
+    damp_time, per_depth = space[at + DAMP_TIME], space[at + PER_DEPTH]
+    path_speed = space[at + CLOSING] * sign * space[at + R1] * omega_1 * flank.per_metre
     first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     for i in range(flank.n):
         s, k, _, gap, gap_slope = contact_at(table, first + i, stride, f)
@@ -396,7 +396,7 @@ def flank_powers(
         force = force if (depth > 0.0 and force > 0.0) else 0.0
         damped = force - k * depth
         sliding = flank.omega_1 * (flank.roll_1 + s) - flank.omega_2 * (flank.roll_2 - s)
-        friction_power += force * sliding_direction(sliding * book[at + PER_REVERSAL]) * sliding
+        friction_power += force * sliding_direction(sliding * space[at + PER_REVERSAL]) * sliding
         damping_power += damped * closing
         damping_force += damped
-    return friction_power * book[at + FRICTION], damping_power, damping_force
+    return friction_power * space[at + FRICTION], damping_power, damping_force

@@ -35,7 +35,7 @@ from dynamics.kernels.contact import (
     sliding_direction,
 )
 
-# compiled from sources 896f0027
+# compiled from sources 1edddb12
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

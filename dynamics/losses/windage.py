@@ -152,7 +152,7 @@ def gear_windage(place: str, gear: GearRotor, omega: float, mist: Mist) -> Loss:
 
 
 def shaft_windage(place: str, radius: float, length: float, omega: float, mist: Mist) -> Loss:
-    """Windage of a smooth cylinder turning in the open [W]: P = pi C rho omega^3 R^4 L.
+    """Windage of a smooth cylinder rotating in the open [W]: P = pi C rho omega^3 R^4 L.
 
     1 / sqrt(C) = -0.6 + 4.07 lg(Re sqrt(C)); laminar C = 4 / Re below Re = rho omega R^2 / eta of about 60.
 

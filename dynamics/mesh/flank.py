@@ -280,17 +280,17 @@ def _deviations(
     if not gear.pitch_deviations and not gear.run_out and not gear.profile_slopes:
         return np.zeros((1, len(path))), None
     place = np.array(gear.pitch_deviations or (0.0,) * teeth)[:, None]
-    slope = 0.5 * np.array(gear.profile_slopes or (0.0,) * teeth)[:, None] * _along_profile(pair, index, path)
+    tilt = 0.5 * np.array(gear.profile_slopes or (0.0,) * teeth)[:, None] * _along_profile(pair, index, path)
     tooth = (np.arange(teeth) - first_tooth)[:, None]
     per_turn = pair.base_pitch / (2.0 * pi)
     rotation = ((path - phases[0]) / per_turn + 2.0 * pi * tooth) / teeth
-    front = -place - gear.run_out * np.cos(rotation - gear.run_out_phase) - slope
+    front = -place - gear.run_out * np.cos(rotation - gear.run_out_phase) - tilt
     if not gear.pitch_deviations and not gear.run_out:
         return front, None
     pair_of_tooth = tooth - index  # a tooth of the wheel is on the back in the pair before
     rotation = ((phases[1] - path) / per_turn + 2.0 * pi * pair_of_tooth) / teeth
     later = gear.run_out_phase + (2.0 - 4.0 * index) * pair.working_pressure_angle
-    return front, place + gear.run_out * np.cos(rotation - later) - slope
+    return front, place + gear.run_out * np.cos(rotation - later) - tilt
 
 
 def default_slices(

@@ -2,7 +2,7 @@
 
 The dynamic torque of a gearbox is what its mesh transmits at the pinion: ``r_b1`` times the front less the
 back normal force in the transverse line of action, without friction and derivative torques. That is the
-load of the teeth, which ISO 6336 multiplies by K_V; the torque in a shaft beside it differs by the inertia
+load of the teeth, which ISO 6336 multiplies by K_V; the torque in an adjacent shaft differs by the inertia
 between.
 """
 

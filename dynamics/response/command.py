@@ -1,4 +1,4 @@
-"""What the rig is told to do in a time run: speed and bracing over time, motor, drag torques, sampling."""
+"""Commands of a time run: speed and bracing over time, motor, drag torques, sampling."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Command:
-    """What the rig is told to do, on a slow grid, linear between its points.
+    """Speed and bracing of the rig, on a coarse time grid, linear between its points.
 
     time : (n,) increasing [s]; speed : (n,) of the pinion of the first mesh [rad/s]
     torque : (n,) mean dynamic torque of the first mesh, negative on the back flank [N m] (torque-controlled
@@ -47,7 +47,7 @@ class MotorDrive:
     """Motor of the rig in a time run.
 
     torque_limit : of the motor [N m], or one for every time of the command, each from its time on; changes count
-        from the nearest slot end
+        from the nearest window end
     speed_control : controller; default ``default_speed_control``
     """
 
@@ -60,7 +60,7 @@ class Sampling:
     """Steps of a time run and what it keeps.
 
     sample_rate : of controller and kept channels [Hz]; substeps : internal steps per sample, 8 or more
-    slot : length of the envelope slots [s]
+    window : length of the envelope windows [s]
     lift_off_share : a gap without contact counts from this share of the mesh period on [-]
     keep_channels : keep the torques at the sample rate
     keep_accounts : integrate the energy of every joint and contact; without it the run is about twice as fast and
@@ -72,7 +72,7 @@ class Sampling:
 
     sample_rate: float = 40e3
     substeps: int = 8
-    slot: float = 0.01
+    window: float = 0.01
     lift_off_share: float = 0.05
     keep_channels: bool = True
     keep_accounts: bool = True

@@ -61,8 +61,8 @@ class BalanceProblem:
     """Everything that stays the same over speed.
 
     load : mean torque asked of a mesh, or the twist that is held
-    shaft_torques : torques that swing with the turn of a shaft; ratios : (n,) speed of each freedom of the drivetrain
-        per speed of the drive freedom
+    shaft_torques : torques that swing with the rotation of a shaft
+    ratios : (n,) speed of each freedom of the drivetrain per speed of the drive freedom
     """
 
     model: PortModel

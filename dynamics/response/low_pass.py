@@ -24,7 +24,7 @@ class LowPass:
         self._started = False
 
     def decimate(self, values: Array) -> Array:
-        """Return the samples that can be told after ``values`` (channels, steps); they lag by the filter length."""
+        """Return the samples that are known after ``values`` (channels, steps); they lag by the filter length."""
         if not self._started:
             # as if the first value had always been there; samples sit at the last step of each group
             ahead = self._half - self._factor + 1

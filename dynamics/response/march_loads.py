@@ -54,7 +54,7 @@ def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]
 
 
 def drag_loads(system: LinearSystem, drags: Sequence[str]) -> Array:
-    """Return the loads (n, n_places) of named drag torques in fours, see ``drag_places``; zeros where no drag stands.
+    """Return the loads (n, n_places) of named drag torques in fours, see ``drag_places``; zeros where there is no drag.
 
     Raises DynamicsInputError for unknown names.
     """

@@ -55,7 +55,7 @@ class PeriodicResponse:
     drag_loss : name -> mean power of each drag torque [W]
     drive_power : motor torque times mean speed of its freedom [W]; bracing_power : of the twist [W]
     steady : the test was met; residual : change of the torque over a block, extrapolated, relative to its
-        peak-to-peak value; periods : marched; unsettled_steps : contact iterations that ended early
+        peak-to-peak value; periods : marched; unconverged_steps : contact iterations that ended early
     end : state at the end of the period, a start for a neighbouring speed
     """
 
@@ -84,7 +84,7 @@ class PeriodicResponse:
     steady: bool
     residual: float
     periods: int
-    unsettled_steps: int
+    unconverged_steps: int
     end: DriveState
     warnings: tuple[str, ...]
 
@@ -273,9 +273,9 @@ class TimeIntegration:
                 f"periods, limit {self.settings.tolerance:.0e}; allow a longer time or another period "
                 "(subharmonic motion has none of this length)"
             )
-        if march.unsettled:
+        if march.unconverged:
             warnings.append(
-                f"{march.unsettled} contact iterations ended early, limit 0; use more internal steps"
+                f"{march.unconverged} contact iterations ended early, limit 0; use more internal steps"
             )
         return PeriodicResponse(
             speed=speed,
@@ -303,7 +303,7 @@ class TimeIntegration:
             steady=search.steady,
             residual=search.residual,
             periods=done,
-            unsettled_steps=march.unsettled,
+            unconverged_steps=march.unconverged,
             end=march.state(),
             warnings=tuple(warnings),
         )

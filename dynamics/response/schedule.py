@@ -83,7 +83,7 @@ class Stage:
         if self.held:
             raise ScheduleError(
                 f"stage {self.name!r}: is held while its {self.kind} changes: a steady state needs constant "
-                "speed and torque; mark a stage of kind 'hold' instead"
+                "speed and torque; state 'held' at a stage of kind 'hold' instead"
             )
 
     @property
@@ -206,7 +206,7 @@ class RampRule:
 def ramp_rules(schedule: Schedule, limits: RampLimits, samples_per_stage: int = 401) -> tuple[RampRule, ...]:
     """The four ramp rules of P2 over the whole schedule, ramp-down included.
 
-    1. While the rig turns the torque is at least the standstill torque, so that the flanks stay closed.
+    1. While the rig rotates the torque is at least the standstill torque, so that the flanks stay closed.
     2. Below the transition speed the torque is at most the start torque limit of the bearings.
     3. Between transition speed and test speed it is at most the run-up share of the test torque.
     4. It is at most the test torque, which is reached at test speed only.

@@ -130,7 +130,7 @@ class TimeMarch:
         self.model = model or march_model(system, laws, drags, settings.cutoff)
         self.propagator = discretise(self.model, self.step, substeps=self.substeps, with_losses=accounts)
         self.packed = pack_meshes(laws, derivative_torques=settings.derivative_torques)
-        self.unsettled = 0
+        self.unconverged = 0
         self._marched = 0
         self._names = system.dofs
         self._record_all = settings.record_all
@@ -231,7 +231,7 @@ class TimeMarch:
         )
         history = np.empty((n_meshes, 6 if self._record_all else 1, n_samples * self.substeps))
         samples = np.empty((n_samples, 2 * n_slow + n_drags + 1))
-        orders = kernels.Orders(
+        commands = kernels.Commands(
             given=np.ascontiguousarray(given, float),
             offsets=held,
             control=control,
@@ -239,10 +239,10 @@ class TimeMarch:
                 torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
             ),
         )
-        self.unsettled += kernels.march(
+        self.unconverged += kernels.march(
             self.packed,
             self.propagator.modes,
-            orders,
+            commands,
             self._carried,
             self.step,
             self.substeps,
@@ -278,7 +278,7 @@ class TimeMarch:
             f"the march left the finite numbers: mesh of {pinion} and {wheel}, "
             f"{(self._marched * self.substeps + step) * self.step:.6g} s after its start, last drive speed "
             f"{speed:.6g} rpm; slowest elastic mode {frequency:.4g} Hz, largest at {where}, step {self.step:.3g} s. "
-            "Correct inertia, stiffness or torque that is orders of magnitude off there, or take more internal "
+            "Correct inertia, stiffness or torque that is commands of magnitude off there, or take more internal "
             "steps"
         )
 

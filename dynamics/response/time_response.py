@@ -26,7 +26,7 @@ from dynamics.response.command import (
     default_speed_control,
     drag_tables,
 )
-from dynamics.response.envelopes import LiftOff, Slots, SlotStatistics
+from dynamics.response.envelopes import EnvelopeWindows, LiftOff, WindowStatistics
 from dynamics.response.initial_state import pinion_ratios, wound_state
 from dynamics.response.low_pass import LowPass
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings, TorqueControl
@@ -68,19 +68,19 @@ class EnergyBalance:
 
 @dataclass(frozen=True, kw_only=True)
 class TimeResponse:
-    """Response over a schedule; n samples at ``1 / sample_time``, slots of ``slots.duration``.
+    """Response over a schedule; n samples at ``1 / sample_time``, windows of ``windows.duration``.
 
     time : (n,) [s]; speed : (n,) of the drive freedom, as speed of the first pinion [rad/s]
     speed_command : (n,) [rad/s]; drive_torque : (n,) [N m]; twist : (n,) [rad]
     angle : (n,) of the first pinion [rad]; drag_torque : name -> (n,) [N m]
     torque : (n_meshes, n) dynamic torque r_b1 (front - back force) after the low-pass [N m]; no columns if
         the channels were not kept
-    slots : least, mean and greatest dynamic torque of each mesh and time without contact, per slot
+    windows : least, mean and greatest dynamic torque of each mesh and time without contact, per window
     lift_off : intervals in which a mesh lost contact for longer than the asked share of a mesh period
     energy : the balance of the run, None if no accounts were kept
     drive_limited_share : share of samples at the torque limit of the motor
     speed_missed : lag behind the speed command at the end of the schedule [rad/s]
-    end : state at the end; unsettled_steps : contact iterations that ended early
+    end : state at the end; unconverged_steps : contact iterations that ended early
     """
 
     time: Array
@@ -91,13 +91,13 @@ class TimeResponse:
     angle: Array
     drag_torque: dict[str, Array]
     torque: Array
-    slots: Slots
+    windows: EnvelopeWindows
     lift_off: tuple[LiftOff, ...]
     energy: EnergyBalance | None
     drive_limited_share: float
     speed_missed: float
     end: DriveState
-    unsettled_steps: int
+    unconverged_steps: int
     warnings: tuple[str, ...] = field(default=())
 
     def mean_speed(self, end: float, window: float) -> float:
@@ -179,9 +179,9 @@ def run_schedule(
     inertia = float(system.inertia @ ratios**2) / drive_ratio**2
 
     n_samples = max(1, round(float(command.time[-1] - command.time[0]) * sample_rate))
-    per_slot = max(1, round(sampling.slot * sample_rate))
+    per_window = max(1, round(sampling.window * sample_rate))
     pinions = [ratios[ports[0]] for ports in system.mesh_ports]
-    statistics = SlotStatistics(laws, per_slot * substeps, march.step, sampling.lift_off_share, pinions)
+    statistics = WindowStatistics(laws, per_window * substeps, march.step, sampling.lift_off_share, pinions)
     low_pass = LowPass(len(laws), substeps)
     energy_before = march.energy()
     columns: list[tuple[Array, ...]] = []
@@ -189,7 +189,7 @@ def run_schedule(
     radius = np.array([law.base_radius_1 for law in laws])[:, None]
     limit_at = np.empty(n_samples)
     drive_angle = np.zeros(1)
-    for first, count, limit in _chunks(command.time, limits, n_samples, sample_rate, per_slot):
+    for first, count, limit in _chunks(command.time, limits, n_samples, sample_rate, per_window):
         limit_at[first : first + count] = limit
         control = replace(control, torque_limit=limit)
         at = command.time[0] + np.arange(first, first + count + 1) / sample_rate
@@ -229,8 +229,10 @@ def run_schedule(
     speed = drive_speed / drive_ratio
     limited = np.abs(slow[:, 0]) >= limit_at * (1.0 - 1e-9)
     warnings = []
-    if march.unsettled:
-        warnings.append(f"{march.unsettled} contact iterations ended early, limit 0; use more internal steps")
+    if march.unconverged:
+        warnings.append(
+            f"{march.unconverged} contact iterations ended early, limit 0; use more internal steps"
+        )
     return TimeResponse(
         time=command.time[0] + np.arange(1, n_samples + 1) / sample_rate,
         speed=speed,
@@ -240,7 +242,7 @@ def run_schedule(
         angle=angle,
         drag_torque=dict(zip(names, braking.T)),
         torque=np.hstack(torques) if sampling.keep_channels else np.empty((len(laws), 0)),
-        slots=statistics.slots(float(command.time[0])),
+        windows=statistics.windows(float(command.time[0])),
         lift_off=statistics.lift_off(float(command.time[0])),
         energy=None
         if not sampling.keep_accounts
@@ -256,19 +258,19 @@ def run_schedule(
         drive_limited_share=float(np.mean(limited)),
         speed_missed=float(command_speed[-1] - speed[-1]),
         end=march.state(),
-        unsettled_steps=march.unsettled,
+        unconverged_steps=march.unconverged,
         warnings=tuple(warnings),
     )
 
 
 def _chunks(
-    time: Array, limits: Array, n_samples: int, sample_rate: float, per_slot: int
+    time: Array, limits: Array, n_samples: int, sample_rate: float, per_window: int
 ) -> Iterator[tuple[int, int, float]]:
-    """(first sample, count, torque limit) of blocks that begin at a slot, each with one torque limit."""
+    """(first sample, count, torque limit) of blocks that begin at a window, each with one torque limit."""
     changes = np.flatnonzero(np.diff(limits)) + 1
-    slots = np.rint((time[changes] - time[0]) * sample_rate / per_slot).astype(int)
-    borders = np.unique(np.concatenate([[0], slots * per_slot, [n_samples]]).clip(0, n_samples))
-    chunk = per_slot * max(1, 8192 // per_slot)
+    windows = np.rint((time[changes] - time[0]) * sample_rate / per_window).astype(int)
+    borders = np.unique(np.concatenate([[0], windows * per_window, [n_samples]]).clip(0, n_samples))
+    chunk = per_window * max(1, 8192 // per_window)
     for start, end in pairwise(borders.tolist()):
         middle = time[0] + 0.5 * (start + end) / sample_rate
         limit = float(limits[np.searchsorted(time, middle, side="right") - 1])

@@ -167,7 +167,7 @@ def gearbox_dynamics(rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopM
         },
         stage_loads=stage_loads(rig, run.ramp, mesh),
         dynamic_torque_peak_Nm=max(
-            torque_peak(run.ramp.slots, mesh),
+            torque_peak(run.ramp.windows, mesh),
             *(float(p.last.response.maximum[mesh]) for p in run.points if p.last.response is not None),
         ),
         iso_factors=_flat(asdict(iso)),

@@ -124,7 +124,7 @@ def march_time(
         before = process_time()
         march.advance(given)
         best = min(best, (process_time() - before) / samples / substeps)
-        assert march.unsettled == 0
+        assert march.unconverged == 0
     return best
 
 

@@ -165,7 +165,7 @@ def test_warming_twice_starts_from_the_cold_gears():
     once = cold.warm(400.0, 390.0, 99.6e-3, speed=900.0)
     assert cold.warm(440.0, 440.0, 99.7e-3).warm(400.0, 390.0, 99.6e-3, speed=900.0) == once
     assert once.base_pitch_difference == pytest.approx(
-        cold.base_pitch * (once.growth[1] - once.growth[0]), rel=1e-9
+        cold.base_pitch * (once.expansion[1] - once.expansion[0]), rel=1e-9
     )
 
 
@@ -175,8 +175,8 @@ def test_centrifugal_growth_of_a_solid_and_a_bored_disc():
     expected = 7830 * speed**2 * (0.7 * radius**2 + 3.3 * bore**2) / (4 * 206e9)
     assert pair.centrifugal_strain(0, speed) == pytest.approx(expected)
     still, spinning = (pair.warm(293.15, 293.15, 99.5e-3, speed=w) for w in (0.0, speed))
-    assert spinning.growth[0] == pytest.approx(expected)
-    assert spinning.growth[1] == pytest.approx(pair.centrifugal_strain(1, speed * 99 / 102))
+    assert spinning.expansion[0] == pytest.approx(expected)
+    assert spinning.expansion[1] == pytest.approx(pair.centrifugal_strain(1, speed * 99 / 102))
     assert spinning.transverse_backlash < still.transverse_backlash - 1e-6
 
 
@@ -306,6 +306,6 @@ def test_centre_distance_and_shift_sum_are_inverse(z, sum_shift, helix, split):
     assert pair.transverse_backlash == pytest.approx(0.0, abs=1e-12)
     assert sum(pair.rolling_radii) == pytest.approx(distance * sin(pair.working_pressure_angle))
     assert pair.path.start > pair.path.tangent_1
-    assert replace(pair, growth=(1e-3, 1e-3), centre_distance=distance * 1.001).transverse_backlash == (
+    assert replace(pair, expansion=(1e-3, 1e-3), centre_distance=distance * 1.001).transverse_backlash == (
         pytest.approx(0.0, abs=1e-12)
     )

@@ -8,7 +8,7 @@ import pytest
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.response.command import Command, DragCurve, MotorDrive, Sampling
-from dynamics.response.envelopes import SlotStatistics, split_lift_off
+from dynamics.response.envelopes import WindowStatistics, split_lift_off
 from dynamics.response.low_pass import LowPass
 from dynamics.response.time_response import TimeResponse, run_schedule
 from tests.mesh_example import spur_law
@@ -38,11 +38,11 @@ def test_speed_and_torque_follow_the_command() -> None:
     response = run()
     assert len(response.time) == 16000
     assert response.time[-1] == pytest.approx(0.4)
-    settled = response.slots.time > 0.36
+    settled = response.windows.time > 0.36
     # a controller of 2 Hz still carries the end of so short a ramp
     assert response.speed[-1] == pytest.approx(1500.0 * RPM, rel=0.03)
-    np.testing.assert_allclose(response.slots.mean[0, settled], 90.0, rtol=0.05)
-    np.testing.assert_allclose(response.slots.mean[0, response.slots.time < 0.04], 20.0, rtol=0.01)
+    np.testing.assert_allclose(response.windows.mean[0, settled], 90.0, rtol=0.05)
+    np.testing.assert_allclose(response.windows.mean[0, response.windows.time < 0.04], 20.0, rtol=0.01)
     assert response.lift_off == () or response.lift_off[0].longest_gap > 0.0
 
 
@@ -60,13 +60,13 @@ def test_friction_costs_work() -> None:
 
 def test_envelope_holds_the_samples() -> None:
     response = run()
-    per_slot = round(response.slots.duration * 40e3)
+    per_window = round(response.windows.duration * 40e3)
     for mesh in range(2):
-        rows = response.torque[mesh].reshape(-1, per_slot)[5:-1]
-        reach = response.slots.greatest[mesh, 5:-1] - response.slots.least[mesh, 5:-1]
+        rows = response.torque[mesh].reshape(-1, per_window)[5:-1]
+        reach = response.windows.greatest[mesh, 5:-1] - response.windows.least[mesh, 5:-1]
         # the low-pass may overshoot a peak by its ripple, no more
-        assert np.all(rows.max(axis=1) <= response.slots.greatest[mesh, 5:-1] + 0.1 * reach + 1e-6)
-        np.testing.assert_allclose(rows.mean(axis=1), response.slots.mean[mesh, 5:-1], atol=0.02 * 90.0)
+        assert np.all(rows.max(axis=1) <= response.windows.greatest[mesh, 5:-1] + 0.1 * reach + 1e-6)
+        np.testing.assert_allclose(rows.mean(axis=1), response.windows.mean[mesh, 5:-1], atol=0.02 * 90.0)
 
 
 def test_motor_at_its_limit_misses_the_speed() -> None:
@@ -105,7 +105,7 @@ def test_imposed_offset_moves_the_torque_in_a_held_loop() -> None:
     offsets[2:, 0] = 10e-6
     twist = np.full(4, 6e-3)
     command = Command(time=time, speed=np.full(4, 20.0), twist=twist, offsets=offsets)
-    means = run_schedule(system, laws, command, motor=MotorDrive(torque_limit=50.0)).slots.mean[0]
+    means = run_schedule(system, laws, command, motor=MotorDrive(torque_limit=50.0)).windows.mean[0]
     assert means[-1] - means[1] > 1.0
 
 
@@ -139,36 +139,36 @@ def test_each_time_has_its_own_torque_limit() -> None:
     assert response.drive_limited_share > 0.9
 
 
-def test_slots_carry_gaps_over_their_borders() -> None:
+def test_windows_carry_gaps_over_their_borders() -> None:
     law = spur_law()
     torque = np.full((1, 400), 50.0)
     torque[0, 90:210] = 0.0
     torque[0, 300] = -20.0
     speed = np.full(40, 100.0)
-    slots = SlotStatistics([law], 100, 1e-5, 0.05)
-    slots.add(torque[:, :200], speed[:20])
-    slots.add(torque[:, 200:], speed[20:])
-    result = slots.slots(2.0)
+    windows = WindowStatistics([law], 100, 1e-5, 0.05)
+    windows.add(torque[:, :200], speed[:20])
+    windows.add(torque[:, 200:], speed[20:])
+    result = windows.windows(2.0)
     np.testing.assert_allclose(result.time, 2.0 + 1e-3 * np.arange(1, 5))
     np.testing.assert_allclose(result.out_of_contact[0], [0.1, 1.0, 0.1, 0.0])
     np.testing.assert_allclose(result.longest_gap[0], [1.1e-3, 1.1e-3, 1.2e-3, 0.0])
     np.testing.assert_allclose(result.least[0], [0.0, 0.0, 0.0, -20.0])
-    (lost,) = slots.lift_off(2.0)
+    (lost,) = windows.lift_off(2.0)
     assert (lost.mesh, lost.start, lost.end) == (0, pytest.approx(2.0), pytest.approx(2.003))
     assert lost.longest_gap == pytest.approx(1.2e-3)
 
 
 def test_a_loss_of_contact_is_shared_out_over_the_stages_it_runs_through() -> None:
-    """80 % of the first slot free, 20 % of the second, then closed and lost again: cut between the two slots."""
-    slots = SlotStatistics([spur_law()], 100, 1e-5, 0.05)
+    """80 % of the first window free, 20 % of the second, then closed and lost again: cut between the two windows."""
+    windows = WindowStatistics([spur_law()], 100, 1e-5, 0.05)
     torque = np.full((1, 400), 50.0)
     torque[0, 20:120] = 0.0
     torque[0, 310:390] = 0.0
-    slots.add(torque, np.full(40, 100.0))
-    whole = slots.lift_off(2.0)
+    windows.add(torque, np.full(40, 100.0))
+    whole = windows.lift_off(2.0)
     assert [one.start for one in whole] == pytest.approx([2.0, 2.003])
     assert [one.end for one in whole] == pytest.approx([2.002, 2.004])
-    first, second, third = split_lift_off(slots.slots(2.0), whole, [0.0, 2.001, 5.0])
+    first, second, third = split_lift_off(windows.windows(2.0), whole, [0.0, 2.001, 5.0])
     assert (first.start, first.end, second.start, second.end) == pytest.approx((2.0, 2.001, 2.001, 2.002))
     assert (first.out_of_contact, second.out_of_contact) == pytest.approx((0.8, 0.2))
     assert (third.start, third.out_of_contact) == pytest.approx((2.003, 0.8))
@@ -181,9 +181,9 @@ def test_a_gap_is_measured_by_the_mesh_period_of_its_own_pair() -> None:
     gap = round(0.1 * period / 1e-6)
     torque = np.full((2, 4000), 50.0)
     torque[:, 1000 : 1000 + gap] = 0.0
-    slots = SlotStatistics([law, law], 4000, 1e-6, 0.05, (1.0, 1.0 / 3.0))
-    slots.add(torque, np.full(40, 100.0))
-    assert [lost.mesh for lost in slots.lift_off(0.0)] == [0]
+    windows = WindowStatistics([law, law], 4000, 1e-6, 0.05, (1.0, 1.0 / 3.0))
+    windows.add(torque, np.full(40, 100.0))
+    assert [lost.mesh for lost in windows.lift_off(0.0)] == [0]
 
 
 @pytest.mark.parametrize(

@@ -74,7 +74,7 @@ def test_march_with_shared_bodies(ports: list[tuple[int, int]], shaft: int) -> N
             loads=DriveLoads(drive_torque=torque),
         )
         march.advance(np.tile([torque, brake, 0.0, 0.0], (steps, 1)))
-        assert march.unsettled == 0
+        assert march.unconverged == 0
         errors.append(
             np.abs(march.state().speeds - exact.y[n:, -1]).max() / np.ptp(exact.y[n:], axis=1).max()
         )

@@ -75,7 +75,7 @@ def marched(
 def test_constant_drag_leaves_the_mode_of_a_turning_shaft_alone(rate: float) -> None:
     march, vibration = marched(start(SPEED, 5.0), np.full(513, 1e-3), rate, STEPS)
     assert vibration == pytest.approx(5.0, rel=1e-3)
-    assert march.unsettled == 0
+    assert march.unconverged == 0
 
 
 @pytest.mark.parametrize("rate", RATES)

@@ -44,7 +44,7 @@ def drift(
     march.advance(np.tile([TORQUE, brake, 0.0, 0.0], (round(meshes / (rpm / 60.0 * TEETH[0]) / step), 1)))
     turned = march.state().angles - start.angles
     work = TORQUE * turned[0] - brake * turned[1]
-    assert march.unsettled == 0
+    assert march.unconverged == 0
     return float(march.energy() - before - work) / (0.5 * force * deflection)
 
 

@@ -51,7 +51,7 @@ def sweep(frequencies: tuple[float, ...], cycles: int = 120) -> np.ndarray:
         displacement = march.advance(given).approach[0, -STEPS:] - law().offset
         state = march.state()
         rows.append((0.5 * np.ptp(displacement), displacement.min(), displacement.mean()))
-        assert march.unsettled == 0
+        assert march.unconverged == 0
     return np.array(rows).T
 
 
