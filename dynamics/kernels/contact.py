@@ -108,6 +108,33 @@ class Flank(NamedTuple):
     omega_2: float
 
 
+class Pressing(NamedTuple):
+    """How the gears press a flank, seen from this flank."""
+
+    sign: float
+    """+1 in front, -1 on the back."""
+    reach: float
+    """Approach less the play [m]."""
+    rate: float
+    """Rate of the approach [m/s]."""
+    omega_1: float
+    """Speed of the pinion [rad/s]."""
+
+
+class ContactState(NamedTuple):
+    """Motion at which the contacts of a flank are chosen."""
+
+    sign: float
+    """+1 in front, -1 on the back."""
+    within: float
+    """Contacts whose gap stays above it in the phase cell are left out [m]."""
+    theta_1: float
+    """Angle of the pinion [rad]."""
+    omega_1: float
+    """Speeds that decide on the direction of sliding [rad/s]."""
+    omega_2: float
+
+
 @inlined
 def sliding_direction(ratio: float) -> float:
     """Return the smooth sign of ``ratio``: a cubic inside +-1, exactly +-1 outside."""
@@ -118,18 +145,18 @@ def sliding_direction(ratio: float) -> float:
 
 @inlined
 def flank_in_phase(
-    space: Array, at: int, counts: Integers, starts: Integers, least: Array, m: int, sign: float, within: float,
-    theta_1: float, omega_1: float, omega_2: float,
+    space: Array, at: int, meshes: PackedMeshes, m: int, state: ContactState
 ) -> Flank:  # fmt: skip
-    """Return the contacts of one flank of mesh ``m``, all teeth alike, at the angle ``theta_1``.
+    """Return the contacts of one flank of mesh ``m`` with equal teeth.
 
     ``space`` holds the numbers of the law, the columns of ``PackedMeshes.values``, from ``at`` on.
 
-    Contacts whose gap stays above ``within`` in this phase cell are left out (the last ones of the cell).
+    Contacts whose gap stays above ``state.within`` in this phase cell are left out (the last ones of the cell).
     """
+    counts, starts, least, sign = meshes.counts, meshes.phase_starts, meshes.phase_least, state.sign
     n_phases = counts[m, N_PHASES]
     origin = space[at + PHASE] if sign > 0.0 else space[at + BACK_PHASE]
-    turned = (origin + sign * space[at + R1] * theta_1) * space[at + PER_PITCH]
+    turned = (origin + sign * space[at + R1] * state.theta_1) * space[at + PER_PITCH]
     place = (turned - np.floor(turned)) * n_phases
     j = max(0, min(int(place), n_phases - 1))  # also for a run that left the finite numbers
     place -= j
@@ -139,13 +166,13 @@ def flank_in_phase(
     stride = n
     if n > 1:
         near = 0
-        while near < n and least[start + near] < within:
+        while near < n and least[start + near] < state.within:
             near += VECTOR
         n = near
     along = place * space[at + PHASE_STEP]
     return Flank(
         N_PHASE * start, stride, n, place, space[at + PER_PHASE_STEP], space[at + ROLL_1] + along,
-        space[at + ROLL_2] - along, omega_1, omega_2,
+        space[at + ROLL_2] - along, state.omega_1, state.omega_2,
     )  # fmt: skip
 
 
@@ -307,10 +334,10 @@ def _press_contact(table: Array, c: int, stride: int, same: _Pass) -> Pressed:
 
 @inlined
 def press_flank(
-    table: Array, flank: Flank, space: Array, at: int, sign: float, reach: float, rate: float, omega_1: float,
-    guard: float,
-) -> Pressed:  # fmt: skip
-    """Sum the contacts of one flank, pressed by ``reach`` and closing with ``rate``, both seen from this flank."""
+    table: Array, flank: Flank, space: Array, at: int, pressing: Pressing, guard: float
+) -> Pressed:
+    """Sum the contacts of one flank; kinks are looked for within ``guard`` of depth [m]."""
+    sign, reach, rate, omega_1 = pressing.sign, pressing.reach, pressing.rate, pressing.omega_1
     damp_time, per_reversal, closes = space[at + DAMP_TIME], space[at + PER_REVERSAL], space[at + CLOSING]
     same = _Pass(
         flank.place, 2.0 * flank.place, 3.0 * flank.place * flank.place, reach, damp_time * rate,
@@ -377,9 +404,10 @@ def contact_at(table: Array, c: int, stride: int, f: float) -> MeshContact:
 
 @inlined
 def flank_powers(
-    table: Array, flank: Flank, space: Array, at: int, sign: float, reach: float, rate: float, omega_1: float
+    table: Array, flank: Flank, space: Array, at: int, pressing: Pressing
 ) -> tuple[float, float, float]:
     """Return friction power, damping power and damping force of one flank, arguments as in ``press_flank``."""
+    sign, reach, rate, omega_1 = pressing.sign, pressing.reach, pressing.rate, pressing.omega_1
     friction_power, damping_power, damping_force = 0.0, 0.0, 0.0
     f = flank.place
     damp_time, per_depth = space[at + DAMP_TIME], space[at + PER_DEPTH]

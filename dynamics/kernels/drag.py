@@ -19,7 +19,7 @@ from dynamics.kernels.contact import LOOSE, POSITIVE, R1, R2, inlined, sliding_d
 from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, N_BANK, STATE_AT, WIDTH, DragModes
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
 
-# compiled from sources 1edddb12
+# compiled from sources e17e53b0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
 from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 
-# compiled from sources 1edddb12
+# compiled from sources e17e53b0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -25,6 +25,7 @@ from dynamics.kernels.contact import (
     R1,
     R2,
     PackedMeshes,
+    Pressing,
     flank_powers,
     inlined,
 )
@@ -42,6 +43,7 @@ from dynamics.kernels.linear_step import (
 )
 from dynamics.kernels.mesh_solve import (
     LEAST_GUARD,
+    ListedContacts,
     can_touch,
     choose_contacts,
     chosen_flank,
@@ -71,7 +73,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 1edddb12
+# compiled from sources e17e53b0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -123,11 +125,7 @@ class Carried(NamedTuple):
 class Workspace(NamedTuple):
     """Scratch arrays of a march."""
 
-    contacts: Array
-    """Room for the tables of both flanks of every mesh with individual teeth."""
-    found: Integers
-    """(n_meshes, 2) contacts in them."""
-    no_pairs: Integers
+    listed: ListedContacts
     bank: Array
     """That of the modes with the state in it."""
     slow_outputs: Array
@@ -161,7 +159,7 @@ def _account(meshes: PackedMeshes, carried: Carried, work: Workspace, step: floa
     counts, space, ends, fresh = meshes.counts, work.space, work.ends, work.fresh
     n_meshes, n_slow = damping.shape[0], slow.shape[0]
     for m in range(n_meshes):
-        table = meshes.phase_data if counts[m, INDIVIDUAL] == 0 else work.contacts
+        table = meshes.phase_data if counts[m, INDIVIDUAL] == 0 else work.listed.contacts
         at = m * N_SPACE
         reach, rate = space[at + REACH], space[at + RATE]
         lost, damped, pull = 0.0, 0.0, 0.0
@@ -169,13 +167,11 @@ def _account(meshes: PackedMeshes, carried: Carried, work: Workspace, step: floa
             if not can_touch(space, at, side):
                 continue
             sign = 1.0 - 2.0 * side
-            flank = chosen_flank(
-                space, at, counts, meshes.phase_starts, meshes.phase_least, m, side, work.contacts, work.found
-            )  # fmt: skip
-            sliding, damping_power, force = flank_powers(
-                table, flank, space, at, sign, sign * reach - side * space[at + BACKLASH], sign * rate,
-                space[at + SPEED],
-            )  # fmt: skip
+            flank = chosen_flank(space, at, meshes, m, side, work.listed)
+            pressing = Pressing(
+                sign, sign * reach - side * space[at + BACKLASH], sign * rate, space[at + SPEED]
+            )
+            sliding, damping_power, force = flank_powers(table, flank, space, at, pressing)
             lost += sliding
             damped += damping_power
             pull += sign * force
@@ -215,9 +211,11 @@ def march(
     n_meshes, n_rows, n_drags = len(meshes.values), len(modes.rows), len(carried.drags)
     most = int(max(1, meshes.counts[:, MOST].max()))
     work = Workspace(
-        contacts=np.zeros(2 * n_meshes * N_PHASE * most),
-        found=np.zeros((n_meshes, 2), np.int64),
-        no_pairs=np.empty((2, 0), np.int64),
+        listed=ListedContacts(
+            contacts=np.zeros(2 * n_meshes * N_PHASE * most),
+            found=np.zeros((n_meshes, 2), np.int64),
+            no_pairs=np.empty((2, 0), np.int64),
+        ),
         bank=modes.bank.copy(),
         slow_outputs=np.zeros(modes.slow_outputs.shape[1]),
         ends=np.zeros(n_rows if len(carried.work) else len(carried.slow)),
@@ -303,9 +301,9 @@ def _march(
     substeps: int, history: Array, samples: Array,
 ) -> int:  # fmt: skip
     """Do what ``march`` says. No array is made here, so that none has to be counted in the loop (``_nrt``)."""
-    counts, starts, least, data = meshes.counts, meshes.phase_starts, meshes.phase_least, meshes.phase_data
+    counts = meshes.counts
     blocks, further, links, through = modes.blocks, modes.further, modes.links, modes.through
-    state, slow, contacts, found = carried.state, carried.slow, work.contacts, work.found
+    state, slow, listed = carried.state, carried.slow, work.listed
     bank, space, give, by_slow, torques = work.bank, work.space, work.give, work.slow_outputs, work.torques
     n_meshes, n_slow = counts.shape[0], slow.shape[0]
     drags, n_drags = carried.drags, carried.drags.shape[0]
@@ -348,8 +346,8 @@ def _march(
                     if attempt == 0:
                         choose_contacts(space, at, step)
                         if counts[m, INDIVIDUAL] != 0:
-                            list_individual(meshes, space, m, contacts, found, work.no_pairs)
-                    react(space, at, counts, starts, least, data, m, contacts, found)
+                            list_individual(meshes, space, m, listed)
+                    react(space, at, meshes, m, listed)
                     invert(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
                     space[at + MISSING], space[at + PORT + MISSING] = (
                         -space[at + TAU],

@@ -6,6 +6,8 @@ their tangents are swept until all torques agree, without summing the contacts a
 mesh is in the mesh workspace ``space`` (``kernels.mesh_workspace``) from ``at`` on.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -20,9 +22,11 @@ from dynamics.kernels.contact import (
     POSITIVE,
     R1,
     R2,
+    ContactState,
     Flank,
     PackedMeshes,
     Pressed,
+    Pressing,
     flank_in_phase,
     flank_on_path,
     inlined,
@@ -60,12 +64,23 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 1edddb12
+# compiled from sources e17e53b0
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 LEAST_GUARD = 1e-15
 """Least distance to a kink that is looked at [m]."""
+
+
+class ListedContacts(NamedTuple):
+    """Contacts of the meshes with individual teeth, listed anew in every step."""
+
+    contacts: Array
+    """Room for the tables of both flanks of every mesh."""
+    found: Integers
+    """(n_meshes, 2) contacts in them."""
+    no_pairs: Integers
+    """(2, 0): tooth pair and slice of a contact are not asked for."""
 
 
 @inlined
@@ -88,17 +103,15 @@ def choose_contacts(space: Array, at: int, step: float) -> None:
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def list_individual(
-    meshes: PackedMeshes, space: Array, m: int, contacts: Array, found: Integers, no_pairs: Integers
-) -> None:
+def list_individual(meshes: PackedMeshes, space: Array, m: int, listed: ListedContacts) -> None:
     """List the contacts of a mesh with individual teeth at the angle chosen for this step."""
-    counts = meshes.counts
+    counts, contacts = meshes.counts, listed.contacts
     stride = contacts.shape[0] // (2 * N_PHASE * counts.shape[0])
     for side in range(2):
-        found[m, side] = list_on_path(
+        listed.found[m, side] = list_on_path(
             space, m * N_SPACE, counts, meshes.cells, meshes.shifts, meshes.deviations, meshes.scales, m,
             1.0 - 2.0 * side, space[m * N_SPACE + CHOSEN_ANGLE], contacts, (2 * m + side) * N_PHASE * stride, stride,
-            no_pairs,
+            listed.no_pairs,
         )  # fmt: skip
 
 
@@ -111,45 +124,38 @@ def can_touch(space: Array, at: int, side: int) -> bool:
 
 @inlined
 def chosen_flank(
-    space: Array, at: int, counts: Integers, starts: Integers, least: Array, m: int, side: int, contacts: Array,
-    found: Integers,
-) -> Flank:  # fmt: skip
+    space: Array, at: int, meshes: PackedMeshes, m: int, side: int, listed: ListedContacts
+) -> Flank:
     """Return the contacts of a flank that were chosen for this step."""
     sign = 1.0 - 2.0 * side
     omega_1, omega_2 = space[at + CHOSEN_1], space[at + CHOSEN_2]
-    if counts[m, INDIVIDUAL] == 0:
+    if meshes.counts[m, INDIVIDUAL] == 0:
         within = sign * space[at + CHOSEN_REACH] - side * space[at + BACKLASH] + space[at + AHEAD]
-        return flank_in_phase(
-            space, at, counts, starts, least, m, sign, within, space[at + CHOSEN_ANGLE], omega_1, omega_2
-        )
-    stride = contacts.shape[0] // (2 * N_PHASE * counts.shape[0])
+        state = ContactState(sign, within, space[at + CHOSEN_ANGLE], omega_1, omega_2)
+        return flank_in_phase(space, at, meshes, m, state)
+    stride = listed.contacts.shape[0] // (2 * N_PHASE * meshes.counts.shape[0])
     first = (2 * m + side) * N_PHASE * stride
-    return flank_on_path(space, at, first, stride, found[m, side], omega_1, omega_2)
+    return flank_on_path(space, at, first, stride, listed.found[m, side], omega_1, omega_2)
 
 
 @inlined
 def _press_side(
-    space: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
-    found: Integers, side: int,
-) -> Pressed:  # fmt: skip
+    space: Array, at: int, meshes: PackedMeshes, m: int, side: int, listed: ListedContacts
+) -> Pressed:
     """Sum the contacts of one flank where the mesh was last looked at."""
     sign = 1.0 - 2.0 * side
-    flank = chosen_flank(space, at, counts, starts, least, m, side, contacts, found)
+    flank = chosen_flank(space, at, meshes, m, side, listed)
     reach = sign * space[at + AT_REACH] - side * space[at + BACKLASH]
-    return press_flank(
-        data if counts[m, INDIVIDUAL] == 0 else contacts, flank, space, at, sign, reach, sign * space[at + AT_RATE],
-        space[at + SPEED], space[at + GUARD],
-    )  # fmt: skip
+    pressing = Pressing(sign, reach, sign * space[at + AT_RATE], space[at + SPEED])
+    table = meshes.phase_data if meshes.counts[m, INDIVIDUAL] == 0 else listed.contacts
+    return press_flank(table, flank, space, at, pressing, space[at + GUARD])
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _add_back(
-    space: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
-    found: Integers,
-) -> None:  # fmt: skip
+def _add_back(space: Array, at: int, meshes: PackedMeshes, m: int, listed: ListedContacts) -> None:
     """Add the back flank to a reaction where both flanks can touch."""
     wheel = at + PORT
-    sums = _press_side(space, at, counts, starts, least, data, m, contacts, found, 1)
+    sums = _press_side(space, at, meshes, m, 1, listed)
     r_1, r_2 = space[at + R1], space[at + R2]
     space[at + REACTION] += r_1 * sums.a_1
     space[wheel + REACTION] -= r_2 * sums.a_2
@@ -165,10 +171,7 @@ def _add_back(
 
 
 @inlined
-def react(
-    space: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
-    found: Integers,
-) -> None:  # fmt: skip
+def react(space: Array, at: int, meshes: PackedMeshes, m: int, listed: ListedContacts) -> None:
     """Set reaction and derivatives of mesh ``m`` at its last state, from the contacts chosen for this step."""
     wheel = at + PORT
     front, back = can_touch(space, at, 0), can_touch(space, at, 1)
@@ -180,7 +183,7 @@ def react(
         return
     side = 0 if front else 1
     sign = 1.0 - 2.0 * side
-    sums = _press_side(space, at, counts, starts, least, data, m, contacts, found, side)
+    sums = _press_side(space, at, meshes, m, side, listed)
     r_1, r_2 = space[at + R1], space[at + R2]
     space[at + REACTION], space[wheel + REACTION] = -sign * r_1 * sums.a_1, sign * r_2 * sums.a_2
     space[at + TANGENT_X], space[wheel + TANGENT_X] = -r_1 * sums.a_1_x, r_2 * sums.a_2_x
@@ -188,7 +191,7 @@ def react(
     space[at + NET], space[at + NET_X], space[at + NET_V] = sign * sums.force, sums.force_x, sums.force_v
     space[at + KINKED], space[at + CURVED] = sums.kinked, sums.curved
     if front and back:
-        _add_back(space, at, counts, starts, least, data, m, contacts, found)
+        _add_back(space, at, meshes, m, listed)
 
 
 @inlined

@@ -6,7 +6,7 @@ that were just written in registers. A last row belongs to the place holder for 
 
 from dynamics.kernels.contact import N_VALUES
 
-# compiled from sources 1edddb12
+# compiled from sources e17e53b0
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]
