@@ -69,7 +69,7 @@ def solve_film(
 
     Raises
     ------
-    ValueError : eccentricity or width ratio out of range
+    DynamicsInputError : eccentricity or width ratio out of range
     FilmNotConvergedError : the active set does not converge in 100 steps
 
     Source: O. Reynolds 1886; H. W. Swift 1932 and W. Stieber 1933 for the break-up of the film.

@@ -76,7 +76,10 @@ class PortModel:
 
 
 def line_ratios(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
-    """Speed of every freedom relative to the drive freedom (n,), from the base radii of the meshes."""
+    """Speed of every freedom relative to the drive freedom (n,) [-], from the base radii of the meshes.
+
+    Raises KeyError, with the line, if a line is joined to the drive by no mesh.
+    """
     ratio = {int(system.lines[system.drive_dof]): 1.0}
     for _ in laws:
         for law, (pinion, wheel) in zip(laws, system.mesh_ports):
@@ -91,7 +94,7 @@ def line_ratios(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
 def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
     """Reduce the stiffness of a system statically to its mesh ports and its drive freedom.
 
-    Raises ValueError if the number of laws is not the number of meshes.
+    Raises DynamicsInputError if the number of laws is not the number of meshes.
     """
     if len(laws) != len(system.mesh_ports):
         raise DynamicsInputError(

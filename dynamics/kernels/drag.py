@@ -15,11 +15,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import LOOSE, POSITIVE, R1, R2, inlined, sliding_direction
+from dynamics.kernels.contact import LOOSE, inlined, sliding_direction
 from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, N_BANK, STATE_AT, WIDTH, DragModes
+from dynamics.kernels.mesh_tables import POSITIVE, R1, R2
 from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
 
-# compiled from sources e17e53b0
+# compiled from sources 49af733f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

@@ -11,10 +11,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
+from dynamics.kernels.contact import LOOSE, inlined
+from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 
-# compiled from sources e17e53b0
+# compiled from sources 49af733f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

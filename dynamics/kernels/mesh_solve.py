@@ -12,26 +12,18 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import (
+from dynamics.kernels.contact import LOOSE, Flank, Pressed, Pressing, inlined, press_flank
+from dynamics.kernels.flank_contacts import ContactState, flank_in_phase, flank_on_path, list_on_path
+from dynamics.kernels.mesh_tables import (
     BACKLASH,
     DAMP_TIME,
     INDIVIDUAL,
     LEAST_GAP,
-    LOOSE,
     N_PHASE,
     POSITIVE,
     R1,
     R2,
-    ContactState,
-    Flank,
     PackedMeshes,
-    Pressed,
-    Pressing,
-    flank_in_phase,
-    flank_on_path,
-    inlined,
-    list_on_path,
-    press_flank,
 )
 from dynamics.kernels.mesh_workspace import (
     AHEAD,
@@ -64,7 +56,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources e17e53b0
+# compiled from sources 49af733f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

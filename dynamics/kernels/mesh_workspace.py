@@ -4,9 +4,9 @@ It is a single flat array, ``space``, read at fixed offsets from the start of a 
 that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
 """
 
-from dynamics.kernels.contact import N_VALUES
+from dynamics.kernels.mesh_tables import N_VALUES
 
-# compiled from sources e17e53b0
+# compiled from sources 49af733f
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]

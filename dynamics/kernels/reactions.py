@@ -5,13 +5,23 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import (
+    LOOSE,
+    Flank,
+    Pressing,
+    contact_at,
+    flank_powers,
+    inlined,
+    press_flank,
+    sliding_direction,
+)
+from dynamics.kernels.flank_contacts import ContactState, flank_in_phase, flank_on_path, list_on_path
+from dynamics.kernels.mesh_tables import (
     BACKLASH,
     CLOSING,
     DAMP_TIME,
     DERIVATIVE,
     INDIVIDUAL,
     LEAST_GAP,
-    LOOSE,
     MOST,
     MU_1,
     MU_2,
@@ -23,21 +33,10 @@ from dynamics.kernels.contact import (
     R2,
     ROW_E,
     ROW_K,
-    ContactState,
-    Flank,
     PackedMeshes,
-    Pressing,
-    contact_at,
-    flank_in_phase,
-    flank_on_path,
-    flank_powers,
-    inlined,
-    list_on_path,
-    press_flank,
-    sliding_direction,
 )
 
-# compiled from sources e17e53b0
+# compiled from sources 49af733f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 

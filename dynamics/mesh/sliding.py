@@ -162,7 +162,7 @@ def tooth_loss_factor(path: ToothPath, stiffness: PairStiffness | None = None) -
 def ohlendorf_factor(path: ToothPath, teeth_1: int) -> float:
     """Ohlendorf's closed tooth-loss factor of the same mesh, for comparison [-].
 
-    Raises ValueError with the pitch point outside the path (ISO/TR 14179-2). With the pitch point in a
+    Raises DynamicsInputError with the pitch point outside the path (ISO/TR 14179-2). With the pitch point in a
     zone of double contact (FZG-A) it exceeds the integral of its own load sharing.
     """
     return tr14179.H_V(

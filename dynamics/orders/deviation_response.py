@@ -100,7 +100,7 @@ class DeviationResponse:
 
         torques : further torques on any freedoms, in first order
 
-        Raises ValueError for a negative order, a torque without a positive one, or an order above the samples.
+        Raises DynamicsInputError for a negative order, a torque without a positive one, or an order above the samples.
         """
         loop = self.loop
         wanted = [float(order) for order in orders]

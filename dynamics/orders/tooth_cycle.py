@@ -56,7 +56,12 @@ class CycleForces(NamedTuple):
 
 
 def cycle_forces(loop: MeshPeriodic, forcing: ToothForcing, steps: int) -> tuple[CycleForces, ...]:
-    """Forces of every group of gears with unequal teeth after some steps (at least 1)."""
+    """Forces beyond first order of every group of gears with unequal teeth.
+
+    loop : motion with equal teeth and its tangents
+    forcing : forces of the tooth deviations, first order
+    steps : corrections at most, at least 1; they end when the approach changes by less than CONVERGED
+    """
     groups: dict[int, list[tuple[int, int]]] = {}
     for m, side in forcing.gears:
         teeth = (forcing.laws[m].teeth_1, forcing.laws[m].teeth_2)[side]

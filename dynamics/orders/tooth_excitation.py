@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from dynamics.kernels.contact import CELLS_AT, CLOSING, DAMP_TIME, LEAST_GAP, N_CELLS, PackedMeshes
+from dynamics.kernels.mesh_tables import CELLS_AT, CLOSING, DAMP_TIME, LEAST_GAP, N_CELLS, PackedMeshes
 from dynamics.mesh.law import MeshLaw
 
 Array = NDArray[np.float64]

@@ -85,7 +85,11 @@ def tangential_force(pair: GearPair, torque: float) -> float:
 
 
 def deviations(pair: GearPair, options: RatingOptions) -> tuple[float, float]:
-    """Larger f_pb and f_falpha of both gears [um] from the grade unless given."""
+    """Larger f_pb and f_falpha of both gears [um], from the ISO 1328-1:2013 grade unless given.
+
+    f_pb is the transverse single pitch tolerance times cos(alpha_t). Raises DynamicsInputError for a grade outside
+    1 to 11.
+    """
     module = pair.normal_module * MM
     diameters = [2.0 * gear.reference_radius * MM for gear in pair.gears]
     pitch = max(iso1328_1_2013.f_pT(d, module, options.grade) for d in diameters)
@@ -109,7 +113,13 @@ def mesh_stiffness(pair: GearPair, torque: float, options: RatingOptions | None 
 def dynamic_factor(
     pair: GearPair, torque: float, speed: float, options: RatingOptions | None = None
 ) -> DynamicFactor:
-    """K_V by ISO 6336-1:2006 method B at pinion ``torque`` [N m] and ``speed`` [rad/s], with every factor."""
+    """K_V by ISO 6336-1:2006 method B, every factor with it.
+
+    torque : of the pinion, above 0 [N m]; speed : of the pinion, not negative [rad/s]
+    options : choices that the document leaves open; default ``RatingOptions()``
+
+    Raises DynamicsInputError for a torque or speed out of range and where the stiffness regression fails.
+    """
     options = options or RatingOptions()
     f_pb, f_falpha = deviations(pair, options)
     return iso6336_1_2006.dynamic_factor(

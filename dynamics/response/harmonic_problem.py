@@ -98,7 +98,10 @@ class BalanceProblem:
 
 
 def resample(solution: HarmonicSolution, grid: HarmonicGrid) -> HarmonicSolution:
-    """The same state on another grid: mesh harmonics are kept, the rest is dropped or zero."""
+    """The same state on another grid: mesh harmonics are kept, the rest is dropped or zero.
+
+    Its residual is infinite and its iterations are 0: it is a start, not a solution.
+    """
     ports = np.zeros((solution.ports.shape[0], grid.top + 1), complex)
     if solution.grid.cells == grid.cells:
         count = min(solution.grid.top, grid.top) + 1

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 def pinion_ratios(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
     """Return the speed of every freedom per speed of the pinion of the first mesh, shape (n,) [-].
 
-    Raises ValueError if a mesh closes a loop with another ratio or a line is reached by no mesh.
+    Raises DynamicsInputError if a mesh closes a loop with another ratio or a line is reached by no mesh.
     """
     try:
         ratios = line_ratios(system, laws)

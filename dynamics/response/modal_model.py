@@ -95,8 +95,8 @@ def modal_model(
     Raises
     ------
     ValueError
-        If shapes disagree, the damping is not symmetric, a line is not free to rotate, or a drag torque acts on
-        lines that nothing but a mesh ties together.
+        If shapes disagree; as DynamicsInputError if the damping is not symmetric, a line is not free to rotate, or a
+        drag torque acts on lines that nothing but a mesh ties together.
     DefectiveModes
         If two complex modes coincide.
     """

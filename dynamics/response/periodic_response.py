@@ -9,7 +9,7 @@ twist is corrected in the same way until the first mesh carries the asked mean t
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil, gcd, lcm, pi
 from typing import Literal
 
@@ -18,14 +18,14 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.drivetrain.shaft_torque import waves_within
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.initial_state import WoundLoop, pinion_ratios, wound_state
-from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings
+from dynamics.response.initial_state import pinion_ratios, wound_state
+from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.march_loads import march_model
 from dynamics.response.modal_model import DEFAULT_CUTOFF, ModalModel
-from dynamics.response.time_march import Block, TimeMarch
+from dynamics.response.steady_search import PeriodGrid, SteadySearch
+from dynamics.response.time_march import TimeMarch
 
 Array = NDArray[np.float64]
 Period = Literal["mesh", "revolution", "hunting_cycle"]
@@ -167,7 +167,10 @@ def periodic_by_time(
     drag_torques: Mapping[str, float] | None = None,
     settings: TimeSettings = DEFAULT_TIME,
 ) -> PeriodicResponse:
-    """Run to a tested steady state at constant mean speed; see ``TimeIntegration.periodic``."""
+    """Run one speed to a tested steady state.
+
+    Arguments, result and errors as in ``TimeIntegration.periodic``, which shares its modal model between speeds.
+    """
     return TimeIntegration(system, laws, settings).periodic(speed, load, drag_torques)
 
 
@@ -226,15 +229,15 @@ class TimeIntegration:
             DriveLoads(drive_torque=wound.drive_torque, drag_torques=drags),
             self._model(tuple(drags)),
         )
-        search = _Search(march, self.system, load, wound, period, self.settings.tolerance)
+        search = SteadySearch(march, self.system, load, wound, period, self.settings.tolerance)
         return self._run(march, search, period, drags)
 
-    def _period(self, speed: float) -> "_Period":
+    def _period(self, speed: float) -> PeriodGrid:
         length = 2.0 * pi / speed * self._turns
         # whole steps per mesh of the first pair: what lies above the step rate then folds back on mesh orders only
         meshes = round(self._turns * self.laws[0].teeth_1)
         least = max(self.settings.least_steps, length * self.settings.internal_rate)
-        return _Period(
+        return PeriodGrid(
             speed=speed, turns=self._turns, length=length, steps=meshes * ceil(least / meshes - 1e-9)
         )
 
@@ -244,7 +247,7 @@ class TimeIntegration:
         return self._models[drags]
 
     def _run(
-        self, march: TimeMarch, search: "_Search", period: "_Period", drags: Mapping[str, float]
+        self, march: TimeMarch, search: SteadySearch, period: PeriodGrid, drags: Mapping[str, float]
     ) -> PeriodicResponse:
         """March blocks of periods until the search is steady or the time is over."""
         tables = np.array([[value, value] for value in drags.values()]).reshape(len(drags), 2)
@@ -307,99 +310,6 @@ class TimeIntegration:
             end=march.state(),
             warnings=tuple(warnings),
         )
-
-
-@dataclass(frozen=True, kw_only=True)
-class _Period:
-    """One period: mean speed of the first pinion [rad/s], its turns, length [s] and internal steps."""
-
-    speed: float
-    turns: float
-    length: float
-    steps: int
-
-
-class _Search:
-    """March blocks, hold mean speed and mean torque by corrections between them, and test for the steady state."""
-
-    def __init__(
-        self,
-        march: TimeMarch,
-        system: LinearSystem,
-        load: LoopLoad,
-        wound: WoundLoop,
-        period: _Period,
-        tolerance: float,
-    ) -> None:
-        self.march, self.speed, self.torque, self.tolerance = march, period.speed, load.torque, tolerance
-        self.drive, self.twist = wound.drive_torque, wound.state.twist
-        self.balanced_drive = self.drive
-        self.steady, self.residual = False, float("inf")
-        self._stiffness, self._period = wound.loop_stiffness, period
-        ratios = pinion_ratios(system, march.laws)
-        self._torques = [
-            replace(
-                own, parts=tuple(p for p in own.parts if waves_within(p.order, ratios[own.dof], period.turns))
-            )
-            for own in system.shaft_torques
-        ]
-        self._ratios = ratios
-        self._inertia = float(system.inertia @ ratios**2) / ratios[system.drive_dof]
-        self._last: Array | None = None
-        self._speed_before: float | None = None
-        self._change = float("inf")
-        self._quiet = 0
-
-    def block(self, periods: int, tables: Array) -> Block:
-        """March some periods with constant drag torques (n_drags, 2), correct, and return what was marched."""
-        march = self.march
-        steps = self._period.steps
-        samples = periods * steps // march.substeps
-        given = np.zeros((samples, 4 + len(self._torques)))
-        given[:, 0], given[:, 1] = self.drive, self.twist
-        before = march.pinion_angle()
-        angle = before + self.speed * march.step * march.substeps * np.arange(1, samples + 1)
-        for i, torques in enumerate(self._torques):
-            given[:, 4 + i] = torques.at(self._ratios[torques.dof] * angle)
-        result = march.advance(given, drags=DragTables(torque=tables))
-        span = periods * self._period.length
-        mean_speed = (march.pinion_angle() - before) / span
-        radius = np.array([law.base_radius_1 for law in march.laws])
-        wave = radius[:, None] * result.force[:, -steps:]
-        mean = float(radius[0] * result.force[0].mean())
-        torque_error = 0.0 if self.torque is None else self.torque - mean
-        drift = 0.0 if self._speed_before is None else (mean_speed - self._speed_before) / span
-        self.balanced_drive = self.drive - self._inertia * drift
-        self._test(wave, mean, torque_error, mean_speed)
-        if not self.steady:
-            self._correct(mean_speed, drift, span, torque_error)
-        return result
-
-    def _test(self, wave: Array, mean: float, torque_error: float, mean_speed: float) -> None:
-        if self._last is not None:
-            dynamic = np.ptp(wave, axis=1)
-            scale = np.maximum(dynamic, 1e-3 * np.abs(wave).max(axis=1)) + 1e-300
-            change = float(np.max(np.abs(wave - self._last).max(axis=1) / scale))
-            decay = min(change / self._change, 0.95) if self._change > 0.0 else 0.0
-            self._change = change
-            self.residual = max(change, change * decay / (1.0 - decay))
-            held = (
-                abs(torque_error) <= 1e-4 * abs(mean)
-                and abs(mean_speed / self.speed - 1.0) <= 1e-6
-                and abs(self.balanced_drive - self.drive) <= 1e-4 * abs(self.drive)
-            )
-            self._quiet = self._quiet + 1 if self.residual <= self.tolerance and held else 0
-            self.steady = self._quiet >= 2
-        self._last = wave
-
-    def _correct(self, mean_speed: float, drift: float, span: float, torque_error: float) -> None:
-        self.drive -= 0.7 * self._inertia * drift
-        # at the end of the block the rigid motion is half a block ahead of its mean
-        kick = self.speed - mean_speed - 0.5 * drift * span
-        self.march.kick(kick * self._ratios)
-        self._speed_before = mean_speed + kick
-        self.twist += 0.5 * torque_error / self._stiffness
-        self.march.set_slow(self.drive, self.twist)
 
 
 def _restarted(start: PeriodicResponse, speed: float, ratios: Array, held: DriveState | None) -> DriveState:

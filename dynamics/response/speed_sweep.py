@@ -264,7 +264,10 @@ def _in_time(
 
 
 def point_of(model: PortModel, solution: HarmonicSolution) -> CurvePoint:
-    """Torques, factors and losses of a harmonic solution."""
+    """Torques, factors and losses of a harmonic solution.
+
+    model : the loop that was solved; the harmonics of the torque reach as far as those of the solution
+    """
     wave = waveform(model, solution)
     return CurvePoint(
         **_statistics(wave, solution.grid.cells, solution.grid.harmonics)._asdict(),
@@ -281,7 +284,11 @@ def point_of(model: PortModel, solution: HarmonicSolution) -> CurvePoint:
 
 
 def point_in_time(model: PortModel, result: PeriodicResponse, cells: int) -> CurvePoint:
-    """The same from one period of the time integration, ``cells`` mesh periods long."""
+    """The same from one period of the time integration.
+
+    cells : mesh periods in the period [-]; the harmonics of the torque are those of the harmonic balance, as far as
+    the internal steps resolve them
+    """
     radius_1, radius_2 = model.base_radii.T
     wave = Waveform(
         time=result.time,

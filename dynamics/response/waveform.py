@@ -35,7 +35,11 @@ class Waveform:
 
 
 def waveform(model: PortModel, solution: HarmonicSolution, samples: int | None = None) -> Waveform:
-    """Mesh motions and torques over one period, ``samples`` per mesh period (default: those of the grid)."""
+    """Mesh motions and torques over one period of a harmonic solution.
+
+    model : the loop that was solved
+    samples : per mesh period; default those of the grid
+    """
     grid, speed = solution.grid, solution.speed
     count = grid.cells * (samples or grid.samples)
     base = speed * 2.0 * np.pi / (grid.cell_angle * grid.cells)

@@ -81,7 +81,7 @@ class RootSection:
 
 
 def root_section(root: ToothRoot) -> RootSection:
-    """Critical section of clause 6.2.1; raises ValueError if the tangent cannot be found."""
+    """Critical section of clause 6.2.1; raises DynamicsInputError if the tangent cannot be found."""
     alpha = radians(root.alpha_n)
     E = (
         pi / 4.0
@@ -135,7 +135,10 @@ class LoadedRoot:
 
 
 def loaded_root(root: ToothRoot, section: RootSection, diameters: Array) -> LoadedRoot:
-    """Y_F and Y_S (clauses 6.1, 7.2) for loads at virtual-gear diameters [mm]."""
+    """Y_F and Y_S (clauses 6.1, 7.2) for loads at virtual-gear diameters.
+
+    diameters : (n,) [mm]; one below the base diameter counts as the base diameter
+    """
     alpha = radians(root.alpha_n)
     ratio = np.minimum(root.d_bn / np.asarray(diameters, dtype=float), 1.0)
     alpha_en = np.arccos(ratio)
@@ -159,7 +162,7 @@ def Y_beta(epsilon_beta: float, beta: float) -> float:
 def Y_B(s_R: float, h_t: float) -> float:
     """Rim thickness factor of an external gear (clause 9); ``s_R = inf`` is a solid body.
 
-    Raises ValueError for s_R <= 0.5 h_t, which the clause excludes.
+    Raises DynamicsInputError for s_R <= 0.5 h_t, which the clause excludes.
     """
     ratio = s_R / h_t
     if ratio >= 1.2:

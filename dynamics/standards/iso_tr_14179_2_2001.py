@@ -70,7 +70,7 @@ def H_V(z_1: int, u: float, beta_b: float, eps_1: float, eps_2: float) -> float:
 
     H_V = pi (u + 1) / (z_1 u cos beta_b) (1 - eps_alpha + eps_1^2 + eps_2^2)
 
-    beta_b [rad]. Raises ValueError where the formula does not hold: pitch point outside the path of contact
+    beta_b [rad]. Raises DynamicsInputError where the formula does not hold: pitch point outside the path of contact
     (eps_1 or eps_2 negative) or eps_alpha outside 1 to 2.
     """
     eps_alpha = eps_1 + eps_2

@@ -7,8 +7,8 @@ import pytest
 import scipy.linalg
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.kernels.contact import DAMP_TIME, R1
 from dynamics.kernels.mesh_solve import left_open
+from dynamics.kernels.mesh_tables import DAMP_TIME, R1
 from dynamics.kernels.mesh_workspace import (
     CURVED,
     GUARD,
