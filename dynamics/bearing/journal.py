@@ -1,4 +1,4 @@
-"""Steady state of an oil-fed plain journal bearing: film, temperature, drag, transition to fluid friction.
+"""Oil-fed plain journal bearing in steady state: film, temperature, drag torque, transition to fluid friction.
 
 The load number So = F psi^2 / (B D eta omega) gives the eccentricity, the eccentricity the friction
 
@@ -6,17 +6,22 @@ The load number So = F psi^2 / (B D eta omega) gives the eccentricity, the eccen
 
 and the heat balance of the oil gives the film temperature, whose viscosity enters So again
 (ISO 7902-1 / DIN 31652-1; film solved in `dynamics.bearing.journal_film`). Shear acts all round the gap, the broken
-film included, as those documents assume: the drag is an upper value.
+film included, as those documents assume: the drag torque is an upper value.
 """
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from scipy.optimize import brentq
 
 from dynamics.bearing.journal_characteristic import Characteristic, characteristic
-from dynamics.errors import DynamicsInputError, DynamicsNotConverged
+from dynamics.bearing.protocol import (
+    BearingError,
+    BearingNotConvergedError,
+    BearingOperation,
+    BearingState,
+)
 from dynamics.kernels.journal import HIGHEST_ECCENTRICITY
 
 TAYLOR_LIMIT = 41.3
@@ -26,15 +31,8 @@ VOGELPOHL_CONSTANT = 1e-7
 MAXIMUM_FILM_RISE = 400.0
 """Film temperature above the inlet at which the oil would be destroyed and the balance is given up [K]."""
 MAXIMUM_FILM_DROP = 60.0
-"""Film temperature below the inlet at which cold bodies would have stiffened the oil [K]."""
-
-
-class BearingError(DynamicsInputError):
-    """An impossible journal bearing; the message names value, limit and remedy."""
-
-
-class BearingNotConvergedError(DynamicsNotConverged):
-    """No film temperature balances friction and oil flow."""
+"""Film temperature below the inlet at which the balance is given up: bodies that much cooler than the oil [K]."""
+SOURCE = "ISO 7902-1 / DIN 31652-1, film solved"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,12 +41,15 @@ class JournalBearing:
 
     diameter, width : journal diameter D and supporting width B [m]
     diametral_clearance : bore minus journal at running temperature and speed [m]; thermal and centrifugal
-        growth are taken off by the caller
+        expansion are taken off by the caller
     transition_constant : C in Vogelpohl's transition speed, 1 to 2 [-]
     feed_share : share of the fed oil that cools the film, 0 to 1 [-]; the rest leaves past it. 1 is the
         assumption of ISO 7902-1, 0 leaves only the oil that the film itself drives out of its ends. Not less
         than that ever flows through the film as long as it is fed. Assumed, look at its range: it decides the
         film temperature of a bearing fed far beyond its own demand
+
+    Raises BearingError for a size that is not above 0, a relative clearance outside 1e-4 to 1e-2 or a feed share
+    outside 0 to 1.
     """
 
     diameter: float
@@ -62,7 +63,7 @@ class JournalBearing:
             value = getattr(self, name)
             if not value > 0.0:
                 remedy = (
-                    "the hot bearing has seized: enlarge the cold clearance"
+                    "the hot bearing has seized: enlarge the clearance at assembly"
                     if "clear" in name
                     else "enlarge it"
                 )
@@ -87,128 +88,63 @@ class JournalBearing:
         """Journal volume inside the bearing pi D^2 B / 4 [m3]."""
         return 0.25 * math.pi * self.diameter**2 * self.width
 
+    def operating_state(self, operation: BearingOperation) -> "JournalState":
+        """Solve film and heat balance together.
+
+        Raises
+        ------
+        BearingNotConvergedError : the film would have to be more than 400 K above or 60 K below the inlet
+
+        Source: ISO 7902-1 / DIN 31652-1: heat carried by the oil alone, effective film temperature the mean of
+        inlet and outlet. Heat exchanged with the bodies is an input here instead of an assumed housing film.
+        """
+        curve = characteristic(self.width / self.diameter)
+        oil = operation.oil
+
+        def heat_into(film: _Film) -> float:
+            given = operation.friction_heat
+            own = film.torque * film.omega if given is None else given
+            return own + operation.heat_from_bodies
+
+        def film_excess(temperature: float) -> float:
+            film = _film(self, curve, operation, oil.viscosity(temperature))
+            cooling_flow = _cooling_flow(self, oil.flow, film.side_flow)
+            if cooling_flow == 0.0:
+                return math.inf
+            rise = oil.temperature_rise(heat_into(film), cooling_flow)
+            return oil.inlet_temperature + 0.5 * rise - temperature
+
+        temperature = _balance(film_excess, oil.inlet_temperature)
+        film = _film(self, curve, operation, oil.viscosity(temperature))
+        outlet = oil.inlet_temperature + oil.temperature_rise(heat_into(film), oil.flow)
+        return _state(self, operation, film, temperature, outlet)
+
 
 @dataclass(frozen=True, kw_only=True)
-class BearingState:
-    """Steady state of one bearing; SI units."""
+class JournalState(BearingState):
+    """Steady state of a journal bearing; beyond the common fields those of its film, SI units."""
 
+    specific_load: float
+    minimum_film: float
+    transition_speed: float
+    """Vogelpohl: fluid friction above this speed at this load and viscosity [rad/s]."""
     regime: str
     """``hydrodynamic``, ``mixed`` (film thinner than the solved range) or ``standstill``."""
-    load: float
-    omega: float
-    specific_load: float
-    """F / (B D) [Pa]."""
     sommerfeld: float
     """So; infinite at standstill."""
     eccentricity: float
     attitude_angle: float
     """Load to line of centres [rad]."""
-    minimum_film: float
-    """[m]"""
     friction_coefficient: float
     """Drag force / load [-]; infinite without load."""
-    drag_torque: float
-    """[N m]"""
-    power: float
-    """Friction heat of the film [W]."""
-    torsional_damping: float
-    """drag_torque / omega [N m s/rad]."""
     petroff_torque: float
-    """Drag of the concentric journal 2 pi eta omega B R^3 / c, a lower bound [N m]."""
-    film_temperature: float
-    """Mean of the inlet and of the oil that has passed the film [K]."""
-    outlet_temperature: float
-    """All oil fed, mixed behind the bearing [K]."""
+    """Drag torque of the concentric journal 2 pi eta omega B R^3 / c, a lower bound [N m]."""
     viscosity: float
     """At the film temperature [Pa s]."""
-    flow: float
-    """Oil fed [m3/s]."""
     side_flow: float
     """Oil the film drives out of the ends [m3/s]; more than is fed means starving."""
-    transition_speed: float
-    """Vogelpohl: fluid friction above this speed at this load and viscosity [rad/s]."""
     reynolds_number: float
     reynolds_limit: float
-    mean_inverse_gap: float
-    """Mean of 1/h round the film [1/m]; times the oil conductivity a heat transfer coefficient."""
-    heat_from_bodies: float
-    """Heat conducted into the film from shaft and shell [W]."""
-    warnings: tuple[str, ...]
-
-
-def solve_bearing(
-    bearing: JournalBearing,
-    load: float,
-    omega: float,
-    oil_inlet_temperature: float,
-    flow: float,
-    viscosity: Callable[[float], float],
-    density: float,
-    heat_capacity: float,
-    heat_from_bodies: float = 0.0,
-    friction_heat: float | None = None,
-    friction_factor: float = 1.0,
-) -> BearingState:
-    """Solve film and heat balance together.
-
-    Parameters
-    ----------
-    bearing : geometry with the hot clearance
-    load : radial force, not negative [N]
-    omega : shaft speed; its sign does not matter [rad/s]
-    oil_inlet_temperature : [K]
-    flow : oil fed to this bearing, above 0 [m3/s]
-    viscosity : dynamic viscosity [Pa s] of a temperature [K], falling with it
-    density, heat_capacity : of the oil [kg/m3], [J/(kg K)]
-    heat_from_bodies : heat that shaft and shell give to the film; negative if they cool it [W]
-    friction_heat : measured or assumed heat of the film, not negative [W]; it takes the place of the friction
-        of the film in the heat balance, the drag is that of the film all the same
-    friction_factor : multiplies the drag of the film, and with it its heat; not negative [-]
-
-    Returns
-    -------
-    BearingState
-
-    Raises
-    ------
-    BearingError : impossible input
-    BearingNotConvergedError : the film would have to be more than 400 K above the inlet
-
-    Source: ISO 7902-1 / DIN 31652-1: heat carried by the oil alone, effective film temperature the mean of
-    inlet and outlet. Heat exchanged with the bodies is an input here instead of an assumed housing film.
-    """
-    _check_operation(
-        load, flow, density, heat_capacity, oil_inlet_temperature, friction_heat, friction_factor
-    )
-    speed = abs(omega)
-    curve = characteristic(bearing.width / bearing.diameter)
-    heat_per_flow = density * heat_capacity
-
-    def heat_into(film: _Film) -> float:
-        own = film.torque * speed if friction_heat is None else friction_heat
-        return own + heat_from_bodies
-
-    def film_excess(temperature: float) -> float:
-        film = _film(bearing, curve, load, speed, viscosity(temperature), friction_factor)
-        cooling_flow = _cooling_flow(bearing, flow, film.side_flow)
-        if cooling_flow == 0.0:
-            return math.inf
-        rise = heat_into(film) / (heat_per_flow * cooling_flow)
-        return oil_inlet_temperature + 0.5 * rise - temperature
-
-    temperature = _balance(film_excess, oil_inlet_temperature)
-    film = _film(bearing, curve, load, speed, viscosity(temperature), friction_factor)
-    return _state(
-        bearing,
-        film,
-        viscosity=viscosity(temperature),
-        film_temperature=temperature,
-        outlet_temperature=oil_inlet_temperature + heat_into(film) / (heat_per_flow * flow),
-        flow=flow,
-        density=density,
-        heat_from_bodies=heat_from_bodies,
-        friction_factor=friction_factor,
-    )
 
 
 def sommerfeld_number(bearing: JournalBearing, load: float, omega: float, viscosity: float) -> float:
@@ -232,15 +168,16 @@ def transition_speed(bearing: JournalBearing, load: float, viscosity: float) -> 
 
 
 def largest_starting_load(bearing: JournalBearing, omega: float, viscosity: float) -> float:
-    """Load whose transition speed is ``omega`` [N]: Vogelpohl's formula turned round."""
+    """Load whose transition speed is ``omega`` [N]: Vogelpohl's formula solved for the load."""
     per_minute = omega * 30.0 / math.pi
     return per_minute * bearing.transition_constant * viscosity * bearing.volume / VOGELPOHL_CONSTANT
 
 
 @dataclass(frozen=True)
 class _Film:
-    """Mechanical state of the film at one viscosity."""
+    """Mechanical state of the film at one viscosity [Pa s]."""
 
+    viscosity: float
     load: float
     omega: float
     sommerfeld: float
@@ -251,16 +188,18 @@ class _Film:
 
 
 def _film(
-    bearing: JournalBearing, curve: Characteristic, load: float, omega: float, viscosity: float, factor: float
+    bearing: JournalBearing, curve: Characteristic, operation: BearingOperation, viscosity: float
 ) -> _Film:
     """Drag = Petroff's torque / sqrt(1 - eps^2) plus the pressure part F (C/4) eps sin(beta), times the factor."""
+    load, omega = operation.load, abs(operation.speed)
     sommerfeld = sommerfeld_number(bearing, load, omega, viscosity)
     eps = curve.eccentricity(sommerfeld)
     attitude = curve.attitude_angle(eps)
     couette = petroff_torque(bearing, omega, viscosity) / math.sqrt(1.0 - eps**2)
     pressure = 0.25 * bearing.diametral_clearance * load * eps * math.sin(attitude) if omega > 0.0 else 0.0
     side_flow = bearing.diameter**3 * bearing.relative_clearance * omega * curve.side_flow(eps)
-    return _Film(load, omega, sommerfeld, eps, attitude, factor * (couette + pressure), side_flow)
+    torque = operation.friction_factor * (couette + pressure)
+    return _Film(viscosity, load, omega, sommerfeld, eps, attitude, torque, side_flow)
 
 
 def _cooling_flow(bearing: JournalBearing, flow: float, side_flow: float) -> float:
@@ -290,26 +229,13 @@ def _balance(film_excess: Callable[[float], float], inlet: float) -> float:
 
 
 def _state(
-    bearing: JournalBearing,
-    film: _Film,
-    *,
-    viscosity: float,
-    film_temperature: float,
-    outlet_temperature: float,
-    flow: float,
-    density: float,
-    heat_from_bodies: float,
-    friction_factor: float,
-) -> BearingState:
-    load, omega, eps = film.load, film.omega, film.eccentricity
+    bearing: JournalBearing, operation: BearingOperation, film: _Film, temperature: float, outlet: float
+) -> JournalState:
+    load, omega, eps, oil = film.load, film.omega, film.eccentricity, operation.oil
     standstill = omega == 0.0 and load > 0.0
     clearance = 0.5 * bearing.diametral_clearance
-    reynolds = density * omega * 0.5 * bearing.diameter * clearance / viscosity
-    limit = TAYLOR_LIMIT * math.sqrt(bearing.diameter / bearing.diametral_clearance)
-    regime = "standstill" if standstill else "mixed" if eps >= HIGHEST_ECCENTRICITY else "hydrodynamic"
-    transition = transition_speed(bearing, load, viscosity)
-    return BearingState(
-        regime=regime,
+    state = JournalState(
+        regime="standstill" if standstill else "mixed" if eps >= HIGHEST_ECCENTRICITY else "hydrodynamic",
         load=load,
         omega=omega,
         specific_load=load / (bearing.width * bearing.diameter),
@@ -322,80 +248,46 @@ def _state(
         power=film.torque * omega,
         torsional_damping=film.torque / omega
         if omega > 0.0
-        else friction_factor * petroff_torque(bearing, 1.0, viscosity),
-        petroff_torque=petroff_torque(bearing, omega, viscosity),
-        film_temperature=film_temperature,
-        outlet_temperature=outlet_temperature,
-        viscosity=viscosity,
-        flow=flow,
+        else operation.friction_factor * petroff_torque(bearing, 1.0, film.viscosity),
+        petroff_torque=petroff_torque(bearing, omega, film.viscosity),
+        film_temperature=temperature,
+        outlet_temperature=outlet,
+        viscosity=film.viscosity,
+        flow=oil.flow,
+        cooling_flow=_cooling_flow(bearing, oil.flow, film.side_flow),
         side_flow=film.side_flow,
-        transition_speed=transition,
-        reynolds_number=reynolds,
-        reynolds_limit=limit,
+        transition_speed=transition_speed(bearing, load, film.viscosity),
+        reynolds_number=oil.density * omega * 0.5 * bearing.diameter * clearance / film.viscosity,
+        reynolds_limit=TAYLOR_LIMIT * math.sqrt(bearing.diameter / bearing.diametral_clearance),
         mean_inverse_gap=1.0 / (clearance * math.sqrt(1.0 - eps**2)),
-        heat_from_bodies=heat_from_bodies,
-        warnings=_warnings(regime, omega, transition, reynolds, limit, flow, film.side_flow),
+        heat_from_bodies=operation.heat_from_bodies,
+        source=SOURCE,
+        warnings=(),
     )
+    return replace(state, warnings=_warnings(state))
 
 
-def _warnings(
-    regime: str, omega: float, transition: float, reynolds: float, limit: float, flow: float, side_flow: float
-) -> tuple[str, ...]:
+def _warnings(state: JournalState) -> tuple[str, ...]:
     """Sentences for what lies outside the theory: name, value, limit, remedy."""
     found = []
-    if regime == "mixed":
+    if state.regime == "mixed":
         found.append(
-            f"eccentricity >= {HIGHEST_ECCENTRICITY}: mixed friction, drag and film thickness are bounds; "
+            f"eccentricity >= {HIGHEST_ECCENTRICITY}: mixed friction, drag torque and film thickness are bounds; "
             "raise speed or viscosity or lower the load"
         )
-    if 0.0 < omega < transition:
+    if 0.0 < state.omega < state.transition_speed:
         found.append(
-            f"speed = {omega * 30.0 / math.pi:.0f} rpm: below the transition speed "
-            f"{transition * 30.0 / math.pi:.0f} rpm of this load; lower the load until it is passed"
+            f"speed = {state.omega * 30.0 / math.pi:.0f} rpm: below the transition speed "
+            f"{state.transition_speed * 30.0 / math.pi:.0f} rpm of this load; lower the load until it is passed"
         )
-    if reynolds > limit:
+    if state.reynolds_number > state.reynolds_limit:
         found.append(
-            f"Reynolds number = {reynolds:.0f}: above {limit:.0f}, the film is not laminar and drags more; "
-            "reduce the clearance or use a thicker oil"
+            f"Reynolds number = {state.reynolds_number:.0f}: above {state.reynolds_limit:.0f}, the film is not "
+            "laminar and its drag torque is higher; reduce the clearance or use a thicker oil"
         )
-    if side_flow > flow:
+    if state.side_flow > state.flow:
         found.append(
-            f"oil flow = {flow * 6e4:.3g} l/min: below the {side_flow * 6e4:.3g} l/min the film drives out, "
-            "the bearing starves; feed more oil"
+            f"oil flow = {state.flow * 6e4:.3g} l/min: below the {state.side_flow * 6e4:.3g} l/min the film drives "
+            "out, the bearing starves; feed more oil"
         )
     return tuple(found)
-
-
-def _check_operation(
-    load: float,
-    flow: float,
-    density: float,
-    heat_capacity: float,
-    inlet: float,
-    friction_heat: float | None,
-    friction_factor: float,
-) -> None:
-    if not (load >= 0.0 and math.isfinite(load)):
-        raise BearingError(
-            f"journal bearing: load = {load} N: must be finite and not negative; give its magnitude"
-        )
-    if friction_heat is not None and not (friction_heat >= 0.0 and math.isfinite(friction_heat)):
-        raise BearingError(
-            f"journal bearing: friction_heat = {friction_heat} W: must be finite and not negative; give the "
-            "measured loss, or none to let the film make its own"
-        )
-    if not (friction_factor >= 0.0 and math.isfinite(friction_factor)):
-        raise BearingError(
-            f"journal bearing: friction_factor = {friction_factor}: must be finite and not negative; give 1 for "
-            "the friction of the film itself"
-        )
-    for name, value, unit in (
-        ("oil flow", flow, "m3/s"),
-        ("oil density", density, "kg/m3"),
-        ("oil heat capacity", heat_capacity, "J/(kg K)"),
-        ("oil inlet temperature", inlet, "K"),
-    ):
-        if not value > 0.0:
-            raise BearingError(
-                f"journal bearing: {name} = {value} {unit}: must be above 0; correct the oil supply"
-            )

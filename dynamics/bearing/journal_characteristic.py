@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 NODES: Array = 0.001 - (math.log(1.0 - HIGHEST_ECCENTRICITY) + 0.001) * np.linspace(0.0, 1.0, 22) ** 1.5
 """Where the film is solved, as -ln(1 - eps), closer together near the concentric journal."""
 WIDTH_RATIO_STEP = 1e-3
-"""B/D is rounded to this step, so that a growing journal does not cost a new table."""
+"""B/D is rounded to this step, so that the expansion of a journal does not cost a new table."""
 
 
 def short_bearing_attitude(eccentricity: float) -> float:
@@ -80,7 +80,7 @@ def characteristic(width_ratio: float) -> Characteristic:
 
     Raises
     ------
-    ValueError : B/D outside 0.1 to 2, where a plain bearing of this kind is not built
+    DynamicsInputError : B/D outside 0.1 to 2, where a plain bearing of this kind is not built
     """
     if not 0.1 <= width_ratio <= 2.0:
         raise DynamicsInputError(

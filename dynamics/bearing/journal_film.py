@@ -24,7 +24,7 @@ FILM_END = 1.5 * math.pi
 
 
 class FilmNotConvergedError(DynamicsNotConverged):
-    """The cavitated region of a bearing film did not settle."""
+    """The cavitated region of a bearing film did not converge."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,8 +69,8 @@ def solve_film(
 
     Raises
     ------
-    ValueError : eccentricity or width ratio out of range
-    FilmNotConvergedError : the active set does not settle in 100 steps
+    DynamicsInputError : eccentricity or width ratio out of range
+    FilmNotConvergedError : the active set does not converge in 100 steps
 
     Source: O. Reynolds 1886; H. W. Swift 1932 and W. Stieber 1933 for the break-up of the film.
     """
@@ -132,7 +132,7 @@ def _pressure(
     for _ in range(100):
         solution = _solve_active(bands, source, active, m)
         residual = _apply(bands, solution, m) - source
-        # keep a node while it carries pressure, wake a dry one that is fed more than it passes on
+        # keep a node while it carries pressure, add a dry one that is fed more than it passes on
         wanted = np.where(active, solution > 0.0, residual < 0.0)
         if np.array_equal(wanted, active):
             break
@@ -177,8 +177,8 @@ def _integrals(
     sommerfeld = math.hypot(along, across)
     gap = 1.0 + eccentricity * np.cos(theta)
     near, far = 1.0 - zeta[-2], 1.0 - zeta[-3]
-    slope = (pressure[:, -2] * far / near - pressure[:, -3] * near / far) / (far - near)
-    side_flow = float(np.trapezoid(gap**3 * slope, theta)) / (48.0 * width_ratio)
+    gradient = (pressure[:, -2] * far / near - pressure[:, -3] * near / far) / (far - near)
+    side_flow = float(np.trapezoid(gap**3 * gradient, theta)) / (48.0 * width_ratio)
     # wall shear on the journal: Couette part over the full ring, pressure part (H/2) dP/dtheta over the film
     couette = math.pi / math.sqrt(1.0 - eccentricity**2)
     middle_gap = 1.0 + eccentricity * np.cos(0.5 * (theta[1:] + theta[:-1]))

@@ -1,4 +1,4 @@
-"""Bracing of the power loop: twist or axial shift that makes the torque, and what becomes of it when warm.
+"""Bracing of the power loop: twist or axial shift that makes the torque, and how it changes with temperature.
 
 Three modes. *Twist held* (P1): two shafts are turned against each other and bolted. *Shift held*: the helical
 gear of the reference gearbox is moved along its shaft and stays there. *Torque controlled* (P2): the shift
@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import StaticState, loaded_share, port_model, solve_static
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
@@ -77,6 +78,36 @@ class ShiftedGear:
 
 
 @dataclass(frozen=True, kw_only=True)
+class LoopBracing:
+    """How the loop is braced.
+
+    mode : what is held or controlled
+    gear : the one that is shifted; a controlled torque without one is made by the twist
+    twist : of the assembled loop in the two modes with a shift [rad]; there the offset of the shifted mesh's law is
+        the unknown
+    control_mesh : index of the mesh whose torque is asked for
+
+    Raises DynamicsInputError if a held shift has no gear.
+    """
+
+    mode: Mode
+    gear: ShiftedGear | None = None
+    twist: float = 0.0
+    control_mesh: int = 0
+
+    def __post_init__(self) -> None:
+        if self.gear is None and self.mode == "shift_held":
+            raise DynamicsInputError(
+                f"bracing mode {self.mode!r}: needs the shifted helical gear; give it or use 'twist_held'"
+            )
+
+    @property
+    def moved_gear(self) -> ShiftedGear | None:
+        """Gear whose shift makes the torque; None where the twist makes it."""
+        return None if self.mode == "twist_held" else self.gear
+
+
+@dataclass(frozen=True, kw_only=True)
 class BracedLoop:
     """Result of one stage.
 
@@ -100,76 +131,62 @@ class BracedLoop:
 
 @dataclass(frozen=True, kw_only=True)
 class BracingDrift:
-    """The same setting cold and hot; ``torque_change`` of the control mesh [N m], 0 when controlled."""
+    """The same setting in the initial state and warm; ``torque_change`` [N m] of the control mesh, 0 if controlled."""
 
-    cold: BracedLoop
-    hot: BracedLoop
+    initial: BracedLoop
+    warm: BracedLoop
     torque_change: float
 
 
-def brace(
-    system: LinearSystem,
-    laws: Sequence[MeshLaw],
-    torque: float,
-    mode: Mode,
-    *,
-    gear: ShiftedGear | None = None,
-    twist: float = 0.0,
-    control_mesh: int = 0,
-) -> BracedLoop:
+def brace(system: LinearSystem, laws: Sequence[MeshLaw], torque: float, bracing: LoopBracing) -> BracedLoop:
     """Twist or shift that makes a mean torque at the pinion of the control mesh [N m], without friction.
 
-    twist : of the assembled loop in the two modes with a shift [rad]; there the offset of the shifted
-    mesh's law
-        is the unknown
-
-    gear : the one that is shifted; a controlled torque without one is made by the twist
-
-    Raises ValueError if a held shift has no gear, DynamicsNotConverged if no setting makes the torque.
+    Raises DynamicsNotConverged if no setting makes the torque.
     """
-    if gear is None and mode == "shift_held":
-        raise DynamicsInputError(
-            f"bracing mode {mode!r}: needs the shifted helical gear; give it or use 'twist_held'"
-        )
-    if gear is None or mode == "twist_held":
-        state = solve_static(port_model(system, laws), torque=torque, control_mesh=control_mesh)
-        return _state(system, laws, mode, None, state, 0.0, control_mesh)
-    shift, state = _solve_shift(system, laws, torque, gear, twist, control_mesh)
-    return _state(system, _shifted(laws, gear, shift), mode, gear, state, shift, control_mesh)
+    load = LoopLoad(torque=torque, control_mesh=bracing.control_mesh)
+    gear = bracing.moved_gear
+    if gear is None:
+        return _state(system, laws, bracing, solve_static(port_model(system, laws), load), 0.0)
+    shift, state = _solve_shift(system, laws, load, gear, bracing.twist)
+    return _state(system, _shifted(laws, gear, shift), bracing, state, shift)
 
 
 def drift(
     system: LinearSystem,
-    cold_laws: Sequence[MeshLaw],
-    hot_laws: Sequence[MeshLaw],
+    initial_laws: Sequence[MeshLaw],
+    warm_laws: Sequence[MeshLaw],
     torque: float,
-    mode: Mode,
-    *,
-    gear: ShiftedGear | None = None,
-    axial_growth: float = 0.0,
-    twist: float = 0.0,
-    control_mesh: int = 0,
+    bracing: LoopBracing,
+    axial_expansion: float = 0.0,
 ) -> BracingDrift:
-    """Brace cold, then warm up: hot laws and a growth that moves the shifted gear by ``axial_growth`` [m].
+    """Brace in the initial state, then warm up.
 
-    The growth is the uncompensated one, of one half against the other; equal growth of both halves is none.
+    Parameters
+    ----------
+    initial_laws, warm_laws : of every mesh when the loop is braced, and at temperature
+    torque : asked of the control mesh [N m]
+    axial_expansion : thermal expansion that moves the shifted gear [m]: the uncompensated one, of one half against
+        the other; equal expansion of both halves is none
+
+    Raises DynamicsNotConverged as `brace`. A warm setting that lies within the backlash carries nothing.
     """
-    cold = brace(system, cold_laws, torque, mode, gear=gear, twist=twist, control_mesh=control_mesh)
-    if mode == "torque_controlled":
-        hot = brace(system, hot_laws, torque, mode, gear=gear, twist=twist, control_mesh=control_mesh)
-        hot = replace(hot, shift=hot.shift - axial_growth)
-        return BracingDrift(cold=cold, hot=hot, torque_change=0.0)
-    moved = cold.shift + axial_growth
-    laws = hot_laws if gear is None else _shifted(hot_laws, gear, moved)
+    initial = brace(system, initial_laws, torque, bracing)
+    if bracing.mode == "torque_controlled":
+        warm = brace(system, warm_laws, torque, bracing)
+        warm = replace(warm, shift=warm.shift - axial_expansion)
+        return BracingDrift(initial=initial, warm=warm, torque_change=0.0)
+    moved = initial.shift + axial_expansion
+    laws = warm_laws if bracing.gear is None else _shifted(warm_laws, bracing.gear, moved)
+    mesh = bracing.control_mesh
     try:
-        state = solve_static(port_model(system, laws), twist=cold.twist)
+        state = solve_static(port_model(system, laws), LoopLoad(twist=initial.twist))
     except DynamicsNotConverged:
-        if loaded_share(port_model(system, laws), torque, cold.twist, control_mesh) > OPEN_SHARE:
+        if loaded_share(port_model(system, laws), torque, initial.twist, mesh) > OPEN_SHARE:
             raise
-        state = _open_loop(cold.static)
-    hot = _state(system, laws, mode, None if mode == "twist_held" else gear, state, cold.shift, control_mesh)
-    change = float(hot.torque[control_mesh] - cold.torque[control_mesh])
-    return BracingDrift(cold=cold, hot=hot, torque_change=change)
+        state = _open_loop(initial.static)
+    warm = _state(system, laws, bracing, state, initial.shift)
+    change = float(warm.torque[mesh] - initial.torque[mesh])
+    return BracingDrift(initial=initial, warm=warm, torque_change=change)
 
 
 def _open_loop(state: StaticState) -> StaticState:
@@ -184,12 +201,7 @@ def _shifted(laws: Sequence[MeshLaw], gear: ShiftedGear, shift: float) -> tuple[
 
 
 def _solve_shift(
-    system: LinearSystem,
-    laws: Sequence[MeshLaw],
-    torque: float,
-    gear: ShiftedGear,
-    twist: float,
-    control_mesh: int,
+    system: LinearSystem, laws: Sequence[MeshLaw], load: LoopLoad, gear: ShiftedGear, twist: float
 ) -> tuple[float, StaticState]:
     """Shift that needs no other twist than the one given.
 
@@ -197,20 +209,18 @@ def _solve_shift(
     needs.
     """
     per_shift = gear.rotation(1.0)
-    shift, known = 0.0, solve_static(port_model(system, laws), torque=torque, control_mesh=control_mesh)
+    shift, known = 0.0, solve_static(port_model(system, laws), load)
     excess = known.twist - twist
     scale = max(abs(excess), 1e-9)
     trial = excess / per_shift
     for _ in range(30):
-        state = solve_static(
-            port_model(system, _shifted(laws, gear, trial)), torque=torque, control_mesh=control_mesh
-        )
+        state = solve_static(port_model(system, _shifted(laws, gear, trial)), load)
         new_excess = state.twist - twist
         if abs(new_excess) < 1e-10 * scale:
             return trial, state
-        slope = (new_excess - excess) / (trial - shift)
+        derivative = (new_excess - excess) / (trial - shift)
         shift, excess = trial, new_excess
-        trial = shift - excess / slope
+        trial = shift - excess / derivative
     raise DynamicsNotConverged(
         f"bracing by shift: twist left over = {excess:.3e} rad after 30 steps, limit {1e-10 * scale:.1e}; "
         "check the helix angle and the torque"
@@ -218,14 +228,9 @@ def _solve_shift(
 
 
 def _state(
-    system: LinearSystem,
-    laws: Sequence[MeshLaw],
-    mode: Mode,
-    gear: ShiftedGear | None,
-    state: StaticState,
-    shift: float,
-    control_mesh: int,
+    system: LinearSystem, laws: Sequence[MeshLaw], bracing: LoopBracing, state: StaticState, shift: float
 ) -> BracedLoop:
+    gear = bracing.moved_gear
     torque = state.mean_torque
     at_gear = 0.0
     if gear is not None:
@@ -233,14 +238,14 @@ def _state(
         ratio = gear.working_radius * math.cos(_working_angle(law)) / law.base_radius_1
         at_gear = float(torque[gear.mesh]) * ratio
     return BracedLoop(
-        mode=mode,
+        mode=bracing.mode,
         torque=torque,
         twist=state.twist,
         shift=shift,
         rotation=0.0 if gear is None else gear.rotation(shift),
         actuator_force=0.0 if gear is None else gear.actuator_force(at_gear),
         friction_force=0.0 if gear is None else gear.friction_force(at_gear),
-        loop_stiffness=_loop_stiffness(system, laws, state, control_mesh),
+        loop_stiffness=_loop_stiffness(system, laws, state, bracing.control_mesh),
         static=state,
     )
 
@@ -257,7 +262,6 @@ def _loop_stiffness(
     torque = float(state.mean_torque[control_mesh])
     if torque == 0.0:
         return 0.0
-    stepped = solve_static(
-        port_model(system, laws), torque=torque * (1.0 + 1e-4), control_mesh=control_mesh, start=state
-    )
+    load = LoopLoad(torque=torque * (1.0 + 1e-4), control_mesh=control_mesh)
+    stepped = solve_static(port_model(system, laws), load, start=state)
     return torque * 1e-4 / (stepped.twist - state.twist)

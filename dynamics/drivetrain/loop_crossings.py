@@ -20,7 +20,7 @@ class LoopCrossing:
 
     source : mesh or shaft whose order it is; kind : which of the two
     mode : number of the mode, 1 for the lowest that swings
-    harmonic : of the mesh frequency, or order of the shaft's turning
+    harmonic : of the mesh frequency, or order of the shaft speed
     speed : at which they meet, of the motor's shaft; own_speed : of the pinion of the mesh, or of the shaft [rad/s]
     gain : `LoopMode.mesh_gain` of the mesh [-]; 0 for a shaft, which excites by its errors only
     """

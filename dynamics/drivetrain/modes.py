@@ -110,7 +110,12 @@ def loop_modes(
 
 
 def closed_matrices(system: LinearSystem, laws: Sequence[MeshLaw]) -> tuple[Array, Array, Array]:
-    """Inertia (n,), damping, stiffness (n, n) of the loop with every mesh as its mean spring and damper."""
+    """Loop with every mesh as its mean spring and damper, both flanks in contact.
+
+    laws : of the meshes, in the order of ``system.mesh_ports``
+
+    Returns inertia (n,) [kg m2], damping (n, n) [N m s/rad] and stiffness (n, n) [N m/rad] of the freedoms.
+    """
     stiffness, damping = system.stiffness.copy(), system.damping.copy()
     for law, ports in zip(laws, system.mesh_ports):
         approach = np.zeros(system.inertia.size)
@@ -165,7 +170,14 @@ class DampingRecord:
 
 
 def damping_record(name: str, kind: str, stiffness: float, damping: float, inertia: float) -> DampingRecord:
-    """Audit one spring-damper against the inertia (or mass) it holds, in consistent SI units."""
+    """Audit one spring-damper against the inertia (or mass) it holds.
+
+    name, kind : for the message
+    stiffness : above 0; damping : not negative; inertia : above 0; consistent SI units, torsional or translational
+
+    Damping ratio c / (2 sqrt(k J)), corner frequency k / (2 pi c) above which the damper makes the joint rigid; the
+    record warns above DAMPING_RATIO_LIMIT.
+    """
     ratio = damping / (2.0 * math.sqrt(stiffness * inertia))
     corner = stiffness / (2.0 * math.pi * damping) if damping > 0.0 else math.inf
     warning = ""
@@ -272,7 +284,10 @@ class SamplingAudit:
 def sampling_audit(
     drivetrain: Drivetrain, speed: float, sample_rate: float, samples_wanted: float = 10.0
 ) -> tuple[SamplingAudit, ...]:
-    """Audit every mesh at a speed of the motor's shaft [rad/s] and a sample rate [Hz]."""
+    """Audit every mesh of a recording at a speed of the motor's shaft.
+
+    speed : [rad/s], above 0; sample_rate : [Hz]; samples_wanted : per mesh period, below which a record warns [-]
+    """
     ratios = speed_ratios(drivetrain)
     found = []
     for mesh in drivetrain.meshes:

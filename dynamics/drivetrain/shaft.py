@@ -131,15 +131,15 @@ def discretise(shaft: Shaft, stations: tuple[float, ...] = ()) -> ShaftChain:
     Element stiffness G J / h; half of the inertia rho J h goes to either end. The disc inertias are added.
     """
     steps = np.cumsum([0.0] + [section.length for section in shaft.sections])
-    marks = np.concatenate(
+    nodes = np.concatenate(
         [steps, np.clip(stations, 0.0, steps[-1]), [disc.position for disc in shaft.discs]]
     )
-    marks = np.unique(np.round(np.clip(marks, 0.0, steps[-1]), 9))
+    nodes = np.unique(np.round(np.clip(nodes, 0.0, steps[-1]), 9))
     pieces = [
         np.linspace(a, b, max(1, math.ceil((b - a) / shaft.element_length - 1e-9)) + 1)[:-1]
-        for a, b in pairwise(marks)
+        for a, b in pairwise(nodes)
     ]
-    positions = np.concatenate([*pieces, marks[-1:]])
+    positions = np.concatenate([*pieces, nodes[-1:]])
     lengths = np.diff(positions)
     middle = positions[:-1] + 0.5 * lengths
     section_of = np.clip(np.searchsorted(steps, middle) - 1, 0, len(shaft.sections) - 1)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
@@ -75,7 +76,10 @@ class PortModel:
 
 
 def line_ratios(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
-    """Speed of every freedom relative to the drive freedom (n,), from the base radii of the meshes."""
+    """Speed of every freedom relative to the drive freedom (n,) [-], from the base radii of the meshes.
+
+    Raises KeyError, with the line, if a line is joined to the drive by no mesh.
+    """
     ratio = {int(system.lines[system.drive_dof]): 1.0}
     for _ in laws:
         for law, (pinion, wheel) in zip(laws, system.mesh_ports):
@@ -90,7 +94,7 @@ def line_ratios(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
 def port_model(system: LinearSystem, laws: Sequence[MeshLaw]) -> PortModel:
     """Reduce the stiffness of a system statically to its mesh ports and its drive freedom.
 
-    Raises ValueError if the number of laws is not the number of meshes.
+    Raises DynamicsInputError if the number of laws is not the number of meshes.
     """
     if len(laws) != len(system.mesh_ports):
         raise DynamicsInputError(
@@ -165,36 +169,51 @@ def mesh_angles(model: PortModel, count: int = 32) -> Array:
     return np.asarray(np.arange(count) / count * (2.0 * np.pi / law.teeth_1 / float(model.ratios[0])), float)
 
 
-def solve_static(
-    model: PortModel,
-    *,
-    torque: float | None = None,
-    twist: float | None = None,
-    control_mesh: int = 0,
-    angles: Array | None = None,
-    speed: float = 0.0,
-    drag_torques: Mapping[str, float] | None = None,
-    start: StaticState | None = None,
-    held: int = -1,
-) -> StaticState:
-    """Quasi-static state for a given twist [rad], or the twist for a given mean torque of one mesh [N m].
+@dataclass(frozen=True, kw_only=True)
+class SlowRotation:
+    """Rotation so slow that no inertia acts.
 
-    speed : reference speed that gives friction and drag their direction [rad/s]; 0 leaves both out.
+    angles : (n_angles,) of the held port [rad]; None: 32 over one period of the first mesh
+    speed : of the drive freedom, gives friction and linear drag their direction [rad/s]; 0 leaves both out
+    drag_torques : by name of ``PortModel.drags`` [N m]
     held : port that turns by ``angles`` without windup: the drive freedom, last of all, or a pinion.
         Behind a soft motor shaft a mesh may step over the pitch point, where friction
         reverses, and no state exists for some angles of the drive; it does for the angles of a pinion
+    """
+
+    angles: Array | None = None
+    speed: float = 0.0
+    drag_torques: Mapping[str, float] | None = None
+    held: int = -1
+
+
+AT_REST = SlowRotation()
+"""Over one period of the first mesh without friction and drag torques."""
+
+
+def solve_static(
+    model: PortModel, load: LoopLoad, rotation: SlowRotation = AT_REST, start: StaticState | None = None
+) -> StaticState:
+    """Quasi-static state for a held twist, or the twist for a given mean torque of one mesh.
+
+    Parameters
+    ----------
+    model : loop reduced to its mesh ports
+    load : torque of a mesh or bracing twist
+    rotation : angles at which the state is wanted, and what brakes there
+    start : state to start from, at as many angles; default: springs in place of the meshes
 
     Raises
     ------
-    ValueError
-        If not exactly one of torque and twist is given.
+    DynamicsInputError
+        For a drag torque without a place in the drivetrain.
     DynamicsNotConverged
-        If Newton's method does not settle, for instance because the twist leaves the flanks open.
+        If Newton's method does not converge, for instance because the twist leaves the flanks open.
     """
-    if (torque is None) == (twist is None):
-        raise DynamicsInputError("give either the torque or the twist of the loop, not both and not neither")
-    where = mesh_angles(model) if angles is None else angles
-    drag = model.drag(speed, drag_torques)
+    torque, twist, control_mesh = load.torque, load.twist, load.control_mesh
+    speed, held = rotation.speed, rotation.held
+    where = mesh_angles(model) if rotation.angles is None else rotation.angles
+    drag = model.drag(speed, rotation.drag_torques)
     if start is None:
         u, phi = _bilateral(model, torque, twist, control_mesh)
         u = np.tile(u, (where.size, 1))
@@ -208,7 +227,7 @@ def solve_static(
     previous, damp = np.inf, 1.0
     step: tuple[Array, Array, float] = (np.zeros_like(u), np.zeros(where.size), 0.0)
     for _ in range(80):
-        tau, slopes, own, transmitted = _reactions(model, u, where, speed)
+        tau, tangents, own, transmitted = _reactions(model, u, where, speed)
         residual = u @ model.stiffness - tau - model.twist * phi - drag - drive[:, None] * unit
         miss = 0.0 if torque is None else torque - float(transmitted[:, control_mesh].mean())
         error = max(float(np.max(np.abs(residual))), abs(miss)) / scale
@@ -223,7 +242,7 @@ def solve_static(
             continue
         previous, damp = error, 1.0
         jacobian = np.zeros((where.size, n + 1, n + 1))
-        jacobian[:, :n, :n] = model.stiffness - slopes
+        jacobian[:, :n, :n] = model.stiffness - tangents
         jacobian[:, ref, n] = -1.0
         jacobian[:, n, held % n] = 1.0
         right = np.zeros((where.size, n + 1, 2))
@@ -256,10 +275,10 @@ def _transmitted_change(own: Array, moves: Array, mesh: int) -> Array:
 
 
 def _reactions(model: PortModel, u: Array, angles: Array, speed: float) -> tuple[Array, Array, Array, Array]:
-    """Port torques (n_angles, n), their slopes (n_angles, n, n), those of each mesh at its own pinion
-    (n_angles, n_meshes, n), transmitted torques (n_angles, n_meshes)."""
+    """Port torques (n_angles, n), their derivatives over the windup (n_angles, n, n), those of each mesh at its own
+    pinion (n_angles, n_meshes, n), transmitted torques (n_angles, n_meshes)."""
     tau = np.zeros_like(u)
-    slopes = np.zeros((*u.shape, u.shape[1]))
+    tangents = np.zeros((*u.shape, u.shape[1]))
     own = np.zeros((u.shape[0], model.n_meshes, u.shape[1]))
     transmitted = np.empty((u.shape[0], model.n_meshes))
     reach = u @ model.approach.T + model.offsets
@@ -273,11 +292,11 @@ def _reactions(model: PortModel, u: Array, angles: Array, speed: float) -> tuple
         tau[:, w] += reaction.torque_2
         own[:, m] = reaction.torque_1_per_approach[:, None] * model.approach[m]
         own[:, m, p] += reaction.torque_1_per_angle
-        slopes[:, p] += own[:, m]
-        slopes[:, w] += reaction.torque_2_per_approach[:, None] * model.approach[m]
-        slopes[:, w, p] += reaction.torque_2_per_angle
+        tangents[:, p] += own[:, m]
+        tangents[:, w] += reaction.torque_2_per_approach[:, None] * model.approach[m]
+        tangents[:, w, p] += reaction.torque_2_per_angle
         transmitted[:, m] = model.base_radii[m, 0] * (reaction.force_front - reaction.force_back)
-    return tau, slopes, own, transmitted
+    return tau, tangents, own, transmitted
 
 
 def _bilateral(

@@ -55,7 +55,7 @@ def require_sizes(pair: PairGeometry) -> None:
 
 
 def require_meshing(pair: PairGeometry) -> None:
-    """Raise GearGeometryError for a cold pair that cannot run."""
+    """Raise GearGeometryError for a pair at reference temperature that cannot run."""
     for name, gear in zip(NAMES, pair.gears, strict=True):
         if not gear.tip_thickness > 0.0:
             raise GearGeometryError(

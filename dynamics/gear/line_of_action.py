@@ -47,9 +47,12 @@ class PathOfContact:
 
 
 def path_between(pinion: CylindricalGear, wheel: CylindricalGear, centre_distance: float) -> PathOfContact:
-    """Path of contact of two gears on ``centre_distance`` [m] from tip circles and generated form circles."""
-    slope = tan(acos((pinion.base_radius + wheel.base_radius) / centre_distance))
-    reach_1, reach_2 = pinion.base_radius * slope, wheel.base_radius * slope
+    """Path of contact of two gears from tip circles and generated form circles (ISO 21771:2007).
+
+    centre_distance : [m], above the sum of the base radii; a smaller one raises ValueError
+    """
+    ratio = tan(acos((pinion.base_radius + wheel.base_radius) / centre_distance))
+    reach_1, reach_2 = pinion.base_radius * ratio, wheel.base_radius * ratio
     tip_end = pinion.roll_length(pinion.tip_radius) - reach_1
     tip_start = reach_2 - wheel.roll_length(wheel.tip_radius)
     return PathOfContact(
@@ -70,7 +73,12 @@ def shift_sum(
     teeth: tuple[int, int],
     centre_distance: float,
 ) -> float:
-    """Sum of the profile shifts x1 + x2 [-] that mesh without backlash on ``centre_distance`` [m]."""
+    """Sum of the profile shifts x1 + x2 [-] that mesh without backlash (ISO 21771:2007).
+
+    normal_module, centre_distance : [m]; pressure_angle (normal), helix_angle : [rad]; teeth : pinion, wheel
+
+    Raises GearGeometryError for angles out of range or a centre distance below the sum of the base radii.
+    """
     require_angles(pressure_angle, helix_angle)
     alpha_t = atan(tan(pressure_angle) / cos(helix_angle))
     smallest = 0.5 * normal_module * sum(teeth) / cos(helix_angle) * cos(alpha_t)

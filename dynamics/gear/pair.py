@@ -11,13 +11,13 @@ from dynamics.gear.pair_geometry import PairGeometry
 class GearPair(PairGeometry):
     """Two external cylindrical gears in mesh; fields and geometry are those of :class:`PairGeometry`.
 
-    A cold pair that cannot mesh raises :class:`GearGeometryError`; a warm one only if it has no contact at all, so
-    that a lost tip clearance or backlash shows as a number.
+    A pair at its reference temperature that cannot mesh raises :class:`GearGeometryError`; an expanded one only if it
+    has no contact at all, so that a lost tip clearance or backlash shows as a number.
     """
 
     def __post_init__(self) -> None:
         limits.require_sizes(self)
-        if self.growth == (0.0, 0.0):
+        if self.expansion == (0.0, 0.0):
             limits.require_meshing(self)
         elif not self.path.length > 0.0:
             raise GearGeometryError(

@@ -1,11 +1,11 @@
-"""Geometry of a cylindrical gear pair, cold or warm (ISO 21771:2007)."""
+"""Geometry of a cylindrical gear pair at reference or operating temperature (ISO 21771:2007)."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import acos, cos, pi, radians, tan
 from typing import Literal, Self, TypedDict, Unpack
 
-from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError, Rack, involute
+from dynamics.gear.cylindrical_gear import CylindricalGear, Rack, involute
 from dynamics.gear.line_of_action import (
     PathOfContact,
     TipCut,
@@ -31,11 +31,28 @@ class GearBodies(TypedDict, total=False):
 
 
 @dataclass(frozen=True, kw_only=True)
+class TipShortening:
+    """How far the tips of a pair are shortened.
+
+    shortening : on the radius, pinion first [m]
+    contact_ratio : transverse contact ratio to which the tips are cut after that; None: not cut
+    cut_gear : the gear that is cut, or both by the same amount
+    """
+
+    shortening: Pair = (0.0, 0.0)
+    contact_ratio: float | None = None
+    cut_gear: TipCut = "both"
+
+
+FULL_TIPS = TipShortening()
+
+
+@dataclass(frozen=True, kw_only=True)
 class PairGeometry:
     """Two external cylindrical gears on a fixed centre distance. Lengths [m], angles [rad], pinion first.
 
-    Tip diameters, shifts, widths, bores and allowances are those of the cold gears; ``growth`` is the
-    relative linear growth of each gear body, set by :meth:`warm`, and every property includes it.
+    Tip diameters, shifts, widths, bores and allowances are those at the reference temperature; ``expansion`` is the
+    relative linear expansion of each gear body, set by :meth:`warm`, and every property includes it.
     Whether they can mesh is asked by `dynamics.gear.pair.GearPair`.
     """
 
@@ -53,7 +70,7 @@ class PairGeometry:
     youngs_moduli: Pair = (206e9, 206e9)
     poisson_ratios: Pair = (0.3, 0.3)
     densities: Pair = (7830.0, 7830.0)
-    growth: Pair = (0.0, 0.0)
+    expansion: Pair = (0.0, 0.0)
 
     @classmethod
     def from_centre_distance(
@@ -63,28 +80,25 @@ class PairGeometry:
         teeth: tuple[int, int],
         centre_distance: float,
         face_widths: Pair,
-        profile_shift_1: float | None = None,
-        split: Literal["equal"] | None = None,
-        tip_shortening: Pair = (0.0, 0.0),
-        contact_ratio: float | None = None,
-        tip_cut: TipCut = "both",
+        profile_shift_1: float | Literal["equal"],
+        tips: TipShortening = FULL_TIPS,
         **bodies: Unpack[GearBodies],
     ) -> Self:
         """Pair whose profile-shift sum meshes without backlash on the centre distance (before allowances).
 
-        Give either ``profile_shift_1`` or ``split="equal"``. Tips are at d + 2 m_n (h_aP + x), shortened on
-        the radius by ``tip_shortening`` [m] and then as far as the transverse ``contact_ratio`` wants,
-        equally on both gears or on one (``tip_cut``). Raises GearGeometryError.
+        Parameters
+        ----------
+        normal_module, centre_distance : [m]; teeth, face_widths [m] : pinion first
+        profile_shift_1 : of the pinion, in modules; ``equal``: half of the sum on each gear
+        tips : shortening of the tips, which are at d + 2 m_n (h_aP + x) otherwise
+
+        Raises GearGeometryError for a pair that cannot mesh.
         """
-        if (profile_shift_1 is None) == (split is None):
-            raise GearGeometryError(
-                f"profile_shift_1 = {profile_shift_1} and split = {split!r}: give exactly one of them"
-            )
         pressure_angle = bodies.setdefault("pressure_angle", radians(20.0))
         helix_angle = bodies.setdefault("helix_angle", 0.0)
         racks = bodies.setdefault("racks", (Rack(), Rack()))
         total = shift_sum(normal_module, pressure_angle, helix_angle, teeth, centre_distance)
-        first = 0.5 * total if profile_shift_1 is None else profile_shift_1
+        first = 0.5 * total if profile_shift_1 == "equal" else profile_shift_1
         shifts = (first, total - first)
         allowances = bodies.get("thickness_allowances", (0.0, 0.0))
         pinion, wheel = (
@@ -96,15 +110,17 @@ class PairGeometry:
                 profile_shift=shifts[i],
                 tip_diameter=normal_module
                 * (teeth[i] / cos(helix_angle) + 2.0 * (racks[i].addendum + shifts[i]))
-                - 2.0 * tip_shortening[i],
+                - 2.0 * tips.shortening[i],
                 rack=racks[i],
                 thickness_allowance=allowances[i],
             )
             for i in (0, 1)
         )
         cut = (0.0, 0.0)
-        if contact_ratio is not None:
-            cut = tip_cut_for_contact_ratio((pinion, wheel), centre_distance, contact_ratio, tip_cut)
+        if tips.contact_ratio is not None:
+            cut = tip_cut_for_contact_ratio(
+                (pinion, wheel), centre_distance, tips.contact_ratio, tips.cut_gear
+            )
         return cls(
             normal_module=normal_module,
             teeth=teeth,
@@ -120,14 +136,14 @@ class PairGeometry:
         """Pinion and wheel at their present size."""
         first, second = (
             CylindricalGear(
-                normal_module=self.normal_module * (1.0 + self.growth[i]),
+                normal_module=self.normal_module * (1.0 + self.expansion[i]),
                 pressure_angle=self.pressure_angle,
                 helix_angle=self.helix_angle,
                 teeth=self.teeth[i],
                 profile_shift=self.profile_shifts[i],
-                tip_diameter=self.tip_diameters[i] * (1.0 + self.growth[i]),
+                tip_diameter=self.tip_diameters[i] * (1.0 + self.expansion[i]),
                 rack=self.racks[i],
-                thickness_allowance=self.thickness_allowances[i] * (1.0 + self.growth[i]),
+                thickness_allowance=self.thickness_allowances[i] * (1.0 + self.expansion[i]),
             )
             for i in (0, 1)
         )
@@ -194,7 +210,7 @@ class PairGeometry:
 
     @property
     def base_pitch(self) -> float:
-        """Transverse base pitch p_bt, mean of both gears when they differ by growth [m]."""
+        """Transverse base pitch p_bt, mean of both gears when they differ by thermal expansion [m]."""
         return 0.5 * (self.gears[0].base_pitch + self.gears[1].base_pitch)
 
     @property
@@ -205,8 +221,8 @@ class PairGeometry:
     @property
     def rolling_radii(self) -> Pair:
         """Distances of the pitch point from the base tangent points, T1C and T2C [m]."""
-        slope = tan(self.working_pressure_angle)
-        return self.base_radii[0] * slope, self.base_radii[1] * slope
+        ratio = tan(self.working_pressure_angle)
+        return self.base_radii[0] * ratio, self.base_radii[1] * ratio
 
     @cached_property
     def path(self) -> PathOfContact:
@@ -293,21 +309,21 @@ class PairGeometry:
         expansion_coefficients: Pair = (11.5e-6, 11.5e-6),
         speed: float = 0.0,
     ) -> Self:
-        """The cold gears at body temperatures [K], on a hot centre distance [m], at pinion ``speed`` [rad/s].
+        """The gears at body temperatures [K], on the centre distance at temperature [m], at pinion ``speed`` [rad/s].
 
-        Growth is that of the free body: thermal strain plus the centrifugal strain of the reference circle.
-        Calling it on a warm pair starts again from the cold gears.
+        Expansion is that of the free body: thermal strain plus the centrifugal strain of the reference circle.
+        A pair that is warm already starts again from its reference temperature.
         """
         speeds = (speed, speed / self.gear_ratio)
-        growth_1, growth_2 = (
+        expansion_1, expansion_2 = (
             expansion_coefficients[i] * ((temperature_1, temperature_2)[i] - reference_temperature)
             + self.centrifugal_strain(i, speeds[i])
             for i in (0, 1)
         )
-        return replace(self, growth=(growth_1, growth_2), centre_distance=centre_distance)
+        return replace(self, expansion=(expansion_1, expansion_2), centre_distance=centre_distance)
 
     def centrifugal_strain(self, index: int, speed: float) -> float:
-        """Relative growth of the reference circle of gear ``index`` spinning at ``speed`` [rad/s].
+        """Relative centrifugal expansion of the reference circle of gear ``index`` spinning at ``speed`` [rad/s].
 
         Source: rotating disc of constant thickness with a free bore, plane stress (Timoshenko and Goodier,
         Theory of Elasticity, section 32): u/R = rho w^2 [(1 - nu) R^2 + (3 + nu) r_i^2] / (4 E).

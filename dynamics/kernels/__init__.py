@@ -1,15 +1,18 @@
 """Compiled loops of the dynamics, the only numba in this package: plain numbers and arrays in and out.
 
-``contact`` sums the tooth contacts of a flank, ``reactions`` evaluates meshes at given states, ``linear_step`` takes
-the modes over one step, ``mesh_solve`` the meshes, ``drag`` the drag torques, ``march`` joins them; ``book`` is what
-the last four share. The disk cache of a compiled function is keyed by the content of its own file: a mark of all
-sources in each file that takes from another goes with it (``tests/unit/test_kernel_cache.py`` says what to write).
+``mesh_tables`` names the packed tables, ``flank_contacts`` chooses the contacts of a flank, ``contact`` sums them,
+``reactions`` evaluates meshes at given states, ``linear_step`` takes
+the modes over one step, ``mesh_solve`` the meshes, ``drag`` the drag torques, ``march`` joins them; ``mesh_workspace``
+is the state of the meshes that the last four share. The disk cache of a compiled function is keyed by the content of
+its own file: a hash of all sources in each file that takes from another goes with it
+(``tests/unit/test_kernel_cache.py`` says what to write).
 """
 
-from dynamics.kernels.contact import N_COUNTS, N_PHASE, N_VALUES, VECTOR, PackedMeshes
 from dynamics.kernels.drag import DragLaws
 from dynamics.kernels.linear_step import FOUR, WIDTH, DiscreteModes, DragModes
-from dynamics.kernels.march import Carried, Orders, march
+from dynamics.kernels.march import march
+from dynamics.kernels.march_state import Carried, Commands
+from dynamics.kernels.mesh_tables import N_COUNTS, N_PHASE, N_VALUES, VECTOR, PackedMeshes
 from dynamics.kernels.mesh_workspace import port_place
 from dynamics.kernels.reactions import mesh_reactions, tooth_pair_forces
 
@@ -21,10 +24,10 @@ __all__ = [
     "VECTOR",
     "WIDTH",
     "Carried",
+    "Commands",
     "DiscreteModes",
     "DragLaws",
     "DragModes",
-    "Orders",
     "PackedMeshes",
     "march",
     "mesh_reactions",

@@ -13,12 +13,11 @@ takes in either case. The damping grows with ``g = min(1, d / damping depth)``, 
 ``-mu F sgn(v_g) rho_1`` and ``+mu F sgn(v_g) rho_2`` with the sliding speed ``v_g = omega_1 rho_1 - omega_2
 rho_2``, ``rho_1 = T1C + s``, ``rho_2 = T2C - s``.
 
-All contacts of a flank stand beside each other in a table with N_PHASE rows, so that the compiler makes vector
-instructions of a loop over them. Teeth that are all alike are tabulated over the phase within one base pitch; with
-individual teeth every contact is looked up on the path and such a table is written for the moment.
+All contacts of a flank are columns of a table with N_PHASE rows, so that the compiler makes vector
+instructions of a loop over them. Equal teeth are tabulated over the phase within one base pitch; with
+individual teeth every contact is looked up on the path and such a table is written for each step.
 """
 
-import math
 from collections.abc import Callable
 from typing import Any, NamedTuple, TypeVar
 
@@ -26,55 +25,27 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from dynamics.kernels.mesh_tables import (
+    CLOSING,
+    DAMP_TIME,
+    DEPTH,
+    DERIVATIVE,
+    FRICTION,
+    MU_1,
+    MU_2,
+    PER_DEPTH,
+    PER_REVERSAL,
+    POSITIVE,
+    R1,
+    ROW_E,
+    ROW_S,
+    VECTOR,
+)
+
+# compiled from sources 49af733f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-
-class PackedMeshes(NamedTuple):
-    """Tables of all meshes of a drivetrain; packed by ``dynamics.mesh.tables.pack_meshes``."""
-
-    values: Array
-    """(n_meshes, N_VALUES) plain numbers."""
-    counts: Integers
-    """(n_meshes, N_COUNTS) sizes and first rows in the tables below."""
-    cells: Array
-    """(n_cells, 8) cubic coefficients of stiffness and gap over the fraction of a path cell."""
-    shifts: Array
-    """Slice shifts of all meshes [m]."""
-    deviations: Array
-    """(n_cells, 4) cubic coefficients of the deviation of single teeth."""
-    scales: Array
-    """Stiffness scales of single teeth [-]."""
-    phase_starts: Integers
-    """(n_phase_cells + 1,) first contact of every phase cell, front and back of each mesh."""
-    phase_least: Array
-    """Lower bound of the gap of every contact within its phase cell, in increasing order."""
-    phase_data: Array
-    """Flat, cell after cell: N_PHASE rows over the contacts of the cell."""
-    offsets: Array
-    """(n_meshes,) imposed approach [m]."""
-
-
-# columns of PackedMeshes.values
-R1, R2, PITCH, PHASE, BACK_PHASE, BACKLASH, START, PER_STEP = 0, 1, 2, 3, 4, 5, 6, 7
-DAMP_TIME, FRICTION, ROLL_1, ROLL_2, PER_REVERSAL, LEAST_GAP, DERIVATIVE, FLOOR = 8, 9, 10, 11, 12, 13, 14, 15
-PER_PITCH, MU_1, MU_2, PHASE_STEP, PER_PHASE_STEP, DEPTH, PER_DEPTH, CLOSING = 16, 17, 18, 19, 20, 21, 22, 23
-N_VALUES = 24
-# columns of PackedMeshes.counts
-N_SLICES, N_CELLS, CELLS_AT, SHIFTS_AT, INDIVIDUAL, TEETH_1, TEETH_2, OFFSET_2 = 0, 1, 2, 3, 4, 5, 6, 7
-ROWS_1, DEVIATION_1_AT, ROWS_2, DEVIATION_2_AT = 8, 9, 10, 11
-SCALES_1, SCALES_1_AT, SCALES_2, SCALES_2_AT, MOST = 12, 13, 14, 15, 16
-N_PHASES, FRONT_AT, BACK_AT, BACK_DEVIATION_1_AT, BACK_DEVIATION_2_AT = 17, 18, 19, 20, 21
-N_COUNTS = 22
-# rows of a table of contacts: cubics of stiffness and gap over the place in the cell, path position at its start
-ROW_K, ROW_E, ROW_S = 0, 4, 8
-N_PHASE = 9
-VECTOR = 8
-"""Contacts in one turn of a compiled loop (two vector registers). More than one are filled up to whole turns with some
-of no stiffness."""
-POSITIVE = (
-    1 << 40
-) - 1  # masks a first index, so that the compiler knows it and what is added to be positive
 
 # NaN and infinity keep their meaning; only the order of sums is free
 LOOSE = {"reassoc", "contract", "nsz", "arcp"}
@@ -88,12 +59,12 @@ def inlined(function: Function) -> Function:
 
 
 class Flank(NamedTuple):
-    """Contacts of one flank in a table, and where the flank stands: what a pass over them needs besides the law."""
+    """Contacts of one flank in a table, and the position of the flank: what a sum over them needs besides the law."""
 
     first: int
     """First number of the table."""
     stride: int
-    """Contacts beside each other, the length of a row."""
+    """Contacts in a row of the table."""
     n: int
     """Contacts to look at."""
     place: float
@@ -108,117 +79,25 @@ class Flank(NamedTuple):
     omega_2: float
 
 
+class Pressing(NamedTuple):
+    """How the gears press a flank, seen from this flank."""
+
+    sign: float
+    """+1 in front, -1 on the back."""
+    reach: float
+    """Approach less the play [m]."""
+    rate: float
+    """Rate of the approach [m/s]."""
+    omega_1: float
+    """Speed of the pinion [rad/s]."""
+
+
 @inlined
 def sliding_direction(ratio: float) -> float:
     """Return the smooth sign of ``ratio``: a cubic inside +-1, exactly +-1 outside."""
     ratio = ratio if ratio < 1.0 else 1.0
     ratio = ratio if ratio > -1.0 else -1.0
     return ratio * (1.5 - 0.5 * ratio * ratio)
-
-
-@inlined
-def flank_in_phase(
-    book: Array, at: int, counts: Integers, starts: Integers, least: Array, m: int, sign: float, within: float,
-    theta_1: float, omega_1: float, omega_2: float,
-) -> Flank:  # fmt: skip
-    """Return the contacts of one flank of mesh ``m``, all teeth alike, at the angle ``theta_1``.
-
-    ``book`` holds the numbers of the law, the columns of ``PackedMeshes.values``, from ``at`` on.
-
-    Contacts whose gap stays above ``within`` in this phase cell are left out (the last ones of the cell).
-    """
-    n_phases = counts[m, N_PHASES]
-    origin = book[at + PHASE] if sign > 0.0 else book[at + BACK_PHASE]
-    turned = (origin + sign * book[at + R1] * theta_1) * book[at + PER_PITCH]
-    place = (turned - np.floor(turned)) * n_phases
-    j = max(0, min(int(place), n_phases - 1))  # also where a run that left the finite numbers asks
-    place -= j
-    row = ((counts[m, FRONT_AT] if sign > 0.0 else counts[m, BACK_AT]) + j) & POSITIVE
-    start = starts[row] & POSITIVE
-    n = starts[row + 1] - start
-    stride = n
-    if n > 1:
-        near = 0
-        while near < n and least[start + near] < within:
-            near += VECTOR
-        n = near
-    along = place * book[at + PHASE_STEP]
-    return Flank(
-        N_PHASE * start, stride, n, place, book[at + PER_PHASE_STEP], book[at + ROLL_1] + along,
-        book[at + ROLL_2] - along, omega_1, omega_2,
-    )  # fmt: skip
-
-
-@njit(cache=True, fastmath=LOOSE)
-def list_on_path(
-    book: Array, at: int, counts: Integers, cells: Array, shifts: Array, deviations: Array, scales: Array, m: int,
-    sign: float, theta_1: float, out: Array, first: int, stride: int, pairs: Integers,
-) -> int:  # fmt: skip
-    """Write the contacts of a flank with individual teeth into the table ``out`` from ``first`` on.
-
-    The polynomials are those of place 0 in cells of one metre. ``pairs`` (2, capacity, or 0) receives tooth pair
-    and slice of each. Returns the number of contacts; the table goes on with zeros to a whole turn.
-    """
-    n_cells = counts[m, N_CELLS]
-    per_step = book[at + PER_STEP]
-    pitch = book[at + PITCH] * per_step
-    origin = (book[at + PHASE] if sign > 0.0 else book[at + BACK_PHASE]) - book[at + START]
-    travel = origin + sign * book[at + R1] * theta_1
-    deviation_1 = counts[m, DEVIATION_1_AT] if sign > 0.0 else counts[m, BACK_DEVIATION_1_AT]
-    deviation_2 = counts[m, DEVIATION_2_AT] if sign > 0.0 else counts[m, BACK_DEVIATION_2_AT]
-    offset_2 = counts[m, OFFSET_2] if sign > 0.0 else counts[m, OFFSET_2] + 1
-    column = 0
-    for i in range(counts[m, N_SLICES]):
-        whole = (travel - sign * shifts[counts[m, SHIFTS_AT] + i]) * per_step
-        turn = math.floor(whole / pitch)
-        place = whole - turn * pitch
-        row = counts[m, CELLS_AT] + i * n_cells
-        while place < n_cells:
-            j = min(max(int(place), 0), n_cells - 1)
-            f = place - j
-            c = row + j
-            k = cells[c, 0] + f * (cells[c, 1] + f * (cells[c, 2] + f * cells[c, 3]))
-            dk = cells[c, 1] + f * (2.0 * cells[c, 2] + 3.0 * f * cells[c, 3])
-            e = cells[c, 4] + f * (cells[c, 5] + f * (cells[c, 6] + f * cells[c, 7]))
-            de = cells[c, 5] + f * (2.0 * cells[c, 6] + 3.0 * f * cells[c, 7])
-            pair = int(turn) if sign > 0.0 else -int(turn)
-            mate = pair + offset_2
-            a = deviation_1 + (pair % counts[m, ROWS_1]) * n_cells + j
-            b = deviation_2 + (mate % counts[m, ROWS_2]) * n_cells + j
-            d_1 = deviations[a, 1] + deviations[b, 1]
-            d_2 = deviations[a, 2] + deviations[b, 2]
-            d_3 = deviations[a, 3] + deviations[b, 3]
-            e += deviations[a, 0] + deviations[b, 0] + f * (d_1 + f * (d_2 + f * d_3))
-            de += d_1 + f * (2.0 * d_2 + 3.0 * f * d_3)
-            scale = scales[counts[m, SCALES_1_AT] + pair % counts[m, SCALES_1]]
-            scale *= scales[counts[m, SCALES_2_AT] + mate % counts[m, SCALES_2]]
-            to = first + column
-            for blank in range(N_PHASE):
-                out[to + blank * stride] = 0.0
-            out[to + ROW_K * stride] = k * scale
-            out[to + (ROW_K + 1) * stride] = dk * scale * per_step
-            out[to + ROW_E * stride] = e
-            out[to + (ROW_E + 1) * stride] = de * per_step
-            out[to + ROW_S * stride] = book[at + START] + place / per_step
-            if pairs.shape[1] > 0:
-                pairs[0, column] = pair
-                pairs[1, column] = i
-            column += 1
-            turn -= 1.0
-            place += pitch
-    for rest in range(column, VECTOR * ((column + VECTOR - 1) // VECTOR)):
-        for blank in range(N_PHASE):
-            out[first + rest + blank * stride] = 0.0
-    return column
-
-
-@inlined
-def flank_on_path(
-    book: Array, at: int, first: int, stride: int, found: int, omega_1: float, omega_2: float
-) -> Flank:  # fmt: skip
-    """Return the contacts that ``list_on_path`` has written, filled up to whole turns."""
-    n = VECTOR * ((found + VECTOR - 1) // VECTOR)
-    return Flank(first, stride, n, 0.0, 1.0, book[at + ROLL_1], book[at + ROLL_2], omega_1, omega_2)
 
 
 class Pressed(NamedTuple):
@@ -230,11 +109,11 @@ class Pressed(NamedTuple):
     a_2: float
     """sum F m_2"""
     force_x: float
-    """Slopes over the reach"""
+    """Derivatives over the reach"""
     a_1_x: float
     a_2_x: float
     force_v: float
-    """Slopes over the rate"""
+    """Derivatives over the rate"""
     a_1_v: float
     a_2_v: float
     kinked: float
@@ -244,7 +123,7 @@ class Pressed(NamedTuple):
 
 
 class _Pass(NamedTuple):
-    """What a pass over the contacts of a flank holds the same for all of them."""
+    """What is the same for all contacts of a flank."""
 
     f: float
     f_2: float
@@ -268,7 +147,7 @@ class _Pass(NamedTuple):
 
 @inlined
 def _press_contact(table: Array, c: int, stride: int, same: _Pass) -> Pressed:
-    """Return what the contact in column ``c`` does; slopes over the rate per damping time.
+    """Return what the contact in column ``c`` does; derivatives over the rate per damping time.
 
     The lever factors ``m_1 = 1 - e' +- mu rho_1 / r_b1`` and ``m_2 = 1 +- mu rho_2 / r_b2`` carry the slope of the
     gap and the friction.
@@ -307,18 +186,18 @@ def _press_contact(table: Array, c: int, stride: int, same: _Pass) -> Pressed:
 
 @inlined
 def press_flank(
-    table: Array, flank: Flank, book: Array, at: int, sign: float, reach: float, rate: float, omega_1: float,
-    guard: float,
-) -> Pressed:  # fmt: skip
-    """Sum the contacts of one flank, pressed by ``reach`` and closing with ``rate``, both seen from this flank."""
-    damp_time, per_reversal, closes = book[at + DAMP_TIME], book[at + PER_REVERSAL], book[at + CLOSING]
+    table: Array, flank: Flank, space: Array, at: int, pressing: Pressing, guard: float
+) -> Pressed:
+    """Sum the contacts of one flank; kinks are looked for within ``guard`` of depth [m]."""
+    sign, reach, rate, omega_1 = pressing.sign, pressing.reach, pressing.rate, pressing.omega_1
+    damp_time, per_reversal, closes = space[at + DAMP_TIME], space[at + PER_REVERSAL], space[at + CLOSING]
     same = _Pass(
         flank.place, 2.0 * flank.place, 3.0 * flank.place * flank.place, reach, damp_time * rate,
-        damp_time * closes * sign * book[at + R1] * omega_1 * flank.per_metre, book[at + DERIVATIVE] * flank.per_metre,
-        (1.0 - closes) * book[at + DERIVATIVE] * flank.per_metre,
+        damp_time * closes * sign * space[at + R1] * omega_1 * flank.per_metre,
+        space[at + DERIVATIVE] * flank.per_metre, (1.0 - closes) * space[at + DERIVATIVE] * flank.per_metre,
         (flank.omega_1 * flank.roll_1 - flank.omega_2 * flank.roll_2) * per_reversal,
-        (flank.omega_1 + flank.omega_2) * per_reversal, sign * book[at + MU_1], sign * book[at + MU_2], flank.roll_1,
-        flank.roll_2, book[at + PER_DEPTH], book[at + DEPTH], guard,
+        (flank.omega_1 + flank.omega_2) * per_reversal, sign * space[at + MU_1], sign * space[at + MU_2], flank.roll_1,
+        flank.roll_2, space[at + PER_DEPTH], space[at + DEPTH], guard,
     )  # fmt: skip
     first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     force, a_1, a_2 = 0.0, 0.0, 0.0
@@ -352,7 +231,7 @@ def press_flank(
 
 
 class MeshContact(NamedTuple):
-    """One column of a phase table at the place of its flank; slopes over the fraction of a cell."""
+    """One column of a phase table at the place of its flank; derivatives over the fraction of a cell."""
 
     position: float
     stiffness: float
@@ -377,13 +256,14 @@ def contact_at(table: Array, c: int, stride: int, f: float) -> MeshContact:
 
 @inlined
 def flank_powers(
-    table: Array, flank: Flank, book: Array, at: int, sign: float, reach: float, rate: float, omega_1: float
+    table: Array, flank: Flank, space: Array, at: int, pressing: Pressing
 ) -> tuple[float, float, float]:
     """Return friction power, damping power and damping force of one flank, arguments as in ``press_flank``."""
+    sign, reach, rate, omega_1 = pressing.sign, pressing.reach, pressing.rate, pressing.omega_1
     friction_power, damping_power, damping_force = 0.0, 0.0, 0.0
     f = flank.place
-    damp_time, per_depth = book[at + DAMP_TIME], book[at + PER_DEPTH]
-    path_speed = book[at + CLOSING] * sign * book[at + R1] * omega_1 * flank.per_metre
+    damp_time, per_depth = space[at + DAMP_TIME], space[at + PER_DEPTH]
+    path_speed = space[at + CLOSING] * sign * space[at + R1] * omega_1 * flank.per_metre
     first, stride = flank.first & POSITIVE, flank.stride & POSITIVE
     for i in range(flank.n):
         s, k, _, gap, gap_slope = contact_at(table, first + i, stride, f)
@@ -396,7 +276,7 @@ def flank_powers(
         force = force if (depth > 0.0 and force > 0.0) else 0.0
         damped = force - k * depth
         sliding = flank.omega_1 * (flank.roll_1 + s) - flank.omega_2 * (flank.roll_2 - s)
-        friction_power += force * sliding_direction(sliding * book[at + PER_REVERSAL]) * sliding
+        friction_power += force * sliding_direction(sliding * space[at + PER_REVERSAL]) * sliding
         damping_power += damped * closing
         damping_force += damped
-    return friction_power * book[at + FRICTION], damping_power, damping_force
+    return friction_power * space[at + FRICTION], damping_power, damping_force

@@ -15,11 +15,12 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import LOOSE, POSITIVE, R1, R2, inlined, sliding_direction
+from dynamics.kernels.contact import LOOSE, inlined, sliding_direction
 from dynamics.kernels.linear_step import BANK_AT, FOUR, GROUPS, N_BANK, STATE_AT, WIDTH, DragModes
-from dynamics.kernels.mesh_workspace import N_BOOK, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
+from dynamics.kernels.mesh_tables import POSITIVE, R1, R2
+from dynamics.kernels.mesh_workspace import N_SPACE, OLD, PORT, RATE, REACH, SPEED, TAU, TURN
 
-# compiled from sources 2da5a92f
+# compiled from sources 49af733f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -47,47 +48,47 @@ class DragWork(NamedTuple):
     """(n_drags,) of the drag torques in the step [N m]."""
     speed: Array
     """(n_drags,) of their places at its end [rad/s]."""
-    slope: Array
-    """(n_drags,) of the torques over these speeds [N m s/rad]."""
+    damping: Array
+    """(n_drags,) derivatives of the torques over these speeds [N m s/rad]."""
     outputs: Array
     """(2 n_ports,) what the torques give to the ports."""
 
 
 @inlined
 def _drag_at(laws: DragLaws, d: int, speed: float) -> tuple[float, float]:
-    """Return the torque against ``speed`` and its slope."""
+    """Return the torque against ``speed`` and its derivative."""
     last = laws.torque.shape[1] - 1
     place = min(abs(speed) * laws.per_step[d], last - 1e-9)
     j = max(0, min(int(place), last - 1))
     rise = laws.torque[d, j + 1] - laws.torque[d, j]
     value = laws.torque[d, j] + (place - j) * rise
-    slope = rise * laws.per_step[d] if abs(speed) * laws.per_step[d] < last else 0.0
+    damping = rise * laws.per_step[d] if abs(speed) * laws.per_step[d] < last else 0.0
     if abs(speed) >= laws.creep[d]:
-        return (value, slope) if speed > 0.0 else (-value, slope)
+        return (value, damping) if speed > 0.0 else (-value, damping)
     ratio = speed / laws.creep[d]
     direction = sliding_direction(ratio)
-    return value * direction, slope * abs(direction) + value * 1.5 * (1.0 - ratio * ratio) / laws.creep[d]
+    return value * direction, damping * abs(direction) + value * 1.5 * (1.0 - ratio * ratio) / laws.creep[d]
 
 
 @inlined
 def _braked(laws: DragLaws, d: int, free: float, own: float, speed: float) -> tuple[float, float]:
-    """Return the torque, and its slope, of a drag whose place would turn at ``free`` without it, by ``own`` per torque
-    less.
+    """Return the torque, and its derivative, of a drag whose place would rotate at ``free`` without it, by ``own`` per
+    torque less.
 
     The speed lies between zero and ``free``, since the torque opposes it; Newton steps from ``speed`` stay there.
     """
     low, high = min(0.0, free), max(0.0, free)
     speed = min(max(speed, low), high)
-    torque, slope = 0.0, 0.0
+    torque, damping = 0.0, 0.0
     for _ in range(MOST_ITERATIONS):
-        torque, slope = _drag_at(laws, d, speed)
-        new = speed - (speed + own * torque - free) / (1.0 + own * slope)
-        change = slope * (min(max(new, low), high) - speed)
+        torque, damping = _drag_at(laws, d, speed)
+        new = speed - (speed + own * torque - free) / (1.0 + own * damping)
+        change = damping * (min(max(new, low), high) - speed)
         speed = min(max(new, low), high)
         torque += change
         if abs(change) <= TOLERANCE * abs(torque):
             break
-    return torque, slope
+    return torque, damping
 
 
 @inlined
@@ -104,30 +105,30 @@ def _outputs(per_torque: Array, torque: Array, total: Array) -> None:
 
 
 @inlined
-def drags_on_ports(drags: DragModes, torque: Array, total: Array, book: Array) -> None:
+def drags_on_ports(drags: DragModes, torque: Array, total: Array, space: Array) -> None:
     """Add to speeds and turns of the ports what drag torques give that stay as they are over the step."""
     _outputs(drags.ports_held, torque, total)
     for m in range(total.shape[0] // 4):
-        at = (m * N_BOOK) & POSITIVE
-        book[at + SPEED] += total[4 * m]
-        book[at + TURN] += total[4 * m + 1]
-        book[at + PORT + SPEED] += total[4 * m + 2]
-        book[at + PORT + TURN] += total[4 * m + 3]
+        at = (m * N_SPACE) & POSITIVE
+        space[at + SPEED] += total[4 * m]
+        space[at + TURN] += total[4 * m + 1]
+        space[at + PORT + SPEED] += total[4 * m + 2]
+        space[at + PORT + TURN] += total[4 * m + 3]
 
 
 @inlined
-def _move_ports(drags: DragModes, change: Array, total: Array, book: Array) -> None:
+def _move_ports(drags: DragModes, change: Array, total: Array, space: Array) -> None:
     """Add to ports and meshes what changes of the drag torques at the end of the step give."""
     _outputs(drags.ports_new, change, total)
     for m in range(total.shape[0] // 4):
-        at = (m * N_BOOK) & POSITIVE
+        at = (m * N_SPACE) & POSITIVE
         speed_1, turn_1, speed_2, turn_2 = total[4 * m], total[4 * m + 1], total[4 * m + 2], total[4 * m + 3]
-        book[at + SPEED] += speed_1
-        book[at + TURN] += turn_1
-        book[at + PORT + SPEED] += speed_2
-        book[at + PORT + TURN] += turn_2
-        book[at + REACH] += book[at + R1] * turn_1 - book[at + R2] * turn_2
-        book[at + RATE] += book[at + R1] * speed_1 - book[at + R2] * speed_2
+        space[at + SPEED] += speed_1
+        space[at + TURN] += turn_1
+        space[at + PORT + SPEED] += speed_2
+        space[at + PORT + TURN] += turn_2
+        space[at + REACH] += space[at + R1] * turn_1 - space[at + R2] * turn_2
+        space[at + RATE] += space[at + R1] * speed_1 - space[at + R2] * speed_2
 
 
 @inlined
@@ -181,7 +182,7 @@ def _add_input(inputs: Array, row: int, torque: float, load_speed: Array) -> Non
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _speeds(
-    drags: DragModes, blocks: Integers, bank: Array, book: Array, torque: Array, by_slow: Array, first: int,
+    drags: DragModes, blocks: Integers, bank: Array, space: Array, torque: Array, by_slow: Array, first: int,
     speed: Array,
 ) -> None:  # fmt: skip
     """Fill the speeds at the end of the step, the drag torques staying as they are over it.
@@ -194,9 +195,9 @@ def _speeds(
         speed[d] = by_slow[first + d]
     _add_modes(drags, blocks, bank, speed)
     for port in range(n_ports):
-        at = (port // 2 * N_BOOK + port % 2 * PORT) & POSITIVE
-        _add_input(drags.inputs, port, book[at + OLD], speed)
-        _add_input(drags.inputs, n_ports + port, book[at + TAU], speed)
+        at = (port // 2 * N_SPACE + port % 2 * PORT) & POSITIVE
+        _add_input(drags.inputs, port, space[at + OLD], speed)
+        _add_input(drags.inputs, n_ports + port, space[at + TAU], speed)
     for d in range(n_drags):
         _add_input(drags.inputs, 2 * n_ports + d, torque[d], speed)
     for d in range(n_drags):
@@ -204,8 +205,8 @@ def _speeds(
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _settle(laws: DragLaws, through: Array, torque: Array, speed: Array, slope: Array) -> bool:
-    """Bring all drag torques and their speeds in agreement; return whether they converged.
+def _iterate_drags(laws: DragLaws, through: Array, torque: Array, speed: Array, damping: Array) -> bool:
+    """Iterate on all drag torques and their speeds; return whether they converged.
 
     ``through`` (n_drags, n_drags) speed of each load per torque. The drags are swept in turn; a sweep is the last if
     all that it moved cannot change a torque by more than its tolerance.
@@ -215,25 +216,25 @@ def _settle(laws: DragLaws, through: Array, torque: Array, speed: Array, slope: 
         moved = 0.0
         for d in range(n_drags):
             own = through[d, d]
-            if own == 0.0:  # no drag stands here
+            if own == 0.0:  # no drag here
                 continue
-            new, slope[d] = _braked(laws, d, speed[d] + own * torque[d], own, speed[d])
+            new, damping[d] = _braked(laws, d, speed[d] + own * torque[d], own, speed[d])
             change = new - torque[d]
             torque[d] = new
             moved += own * abs(change)
             _add_input(through, d, -change, speed)
-        settled = True
+        converged = True
         for d in range(n_drags):
-            if abs(slope[d]) * moved > TOLERANCE * abs(torque[d]):
-                settled = False
-        if settled:
+            if abs(damping[d]) * moved > TOLERANCE * abs(torque[d]):
+                converged = False
+        if converged:
             return True
     return False
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def brake(
-    laws: DragLaws, drags: DragModes, blocks: Integers, bank: Array, book: Array, by_slow: Array, first: int,
+    laws: DragLaws, drags: DragModes, blocks: Integers, bank: Array, space: Array, by_slow: Array, first: int,
     torque: Array, work: DragWork,
 ) -> bool:  # fmt: skip
     """Set the drag torques at the end of a step whose mesh torques are known; return whether they converged.
@@ -242,11 +243,11 @@ def brake(
     approach within one step is left to the next for the meshes to answer.
     """
     change, speed = work.change, work.speed
-    _speeds(drags, blocks, bank, book, torque, by_slow, first, speed)
+    _speeds(drags, blocks, bank, space, torque, by_slow, first, speed)
     for d in range(torque.shape[0]):
         change[d] = -torque[d]
-    settled = _settle(laws, drags.each_other, torque, speed, work.slope)
+    converged = _iterate_drags(laws, drags.each_other, torque, speed, work.damping)
     for d in range(torque.shape[0]):
         change[d] += torque[d]
-    _move_ports(drags, change, work.outputs, book)
-    return bool(settled)
+    _move_ports(drags, change, work.outputs, space)
+    return bool(converged)

@@ -11,10 +11,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import LOOSE, POSITIVE, inlined
+from dynamics.kernels.contact import LOOSE, inlined
+from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 
-# compiled from sources 2da5a92f
+# compiled from sources 49af733f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -24,7 +25,7 @@ over them."""
 FOUR = 4
 """Drag torques in a group, for the same reason."""
 N_BANK = 16
-"""Rows of WIDTH in a group of the bank, real and imaginary by turns: state, decay, push of torque a, of torque b,
+"""Rows of WIDTH in a group of the bank, real and imaginary alternating: state, decay, push of torque a, of torque b,
 speed of port a, turn of port a, speed and turn of port b."""
 # columns of DiscreteModes.blocks
 STATE_AT, BANK_AT, HOME_AT, GROUPS, PORT_A, PORT_B, THROUGH_AT = range(7)
@@ -65,7 +66,7 @@ class DiscreteModes(NamedTuple):
     state holds groups of WIDTH real parts and WIDTH imaginary parts, filled up with zeros. Port ``2 m`` is the
     pinion of mesh ``m``, ``2 m + 1`` its wheel, port ``2 n_meshes`` stands for none. The outputs of port ``p`` are
     its speed (``2 p``) and the angle it turns in the step (``2 p + 1``). Blocks and links name a port by its place in
-    the book (``kernels.book``).
+    the space (``kernels.mesh_workspace``).
     """
 
     blocks: Integers
@@ -99,22 +100,22 @@ class DiscreteModes(NamedTuple):
 
 @njit(cache=True, fastmath=LOOSE)
 def slow_targets(
-    given: Array, control: Array, memory: Array, speed: float, torque: float, target: Array
+    given: Array, control: Array, controller: Array, speed: float, torque: float, target: Array
 ) -> None:
     """Fill the slow inputs at the end of a sample: controlled motor torque and twist, then what is given."""
     target[0] = given[0]
     if control[2] > 0.0:
-        memory[3] += control[3] * (speed - memory[3])
-        error = given[2] - memory[3]
-        wish = given[0] + control[0] * error + memory[0]
+        controller[3] += control[3] * (speed - controller[3])
+        error = given[2] - controller[3]
+        wish = given[0] + control[0] * error + controller[0]
         target[0] = min(max(wish, -control[2]), control[2])
         if target[0] == wish or error * wish < 0.0:
-            memory[0] += control[1] * error
+            controller[0] += control[1] * error
     if control[4] > 0.0:
-        memory[2] += control[5] * (torque - memory[2])
-        memory[4] += control[5] * (given[3] - memory[4])
-        memory[1] += control[4] * (memory[4] - memory[2])
-    target[1] = given[1] + memory[1]
+        controller[2] += control[5] * (torque - controller[2])
+        controller[4] += control[5] * (given[3] - controller[4])
+        controller[1] += control[4] * (controller[4] - controller[2])
+    target[1] = given[1] + controller[1]
     for k in range(2, target.shape[0]):
         target[k] = given[2 + k]
 
@@ -152,26 +153,26 @@ def take_state(blocks: Integers, bank: Array, state: Array) -> None:
 
 
 @inlined
-def add_torques(links: Integers, first: int, through: Array, part: int, book: Array, torque: int) -> None:
+def add_torques(links: Integers, first: int, through: Array, part: int, space: Array, torque: int) -> None:
     """Add to speeds and turns what the torques in column ``torque`` give by the links from ``first`` on.
 
     They act at the start or the end of the step (``part``).
     """
     for link in range(first, links.shape[0]):
         a, b = links[link, TO_A] & POSITIVE, links[link, TO_B] & POSITIVE
-        c = book[(links[link, FROM_C] & POSITIVE) + torque]
-        d = book[(links[link, FROM_D] & POSITIVE) + torque]
+        c = space[(links[link, FROM_C] & POSITIVE) + torque]
+        d = space[(links[link, FROM_D] & POSITIVE) + torque]
         t = (links[link, LINK_AT] & POSITIVE) + part
-        speed_a = book[a + SPEED] + through[t] * c + through[t + 1] * d
-        turn_a = book[a + TURN] + through[t + 2] * c + through[t + 3] * d
-        speed_b = book[b + SPEED] + through[t + 4] * c + through[t + 5] * d
-        turn_b = book[b + TURN] + through[t + 6] * c + through[t + 7] * d
-        book[b + SPEED], book[b + TURN] = speed_b, turn_b
-        book[a + SPEED], book[a + TURN] = speed_a, turn_a
+        speed_a = space[a + SPEED] + through[t] * c + through[t + 1] * d
+        turn_a = space[a + TURN] + through[t + 2] * c + through[t + 3] * d
+        speed_b = space[b + SPEED] + through[t + 4] * c + through[t + 5] * d
+        turn_b = space[b + TURN] + through[t + 6] * c + through[t + 7] * d
+        space[b + SPEED], space[b + TURN] = speed_b, turn_b
+        space[a + SPEED], space[a + TURN] = speed_a, turn_a
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _look(further: Integers, block: int, bank: Array, book: Array) -> None:
+def _look(further: Integers, block: int, bank: Array, space: Array) -> None:
     """Add the modes' part of the outputs of further ports."""
     a, b = further[block, PORT_A], further[block, PORT_B]
     for group in range(further[block, GROUPS]):
@@ -181,14 +182,14 @@ def _look(further: Integers, block: int, bank: Array, book: Array) -> None:
             real, imag = bank[home + i], bank[home + WIDTH + i]
             for k, output in ((0, SPEED), (2, TURN)):
                 row_a, row_b = g + (8 + k) * WIDTH + i, g + (12 + k) * WIDTH + i
-                book[a + output] += bank[row_a] * real + bank[row_a + WIDTH] * imag
-                book[b + output] += bank[row_b] * real + bank[row_b + WIDTH] * imag
+                space[a + output] += bank[row_a] * real + bank[row_a + WIDTH] * imag
+                space[b + output] += bank[row_b] * real + bank[row_b + WIDTH] * imag
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _push(further: Integers, block: int, bank: Array, book: Array) -> None:
+def _push(further: Integers, block: int, bank: Array, space: Array) -> None:
     """Add the torques of further ports to the state after the step."""
-    t_a, t_b = book[further[block, PORT_A] + OLD], book[further[block, PORT_B] + OLD]
+    t_a, t_b = space[further[block, PORT_A] + OLD], space[further[block, PORT_B] + OLD]
     for group in range(further[block, GROUPS]):
         home = further[block, HOME_AT] + N_BANK * WIDTH * group
         g = further[block, BANK_AT] + N_BANK * WIDTH * group
@@ -198,17 +199,17 @@ def _push(further: Integers, block: int, bank: Array, book: Array) -> None:
 
 @inlined
 def step_modes(
-    blocks: Integers, further: Integers, links: Integers, bank: Array, through: Array, book: Array
+    blocks: Integers, further: Integers, links: Integers, bank: Array, through: Array, space: Array
 ) -> None:
     """Add to speeds and turns what modes and torques give and take the modes over the step.
 
     Ports beyond the first two of a branch look at its modes before and push them after that pass.
     """
     for block in range(further.shape[0]):
-        _look(further, block, bank, book)
+        _look(further, block, bank, space)
     for block in range(blocks.shape[0]):
         a, b = blocks[block, PORT_A] & POSITIVE, blocks[block, PORT_B] & POSITIVE
-        t_a, t_b, t_a_new, t_b_new = book[a + OLD], book[b + OLD], book[a + TAU], book[b + TAU]
+        t_a, t_b, t_a_new, t_b_new = space[a + OLD], space[b + OLD], space[a + TAU], space[b + TAU]
         first = blocks[block, BANK_AT] & POSITIVE
         speed_a, turn_a, speed_b, turn_b = 0.0, 0.0, 0.0, 0.0
         for group in range(blocks[block, GROUPS]):
@@ -246,15 +247,15 @@ def step_modes(
             + through[t + 14] * t_a_new
             + through[t + 15] * t_b_new
         )
-        book[b + SPEED] += speed_b
-        book[b + TURN] += turn_b
-        book[a + SPEED] += speed_a
-        book[a + TURN] += turn_a
+        space[b + SPEED] += speed_b
+        space[b + TURN] += turn_b
+        space[a + SPEED] += speed_a
+        space[a + TURN] += turn_a
     for block in range(further.shape[0]):
-        _push(further, block, bank, book)
+        _push(further, block, bank, space)
     if links.shape[0] > blocks.shape[0]:
-        add_torques(links, blocks.shape[0], through, AT_START, book, OLD)
-        add_torques(links, blocks.shape[0], through, AT_END, book, TAU)
+        add_torques(links, blocks.shape[0], through, AT_START, space, OLD)
+        add_torques(links, blocks.shape[0], through, AT_END, space, TAU)
 
 
 @njit(cache=True, fastmath=LOOSE)

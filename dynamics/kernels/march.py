@@ -8,27 +8,12 @@ leads to, and takes a Newton step with these contacts held (``mesh_solve``). Onl
 large, or a kink of the mesh force lies within the correction, are the contacts summed again.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import (
-    BACKLASH,
-    FLOOR,
-    INDIVIDUAL,
-    LOOSE,
-    MOST,
-    N_PHASE,
-    POSITIVE,
-    R1,
-    R2,
-    PackedMeshes,
-    flank_powers,
-    inlined,
-)
-from dynamics.kernels.drag import DragLaws, DragWork, brake, drags_on_ports, push_drags
+from dynamics.kernels.contact import LOOSE, Pressing, flank_powers, inlined
+from dynamics.kernels.drag import DragWork, brake, drags_on_ports, push_drags
 from dynamics.kernels.linear_step import (
     AT_END,
     DiscreteModes,
@@ -40,8 +25,10 @@ from dynamics.kernels.linear_step import (
     step_modes,
     take_state,
 )
+from dynamics.kernels.march_state import Carried, Commands, Workspace
 from dynamics.kernels.mesh_solve import (
     LEAST_GUARD,
+    ListedContacts,
     can_touch,
     choose_contacts,
     chosen_flank,
@@ -52,12 +39,23 @@ from dynamics.kernels.mesh_solve import (
     look_ahead,
     react,
 )
+from dynamics.kernels.mesh_tables import (
+    BACKLASH,
+    FLOOR,
+    INDIVIDUAL,
+    MOST,
+    N_PHASE,
+    POSITIVE,
+    R1,
+    R2,
+    PackedMeshes,
+)
 from dynamics.kernels.mesh_workspace import (
     ANGLE,
     APPROACH,
     GUARD,
     MISSING,
-    N_BOOK,
+    N_SPACE,
     NET,
     OFFSET,
     OFFSET_RATE,
@@ -71,7 +69,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 2da5a92f
+# compiled from sources 49af733f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -79,73 +77,6 @@ MOST_ITERATIONS = 12
 TOLERANCE = 1e-6
 """Share of a mesh torque that the iteration may leave open."""
 MOST_SWEEPS = 50
-
-
-class Orders(NamedTuple):
-    """What a march is told, values at the end of each sample."""
-
-    given: Array
-    """(n_samples, 4 + n_given) motor torque, twist, speed of the drive, torque of the first mesh, then the other slow
-    inputs."""
-    offsets: Array
-    """(n_samples, n_meshes) imposed approach."""
-    control: Array
-    """Proportional gain, integral gain per sample, torque limit (0: no control), share of the averaged speed;
-    bracing gain per sample (0: no control), share of the averaged torque."""
-    drags: DragLaws
-
-
-class Carried(NamedTuple):
-    """What a march carries on; every array is written."""
-
-    state: Array
-    """(n_states,) modal state."""
-    ports: Array
-    """(n_meshes, 6) tau_1, tau_2, both one step earlier, approach, pinion angle."""
-    slow: Array
-    """(n_slow,) motor torque, twist, torques that are given."""
-    drags: Array
-    """(n_drags,) drag torques."""
-    offset: Array
-    """(n_meshes,) imposed approach."""
-    memory: Array
-    """Integral of the speed controller, correction of the twist, then averages: torque, speed, asked torque."""
-    speeds: Array
-    """(n_slow + n_drags,) speed of the load of every slow input and drag."""
-    powers: Array
-    """Last powers: friction and damping of each mesh, every slow input, every drag, joints; empty without accounts."""
-    work: Array
-    """Their integrals."""
-    damping: Array
-    """(n_meshes, 2) last damping force and approach rate."""
-
-
-class Workspace(NamedTuple):
-    """Arrays a march writes into and forgets."""
-
-    contacts: Array
-    """Room for the tables of both flanks of every mesh with individual teeth."""
-    found: Integers
-    """(n_meshes, 2) contacts in them."""
-    no_pairs: Integers
-    bank: Array
-    """That of the modes with the state in it."""
-    slow_outputs: Array
-    """Flat (substeps, n_outputs + n_rows): what the slow inputs give in each step of the sample."""
-    ends: Array
-    """(n_rows,) the outputs of no port; without accounts those of the slow inputs alone."""
-    torques: Array
-    """(2, n_ports + n_drags) torques of ports and drags at start and end of a step."""
-    give: Array
-    """Flat (n_meshes, n_meshes, 4): reach of another mesh per torque of both ports of one at the end of the step,
-    then its rate."""
-    book: Array
-    """Flat (n_meshes + 1, N_BOOK), see ``kernels.book``."""
-    target: Array
-    """(n_slow,) slow inputs at the end of the sample."""
-    fresh: Array
-    """Powers at the end of the step."""
-    drags: DragWork
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
@@ -158,24 +89,22 @@ def _account(meshes: PackedMeshes, carried: Carried, work: Workspace, step: floa
     """
     total, powers, damping, slow = carried.work, carried.powers, carried.damping, carried.slow
     drags, speeds = carried.drags, carried.speeds
-    counts, book, ends, fresh = meshes.counts, work.book, work.ends, work.fresh
+    counts, space, ends, fresh = meshes.counts, work.space, work.ends, work.fresh
     n_meshes, n_slow = damping.shape[0], slow.shape[0]
     for m in range(n_meshes):
-        table = meshes.phase_data if counts[m, INDIVIDUAL] == 0 else work.contacts
-        at = m * N_BOOK
-        reach, rate = book[at + REACH], book[at + RATE]
+        table = meshes.phase_data if counts[m, INDIVIDUAL] == 0 else work.listed.contacts
+        at = m * N_SPACE
+        reach, rate = space[at + REACH], space[at + RATE]
         lost, damped, pull = 0.0, 0.0, 0.0
         for side in range(2):
-            if not can_touch(book, at, side):
+            if not can_touch(space, at, side):
                 continue
             sign = 1.0 - 2.0 * side
-            flank = chosen_flank(
-                book, at, counts, meshes.phase_starts, meshes.phase_least, m, side, work.contacts, work.found
-            )  # fmt: skip
-            sliding, damping_power, force = flank_powers(
-                table, flank, book, at, sign, sign * reach - side * book[at + BACKLASH], sign * rate,
-                book[at + SPEED],
-            )  # fmt: skip
+            flank = chosen_flank(space, at, meshes, m, side, work.listed)
+            pressing = Pressing(
+                sign, sign * reach - side * space[at + BACKLASH], sign * rate, space[at + SPEED]
+            )
+            sliding, damping_power, force = flank_powers(table, flank, space, at, pressing)
             lost += sliding
             damped += damping_power
             pull += sign * force
@@ -202,10 +131,10 @@ def _account(meshes: PackedMeshes, carried: Carried, work: Workspace, step: floa
 
 
 def march(
-    meshes: PackedMeshes, modes: DiscreteModes, orders: Orders, carried: Carried, step: float, substeps: int,
+    meshes: PackedMeshes, modes: DiscreteModes, commands: Commands, carried: Carried, step: float, substeps: int,
     history: Array, samples: Array,
 ) -> int:  # fmt: skip
-    """March over ``len(orders.given)`` samples of ``substeps`` steps; return the number of unsettled steps.
+    """March over ``len(commands.given)`` samples of ``substeps`` steps; return the number of unconverged steps.
 
     Each step: outputs and modal state for the old torques; contacts chosen at the predicted angles; Newton on
     the new mesh torques with these contacts held; drag torques at the new speeds; accounts. ``history`` (n_meshes, 1
@@ -215,165 +144,181 @@ def march(
     n_meshes, n_rows, n_drags = len(meshes.values), len(modes.rows), len(carried.drags)
     most = int(max(1, meshes.counts[:, MOST].max()))
     work = Workspace(
-        contacts=np.zeros(2 * n_meshes * N_PHASE * most),
-        found=np.zeros((n_meshes, 2), np.int64),
-        no_pairs=np.empty((2, 0), np.int64),
+        listed=ListedContacts(
+            contacts=np.zeros(2 * n_meshes * N_PHASE * most),
+            found=np.zeros((n_meshes, 2), np.int64),
+            no_pairs=np.empty((2, 0), np.int64),
+        ),
         bank=modes.bank.copy(),
         slow_outputs=np.zeros(modes.slow_outputs.shape[1]),
         ends=np.zeros(n_rows if len(carried.work) else len(carried.slow)),
         torques=np.zeros((2, 2 * n_meshes + n_drags)),
         give=np.zeros(4 * n_meshes**2),
-        book=np.pad(meshes.values, ((0, 1), (0, N_BOOK - meshes.values.shape[1]))).ravel(),
+        space=np.pad(meshes.values, ((0, 1), (0, N_SPACE - meshes.values.shape[1]))).ravel(),
         target=np.zeros(len(carried.slow)),
         fresh=np.zeros(len(carried.work)),
         drags=DragWork(np.zeros(n_drags), np.zeros(n_drags), np.zeros(n_drags), np.zeros(4 * n_meshes)),
     )
-    return int(_march(meshes, modes, orders, carried, work, step, substeps, history, samples))
+    return int(_march(meshes, modes, commands, carried, work, step, substeps, history, samples))
 
 
 @inlined
-def _begin(book: Array, ports: Array, port_new: Array, give: Array) -> None:
-    """Take over what was carried from the last call, and what the torques give to the meshes."""
+def _begin(space: Array, ports: Array, port_new: Array, give: Array) -> None:
+    """Take over the state of the last call, and what the torques give to the meshes."""
     n_meshes = ports.shape[0]
     for m in range(n_meshes):
-        at = m * N_BOOK
+        at = m * N_SPACE
         for side in range(2):
-            book[at + side * PORT + OLD], book[at + side * PORT + OLDER] = ports[m, side], ports[m, 2 + side]
-        book[at + APPROACH], book[at + ANGLE], book[at + GUARD] = ports[m, 4], ports[m, 5], LEAST_GUARD
+            space[at + side * PORT + OLD], space[at + side * PORT + OLDER] = (
+                ports[m, side],
+                ports[m, 2 + side],
+            )
+        space[at + APPROACH], space[at + ANGLE], space[at + GUARD] = ports[m, 4], ports[m, 5], LEAST_GUARD
         for port in range(2 * n_meshes):
             for k in range(2):
                 given_1, given_2 = port_new[port, 4 * m + k], port_new[port, 4 * m + 2 + k]
                 place = 4 * (port // 2 * n_meshes + m) + 2 * (1 - k) + port % 2
-                give[place] = book[at + R1] * given_1 - book[at + R2] * given_2
+                give[place] = space[at + R1] * given_1 - space[at + R2] * given_2
 
 
 @inlined
-def _end(book: Array, ports: Array) -> None:
-    """Carry on what the next call takes over."""
+def _end(space: Array, ports: Array) -> None:
+    """Write the state for the next call."""
     for m in range(ports.shape[0]):
-        at = m * N_BOOK
+        at = m * N_SPACE
         for side in range(2):
-            ports[m, side], ports[m, 2 + side] = book[at + side * PORT + OLD], book[at + side * PORT + OLDER]
-        ports[m, 4], ports[m, 5] = book[at + APPROACH], book[at + ANGLE]
+            ports[m, side], ports[m, 2 + side] = (
+                space[at + side * PORT + OLD],
+                space[at + side * PORT + OLDER],
+            )
+        ports[m, 4], ports[m, 5] = space[at + APPROACH], space[at + ANGLE]
 
 
 @inlined
-def _guess(book: Array, n_meshes: int, by_slow: Array, first: int) -> None:
+def _guess(space: Array, n_meshes: int, by_slow: Array, first: int) -> None:
     """Begin a step: torques straight on from the last two, speeds and turns with what the slow inputs give."""
     for m in range(n_meshes):
-        at, given = (m * N_BOOK) & POSITIVE, (first + 4 * m) & POSITIVE
+        at, given = (m * N_SPACE) & POSITIVE, (first + 4 * m) & POSITIVE
         wheel = at + PORT
-        book[at + TAU] = 2.0 * book[at + OLD] - book[at + OLDER]
-        book[wheel + TAU] = 2.0 * book[wheel + OLD] - book[wheel + OLDER]
-        book[at + SPEED], book[at + TURN] = by_slow[given], by_slow[given + 1]
-        book[wheel + SPEED], book[wheel + TURN] = by_slow[given + 2], by_slow[given + 3]
+        space[at + TAU] = 2.0 * space[at + OLD] - space[at + OLDER]
+        space[wheel + TAU] = 2.0 * space[wheel + OLD] - space[wheel + OLDER]
+        space[at + SPEED], space[at + TURN] = by_slow[given], by_slow[given + 1]
+        space[wheel + SPEED], space[wheel + TURN] = by_slow[given + 2], by_slow[given + 3]
 
 
 @inlined
-def _agree(book: Array, give: Array, n_meshes: int) -> bool:
-    """Bring all torques to the tangents of the meshes in turn, told where these stand.
+def _sweep_meshes(space: Array, give: Array, n_meshes: int) -> bool:
+    """Bring all torques to the tangents of the meshes, one mesh after the other.
 
-    Ends when all but the last mesh were found in agreement one after the other: the last is corrected since and
-    moves the others by less still. Returns whether that was reached and the meshes can be trusted to be there.
+    Ends when all but the last mesh met the tolerance one after the other: the last is corrected since and
+    moves the others by less still. Returns whether that was reached and no mesh is off its tangent by more.
     """
-    turn, agreed, m = 0, -1, 0
-    while agreed < n_meshes - 1 and turn < MOST_SWEEPS * n_meshes:
-        at = (m * N_BOOK) & POSITIVE
-        error = correct(book, at, give, (4 * m * n_meshes) & POSITIVE, n_meshes)
-        agreed = agreed + 1 if error <= TOLERANCE * abs(book[at + TAU]) + book[at + FLOOR] else 0
+    correction, agreed, m = 0, -1, 0
+    while agreed < n_meshes - 1 and correction < MOST_SWEEPS * n_meshes:
+        at = (m * N_SPACE) & POSITIVE
+        error = correct(space, at, give, (4 * m * n_meshes) & POSITIVE, n_meshes)
+        agreed = agreed + 1 if error <= TOLERANCE * abs(space[at + TAU]) + space[at + FLOOR] else 0
         m = m + 1 if m + 1 < n_meshes else 0
-        turn += 1
-    settled = agreed >= n_meshes - 1
+        correction += 1
+    converged = agreed >= n_meshes - 1
     for m in range(n_meshes):
-        at = (m * N_BOOK) & POSITIVE
-        if left_open(book, at) > TOLERANCE * abs(book[at + TAU]) + book[at + FLOOR]:
-            settled = False
-    return settled
+        at = (m * N_SPACE) & POSITIVE
+        if left_open(space, at) > TOLERANCE * abs(space[at + TAU]) + space[at + FLOOR]:
+            converged = False
+    return converged
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _march(
-    meshes: PackedMeshes, modes: DiscreteModes, orders: Orders, carried: Carried, work: Workspace, step: float,
+    meshes: PackedMeshes, modes: DiscreteModes, commands: Commands, carried: Carried, work: Workspace, step: float,
     substeps: int, history: Array, samples: Array,
 ) -> int:  # fmt: skip
     """Do what ``march`` says. No array is made here, so that none has to be counted in the loop (``_nrt``)."""
-    counts, starts, least, data = meshes.counts, meshes.phase_starts, meshes.phase_least, meshes.phase_data
+    counts = meshes.counts
     blocks, further, links, through = modes.blocks, modes.further, modes.links, modes.through
-    state, slow, contacts, found = carried.state, carried.slow, work.contacts, work.found
-    bank, book, give, by_slow, torques = work.bank, work.book, work.give, work.slow_outputs, work.torques
+    state, slow, listed = carried.state, carried.slow, work.listed
+    bank, space, give, by_slow, torques = work.bank, work.space, work.give, work.slow_outputs, work.torques
     n_meshes, n_slow = counts.shape[0], slow.shape[0]
     drags, n_drags = carried.drags, carried.drags.shape[0]
     keeps_accounts = carried.work.shape[0] > 0
     n_outputs = 4 * n_meshes + modes.rows.shape[0]
 
-    _begin(book, carried.ports, modes.port_new, give)
+    _begin(space, carried.ports, modes.port_new, give)
     put_state(blocks, state, bank)
-    mean_torque = carried.memory[2]
-    torque_share = book[R1] / substeps
-    unsettled = 0
+    mean_torque = carried.controller[2]
+    torque_share = space[R1] / substeps
+    unconverged = 0
     now = 0
-    for sample in range(orders.given.shape[0]):
+    for sample in range(commands.given.shape[0]):
         slow_targets(
-            orders.given[sample], orders.control, carried.memory, carried.speeds[0], mean_torque, work.target
+            commands.given[sample],
+            commands.control,
+            carried.controller,
+            carried.speeds[0],
+            mean_torque,
+            work.target,
         )
         by_slow[:] = 0.0
         hold_slow(modes.slow_outputs, slow, work.target, substeps, by_slow)
         for m in range(n_meshes):
-            rate = (orders.offsets[sample, m] - carried.offset[m]) / (substeps * step)
-            book[m * N_BOOK + OFFSET], book[m * N_BOOK + OFFSET_RATE] = carried.offset[m], rate
+            rate = (commands.offsets[sample, m] - carried.offset[m]) / (substeps * step)
+            space[m * N_SPACE + OFFSET], space[m * N_SPACE + OFFSET_RATE] = carried.offset[m], rate
         mean_torque = 0.0
         for sub in range(substeps):
             slow_at = sub * n_outputs
-            _guess(book, n_meshes, by_slow, slow_at)
-            drags_on_ports(modes.drags, drags, work.drags.outputs, book)
-            step_modes(blocks, further, links, bank, through, book)
+            _guess(space, n_meshes, by_slow, slow_at)
+            drags_on_ports(modes.drags, drags, work.drags.outputs, space)
+            step_modes(blocks, further, links, bank, through, space)
             push_drags(modes.drags, blocks, drags, bank)
-            settled = False
+            converged = False
             attempt = 0
-            while attempt < MOST_ITERATIONS and not settled:
+            while attempt < MOST_ITERATIONS and not converged:
                 for m in range(n_meshes):
-                    at = (m * N_BOOK) & POSITIVE
-                    look_ahead(book, at, step)
+                    at = (m * N_SPACE) & POSITIVE
+                    look_ahead(space, at, step)
                     if attempt == 0:
-                        choose_contacts(book, at, step)
+                        choose_contacts(space, at, step)
                         if counts[m, INDIVIDUAL] != 0:
-                            list_individual(meshes, book, m, contacts, found, work.no_pairs)
-                    react(book, at, counts, starts, least, data, m, contacts, found)
-                    invert(book, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
-                    book[at + MISSING], book[at + PORT + MISSING] = -book[at + TAU], -book[at + PORT + TAU]
-                settled = _agree(book, give, n_meshes)
+                            list_individual(meshes, space, m, listed)
+                    react(space, at, meshes, m, listed)
+                    invert(space, at, give, (4 * m * (n_meshes + 1)) & POSITIVE)
+                    space[at + MISSING], space[at + PORT + MISSING] = (
+                        -space[at + TAU],
+                        -space[at + PORT + TAU],
+                    )
+                converged = _sweep_meshes(space, give, n_meshes)
                 for m in range(n_meshes):
-                    at = (m * N_BOOK) & POSITIVE
-                    book[at + MISSING] += book[at + TAU]
-                    book[at + PORT + MISSING] += book[at + PORT + TAU]
-                add_torques(links, 0, through, AT_END, book, MISSING)
+                    at = (m * N_SPACE) & POSITIVE
+                    space[at + MISSING] += space[at + TAU]
+                    space[at + PORT + MISSING] += space[at + PORT + TAU]
+                add_torques(links, 0, through, AT_END, space, MISSING)
                 attempt += 1
             if n_drags:
                 braked = brake(
-                    orders.drags, modes.drags, blocks, bank, book, by_slow, slow_at + 4 * n_meshes + n_slow,
+                    commands.drags, modes.drags, blocks, bank, space, by_slow, slow_at + 4 * n_meshes + n_slow,
                     drags, work.drags,
                 )  # fmt: skip
-                settled = settled and braked
-            if not settled:
-                unsettled += 1
+                converged = converged and braked
+            if not converged:
+                unconverged += 1
             for m in range(n_meshes):
-                at = (m * N_BOOK) & POSITIVE
-                book[at + OFFSET] += step * book[at + OFFSET_RATE]
-                book[at + APPROACH] = book[at + REACH] - book[at + OFFSET]
-                book[at + ANGLE] += book[at + TURN]
-                history[m, 0, now] = book[at + NET]
+                at = (m * N_SPACE) & POSITIVE
+                space[at + OFFSET] += step * space[at + OFFSET_RATE]
+                space[at + APPROACH] = space[at + REACH] - space[at + OFFSET]
+                space[at + ANGLE] += space[at + TURN]
+                history[m, 0, now] = space[at + NET]
                 if history.shape[1] > 1:
-                    history[m, 1, now] = book[at + REACH]
-                    history[m, 2, now] = book[at + ANGLE]
-                    history[m, 3, now] = book[at + RATE]
-                    history[m, 4, now] = book[at + SPEED]
-                    history[m, 5, now] = book[at + TAU]
-            mean_torque += book[NET] * torque_share
+                    history[m, 1, now] = space[at + REACH]
+                    history[m, 2, now] = space[at + ANGLE]
+                    history[m, 3, now] = space[at + RATE]
+                    history[m, 4, now] = space[at + SPEED]
+                    history[m, 5, now] = space[at + TAU]
+            mean_torque += space[NET] * torque_share
             now += 1
             if keeps_accounts or sub == substeps - 1:
                 for port in range(2 * n_meshes):
-                    at = port // 2 * N_BOOK + port % 2 * PORT
-                    torques[0, port], torques[1, port] = book[at + OLD], book[at + TAU]
+                    at = port // 2 * N_SPACE + port % 2 * PORT
+                    torques[0, port], torques[1, port] = space[at + OLD], space[at + TAU]
                 for d in range(n_drags):
                     torques[0, 2 * n_meshes + d] = drags[d] - work.drags.change[d]
                     torques[1, 2 * n_meshes + d] = drags[d]
@@ -382,9 +327,12 @@ def _march(
             if keeps_accounts:
                 _account(meshes, carried, work, step, (sub + 1.0) / substeps)
             for m in range(n_meshes):
-                at = (m * N_BOOK) & POSITIVE
-                book[at + OLDER], book[at + OLD] = book[at + OLD], book[at + TAU]
-                book[at + PORT + OLDER], book[at + PORT + OLD] = book[at + PORT + OLD], book[at + PORT + TAU]
+                at = (m * N_SPACE) & POSITIVE
+                space[at + OLDER], space[at + OLD] = space[at + OLD], space[at + TAU]
+                space[at + PORT + OLDER], space[at + PORT + OLD] = (
+                    space[at + PORT + OLD],
+                    space[at + PORT + TAU],
+                )
         hold_slow(modes.slow_states, slow, work.target, substeps, state)
         put_state(blocks, state, bank)
         for k in range(n_slow):
@@ -394,8 +342,8 @@ def _march(
             samples[sample, n_slow + k] = work.ends[k]
         for d in range(n_drags):
             samples[sample, 2 * n_slow + d] = drags[d]
-        samples[sample, 2 * n_slow + n_drags] = book[ANGLE]
+        samples[sample, 2 * n_slow + n_drags] = space[ANGLE]
         for m in range(n_meshes):
-            carried.offset[m] = orders.offsets[sample, m]
-    _end(book, carried.ports)
-    return unsettled
+            carried.offset[m] = commands.offsets[sample, m]
+    _end(space, carried.ports)
+    return unconverged

@@ -2,32 +2,28 @@
 
 Between its kinks (a contact that closes, opens or reaches full damping) the force of a mesh is bilinear in
 reach and rate: a Newton step solves it but for a known remainder. Meshes that share a shaft move each other;
-their tangents are swept until all torques agree, without summing the contacts again. What is known of a mesh
-stands in the ``book`` (``kernels.book``) from ``at`` on.
+their tangents are swept until all torques agree, without summing the contacts again. The state of a
+mesh is in the mesh workspace ``space`` (``kernels.mesh_workspace``) from ``at`` on.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from dynamics.kernels.contact import (
+from dynamics.kernels.contact import LOOSE, Flank, Pressed, Pressing, inlined, press_flank
+from dynamics.kernels.flank_contacts import ContactState, flank_in_phase, flank_on_path, list_on_path
+from dynamics.kernels.mesh_tables import (
     BACKLASH,
     DAMP_TIME,
     INDIVIDUAL,
     LEAST_GAP,
-    LOOSE,
     N_PHASE,
     POSITIVE,
     R1,
     R2,
-    Flank,
     PackedMeshes,
-    Pressed,
-    flank_in_phase,
-    flank_on_path,
-    inlined,
-    list_on_path,
-    press_flank,
 )
 from dynamics.kernels.mesh_workspace import (
     AHEAD,
@@ -43,7 +39,7 @@ from dynamics.kernels.mesh_workspace import (
     GUARD,
     INVERSE,
     KINKED,
-    N_BOOK,
+    N_SPACE,
     NET,
     NET_V,
     NET_X,
@@ -53,14 +49,14 @@ from dynamics.kernels.mesh_workspace import (
     RATE,
     REACH,
     REACTION,
-    SLOPE_V,
-    SLOPE_X,
     SPEED,
+    TANGENT_V,
+    TANGENT_X,
     TAU,
     TURN,
 )
 
-# compiled from sources 2da5a92f
+# compiled from sources 49af733f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -68,179 +64,183 @@ LEAST_GUARD = 1e-15
 """Least distance to a kink that is looked at [m]."""
 
 
+class ListedContacts(NamedTuple):
+    """Contacts of the meshes with individual teeth, listed anew in every step."""
+
+    contacts: Array
+    """Room for the tables of both flanks of every mesh."""
+    found: Integers
+    """(n_meshes, 2) contacts in them."""
+    no_pairs: Integers
+    """(2, 0): tooth pair and slice of a contact are not asked for."""
+
+
 @inlined
-def look_ahead(book: Array, at: int, step: float) -> None:
+def look_ahead(space: Array, at: int, step: float) -> None:
     """Set reach and rate of a mesh at the end of the step from its speeds and turns, imposed ones included."""
-    r_1, r_2 = book[at + R1], book[at + R2]
-    turn = r_1 * book[at + TURN] - r_2 * book[at + PORT + TURN]
-    reach = book[at + APPROACH] + turn + book[at + OFFSET] + step * book[at + OFFSET_RATE]
-    rate = r_1 * book[at + SPEED] - r_2 * book[at + PORT + SPEED] + book[at + OFFSET_RATE]
-    book[at + REACH], book[at + RATE] = reach, rate
-    book[at + AT_REACH], book[at + AT_RATE] = reach, rate
+    r_1, r_2 = space[at + R1], space[at + R2]
+    turn = r_1 * space[at + TURN] - r_2 * space[at + PORT + TURN]
+    reach = space[at + APPROACH] + turn + space[at + OFFSET] + step * space[at + OFFSET_RATE]
+    rate = r_1 * space[at + SPEED] - r_2 * space[at + PORT + SPEED] + space[at + OFFSET_RATE]
+    space[at + REACH], space[at + RATE] = reach, rate
+    space[at + AT_REACH], space[at + AT_RATE] = reach, rate
 
 
 @inlined
-def choose_contacts(book: Array, at: int, step: float) -> None:
+def choose_contacts(space: Array, at: int, step: float) -> None:
     """Keep the state at which the contacts of a mesh are chosen for this step."""
-    book[at + CHOSEN_ANGLE] = book[at + ANGLE] + book[at + TURN]
-    book[at + CHOSEN_1], book[at + CHOSEN_2] = book[at + SPEED], book[at + PORT + SPEED]
-    book[at + CHOSEN_REACH], book[at + AHEAD] = book[at + REACH], 2.0 * step * abs(book[at + RATE])
+    space[at + CHOSEN_ANGLE] = space[at + ANGLE] + space[at + TURN]
+    space[at + CHOSEN_1], space[at + CHOSEN_2] = space[at + SPEED], space[at + PORT + SPEED]
+    space[at + CHOSEN_REACH], space[at + AHEAD] = space[at + REACH], 2.0 * step * abs(space[at + RATE])
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def list_individual(
-    meshes: PackedMeshes, book: Array, m: int, contacts: Array, found: Integers, no_pairs: Integers
-) -> None:
+def list_individual(meshes: PackedMeshes, space: Array, m: int, listed: ListedContacts) -> None:
     """List the contacts of a mesh with individual teeth at the angle chosen for this step."""
-    counts = meshes.counts
+    counts, contacts = meshes.counts, listed.contacts
     stride = contacts.shape[0] // (2 * N_PHASE * counts.shape[0])
     for side in range(2):
-        found[m, side] = list_on_path(
-            book, m * N_BOOK, counts, meshes.cells, meshes.shifts, meshes.deviations, meshes.scales, m,
-            1.0 - 2.0 * side, book[m * N_BOOK + CHOSEN_ANGLE], contacts, (2 * m + side) * N_PHASE * stride, stride,
-            no_pairs,
+        listed.found[m, side] = list_on_path(
+            space, m * N_SPACE, counts, meshes.cells, meshes.shifts, meshes.deviations, meshes.scales, m,
+            1.0 - 2.0 * side, space[m * N_SPACE + CHOSEN_ANGLE], contacts, (2 * m + side) * N_PHASE * stride, stride,
+            listed.no_pairs,
         )  # fmt: skip
 
 
 @inlined
-def can_touch(book: Array, at: int, side: int) -> bool:
+def can_touch(space: Array, at: int, side: int) -> bool:
     """Return whether a flank comes within reach of its least gap in this step."""
-    within = (1.0 - 2.0 * side) * book[at + CHOSEN_REACH] - side * book[at + BACKLASH] + book[at + AHEAD]
-    return bool(within > book[at + LEAST_GAP])
+    within = (1.0 - 2.0 * side) * space[at + CHOSEN_REACH] - side * space[at + BACKLASH] + space[at + AHEAD]
+    return bool(within > space[at + LEAST_GAP])
 
 
 @inlined
 def chosen_flank(
-    book: Array, at: int, counts: Integers, starts: Integers, least: Array, m: int, side: int, contacts: Array,
-    found: Integers,
-) -> Flank:  # fmt: skip
+    space: Array, at: int, meshes: PackedMeshes, m: int, side: int, listed: ListedContacts
+) -> Flank:
     """Return the contacts of a flank that were chosen for this step."""
     sign = 1.0 - 2.0 * side
-    omega_1, omega_2 = book[at + CHOSEN_1], book[at + CHOSEN_2]
-    if counts[m, INDIVIDUAL] == 0:
-        within = sign * book[at + CHOSEN_REACH] - side * book[at + BACKLASH] + book[at + AHEAD]
-        return flank_in_phase(
-            book, at, counts, starts, least, m, sign, within, book[at + CHOSEN_ANGLE], omega_1, omega_2
-        )
-    stride = contacts.shape[0] // (2 * N_PHASE * counts.shape[0])
+    omega_1, omega_2 = space[at + CHOSEN_1], space[at + CHOSEN_2]
+    if meshes.counts[m, INDIVIDUAL] == 0:
+        within = sign * space[at + CHOSEN_REACH] - side * space[at + BACKLASH] + space[at + AHEAD]
+        state = ContactState(sign, within, space[at + CHOSEN_ANGLE], omega_1, omega_2)
+        return flank_in_phase(space, at, meshes, m, state)
+    stride = listed.contacts.shape[0] // (2 * N_PHASE * meshes.counts.shape[0])
     first = (2 * m + side) * N_PHASE * stride
-    return flank_on_path(book, at, first, stride, found[m, side], omega_1, omega_2)
+    return flank_on_path(space, at, first, stride, listed.found[m, side], omega_1, omega_2)
 
 
 @inlined
 def _press_side(
-    book: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
-    found: Integers, side: int,
-) -> Pressed:  # fmt: skip
+    space: Array, at: int, meshes: PackedMeshes, m: int, side: int, listed: ListedContacts
+) -> Pressed:
     """Sum the contacts of one flank where the mesh was last looked at."""
     sign = 1.0 - 2.0 * side
-    flank = chosen_flank(book, at, counts, starts, least, m, side, contacts, found)
-    reach = sign * book[at + AT_REACH] - side * book[at + BACKLASH]
-    return press_flank(
-        data if counts[m, INDIVIDUAL] == 0 else contacts, flank, book, at, sign, reach, sign * book[at + AT_RATE],
-        book[at + SPEED], book[at + GUARD],
-    )  # fmt: skip
+    flank = chosen_flank(space, at, meshes, m, side, listed)
+    reach = sign * space[at + AT_REACH] - side * space[at + BACKLASH]
+    pressing = Pressing(sign, reach, sign * space[at + AT_RATE], space[at + SPEED])
+    table = meshes.phase_data if meshes.counts[m, INDIVIDUAL] == 0 else listed.contacts
+    return press_flank(table, flank, space, at, pressing, space[at + GUARD])
 
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
-def _add_back(
-    book: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
-    found: Integers,
-) -> None:  # fmt: skip
+def _add_back(space: Array, at: int, meshes: PackedMeshes, m: int, listed: ListedContacts) -> None:
     """Add the back flank to a reaction where both flanks can touch."""
     wheel = at + PORT
-    sums = _press_side(book, at, counts, starts, least, data, m, contacts, found, 1)
-    r_1, r_2 = book[at + R1], book[at + R2]
-    book[at + REACTION] += r_1 * sums.a_1
-    book[wheel + REACTION] -= r_2 * sums.a_2
-    book[at + SLOPE_X] -= r_1 * sums.a_1_x
-    book[wheel + SLOPE_X] += r_2 * sums.a_2_x
-    book[at + SLOPE_V] -= r_1 * sums.a_1_v
-    book[wheel + SLOPE_V] += r_2 * sums.a_2_v
-    book[at + NET] -= sums.force
-    book[at + NET_X] += sums.force_x
-    book[at + NET_V] += sums.force_v
-    book[at + KINKED] += sums.kinked
-    book[at + CURVED] += sums.curved
+    sums = _press_side(space, at, meshes, m, 1, listed)
+    r_1, r_2 = space[at + R1], space[at + R2]
+    space[at + REACTION] += r_1 * sums.a_1
+    space[wheel + REACTION] -= r_2 * sums.a_2
+    space[at + TANGENT_X] -= r_1 * sums.a_1_x
+    space[wheel + TANGENT_X] += r_2 * sums.a_2_x
+    space[at + TANGENT_V] -= r_1 * sums.a_1_v
+    space[wheel + TANGENT_V] += r_2 * sums.a_2_v
+    space[at + NET] -= sums.force
+    space[at + NET_X] += sums.force_x
+    space[at + NET_V] += sums.force_v
+    space[at + KINKED] += sums.kinked
+    space[at + CURVED] += sums.curved
 
 
 @inlined
-def react(
-    book: Array, at: int, counts: Integers, starts: Integers, least: Array, data: Array, m: int, contacts: Array,
-    found: Integers,
-) -> None:  # fmt: skip
-    """Set reaction and slopes of mesh ``m`` where it was last looked at, from the contacts chosen for this step."""
+def react(space: Array, at: int, meshes: PackedMeshes, m: int, listed: ListedContacts) -> None:
+    """Set reaction and derivatives of mesh ``m`` at its last state, from the contacts chosen for this step."""
     wheel = at + PORT
-    front, back = can_touch(book, at, 0), can_touch(book, at, 1)
+    front, back = can_touch(space, at, 0), can_touch(space, at, 1)
     if not (front or back):
         for port in (at, wheel):
-            book[port + REACTION], book[port + SLOPE_X], book[port + SLOPE_V] = 0.0, 0.0, 0.0
-        book[at + NET], book[at + NET_X], book[at + NET_V] = 0.0, 0.0, 0.0
-        book[at + KINKED], book[at + CURVED] = 0.0, 0.0
+            space[port + REACTION], space[port + TANGENT_X], space[port + TANGENT_V] = 0.0, 0.0, 0.0
+        space[at + NET], space[at + NET_X], space[at + NET_V] = 0.0, 0.0, 0.0
+        space[at + KINKED], space[at + CURVED] = 0.0, 0.0
         return
     side = 0 if front else 1
     sign = 1.0 - 2.0 * side
-    sums = _press_side(book, at, counts, starts, least, data, m, contacts, found, side)
-    r_1, r_2 = book[at + R1], book[at + R2]
-    book[at + REACTION], book[wheel + REACTION] = -sign * r_1 * sums.a_1, sign * r_2 * sums.a_2
-    book[at + SLOPE_X], book[wheel + SLOPE_X] = -r_1 * sums.a_1_x, r_2 * sums.a_2_x
-    book[at + SLOPE_V], book[wheel + SLOPE_V] = -r_1 * sums.a_1_v, r_2 * sums.a_2_v
-    book[at + NET], book[at + NET_X], book[at + NET_V] = sign * sums.force, sums.force_x, sums.force_v
-    book[at + KINKED], book[at + CURVED] = sums.kinked, sums.curved
+    sums = _press_side(space, at, meshes, m, side, listed)
+    r_1, r_2 = space[at + R1], space[at + R2]
+    space[at + REACTION], space[wheel + REACTION] = -sign * r_1 * sums.a_1, sign * r_2 * sums.a_2
+    space[at + TANGENT_X], space[wheel + TANGENT_X] = -r_1 * sums.a_1_x, r_2 * sums.a_2_x
+    space[at + TANGENT_V], space[wheel + TANGENT_V] = -r_1 * sums.a_1_v, r_2 * sums.a_2_v
+    space[at + NET], space[at + NET_X], space[at + NET_V] = sign * sums.force, sums.force_x, sums.force_v
+    space[at + KINKED], space[at + CURVED] = sums.kinked, sums.curved
     if front and back:
-        _add_back(book, at, counts, starts, least, data, m, contacts, found)
+        _add_back(space, at, meshes, m, listed)
 
 
 @inlined
-def invert(book: Array, at: int, give: Array, own: int) -> None:
-    """Keep the inverse of the Newton matrix of a mesh: one less slope times what a torque gives in one step.
+def invert(space: Array, at: int, give: Array, own: int) -> None:
+    """Keep the inverse of the Newton matrix of a mesh: one less derivative times what a torque gives in one step.
 
     ``give`` holds from ``own`` on the reach per torque of both ports and the rate per torque.
     """
     x_p, x_q, v_p, v_q = give[own], give[own + 1], give[own + 2], give[own + 3]
-    x_1, x_2 = book[at + SLOPE_X], book[at + PORT + SLOPE_X]
-    v_1, v_2 = book[at + SLOPE_V], book[at + PORT + SLOPE_V]
+    x_1, x_2 = space[at + TANGENT_X], space[at + PORT + TANGENT_X]
+    v_1, v_2 = space[at + TANGENT_V], space[at + PORT + TANGENT_V]
     g_11 = 1.0 - x_1 * x_p - v_1 * v_p
     g_12 = x_1 * x_q + v_1 * v_q
     g_21 = x_2 * x_p + v_2 * v_p
     g_22 = 1.0 - x_2 * x_q - v_2 * v_q
     scale = 1.0 / (g_11 * g_22 - g_12 * g_21)
-    book[at + INVERSE], book[at + INVERSE + 1] = g_22 * scale, g_12 * scale
-    book[at + INVERSE + 2], book[at + INVERSE + 3] = g_21 * scale, g_11 * scale
+    space[at + INVERSE], space[at + INVERSE + 1] = g_22 * scale, g_12 * scale
+    space[at + INVERSE + 2], space[at + INVERSE + 3] = g_21 * scale, g_11 * scale
 
 
 @inlined
-def correct(book: Array, at: int, give: Array, first: int, n_meshes: int) -> float:
+def correct(space: Array, at: int, give: Array, first: int, n_meshes: int) -> float:
     """Bring the torques of a mesh to its tangent, all meshes moving with them; return how far off they were.
 
     ``give`` holds from ``first`` on what these torques give to each of the ``n_meshes``, as in ``invert``.
     """
     wheel = at + PORT
-    dx, dv = book[at + REACH] - book[at + AT_REACH], book[at + RATE] - book[at + AT_RATE]
-    e_1 = book[at + REACTION] + book[at + SLOPE_X] * dx + book[at + SLOPE_V] * dv - book[at + TAU]
-    e_2 = book[wheel + REACTION] + book[wheel + SLOPE_X] * dx + book[wheel + SLOPE_V] * dv - book[wheel + TAU]
-    d_1 = book[at + INVERSE] * e_1 + book[at + INVERSE + 1] * e_2
-    d_2 = book[at + INVERSE + 2] * e_1 + book[at + INVERSE + 3] * e_2
-    book[at + TAU] += d_1
-    book[wheel + TAU] += d_2
+    dx, dv = space[at + REACH] - space[at + AT_REACH], space[at + RATE] - space[at + AT_RATE]
+    e_1 = space[at + REACTION] + space[at + TANGENT_X] * dx + space[at + TANGENT_V] * dv - space[at + TAU]
+    e_2 = (
+        space[wheel + REACTION]
+        + space[wheel + TANGENT_X] * dx
+        + space[wheel + TANGENT_V] * dv
+        - space[wheel + TAU]
+    )
+    d_1 = space[at + INVERSE] * e_1 + space[at + INVERSE + 1] * e_2
+    d_2 = space[at + INVERSE + 2] * e_1 + space[at + INVERSE + 3] * e_2
+    space[at + TAU] += d_1
+    space[wheel + TAU] += d_2
     for m in range(n_meshes):
-        to, given = (m * N_BOOK) & POSITIVE, first + 4 * m
-        book[to + REACH] += give[given] * d_1 + give[given + 1] * d_2
-        book[to + RATE] += give[given + 2] * d_1 + give[given + 3] * d_2
+        to, given = (m * N_SPACE) & POSITIVE, first + 4 * m
+        space[to + REACH] += give[given] * d_1 + give[given + 1] * d_2
+        space[to + RATE] += give[given + 2] * d_1 + give[given + 3] * d_2
     return float(abs(e_1))
 
 
 @inlined
-def left_open(book: Array, at: int) -> float:
+def left_open(space: Array, at: int) -> float:
     """Bring the force of a mesh to its tangent; return the torque by which the mesh can be off it [N m].
 
     The mesh force is bilinear in reach and rate, which leaves ``curved dx dv``, unless a kink lies within: then up
     to the stiffness of its contacts times ``dx``, and infinity where kinks were looked for in a smaller range.
     """
-    dx, dv = book[at + REACH] - book[at + AT_REACH], book[at + RATE] - book[at + AT_RATE]
-    book[at + NET] += book[at + NET_X] * dx + book[at + NET_V] * dv
-    moved = abs(dx) + book[at + DAMP_TIME] * abs(dv)
-    looked_at = moved <= book[at + GUARD]
-    book[at + GUARD] = max(2.0 * moved, 0.9 * book[at + GUARD], LEAST_GUARD)
-    left = book[at + R1] * (book[at + KINKED] * moved + book[at + CURVED] * abs(dx * dv))
+    dx, dv = space[at + REACH] - space[at + AT_REACH], space[at + RATE] - space[at + AT_RATE]
+    space[at + NET] += space[at + NET_X] * dx + space[at + NET_V] * dv
+    moved = abs(dx) + space[at + DAMP_TIME] * abs(dv)
+    looked_at = moved <= space[at + GUARD]
+    space[at + GUARD] = max(2.0 * moved, 0.9 * space[at + GUARD], LEAST_GUARD)
+    left = space[at + R1] * (space[at + KINKED] * moved + space[at + CURVED] * abs(dx * dv))
     return float(left) if looked_at else np.inf

@@ -1,12 +1,12 @@
-"""What a march knows of each mesh at a step: one row of numbers, the law's first.
+"""Mesh workspace: the state of each mesh within a step of the march, one row of numbers, those of its law first.
 
-A single array, read at fixed distances from the start of a row, is what a compiler can keep track of: a number that
-was just written is still at hand. The book has a last row for the mesh that stands for none.
+It is a single flat array, ``space``, read at fixed offsets from the start of a row, so that the compiler keeps numbers
+that were just written in registers. A last row belongs to the place holder for a mesh that does not exist.
 """
 
-from dynamics.kernels.contact import N_VALUES
+from dynamics.kernels.mesh_tables import N_VALUES
 
-# compiled from sources 2da5a92f
+# compiled from sources 49af733f
 
 (
     APPROACH,  # without the imposed part, at the start of the step [m]
@@ -23,10 +23,10 @@ from dynamics.kernels.contact import N_VALUES
     CHOSEN_2,
     CHOSEN_REACH,
     AHEAD,  # margin of that reach [m]
-    NET,  # force, front less back, and its slopes over reach and rate
+    NET,  # force, front less back, and its derivatives over reach and rate
     NET_X,
     NET_V,
-    KINKED,  # bounds of what the slopes leave out, see kernels.contact.Pressed
+    KINKED,  # bounds of what the derivatives leave out, see kernels.contact.Pressed
     CURVED,
     INVERSE,  # of the Newton matrix, four numbers
 ) = range(N_VALUES, N_VALUES + 20)
@@ -39,13 +39,13 @@ PORT = 9
     OLD,
     OLDER,
     MISSING,  # torque that speed and turn do not hold yet
-    REACTION,  # torque that the contacts answer where they were last summed, and its slopes
-    SLOPE_X,
-    SLOPE_V,
+    REACTION,  # torque that the contacts answer where they were last summed, and its derivatives
+    TANGENT_X,
+    TANGENT_V,
 ) = range(INVERSE + 4, INVERSE + 4 + PORT)
-N_BOOK = INVERSE + 4 + 2 * PORT
+N_SPACE = INVERSE + 4 + 2 * PORT
 
 
 def port_place(port: int) -> int:
-    """Return where a port stands in the flat book: port 2 m is the pinion of mesh m, 2 m + 1 its wheel."""
-    return port // 2 * N_BOOK + port % 2 * PORT
+    """Return the place of a port in the mesh workspace: port 2 m is the pinion of mesh m, 2 m + 1 its wheel."""
+    return port // 2 * N_SPACE + port % 2 * PORT

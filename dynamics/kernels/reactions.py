@@ -5,13 +5,23 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import (
+    LOOSE,
+    Flank,
+    Pressing,
+    contact_at,
+    flank_powers,
+    inlined,
+    press_flank,
+    sliding_direction,
+)
+from dynamics.kernels.flank_contacts import ContactState, flank_in_phase, flank_on_path, list_on_path
+from dynamics.kernels.mesh_tables import (
     BACKLASH,
     CLOSING,
     DAMP_TIME,
     DERIVATIVE,
     INDIVIDUAL,
     LEAST_GAP,
-    LOOSE,
     MOST,
     MU_1,
     MU_2,
@@ -23,28 +33,18 @@ from dynamics.kernels.contact import (
     R2,
     ROW_E,
     ROW_K,
-    Flank,
     PackedMeshes,
-    contact_at,
-    flank_in_phase,
-    flank_on_path,
-    flank_powers,
-    inlined,
-    list_on_path,
-    press_flank,
-    sliding_direction,
 )
 
-# compiled from sources 2da5a92f
+# compiled from sources 49af733f
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
 @inlined
-def _path_slopes(
-    table: Array, flank: Flank, law: Array, sign: float, reach: float, rate: float, omega_1: float
-) -> tuple[float, float, float]:
+def _path_slopes(table: Array, flank: Flank, law: Array, pressing: Pressing) -> tuple[float, float, float]:
     """Return (da_1/ds, da_2/ds, elastic energy) of one flank at fixed reach, rate and friction levers."""
+    sign, reach, rate, omega_1 = pressing.sign, pressing.reach, pressing.rate, pressing.omega_1
     slope_1, slope_2, energy = 0.0, 0.0, 0.0
     f = flank.place
     damp_time, per_depth = law[DAMP_TIME], law[PER_DEPTH]
@@ -91,16 +91,13 @@ def mesh_reactions(
 
 
 @inlined
-def _add_flank(
-    table: Array, flank: Flank, law: Array, side: int, reach: float, omega_1: float, omega_2: float, out: Array
-) -> None:  # fmt: skip
+def _add_flank(table: Array, flank: Flank, law: Array, side: int, pressing: Pressing, out: Array) -> None:
     """Add what one flank of the first mesh answers to the row ``out`` (13,)."""
-    sign = 1.0 - 2.0 * side
+    sign = pressing.sign
     r_1, r_2 = law[R1], law[R2]
-    rate = sign * (r_1 * omega_1 - r_2 * omega_2)
-    sums = press_flank(table, flank, law, 0, sign, reach, rate, omega_1, 0.0)
-    friction_power, damping_power, _ = flank_powers(table, flank, law, 0, sign, reach, rate, omega_1)
-    slope_1, slope_2, energy = _path_slopes(table, flank, law, sign, reach, rate, omega_1)
+    sums = press_flank(table, flank, law, 0, pressing, 0.0)
+    friction_power, damping_power, _ = flank_powers(table, flank, law, 0, pressing)
+    slope_1, slope_2, energy = _path_slopes(table, flank, law, pressing)
     out[0] -= sign * r_1 * sums.a_1
     out[1] += sign * r_2 * sums.a_2
     out[2 + side] += sums.force
@@ -121,8 +118,7 @@ def _mesh_reactions(
     no_pairs: Integers, out: Array,
 ) -> None:  # fmt: skip
     """Do what ``mesh_reactions`` says, ``contacts`` being room for a table."""
-    law, counts, starts = meshes.values[0], meshes.counts, meshes.phase_starts
-    least, data = meshes.phase_least, meshes.phase_data
+    law, counts = meshes.values[0], meshes.counts
     cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
     stride = counts[0, MOST]
     for n in range(theta_1.shape[0]):
@@ -132,18 +128,19 @@ def _mesh_reactions(
             within = sign * reach[n] - side * law[BACKLASH]
             if within <= law[LEAST_GAP]:
                 continue
+            rate = sign * (law[R1] * omega_1[n] - law[R2] * omega_2[n])
+            pressing = Pressing(sign, within, rate, omega_1[n])
             if counts[0, INDIVIDUAL] == 0:
-                alike = flank_in_phase(
-                    law, 0, counts, starts, least, 0, sign, within, theta_1[n], omega_1[n], omega_2[n]
-                )
-                _add_flank(data, alike, law, side, within, omega_1[n], omega_2[n], out[n])
+                state = ContactState(sign, within, theta_1[n], omega_1[n], omega_2[n])
+                alike = flank_in_phase(law, 0, meshes, 0, state)
+                _add_flank(meshes.phase_data, alike, law, side, pressing, out[n])
             else:
                 found = list_on_path(
                     law, 0, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], contacts, 0, stride,
                     no_pairs,
                 )  # fmt: skip
                 single = flank_on_path(law, 0, 0, stride, found, omega_1[n], omega_2[n])
-                _add_flank(contacts, single, law, side, within, omega_1[n], omega_2[n], out[n])
+                _add_flank(contacts, single, law, side, pressing, out[n])
 
 
 @njit(cache=True, fastmath=LOOSE)

@@ -47,23 +47,30 @@ class Loss:
     warnings: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ToothContacts:
+    """Tooth contacts of a simulated history.
+
+    force : tooth forces in the transverse line of action, any shape, e.g. (n_times, n_pairs) [N]
+    position : their path positions from the pitch point, same shape [m]
+    omega_1, omega_2 : speeds of both gears, broadcastable to that shape [rad/s]
+    """
+
+    force: ArrayLike
+    position: ArrayLike
+    omega_1: ArrayLike
+    omega_2: ArrayLike
+
+
 def sliding_power(
-    path: ToothPath,
-    force: ArrayLike,
-    position: ArrayLike,
-    omega_1: ArrayLike,
-    omega_2: ArrayLike,
-    coefficient: float,
-    reversal_speed: float = 0.0,
+    path: ToothPath, contacts: ToothContacts, coefficient: float, reversal_speed: float = 0.0
 ) -> Array:
     """Sliding loss of each tooth contact of a simulated history [W].
 
     Parameters
     ----------
     path : geometry
-    force : tooth forces in the transverse line of action, any shape, e.g. (n_times, n_pairs) [N]
-    position : their path positions, same shape [m]
-    omega_1, omega_2 : speeds of both gears, broadcastable to that shape [rad/s]
+    contacts : forces, places and speeds
     coefficient : friction coefficient of the flank (of the normal force) [-]
     reversal_speed : sliding speed over which friction changes sign, as in the mesh law [m/s]
 
@@ -71,10 +78,11 @@ def sliding_power(
     -------
     power : shape of ``force`` [W]; sum over pairs and slices, mean over time gives the loss of the mesh
     """
-    speed = sliding_speed(path, position, omega_1, omega_2)
+    speed = sliding_speed(path, contacts.position, contacts.omega_1, contacts.omega_2)
     ratio = np.clip(speed / reversal_speed, -1.0, 1.0) if reversal_speed > 0.0 else np.sign(speed)
     direction = ratio * (1.5 - 0.5 * ratio**2) if reversal_speed > 0.0 else ratio
-    power = path.transverse_friction(coefficient) * np.asarray(force, dtype=np.float64) * direction * speed
+    force = np.asarray(contacts.force, dtype=np.float64)
+    power = path.transverse_friction(coefficient) * force * direction * speed
     return np.asarray(power, dtype=np.float64)
 
 

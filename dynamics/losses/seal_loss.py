@@ -1,6 +1,7 @@
-"""Drag of shaft seals: rubbing lips and contactless gaps."""
+"""Losses of shaft seals: rubbing lips and contactless gaps."""
 
 import math
+from dataclasses import dataclass
 
 from dynamics.losses.mesh_loss import Loss, LossError
 from dynamics.standards import iso_tr_14179_2_2001 as tr14179
@@ -31,18 +32,27 @@ def lip_seal_loss(place: str, shaft_diameter: float, omega: float) -> Loss:
     )
 
 
-def gap_seal_loss(
-    place: str, radius: float, gap: float, length: float, omega: float, density: float, viscosity: float
-) -> Loss:
-    """Drag of the fluid in a concentric cylindrical gap [W], air or oil.
+@dataclass(frozen=True, kw_only=True)
+class SealGap:
+    """Concentric cylindrical gap round a shaft: shaft radius, radial gap and length [m]."""
+
+    radius: float
+    gap: float
+    length: float
+
+
+def gap_seal_loss(place: str, seal: SealGap, omega: float, density: float, viscosity: float) -> Loss:
+    """Power lost to the fluid in a concentric cylindrical gap [W], air or oil.
 
     Laminar (Couette): P = 2 pi eta omega^2 R^3 L / s. With Taylor vortices P = pi C rho omega^3 R^4 L / 2,
     C = 2 (s/R)^0.3 Re^-0.6 to Re 500, 1.03 (s/R)^0.3 Re^-0.5 to 1e4, 0.065 (s/R)^0.3 Re^-0.2 beyond, with
     Re = rho omega R s / eta, never less than laminar.
 
-    Shaft radius, radial gap, length [m], omega [rad/s], density [kg/m3], dynamic viscosity [Pa s].
+    omega [rad/s], density [kg/m3], dynamic viscosity [Pa s]. Raises LossError for what is not above 0.
+
     Source: Couette 1890; E. Bilgen, R. Boulos, ASME J. Fluids Eng. 95 (1973). Confidence medium to high.
     """
+    radius, gap, length = seal.radius, seal.gap, seal.length
     for name, value in (("radius", radius), ("gap", gap), ("density", density), ("viscosity", viscosity)):
         if not value > 0.0:
             raise LossError(

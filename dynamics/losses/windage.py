@@ -131,7 +131,13 @@ def tooth_coefficient(gear: GearRotor) -> float:
 
 
 def gear_windage(place: str, gear: GearRotor, omega: float, mist: Mist) -> Loss:
-    """Windage of one gear by discs and teeth [W]; omega [rad/s]."""
+    """Windage of one gear: friction of its free faces and impact on its teeth [W].
+
+    place : name in the rig; omega : [rad/s], its sign does not matter; mist : what the gear rotates in
+
+    Source: free disc (Schlichting, Boundary-Layer Theory) at the tip radius, tooth impact (Diab et al. 2004) at the
+    pitch radius. Numbers outside the tests behind them are said in the warnings of the loss.
+    """
     speed = abs(omega)
     reynolds = mist.reynolds(speed, gear.tip_radius)
     disc = 0.25 * gear.free_faces * mist.density * speed**3 * gear.tip_radius**5 * disc_coefficient(reynolds)
@@ -152,7 +158,7 @@ def gear_windage(place: str, gear: GearRotor, omega: float, mist: Mist) -> Loss:
 
 
 def shaft_windage(place: str, radius: float, length: float, omega: float, mist: Mist) -> Loss:
-    """Windage of a smooth cylinder turning in the open [W]: P = pi C rho omega^3 R^4 L.
+    """Windage of a smooth cylinder rotating in the open [W]: P = pi C rho omega^3 R^4 L.
 
     1 / sqrt(C) = -0.6 + 4.07 lg(Re sqrt(C)); laminar C = 4 / Re below Re = rho omega R^2 / eta of about 60.
 

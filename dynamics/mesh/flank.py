@@ -1,16 +1,16 @@
-"""Flank micro-geometry and deviations, and the mesh law of a gear pair that they make."""
+"""Mesh law of a gear pair from its geometry, the micro-geometry of its flanks and its stiffness."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from math import ceil, pi, tan
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from dynamics.errors import DynamicsInputError
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.law import DampedRate, MeshLaw
+from dynamics.mesh.microgeometry import Microgeometry, check_microgeometry
 from dynamics.mesh.stiffness import PairStiffness
 from dynamics.mesh.tip_contact import path_reach, tip_separation
 
@@ -28,107 +28,104 @@ LEAST_DIGIT = 15
 
 
 @dataclass(frozen=True, kw_only=True)
-class Microgeometry:
-    """Intended modifications and deviations of one gear; all zero is the ideal involute gear.
+class MeshPosition:
+    """How the gears of a pair stand to each other.
 
-    Modifications are metal removed [m], positive widens the gap. Face position z runs over the own face width
-    from -b/2 to b/2 in the direction of rising helix lag.
+    offset : approach of the rigid gears towards each other [m]; phase [m], tooth_offset_2 : as in ``MeshLaw``
+    misalignment : gap per face width [rad], growing with z over the common width
     """
 
-    tip_relief: float = 0.0
-    """C_a at the tip corner [m]."""
-    tip_relief_length: float = 0.0
-    """Path length from the tip over which the relief fades to zero [m]."""
-    tip_relief_exponent: float = 1.0
-    """1 linear, 2 parabolic."""
-    profile_crowning: float = 0.0
-    """C_alpha at both ends of the active path, parabolic, zero in its middle [m]."""
-    lead_crowning: float = 0.0
-    """C_beta at both ends of the face, parabolic, zero in its middle [m]."""
-    profile_slope: float = 0.0
-    """f_Halpha over the active profile, positive where the tip stands out: the gap is half of it less at the tip
-    and half of it more at the root [m]."""
-    helix_slope: float = 0.0
-    """Change of the gap over the face width, from -b/2 to b/2 [m]."""
-    profile_twist: float = 0.0
-    """Gap at the tip at z = b/2; it changes sign at the root and at z = -b/2 (bilinear) [m]."""
-    pitch_deviations: tuple[float, ...] = ()
-    """Place of each tooth along the line of action ahead of its ideal one (cumulative), (z,) [m]; the whole tooth
-    stands there, so that its back flank gives way by as much."""
-    run_out: float = 0.0
-    """Eccentricity f_e of the teeth, about half the run-out F_r [m]."""
-    run_out_phase: float = 0.0
-    """Rotation of the gear at which the eccentric teeth stand furthest along the line of action of the front flanks
-    [rad]; along that of the back flanks they do so half a turn and 2 alpha_wt later (pinion) or earlier (wheel)."""
-    profile_slopes: tuple[float, ...] = ()
-    """Slope of the profile of each tooth beyond ``profile_slope``, (z,) [m]."""
-    tooth_stiffness: tuple[float, ...] = ()
-    """Scale of the stiffness of the tooth pairs that each tooth is in, (z,) [-]; 0 for a tooth that is missing."""
+    offset: float = 0.0
+    misalignment: float = 0.0
+    phase: float = 0.0
+    tooth_offset_2: int = 0
 
 
-def cumulative_pitch(single_deviations: ArrayLike) -> tuple[float, ...]:
-    """Cumulative from single pitch deviations (z,) [m], closed over the turn and with mean zero."""
-    single = np.asarray(single_deviations, dtype=float)
-    cumulative = np.cumsum(single - single.mean())
-    return tuple(float(value) for value in cumulative - cumulative.mean())
+@dataclass(frozen=True, kw_only=True)
+class MeshDissipation:
+    """Damping and tooth friction of a mesh, as in ``MeshLaw``.
 
-
-def pitch_waves(teeth: int, waves: Iterable[tuple[int, float, float]]) -> tuple[float, ...]:
-    """Cumulative pitch of waves over the turn: sum of amplitude cos(order angle - phase) at the angle of each tooth.
-
-    waves : order per turn [-], amplitude along the line of action [m], phase [rad]. Returns (teeth,) [m].
+    damping : [N s/m]; damping_acts_on : rate that the damper follows
+    friction : coefficient in the transverse plane [-]; friction_reversal_speed : sliding speed over which it
+        changes sign [m/s]
     """
-    angle = 2.0 * pi * np.arange(teeth) / teeth
-    place = np.zeros(teeth)
-    for order, amplitude, phase in waves:
-        place += amplitude * np.cos(order * angle - phase)
-    return tuple(float(value) for value in place)
+
+    damping: float = 0.0
+    damping_acts_on: DampedRate = "relative_rotation"
+    friction: float = 0.0
+    friction_reversal_speed: float = 0.05
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactDiscretisation:
+    """Grid of the contact over face width and path.
+
+    n_slices : over the common face width; None: ``default_slices``
+    n_path : points of the uniform grid over the path, active part and premature engagement
+    reach : tip separation at the ends of the grid, the largest approach the law is good for [m]; None: 0.15 normal
+        modules, at least 0.1 mm, at most 0.3 mm
+    engagement : ``corner``: deflected teeth meet early at the tip corners; ``path``: pairs carry on the
+        active path only, as the single-pair stiffness of the standards has it, let in over 5 % of a base pitch
+
+    Raises DynamicsInputError for less than 1 slice or 16 points.
+    """
+
+    n_slices: int | None = None
+    n_path: int = 241
+    reach: float | None = None
+    engagement: Engagement = "corner"
+
+    def __post_init__(self) -> None:
+        if (self.n_slices is not None and self.n_slices < 1) or self.n_path < 16:
+            raise DynamicsInputError(
+                f"n_slices = {self.n_slices} and n_path = {self.n_path} must be at least 1 and 16"
+            )
+
+
+IDEAL = (Microgeometry(), Microgeometry())
+NOMINAL_POSITION = MeshPosition()
+LOSSLESS = MeshDissipation()
+DEFAULT_CONTACT = ContactDiscretisation()
 
 
 def mesh_law(
     pair: GearPair,
-    *,
     stiffness: PairStiffness,
-    micro: tuple[Microgeometry, Microgeometry] = (Microgeometry(), Microgeometry()),
-    n_slices: int | None = None,
-    n_path: int = 241,
-    damping: float = 0.0,
-    damping_acts_on: DampedRate = "relative_rotation",
-    friction: float = 0.0,
-    friction_reversal_speed: float = 0.05,
-    offset: float = 0.0,
-    misalignment: float = 0.0,
-    phase: float = 0.0,
-    tooth_offset_2: int = 0,
-    reach: float | None = None,
-    engagement: Engagement = "corner",
+    micro: tuple[Microgeometry, Microgeometry] = IDEAL,
+    *,
+    position: MeshPosition = NOMINAL_POSITION,
+    dissipation: MeshDissipation = LOSSLESS,
+    discretisation: ContactDiscretisation = DEFAULT_CONTACT,
 ) -> MeshLaw:
     """Mesh law of ``pair`` with the micro-geometry of pinion and wheel.
 
-    stiffness : course of the single-pair stiffness; a slice of width db takes c'(s) db
-    n_slices : over the common face width; default by ``default_slices``
-    n_path : points of the uniform grid over the path, active part and premature engagement
-    damping [N s/m], damping_acts_on, friction [-], friction_reversal_speed [m/s], offset [m], phase [m],
-        tooth_offset_2: as in ``MeshLaw``
-    misalignment : gap per face width [rad], growing with z over the common width
-    reach : tip separation at the ends of the grid, the largest approach the law is good for [m]; default 0.15
-        normal modules, at least 0.1 mm, at most 0.3 mm
-    engagement : ``corner``: deflected teeth meet early at the tip corners; ``path``: pairs carry on the
-        active path only, as the stiffness course of the standards has it, let in over 5 % of a base pitch
+    Parameters
+    ----------
+    stiffness : single-pair stiffness over the path; a slice of width db takes c'(s) db
+    micro : of pinion and wheel
+    position : how the gears stand to each other
+    dissipation : damping and friction
+    discretisation : grid over face width and path
 
-    A pair that jams (negative backlash, see ``GearPair.warnings``) gets zero play. Gears of unequal growth
-    keep the ratio of their tooth numbers; the difference of their base pitches becomes a gap along the path.
+    A pair that jams (negative backlash, see ``GearPair.warnings``) gets zero play. Gears of unequal thermal
+    expansion keep the ratio of their tooth numbers; the difference of their base pitches becomes a gap along the
+    path.
 
-    Raises ValueError for arrays of another length than the tooth number or numbers below their limit.
+    Raises DynamicsInputError for arrays of another length than the tooth number or numbers below their limit.
     """
     for gear, teeth in zip(micro, pair.teeth, strict=True):
-        _check(gear, teeth)
+        check_microgeometry(gear, teeth)
+    misalignment, phase = position.misalignment, position.phase
+    n_slices, n_path = discretisation.n_slices, discretisation.n_path
+    engagement = discretisation.engagement
     slices = default_slices(pair, micro, misalignment) if n_slices is None else n_slices
-    if slices < 1 or n_path < 16:
-        raise DynamicsInputError(f"n_slices = {slices} and n_path = {n_path} must be at least 1 and 16")
     width = pair.face_width
     face = ((np.arange(slices) + 0.5) / slices - 0.5) * width
-    wanted = min(max(0.15 * pair.normal_module, 1e-4), 3e-4) if reach is None else reach
+    wanted = (
+        min(max(0.15 * pair.normal_module, 1e-4), 3e-4)
+        if discretisation.reach is None
+        else discretisation.reach
+    )
     first, last = _grid_ends(pair, wanted, engagement)
     path = np.linspace(first, last, n_path)
     gap = tip_separation(pair, path) if engagement == "corner" else _ramp(pair, path, wanted)
@@ -139,7 +136,7 @@ def mesh_law(
     back_phase = pair.working_thicknesses[0] * pair.base_radii[0] / pair.working_radii[0] - phase
     deviations = [
         _deviations(pair, gear, index, path, (phase, back_phase), first)
-        for gear, index, first in ((micro[0], 0, 0), (micro[1], 1, tooth_offset_2))
+        for gear, index, first in ((micro[0], 0, 0), (micro[1], 1, position.tooth_offset_2))
     ]
     scales = [np.array(gear.tooth_stiffness or (1.0,)) for gear in micro]
     return MeshLaw(
@@ -148,7 +145,7 @@ def mesh_law(
         base_pitch=pair.base_pitch,
         teeth_1=pair.teeth[0],
         teeth_2=pair.teeth[1],
-        tooth_offset_2=tooth_offset_2,
+        tooth_offset_2=position.tooth_offset_2,
         path_start=first,
         path_step=(last - first) / (n_path - 1),
         stiffness=np.tile(stiffness.at(path) * width / slices, (slices, 1)),
@@ -159,16 +156,16 @@ def mesh_law(
         scale_1=scales[0],
         scale_2=scales[1],
         backlash=max(pair.backlash_along_path, 0.0),
-        offset=offset,
+        offset=position.offset,
         phase=phase,
         back_phase=back_phase,
-        damping=damping,
-        damping_acts_on=damping_acts_on,
+        damping=dissipation.damping,
+        damping_acts_on=dissipation.damping_acts_on,
         mean_stiffness=stiffness.mesh_mean * width * float(scales[0].mean() * scales[1].mean()),
-        friction=friction,
+        friction=dissipation.friction,
         rolling_radius_1=pair.rolling_radii[0],
         rolling_radius_2=pair.rolling_radii[1],
-        friction_reversal_speed=friction_reversal_speed,
+        friction_reversal_speed=dissipation.friction_reversal_speed,
         back_deviation_1=deviations[0][1],
         back_deviation_2=deviations[1][1],
     )
@@ -283,17 +280,17 @@ def _deviations(
     if not gear.pitch_deviations and not gear.run_out and not gear.profile_slopes:
         return np.zeros((1, len(path))), None
     place = np.array(gear.pitch_deviations or (0.0,) * teeth)[:, None]
-    slope = 0.5 * np.array(gear.profile_slopes or (0.0,) * teeth)[:, None] * _along_profile(pair, index, path)
+    tilt = 0.5 * np.array(gear.profile_slopes or (0.0,) * teeth)[:, None] * _along_profile(pair, index, path)
     tooth = (np.arange(teeth) - first_tooth)[:, None]
     per_turn = pair.base_pitch / (2.0 * pi)
     rotation = ((path - phases[0]) / per_turn + 2.0 * pi * tooth) / teeth
-    front = -place - gear.run_out * np.cos(rotation - gear.run_out_phase) - slope
+    front = -place - gear.run_out * np.cos(rotation - gear.run_out_phase) - tilt
     if not gear.pitch_deviations and not gear.run_out:
         return front, None
     pair_of_tooth = tooth - index  # a tooth of the wheel is on the back in the pair before
     rotation = ((phases[1] - path) / per_turn + 2.0 * pi * pair_of_tooth) / teeth
     later = gear.run_out_phase + (2.0 - 4.0 * index) * pair.working_pressure_angle
-    return front, place + gear.run_out * np.cos(rotation - later) - slope
+    return front, place + gear.run_out * np.cos(rotation - later) - tilt
 
 
 def default_slices(
@@ -311,22 +308,3 @@ def default_slices(
     if pair.helix_angle == 0.0 and flat:
         return 1
     return max(LEAST_SLICES, ceil(SLICES_PER_BASE_PITCH * abs(pair.overlap_ratio) - 1e-9))
-
-
-def _check(gear: Microgeometry, teeth: int) -> None:
-    for name in ("pitch_deviations", "profile_slopes", "tooth_stiffness"):
-        values = getattr(gear, name)
-        if values and len(values) != teeth:
-            raise DynamicsInputError(
-                f"{name} has {len(values)} values for {teeth} teeth; give one for each tooth or none"
-            )
-    if gear.tip_relief and not gear.tip_relief_length > 0.0:
-        raise DynamicsInputError(
-            f"tip_relief_length = {gear.tip_relief_length} m must be positive with tip_relief = "
-            f"{gear.tip_relief} m; give the path length of the relief"
-        )
-    scales = gear.tooth_stiffness
-    if scales and not (min(scales) >= 0.0 and max(scales) > 0.0):
-        raise DynamicsInputError(
-            "tooth_stiffness must not be negative for any tooth and not be zero for all; use 0 for a missing tooth"
-        )

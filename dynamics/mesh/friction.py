@@ -141,15 +141,15 @@ def friction_coefficient(contact: ToothContact, law: FrictionLaw) -> FrictionCoe
     radius = contact.reduced_radius * 1e3
     viscosity = contact.viscosity * 1e3
     roughness = contact.roughness * 1e6
-    load = line_load * 1e-3
     factor = law.lubricant_factor
+    pitch_point = tr14179.PitchPointContact(line_load * 1e-3, sum_speed, radius, viscosity, roughness)
     if isinstance(law, Schlenk):
         name, source = "schlenk", "ISO/TR 14179-2:2001 (Schlenk)"
-        value = tr14179.mu_mz(load, sum_speed, radius, viscosity, roughness, factor)
+        value = tr14179.mu_mz(pitch_point, factor)
     else:
         name, source = "michaelis", "Michaelis; Niemann/Winter, Maschinenelemente II"
         diameter = contact.pinion_diameter * 1e3
-        value = tr14179.mu_mz_michaelis(load, sum_speed, radius, viscosity, roughness, diameter, factor)
+        value = tr14179.mu_mz_michaelis(pitch_point, diameter, factor)
     inputs = _inputs(contact) | {"line_load": line_load, "sum_speed": sum_speed, "lubricant_factor": factor}
     return FrictionCoefficient(value=value, law=name, inputs=inputs, source=source, warnings=warnings)
 

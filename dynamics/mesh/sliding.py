@@ -69,7 +69,7 @@ class ToothPath:
 
     @classmethod
     def of_pair(cls, pair: GearPair) -> Self:
-        """Path of contact of a gear pair, cold or warm, on its common face width."""
+        """Path of contact of a gear pair at its present temperature, on its common face width."""
         return cls(
             base_radius_1=pair.base_radii[0],
             base_radius_2=pair.base_radii[1],
@@ -162,7 +162,7 @@ def tooth_loss_factor(path: ToothPath, stiffness: PairStiffness | None = None) -
 def ohlendorf_factor(path: ToothPath, teeth_1: int) -> float:
     """Ohlendorf's closed tooth-loss factor of the same mesh, for comparison [-].
 
-    Raises ValueError with the pitch point outside the path (ISO/TR 14179-2). With the pitch point in a
+    Raises DynamicsInputError with the pitch point outside the path (ISO/TR 14179-2). With the pitch point in a
     zone of double contact (FZG-A) it exceeds the integral of its own load sharing.
     """
     return tr14179.H_V(
@@ -180,9 +180,9 @@ def sliding_speed(path: ToothPath, position: ArrayLike, omega_1: ArrayLike, omeg
     Path positions [m] and the running speeds of both gears [rad/s] broadcast against each other.
     """
     s = np.asarray(position, dtype=np.float64)
-    slope = math.tan(path.working_pressure_angle)
-    first = np.asarray(omega_1) * (path.base_radius_1 * slope + s)
-    second = np.asarray(omega_2) * (path.base_radius_2 * slope - s)
+    ratio = math.tan(path.working_pressure_angle)
+    first = np.asarray(omega_1) * (path.base_radius_1 * ratio + s)
+    second = np.asarray(omega_2) * (path.base_radius_2 * ratio - s)
     return np.asarray(first - second, dtype=np.float64)
 
 
@@ -233,7 +233,7 @@ def _integral(grid: Array, values: Array) -> Array:
 
 def _phase_edges(path: ToothPath) -> Array:
     """Phases within one base pitch at which a pair enters, leaves or slides through the pitch point."""
-    marks = np.array([path.start, path.end, 0.0])
-    marks = np.concatenate([marks, marks + path.width_shift])
-    inside = np.mod(marks - path.start, path.base_pitch)
+    edges = np.array([path.start, path.end, 0.0])
+    edges = np.concatenate([edges, edges + path.width_shift])
+    inside = np.mod(edges - path.start, path.base_pitch)
     return np.unique(np.concatenate([[0.0, path.base_pitch], inside]))

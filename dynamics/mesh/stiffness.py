@@ -69,7 +69,7 @@ def pair_stiffness(
 
     ``line_load`` [N/m] is the transverse force per face width that flattens the contact (usually F_bt / b).
     ``body="ring"`` replaces the half plane under each tooth by the elastic ring of Sainsot et al. on the bore
-    of the gear; out of its fitted range the result carries warnings. Raises ValueError for a load <= 0 or a
+    of the gear; out of its fitted range the result carries warnings. Raises DynamicsInputError for a load <= 0 or a
     ring without bore.
     """
     path = np.linspace(pair.path.start, pair.path.end, n_path)

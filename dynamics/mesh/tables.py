@@ -17,7 +17,7 @@ from scipy.interpolate import PchipInterpolator
 
 from dynamics import kernels
 from dynamics.kernels import PackedMeshes
-from dynamics.kernels.contact import DAMP_TIME
+from dynamics.kernels.mesh_tables import DAMP_TIME
 from dynamics.mesh.law import MeshLaw, back_deviations, check_mesh_law
 
 Array = NDArray[np.float64]
@@ -187,7 +187,7 @@ def _phase_contacts(
     N_PHASE rows over the contacts of each cell, flat. More than one in a cell are filled up to whole turns of a
     compiled loop with some of no stiffness.
 
-    The cubics are carried from the path to the phase by value and slope at both ends of the phase cell.
+    The cubics are carried from the path to the phase by value and derivative at both ends of the phase cell.
     """
     n_path = law.stiffness.shape[1]
     width = law.base_pitch / n_phases
@@ -228,14 +228,14 @@ def _phase_contacts(
 
 
 def _hermite(cubic: PchipInterpolator, at: Array, rows: Integers, width: float) -> tuple[Array, ...]:
-    """Return cubic coefficients over the fraction of [at, at + width] from values and slopes at both ends."""
-    (v_0, s_0), (v_1, s_1) = (_value_and_slope(cubic, at + shift, rows) for shift in (0.0, width))
+    """Return cubic coefficients over the fraction of [at, at + width] from values and derivatives at both ends."""
+    (v_0, s_0), (v_1, s_1) = (_value_and_derivative(cubic, at + shift, rows) for shift in (0.0, width))
     d_0, d_1 = s_0 * width, s_1 * width
     return v_0, d_0, 3.0 * (v_1 - v_0) - 2.0 * d_0 - d_1, 2.0 * (v_0 - v_1) + d_0 + d_1
 
 
-def _value_and_slope(cubic: PchipInterpolator, at: Array, rows: Integers) -> tuple[Array, Array]:
-    """Return value and slope of row ``rows[i]`` at ``at[i]``, held within the table."""
+def _value_and_derivative(cubic: PchipInterpolator, at: Array, rows: Integers) -> tuple[Array, Array]:
+    """Return value and derivative of row ``rows[i]`` at ``at[i]``, held within the table."""
     inside = np.clip(at, 0.0, cubic.x[-1])
     index = np.minimum(inside.astype(np.int64), len(cubic.x) - 2)
     f = inside - index

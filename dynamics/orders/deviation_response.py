@@ -1,6 +1,6 @@
 """Orders of the loop from deviations of single teeth and from harmonic torques.
 
-With all teeth of a gear alike the loop settles to a motion that repeats from mesh to mesh. Teeth that differ a little
+With all teeth of a gear alike the loop reaches a motion that repeats from mesh to mesh. Teeth that differ a little
 from each other, and torques of any order, move it by ``dx``, which obeys in first order
 
     d tau = T_x(t) dx + T_v(t) dx' + T_theta(t) d theta + sum over the contacts of what their teeth deviate,
@@ -100,13 +100,13 @@ class DeviationResponse:
 
         torques : further torques on any freedoms, in first order
 
-        Raises ValueError for a negative order, a torque without a positive one, or an order above the samples.
+        Raises DynamicsInputError for a negative order, a torque without a positive one, or an order above the samples.
         """
         loop = self.loop
         wanted = [float(order) for order in orders]
         if min(wanted, default=0.0) < 0.0 or any(not torque.order > 0.0 for torque in torques):
             raise DynamicsInputError(
-                "orders must not be negative, those of torques above 0; turn the phase instead"
+                "orders must not be negative, those of torques above 0; shift the phase instead"
             )
         highest = max((round(order / loop.cell_order) for order in wanted), default=0)
         reach = max(LEAST_HARMONICS, ceil(highest) + MARGIN)

@@ -42,7 +42,7 @@ class MeshPeriodic:
     cell_order : cells per turn of that pinion; meshes : (n_meshes,) mesh periods of each mesh in a cell
     bodies : (n_bodies,) freedoms of the gear bodies; sides : (n_meshes, 2) place of pinion and wheel among them
     approach : (n_meshes, n_bodies) approach per angle [m/rad]
-    waves : (3, n_meshes, 2, n) slopes of the torques on pinion and wheel over approach, its rate and pinion angle
+    waves : (3, n_meshes, 2, n) derivatives of the torques on pinion and wheel over approach, its rate and pinion angle
     torque : (n_bodies, n) harmonics of the torques on the bodies, those of order h at index h
     """
 
@@ -67,9 +67,9 @@ class MeshPeriodic:
         self.samples = wave.time.size
         step = float(wave.time[1] - wave.time[0])
         self.cell_order = 2.0 * pi / (self.samples * step * self.speed)
-        turning = wave.omega_1.mean(axis=1) / self.speed
+        ratios = wave.omega_1.mean(axis=1) / self.speed
         self.meshes = np.array(
-            [round(law.teeth_1 * ratio / self.cell_order) for law, ratio in zip(self.ideal, turning)]
+            [round(law.teeth_1 * ratio / self.cell_order) for law, ratio in zip(self.ideal, ratios)]
         )
         self.start = float(np.mean(wave.angle[0] - self.speed * step * np.arange(self.samples)))
         self._linearise()
@@ -152,7 +152,7 @@ class HillSystem:
         self.still = reach if residue == 0.0 else -1
         self.n_meshes, self.n_bodies = len(loop.ideal), loop.bodies.size
         self.tangent = tangent[0] + tangent[1] * (1j * self.omega)
-        self.turned = tangent[2]
+        self.per_angle = tangent[2]
         self.gain = loop.approach @ receptance[:, : self.n_bodies]
         self.pinion = receptance[:, loop.sides[:, 0]]
         split = self.gain[:, :, loop.sides].transpose(1, 0, 2, 3)[..., None]
@@ -174,7 +174,7 @@ class HillSystem:
             np.add.at(torque, self.loop.sides, (self.tangent @ approach[:, None, :, None])[..., 0])
             angle = (self.pinion @ torque.T[:, :, None])[:, :, 0].T
             if step < ANGLE_STEPS:
-                acting = forces + (self.turned @ angle[:, None, :, None])[..., 0]
+                acting = forces + (self.per_angle @ angle[:, None, :, None])[..., 0]
         return ClassSolution(torque, approach, angle)
 
     def _solve(self, known: Complex, torque: Complex, acting: Complex) -> Complex:
@@ -183,7 +183,7 @@ class HillSystem:
         return np.asarray(found[: self.n_meshes * self.n].reshape(self.n_meshes, self.n))
 
     def _with_mean(self, block: Complex) -> Complex:
-        """The class of the mean: with the mean windup of all freedoms, drive torque and twist beside it."""
+        """The class of the mean: with the mean windup of all freedoms, drive torque and twist as further unknowns."""
         loop, size, still = self.loop, self.n_meshes * self.n, self.still
         system = loop.system
         ports, dofs = system.mesh_ports, system.inertia.size

@@ -1,9 +1,9 @@
-"""What the contacts do beyond first order while a gear with unequal teeth comes round.
+"""Contact forces beyond first order over the cycle of a gear with unequal teeth.
 
 Over the turns after which the same tooth of the gear stands at the same place of the mesh period, the true torques of
 the teeth along the motion found so far, less the tangents times its change, are forces on the linear equations that
 give the next motion: Newton's method with the tangent of the equal teeth, accelerated. Gears of the same cycle are
-taken together; gears of different cycles each alone, so that what two of them do together beyond first order is left
+taken together; gears of different cycles each alone, so that their joint effect beyond first order is left
 out.
 """
 
@@ -28,10 +28,10 @@ Integers = NDArray[np.int64]
 
 REACH = 12
 """Mesh harmonics on both sides in the corrections."""
-SETTLED = 1e-2
+CONVERGED = 1e-2
 """Change of the approach, relative to its whole deviation, at which the corrections end [-]."""
-MEMORY = 8
-"""Answers that the next motion is combined from."""
+HISTORY = 8
+"""Earlier answers that the next motion is combined from (Anderson)."""
 
 
 class CycleForces(NamedTuple):
@@ -56,7 +56,12 @@ class CycleForces(NamedTuple):
 
 
 def cycle_forces(loop: MeshPeriodic, forcing: ToothForcing, steps: int) -> tuple[CycleForces, ...]:
-    """Forces of every group of gears with unequal teeth after some steps (at least 1)."""
+    """Forces beyond first order of every group of gears with unequal teeth.
+
+    loop : motion with equal teeth and its tangents
+    forcing : forces of the tooth deviations, first order
+    steps : corrections at most, at least 1; they end when the approach changes by less than CONVERGED
+    """
     groups: dict[int, list[tuple[int, int]]] = {}
     for m, side in forcing.gears:
         teeth = (forcing.laws[m].teeth_1, forcing.laws[m].teeth_2)[side]
@@ -116,7 +121,7 @@ class _Cycle:
             answer = self._answer([result.of_class(float(residue), self.number) for residue in classes])
             moved, whole = (float(np.abs(values).max()) for values in (answer[0] - motion[0], answer[0]))
             result = result._replace(change=moved / max(whole, 1e-300))
-            if result.change < SETTLED:
+            if result.change < CONVERGED:
                 break
             motion = mixing.next(motion, answer)
         return result
@@ -146,17 +151,17 @@ class _Cycle:
             if j > 0 and 2 * j != self.cells:
                 spectra[..., -place % count] = values.conj()
         order = np.fft.fftfreq(count, 1.0 / count) / self.cells
-        turned = spectra * np.exp(1j * order * loop.cell_order * loop.start)
-        return np.asarray(np.fft.ifft(turned, axis=-1).real * count)
+        shifted = spectra * np.exp(1j * order * loop.cell_order * loop.start)
+        return np.asarray(np.fft.ifft(shifted, axis=-1).real * count)
 
     def _beyond(self, approach: Array, rate: Array, angle: Array, speed: Array) -> Array:
         """True torques less those of equal teeth and tangents times change (n_meshes, 2, count)."""
         forces = np.empty(self.known.shape)
         for m, (law, packed) in enumerate(zip(self.loop.ideal, self.packed)):
-            turned, reach, omega_1, omega_2 = self.base[m]
+            theta_1, reach, omega_1, omega_2 = self.base[m]
             slower = (law.base_radius_1 * speed[m] - rate[m]) / law.base_radius_2
             reaction = evaluate_mesh(
-                packed, turned + angle[m], reach + approach[m], omega_1 + speed[m], omega_2 + slower
+                packed, theta_1 + angle[m], reach + approach[m], omega_1 + speed[m], omega_2 + slower
             )
             forces[m] = reaction.torque_1, reaction.torque_2
         linear = (
@@ -177,7 +182,7 @@ class _Mixing:
     def next(self, motion: Array, answer: Array) -> Array:
         """Combination of the answers whose approach would be missed least."""
         miss = (answer - motion)[0].ravel()
-        self._before = [*self._before, (answer, miss)][-MEMORY:]
+        self._before = [*self._before, (answer, miss)][-HISTORY:]
         if len(self._before) == 1:
             return answer
         steps = np.array([miss - old for _, old in self._before[:-1]])

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from dynamics.kernels.contact import CELLS_AT, CLOSING, DAMP_TIME, LEAST_GAP, N_CELLS, PackedMeshes
+from dynamics.kernels.mesh_tables import CELLS_AT, CLOSING, DAMP_TIME, LEAST_GAP, N_CELLS, PackedMeshes
 from dynamics.mesh.law import MeshLaw
 
 Array = NDArray[np.float64]
@@ -40,14 +40,14 @@ class PairSensitivity(NamedTuple):
     first : number of the first pair in the tables
     pairs : pairs in the tables
     gap : OUTPUTS tables (pairs n, n_path): per gap at the points of the path [N m/m]
-    slope : the same per slope of the gap [N m]
+    gap_slope : the same per slope of the gap along the path [N m]
     scale : (OUTPUTS, pairs, n) per relative change of stiffness [N m]
     """
 
     first: int
     pairs: int
     gap: tuple[csr_array, ...]
-    slope: tuple[csr_array, ...]
+    gap_slope: tuple[csr_array, ...]
     scale: Array
 
 
@@ -77,7 +77,7 @@ def pair_sensitivity(
     scale = np.array([np.bincount(row, value, pairs * n) for value in found.per_scale]).reshape(
         OUTPUTS, pairs, n
     )
-    return PairSensitivity(first, pairs, spread(found.per_gap), spread(found.per_slope), scale)
+    return PairSensitivity(first, pairs, spread(found.per_gap), spread(found.per_gap_slope), scale)
 
 
 class ToothPattern(NamedTuple):
@@ -96,11 +96,15 @@ class ToothPattern(NamedTuple):
 def tooth_pattern(deviation: Array, scale: Array, teeth: int, waves: Integers) -> ToothPattern:
     """Return waves of the tables ``deviation_1``, ``scale_1`` (2, back) of a law, the mean over all teeth left out."""
     waves = np.asarray(waves, np.int64) % teeth
-    turn = np.exp(-2j * np.pi / teeth * np.outer(waves, np.arange(teeth))) / teeth
-    turn[waves == 0] = 0.0
-    gap = turn @ deviation if len(deviation) == teeth else np.zeros((waves.size, deviation.shape[1]), complex)
+    phase_shift = np.exp(-2j * np.pi / teeth * np.outer(waves, np.arange(teeth))) / teeth
+    phase_shift[waves == 0] = 0.0
+    gap = (
+        phase_shift @ deviation
+        if len(deviation) == teeth
+        else np.zeros((waves.size, deviation.shape[1]), complex)
+    )
     relative = scale / scale.mean() - 1.0
-    part = turn @ relative if len(scale) == teeth else np.zeros(waves.size, complex)
+    part = phase_shift @ relative if len(scale) == teeth else np.zeros(waves.size, complex)
     return ToothPattern(teeth, waves, np.asarray(gap, complex), np.asarray(part, complex))
 
 
@@ -113,14 +117,16 @@ def excitation(
     """
     n = sensitivity.scale.shape[2]
     pair = sensitivity.first + np.arange(sensitivity.pairs) + first_tooth
-    turn = np.exp(2j * np.pi / pattern.teeth * np.outer(pattern.waves, pair))
-    slope = np.gradient(pattern.gap, law.path_step, axis=1)
+    phase_shift = np.exp(2j * np.pi / pattern.teeth * np.outer(pattern.waves, pair))
+    gap_slope = np.gradient(pattern.gap, law.path_step, axis=1)
     out = np.empty((OUTPUTS, pattern.waves.size, n), complex)
     for output in range(OUTPUTS):
-        along = np.asarray(sensitivity.gap[output] @ pattern.gap.T + sensitivity.slope[output] @ slope.T)
+        along = np.asarray(
+            sensitivity.gap[output] @ pattern.gap.T + sensitivity.gap_slope[output] @ gap_slope.T
+        )
         wave = along.reshape(sensitivity.pairs, n, pattern.waves.size)
         wave = wave + sensitivity.scale[output][:, :, None] * pattern.scale
-        out[output] = np.einsum("wp,pnw->wn", turn, wave)
+        out[output] = np.einsum("wp,pnw->wn", phase_shift, wave)
     return out
 
 
@@ -132,7 +138,7 @@ class _Contacts(NamedTuple):
     cell: Integers
     fraction: Array
     per_gap: Array
-    per_slope: Array
+    per_gap_slope: Array
     per_scale: Array
 
 
@@ -192,21 +198,21 @@ def _contacts(law: MeshLaw, packed: PackedMeshes, motion: Motion, sign: float) -
     force, force_gap = k * pressed, -k * (1.0 + grown_slope * closing)
     force_slope = -k * grown * damp_time * path_speed
     damped, damped_gap, rotation = force - stiffness * depth, force_gap + stiffness, 1.0 - closes
-    turned = rotation * gap_slope
+    lever = rotation * gap_slope
     r_1, r_2 = -sign * law.base_radius_1, sign * law.base_radius_2
     none = np.zeros_like(force)
     return _Contacts(
         at, pair, cell, f,
         np.array([
-            r_1 * (force_gap * lever_1 + damped_gap * turned - stiffness_slope * depth), r_2 * force_gap * lever_2,
+            r_1 * (force_gap * lever_1 + damped_gap * lever - stiffness_slope * depth), r_2 * force_gap * lever_2,
             -r_1 * force_gap,
         ]),
         np.array([
-            r_1 * (force_slope * (lever_1 + turned) - force + damped * rotation), r_2 * force_slope * lever_2,
+            r_1 * (force_slope * (lever_1 + lever) - force + damped * rotation), r_2 * force_slope * lever_2,
             -r_1 * force_slope,
         ]),
         np.array([
-            r_1 * (force * lever_1 + damped * turned + 0.5 * stiffness_slope * depth**2), r_2 * force * lever_2,
+            r_1 * (force * lever_1 + damped * lever + 0.5 * stiffness_slope * depth**2), r_2 * force * lever_2,
             -r_1 * force,
         ]) + none,
     )  # fmt: skip

@@ -2,7 +2,7 @@
 
 The dynamic torque of a gearbox is what its mesh transmits at the pinion: ``r_b1`` times the front less the
 back normal force in the transverse line of action, without friction and derivative torques. That is the
-load of the teeth, which ISO 6336 multiplies by K_V; the torque in a shaft beside it differs by the inertia
+load of the teeth, which ISO 6336 multiplies by K_V; the torque in an adjacent shaft differs by the inertia
 between.
 """
 
@@ -23,7 +23,7 @@ def dynamic_factor(torque: ArrayLike) -> Array:
 
     Torques on the back flank are negative throughout; the factor compares in the direction of the mean.
 
-    Raises ValueError if a mean torque is zero.
+    Raises DynamicsInputError if a mean torque is zero.
     """
     values = np.asarray(torque, float)
     mean = _mean(values)
@@ -34,7 +34,7 @@ def dynamic_factor(torque: ArrayLike) -> Array:
 def half_peak_to_peak_factor(torque: ArrayLike) -> Array:
     """Return 1 + half the peak-to-peak value over the mean torque along the last axis [-].
 
-    Raises ValueError if a mean torque is zero.
+    Raises DynamicsInputError if a mean torque is zero.
     """
     values = np.asarray(torque, float)
     factor: Array = 1.0 + 0.5 * np.ptp(values, axis=-1) / np.abs(_mean(values))
@@ -95,7 +95,7 @@ def factor_curve(
 
     Raises
     ------
-    ValueError
+    DynamicsInputError
         If speeds do not increase, sizes disagree or a mean torque is zero.
     """
     speeds = np.asarray(speed, float)

@@ -6,8 +6,16 @@ from math import cos, degrees, inf, pi
 
 from dynamics.gear.pair import GearPair
 from dynamics.standards import iso1328_1_2013, iso6336_1_2006, iso6336_3_2006
-from dynamics.standards.iso6336_1_2006 import DynamicFactor, MeshData, RunIn
-from dynamics.standards.iso6336_3_2006 import RootStress, ToothRoot
+from dynamics.standards.iso6336_1_2006 import (
+    DynamicFactor,
+    GearLoad,
+    MeshData,
+    RunIn,
+    RunningIn,
+    StiffnessChoices,
+    ToothDeviations,
+)
+from dynamics.standards.iso6336_3_2006 import NOMINAL_LOAD, LoadFactors, RootStress, ToothLoad, ToothRoot
 
 MM = 1e3
 UM = 1e6
@@ -77,7 +85,11 @@ def tangential_force(pair: GearPair, torque: float) -> float:
 
 
 def deviations(pair: GearPair, options: RatingOptions) -> tuple[float, float]:
-    """Larger f_pb and f_falpha of both gears [um] from the grade unless given."""
+    """Larger f_pb and f_falpha of both gears [um], from the ISO 1328-1:2013 grade unless given.
+
+    f_pb is the transverse single pitch tolerance times cos(alpha_t). Raises DynamicsInputError for a grade outside
+    1 to 11.
+    """
     module = pair.normal_module * MM
     diameters = [2.0 * gear.reference_radius * MM for gear in pair.gears]
     pitch = max(iso1328_1_2013.f_pT(d, module, options.grade) for d in diameters)
@@ -94,37 +106,38 @@ def mesh_stiffness(pair: GearPair, torque: float, options: RatingOptions | None 
     """ISO 6336-1 mesh stiffness c_gamma_alpha [N/m per m of face width = N/m2] at the pinion torque [N m]."""
     options = options or RatingOptions()
     load = tangential_force(pair, torque) * options.application_factor / (pair.face_width * MM)
-    tooth = iso6336_1_2006.stiffness(
-        mesh_data(pair),
-        load,
-        low_load_factor=options.low_load_factor,
-        C_M=options.measured_correction,
-    )
+    tooth = iso6336_1_2006.stiffness(mesh_data(pair), load, _stiffness_choices(options))
     return tooth.c_gamma_alpha * 1e9
 
 
 def dynamic_factor(
     pair: GearPair, torque: float, speed: float, options: RatingOptions | None = None
 ) -> DynamicFactor:
-    """K_V by ISO 6336-1:2006 method B at pinion ``torque`` [N m] and ``speed`` [rad/s], with every factor."""
+    """K_V by ISO 6336-1:2006 method B, every factor with it.
+
+    torque : of the pinion, above 0 [N m]; speed : of the pinion, not negative [rad/s]
+    options : choices that the document leaves open; default ``RatingOptions()``
+
+    Raises DynamicsInputError for a torque or speed out of range and where the stiffness regression fails.
+    """
     options = options or RatingOptions()
     f_pb, f_falpha = deviations(pair, options)
     return iso6336_1_2006.dynamic_factor(
         mesh_data(pair),
-        F_t=tangential_force(pair, torque),
-        n_1=speed * 30.0 / pi,
-        f_pb=f_pb,
-        f_falpha=f_falpha,
-        grade=options.grade,
-        C_a=None if options.tip_relief is None else options.tip_relief * UM,
-        sigma_Hlim=(options.sigma_hlim[0] * 1e-6, options.sigma_hlim[1] * 1e-6),
-        run_in_class=options.run_in,
-        K_A=options.application_factor,
-        low_load_factor=options.low_load_factor,
-        C_M=options.measured_correction,
+        GearLoad(F_t=tangential_force(pair, torque), n_1=speed * 30.0 / pi, K_A=options.application_factor),
+        ToothDeviations(f_pb=f_pb, f_falpha=f_falpha, grade=options.grade, relief_grade=options.relief_grade),
+        RunningIn(
+            C_a=None if options.tip_relief is None else options.tip_relief * UM,
+            sigma_Hlim=(options.sigma_hlim[0] * 1e-6, options.sigma_hlim[1] * 1e-6),
+            run_in_class=options.run_in,
+        ),
+        _stiffness_choices(options),
         exact_m_red=_exact_reduced_mass(pair) if options.exact_inertia else None,
-        relief_grade=options.relief_grade,
     )
+
+
+def _stiffness_choices(options: RatingOptions) -> StiffnessChoices:
+    return StiffnessChoices(low_load_factor=options.low_load_factor, C_M=options.measured_correction)
 
 
 def transverse_load_factor(
@@ -202,30 +215,32 @@ def root_stress(
     pair: GearPair,
     torque: float,
     index: int,
+    factors: LoadFactors = NOMINAL_LOAD,
     *,
     grade: int = 5,
     rim_thickness: float | None = None,
-    application_factor: float = 1.0,
-    dynamic: float = 1.0,
-    face_load: float = 1.0,
-    transverse_load: float = 1.0,
 ) -> RootStress:
-    """Root stress of gear ``index`` by ISO 6336-3:2006 method B at the pinion ``torque`` [N m].
+    """Root stress of gear ``index`` (0 pinion, 1 wheel) by ISO 6336-3:2006 method B, every factor with it.
 
-    ``dynamic`` is K_V, ``face_load`` K_Fbeta, ``transverse_load`` K_Falpha; ``rim_thickness`` [m], what the bore
-    leaves under the root when left out.
+    Parameters
+    ----------
+    torque : of the pinion [N m]
+    factors : K_A, K_V, K_Fbeta, K_Falpha
+    grade : ISO 1328-1 tolerance grade, for the deep tooth factor
+    rim_thickness : [m]; None: what the bore leaves under the root
+
+    Raises DynamicsInputError for a rim of half a tooth height or less, and where the 30 degree tangent is not found.
     """
     rim = _rim(pair, index) if rim_thickness is None else rim_thickness
     return iso6336_3_2006.root_stress(
         tooth_root(pair, index),
-        F_t=tangential_force(pair, torque),
-        b=root_width(pair, index) * MM,
-        epsilon_alpha=pair.transverse_contact_ratio,
-        epsilon_beta=pair.overlap_ratio,
+        ToothLoad(
+            F_t=tangential_force(pair, torque),
+            b=root_width(pair, index) * MM,
+            epsilon_alpha=pair.transverse_contact_ratio,
+            epsilon_beta=pair.overlap_ratio,
+        ),
+        factors,
         grade=grade,
         s_R=rim * MM,
-        K_A=application_factor,
-        K_V=dynamic,
-        K_Fbeta=face_load,
-        K_Falpha=transverse_load,
     )

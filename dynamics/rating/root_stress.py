@@ -75,7 +75,7 @@ def root_stress_history(influence: RootInfluence, force: ArrayLike, path: ArrayL
     force : (n,) or (n, k) transverse normal force on the tooth, k contacts at a time summed [N]
     path : path positions of the contacts, same shape [m]; any value where the force is zero
 
-    Raises ValueError if the shapes differ or a force pulls.
+    Raises DynamicsInputError if the shapes differ or a force pulls.
     """
     loads, places = np.asarray(force, dtype=float), np.asarray(path, dtype=float)
     if loads.shape != places.shape:

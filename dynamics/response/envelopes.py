@@ -1,4 +1,4 @@
-"""Envelopes and loss of contact of a long run, slot by slot, from its internal steps."""
+"""Envelopes and loss of contact of a long run, window by window, from its internal steps."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Slots:
-    """Envelope of the dynamic torque: arrays (n_meshes, n_slots) [N m], time (n_slots,) at slot ends [s].
+class EnvelopeWindows:
+    """Envelope of the dynamic torque: arrays (n_meshes, n_windows) [N m], time (n_windows,) at window ends [s].
 
-    out_of_contact : share of each slot without any contact [-]; longest_gap : longest time without contact
+    out_of_contact : share of each window without any contact [-]; longest_gap : longest time without contact
         [s]
-    speed : (n_slots,) of the first pinion at the slot end [rad/s]
+    speed : (n_windows,) of the first pinion at the window end [rad/s]
     """
 
     duration: float
@@ -42,13 +42,15 @@ class LiftOff:
     longest_gap: float
 
 
-def split_lift_off(slots: Slots, intervals: Sequence[LiftOff], times: ArrayLike) -> tuple[LiftOff, ...]:
+def split_lift_off(
+    windows: EnvelopeWindows, intervals: Sequence[LiftOff], times: ArrayLike
+) -> tuple[LiftOff, ...]:
     """Intervals cut at ``times`` [s], share and longest gap taken afresh for every piece.
 
-    A slot belongs to the piece in which its middle lies; a cut within a slot moves to the nearer slot end.
+    A window belongs to the piece in which its middle lies; a cut within a window moves to the nearer window end.
     """
     cuts = np.sort(np.asarray(times, float))
-    middle = slots.time - 0.5 * slots.duration
+    middle = windows.time - 0.5 * windows.duration
     piece = np.searchsorted(cuts, middle, side="right")
     found = []
     for whole in intervals:
@@ -58,17 +60,17 @@ def split_lift_off(slots: Slots, intervals: Sequence[LiftOff], times: ArrayLike)
             found.append(
                 LiftOff(
                     mesh=whole.mesh,
-                    start=float(slots.time[own[0]] - slots.duration),
-                    end=float(slots.time[own[-1]]),
-                    out_of_contact=float(slots.out_of_contact[whole.mesh, own].mean()),
-                    longest_gap=float(slots.longest_gap[whole.mesh, own].max()),
+                    start=float(windows.time[own[0]] - windows.duration),
+                    end=float(windows.time[own[-1]]),
+                    out_of_contact=float(windows.out_of_contact[whole.mesh, own].mean()),
+                    longest_gap=float(windows.longest_gap[whole.mesh, own].max()),
                 )
             )
     return tuple(found)
 
 
-class SlotStatistics:
-    """Collect slots of ``per_slot`` internal steps of ``step`` seconds from consecutive blocks.
+class WindowStatistics:
+    """Collect windows of ``per_window`` internal steps of ``step`` seconds from consecutive blocks.
 
     pinion_ratios : (n_meshes,) speed of the pinion of each mesh per speed of the first pinion; 1 when left out
     """
@@ -76,14 +78,14 @@ class SlotStatistics:
     def __init__(
         self,
         laws: Sequence[MeshLaw],
-        per_slot: int,
+        per_window: int,
         step: float,
         lift_off_share: float,
         pinion_ratios: ArrayLike = 1.0,
     ) -> None:
         teeth = np.array([law.teeth_1 for law in laws])
         self._meshes_per_turn = teeth * np.abs(np.broadcast_to(np.asarray(pinion_ratios, float), teeth.shape))
-        self._per_slot = per_slot
+        self._per_window = per_window
         self._step = step
         self._share = lift_off_share
         self._rows: list[Array] = []
@@ -91,8 +93,8 @@ class SlotStatistics:
         self._open = np.zeros(len(laws))
 
     def add(self, torque: Array, speed: Array) -> None:
-        """Add a block: torque (n_meshes, steps) from a slot boundary on, speed (n_samples,) at its samples."""
-        starts = np.arange(0, torque.shape[1], self._per_slot)
+        """Add a block: torque (n_meshes, steps) from a window boundary on, speed (n_samples,) at its samples."""
+        starts = np.arange(0, torque.shape[1], self._per_window)
         lengths = np.diff(np.append(starts, torque.shape[1]))
         free = torque == 0.0
         longest = np.stack([self._gaps(mesh, row, starts) for mesh, row in enumerate(free)])
@@ -111,11 +113,11 @@ class SlotStatistics:
         ends = np.minimum(np.rint((starts + lengths) * samples_per_step).astype(int), len(speed)) - 1
         self._speed.append(speed[ends])
 
-    def slots(self, start: float) -> Slots:
-        """Return all slots of a run that began at ``start`` [s]."""
+    def windows(self, start: float) -> EnvelopeWindows:
+        """Return all windows of a run that began at ``start`` [s]."""
         rows = np.concatenate(self._rows, axis=2)
-        duration = self._per_slot * self._step
-        return Slots(
+        duration = self._per_window * self._step
+        return EnvelopeWindows(
             duration=duration,
             time=start + duration * np.arange(1, rows.shape[2] + 1),
             speed=np.concatenate(self._speed),
@@ -127,28 +129,28 @@ class SlotStatistics:
         )
 
     def lift_off(self, start: float) -> tuple[LiftOff, ...]:
-        """Return intervals of slots whose longest gap exceeds the asked share of the mesh period."""
-        slots = self.slots(start)
+        """Return intervals of windows whose longest gap exceeds the asked share of the mesh period."""
+        windows = self.windows(start)
         found = []
         for mesh, meshes_per_turn in enumerate(self._meshes_per_turn):
             with np.errstate(divide="ignore"):
-                mesh_period = 2.0 * pi / (np.abs(slots.speed) * meshes_per_turn)
-            lost = np.concatenate(([False], slots.longest_gap[mesh] > self._share * mesh_period, [False]))
+                mesh_period = 2.0 * pi / (np.abs(windows.speed) * meshes_per_turn)
+            lost = np.concatenate(([False], windows.longest_gap[mesh] > self._share * mesh_period, [False]))
             edges = np.flatnonzero(np.diff(lost.astype(int)))
             for a, b in zip(edges[::2], edges[1::2]):
                 found.append(
                     LiftOff(
                         mesh=mesh,
-                        start=start + float(a) * slots.duration,
-                        end=start + float(b) * slots.duration,
-                        out_of_contact=float(slots.out_of_contact[mesh, a:b].mean()),
-                        longest_gap=float(slots.longest_gap[mesh, a:b].max()),
+                        start=start + float(a) * windows.duration,
+                        end=start + float(b) * windows.duration,
+                        out_of_contact=float(windows.out_of_contact[mesh, a:b].mean()),
+                        longest_gap=float(windows.longest_gap[mesh, a:b].max()),
                     )
                 )
         return tuple(sorted(found, key=lambda one: (one.start, one.mesh)))
 
     def _gaps(self, mesh: int, free: NDArray[np.bool_], starts: NDArray[np.int64]) -> Array:
-        """Longest time without contact that ends in, or runs through, each slot; carried over from block to block."""
+        """Longest time without contact that ends in, or runs through, each window; carried over from block to block."""
         longest = np.zeros(len(starts))
         edges = np.flatnonzero(np.diff(np.concatenate(([False], free, [False])).astype(int)))
         carried = self._open[mesh]

@@ -5,20 +5,14 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 
 import numpy as np
 
 from dynamics.drivetrain.modal_form import ModalForm
-from dynamics.drivetrain.static_loop import PortModel, solve_static
+from dynamics.drivetrain.static_loop import PortModel, SlowRotation, solve_static
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
-from dynamics.response.harmonic_balance import (
-    BalanceProblem,
-    HarmonicGrid,
-    HarmonicSolution,
-    resample,
-    solve_periodic,
-)
+from dynamics.response.harmonic_balance import solve_periodic
+from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution, resample
 from dynamics.response.periodic_response import Period
 
 LEAST_HARMONICS, MOST_HARMONICS = 24, 136
@@ -39,7 +33,7 @@ class HarmonicWalk:
     def __init__(self, problem: BalanceProblem, period: Period, cutoff: float, tolerance: float) -> None:
         """Choose the cell and the highest mode that the harmonics must reach, see ``periodic_response``."""
         self.problem, self.tolerance = problem, tolerance
-        self.cells, self.cell_angle = mesh_cells(problem.model, period, problem.control_mesh)
+        self.cells, self.cell_angle = mesh_cells(problem.model, period, problem.load.control_mesh)
         self.highest = highest_mode(problem.form, cutoff)
 
     def grid(self, speed: float) -> HarmonicGrid:
@@ -73,9 +67,7 @@ class HarmonicWalk:
     def _solve(
         self, start: HarmonicSolution, speed: float, drags: Mapping[str, float] | None
     ) -> HarmonicSolution:
-        return solve_periodic(
-            self.problem, start.grid, speed, start, drag_torques=drags, tolerance=self.tolerance
-        )
+        return solve_periodic(self.problem, speed, start, drag_torques=drags, tolerance=self.tolerance)
 
     def _starts(
         self,
@@ -153,14 +145,12 @@ def quasi_static_start(
     Behind a motor shaft too soft to lead the loop from angle to angle the pinion of the control mesh leads it.
     """
     angles = np.arange(grid.samples) * (grid.cell_angle / grid.samples)
-    find = partial(
-        solve_static, problem.model, torque=problem.torque, twist=problem.twist, control_mesh=problem.control_mesh,
-        angles=np.asarray(angles, float), speed=speed, drag_torques=drags,
-    )  # fmt: skip
+    rotation = SlowRotation(angles=np.asarray(angles, float), speed=speed, drag_torques=drags)
     try:
-        state = find()
+        state = solve_static(problem.model, problem.load, rotation)
     except DynamicsNotConverged:
-        state = find(held=int(problem.model.pinions[problem.control_mesh]))
+        pinion = int(problem.model.pinions[problem.load.control_mesh])
+        state = solve_static(problem.model, problem.load, replace(rotation, held=pinion))
     coefficients = np.fft.rfft(state.ports[:, :-1].T, axis=1)[:, : grid.harmonics + 1] / grid.samples
     ports = np.zeros((coefficients.shape[0], grid.top + 1), complex)
     ports[:, :: grid.cells] = coefficients

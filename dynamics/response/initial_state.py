@@ -1,16 +1,18 @@
-"""Where a time run starts: the drivetrain turning rigidly, wound up by the torque that the loop carries."""
+"""Initial state of a time run: rigid rotation of the drivetrain, wound up by the torque that the loop carries."""
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import line_ratios
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.time_march import DriveState
+from dynamics.response.march_inputs import DriveState
 
 Array = NDArray[np.float64]
 
@@ -18,7 +20,7 @@ Array = NDArray[np.float64]
 def pinion_ratios(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
     """Return the speed of every freedom per speed of the pinion of the first mesh, shape (n,) [-].
 
-    Raises ValueError if a mesh closes a loop with another ratio or a line is reached by no mesh.
+    Raises DynamicsInputError if a mesh closes a loop with another ratio or a line is reached by no mesh.
     """
     try:
         ratios = line_ratios(system, laws)
@@ -37,37 +39,51 @@ def pinion_ratios(system: LinearSystem, laws: Sequence[MeshLaw]) -> Array:
     return scaled
 
 
+class WoundLoop(NamedTuple):
+    """Initial state of a time run."""
+
+    state: DriveState
+    drive_torque: float
+    """Of the motor, balances linear damping and drag torques [N m]."""
+    loop_stiffness: float
+    """Change of the torque of the first mesh per twist [N m/rad]."""
+
+
 def wound_state(
     system: LinearSystem,
     laws: Sequence[MeshLaw],
-    *,
     speed: float,
-    torque: float | None = None,
-    twist: float | None = None,
+    load: LoopLoad,
     drag_torques: Mapping[str, float] | None = None,
-) -> tuple[DriveState, float, float]:
-    """Return start state, drive torque [N m] and loop stiffness [N m/rad] at a pinion speed [rad/s].
+) -> WoundLoop:
+    """Rigid rotation, wound up by the load of the loop.
 
-    Either the torque of the first mesh [N m] or the bracing twist [rad] is given. Newton's method on
-    windup, motor torque and twist with the contacts at the angle 0, tooth friction left out. The loop
-    stiffness is the change of the torque of the first mesh per twist.
+    Newton's method on windup, motor torque and twist with the contacts at the angle 0, tooth friction left out.
+
+    Parameters
+    ----------
+    speed : of the pinion of the first mesh [rad/s]
+    load : torque of the first mesh, or bracing twist
+    drag_torques : by name of ``system.drag_loads`` [N m]
 
     Raises
     ------
-    ValueError
-        If neither or both are given, the lines cannot turn together, or the bracing does not load the first
+    DynamicsInputError
+        If the load is that of another mesh, the lines cannot turn together, or the bracing does not load the first
         mesh.
     DynamicsNotConverged
         If the static state is not found, for instance because the twist leaves the flanks open.
     """
-    if (torque is None) == (twist is None):
-        raise DynamicsInputError("give either the torque of the first mesh or the bracing twist")
+    if load.control_mesh != 0:
+        raise DynamicsInputError(
+            f"control_mesh = {load.control_mesh}: time integration controls mesh 0; use harmonic balance alone"
+        )
     ratios = pinion_ratios(system, laws)
     winding = _Winding(system, laws, ratios, speed, drag_torques or {})
-    unknowns = winding.solve(torque, twist)
+    unknowns = winding.solve(load.torque, load.twist)
     n = len(system.inertia)
     state = DriveState(angles=unknowns[:n], speeds=speed * ratios, twist=float(unknowns[n + 1]))
-    return state, float(unknowns[n]), winding.loop_stiffness(unknowns)
+    return WoundLoop(state, float(unknowns[n]), winding.loop_stiffness(unknowns))
 
 
 class _Winding:

@@ -31,6 +31,21 @@ class ModalLayout(NamedTuple):
         return laid
 
 
+class StepResponse(NamedTuple):
+    """How the modes and some outputs go over one step with inputs that vary linearly."""
+
+    decay: ComplexArray
+    """(n_modes,) modal state at the end per state at the start."""
+    driven: ComplexArray
+    """(n_modes, n_inputs) modal state at the end per input."""
+    rows: ComplexArray
+    """(n_rows, n_modes) outputs per modal state."""
+    old: Array
+    """(n_rows, n_inputs) outputs per input at the start of the step."""
+    new: Array
+    """(n_rows, n_inputs) outputs per input at its end."""
+
+
 class PortBlocks(NamedTuple):
     """Tables of ``kernels.DiscreteModes`` with the same names."""
 
@@ -51,19 +66,17 @@ def branch_layout(branches: Integers) -> ModalLayout:
     return ModalLayout(np.concatenate(modes), np.array(starts, np.int64))
 
 
-def port_blocks(
-    port_branches: Integers, layout: ModalLayout, decay: ComplexArray, driven: ComplexArray, rows: ComplexArray,
-    old: Array, new: Array,
-) -> PortBlocks:  # fmt: skip
+def port_blocks(port_branches: Integers, layout: ModalLayout, response: StepResponse) -> PortBlocks:
     """Return the tables that take the modes over a step and give the outputs of the ports.
 
-    decay : (n_modes,); driven : (n_modes, n_ports); rows : (2 n_ports, n_modes), conjugated; old, new : (2
-    n_ports, n_ports) outputs of the ports per torque at start and end of the step
+    port_branches : (n_ports,) branch of each mesh port
+    response : to the torques at the ports, two outputs a port
     """
+    decay, driven, rows, old, new = response
     n_ports = driven.shape[1]
     # zeros for the port that stands for none
     fades, pushes = layout.lay(decay), np.pad(layout.lay(driven.T), ((0, 1), (0, 0)))
-    seen = np.pad(layout.lay(rows), ((0, 2), (0, 0)))
+    seen = np.pad(layout.lay(rows.conj()), ((0, 2), (0, 0)))
     through = np.pad(np.stack((old, new)), ((0, 0), (0, 2), (0, 1)))
     blocks: list[tuple[int, ...]] = []
     further: list[tuple[int, ...]] = []

@@ -9,7 +9,7 @@ twist is corrected in the same way until the first mesh carries the asked mean t
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import ceil, gcd, lcm, pi
 from typing import Literal
 
@@ -17,12 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.drivetrain.shaft_torque import waves_within
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsInputError
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.initial_state import pinion_ratios, wound_state
-from dynamics.response.propagator import DEFAULT_CUTOFF, ModalModel, modal_model
-from dynamics.response.time_march import Block, DriveState, TimeMarch, drag_loads, slow_loads
+from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
+from dynamics.response.march_loads import march_model
+from dynamics.response.modal_model import DEFAULT_CUTOFF, ModalModel
+from dynamics.response.steady_search import PeriodGrid, SteadySearch
+from dynamics.response.time_march import TimeMarch
 
 Array = NDArray[np.float64]
 Period = Literal["mesh", "revolution", "hunting_cycle"]
@@ -52,7 +55,7 @@ class PeriodicResponse:
     drag_loss : name -> mean power of each drag torque [W]
     drive_power : motor torque times mean speed of its freedom [W]; bracing_power : of the twist [W]
     steady : the test was met; residual : change of the torque over a block, extrapolated, relative to its
-        peak-to-peak value; periods : marched; unsettled_steps : contact iterations that ended early
+        peak-to-peak value; periods : marched; unconverged_steps : contact iterations that ended early
     end : state at the end of the period, a start for a neighbouring speed
     """
 
@@ -81,7 +84,7 @@ class PeriodicResponse:
     steady: bool
     residual: float
     periods: int
-    unsettled_steps: int
+    unconverged_steps: int
     end: DriveState
     warnings: tuple[str, ...]
 
@@ -101,7 +104,7 @@ def period_length(laws: Sequence[MeshLaw], ratios: Sequence[float], kind: Period
     kind : one tooth of the first mesh, one revolution of the first pinion, or the turns after which the
         same teeth of every mesh meet again
 
-    Raises ValueError if ``mesh`` or ``revolution`` is no period of all meshes.
+    Raises DynamicsInputError if ``mesh`` or ``revolution`` is no period of all meshes.
     """
     first = laws[0].teeth_1
     if kind == "mesh":
@@ -124,213 +127,189 @@ def period_length(laws: Sequence[MeshLaw], ratios: Sequence[float], kind: Period
     turns = 1
     for law, ratio in zip(laws, ratios):
         cycle = law.teeth_2 // gcd(law.teeth_1, law.teeth_2)
-        turned = cycle / abs(ratio)
-        whole = next((k for k in range(1, 1000) if abs(k * turned - round(k * turned)) < 1e-6), None)
+        turn = cycle / abs(ratio)
+        whole = next((k for k in range(1, 1000) if abs(k * turn - round(k * turn)) < 1e-6), None)
         if whole is None:
             raise DynamicsInputError(
                 "period 'hunting_cycle': the pinions have no common cycle below 1000 turns; use 'mesh'"
             )
-        turns = lcm(turns, round(whole * turned))
+        turns = lcm(turns, round(whole * turn))
     return float(turns)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TimeSettings:
+    """Numerics of a periodic response by time integration.
+
+    period : after which the motion repeats
+    tolerance : of the steady state, relative to the peak-to-peak torque of each mesh [-]
+    longest_time : simulated time after which the search ends with ``steady=False`` [s]
+    internal_rate : internal steps per second, at least; least_steps : per period, at least
+    cutoff : modes above this frequency keep their static effect only [Hz]
+    """
+
+    period: Period = "mesh"
+    tolerance: float = 1e-3
+    longest_time: float = 2.0
+    internal_rate: float = INTERNAL_RATE
+    least_steps: int = LEAST_STEPS
+    cutoff: float = DEFAULT_CUTOFF
+
+
+DEFAULT_TIME = TimeSettings()
 
 
 def periodic_by_time(
     system: LinearSystem,
     laws: Sequence[MeshLaw],
-    *,
     speed: float,
-    torque: float | None = None,
-    twist: float | None = None,
-    period: Period = "mesh",
+    load: LoopLoad,
     drag_torques: Mapping[str, float] | None = None,
-    tolerance: float = 1e-3,
-    longest_time: float = 2.0,
-    internal_rate: float = INTERNAL_RATE,
-    least_steps: int = LEAST_STEPS,
-    cutoff: float = DEFAULT_CUTOFF,
-    start: PeriodicResponse | None = None,
-    model: ModalModel | None = None,
+    settings: TimeSettings = DEFAULT_TIME,
 ) -> PeriodicResponse:
-    """Run to a tested steady state at constant mean speed and return one period of it.
+    """Run one speed to a tested steady state.
 
-    Parameters
-    ----------
-    speed : mean speed of the pinion of the first mesh [rad/s], positive
-    torque : mean dynamic torque of the first mesh, negative on the back flank [N m]; the twist follows it
-    twist : bracing twist that is held instead [rad]
-    drag_torques : constant drag torque of each name of ``system.drag_loads`` at this speed [N m]
-    tolerance : of the steady state, relative to the peak-to-peak torque of each mesh [-]
-    longest_time : simulated time after which the search ends with ``steady=False`` [s]
-    start : response at a neighbouring speed (keeps the branch of a jump); default a wound-up rigid rotation
-    model : modal model with the loads of these drags, shared between speeds (``modal_model``)
-
-    Raises
-    ------
-    ValueError
-        For impossible input, see ``period_length`` and ``wound_state``.
+    Arguments, result and errors as in ``TimeIntegration.periodic``, which shares its modal model between speeds.
     """
-    if not speed > 0.0:
-        raise DynamicsInputError(
-            f"speed = {speed} rad/s must be positive; turn the direction of all freedoms instead"
-        )
-    if (torque is None) == (twist is None):
-        raise DynamicsInputError("give either the mean torque of the first mesh or the bracing twist")
-    drags = dict(drag_torques or {})
-    ratios = pinion_ratios(system, laws)
-    turns = period_length(laws, [ratios[p] for p in system.mesh_ports[:, 0]], period)
-    length = 2.0 * pi / speed * turns
-    # whole steps per mesh of the first pair: what lies above the step rate then folds back on mesh orders only
-    meshes = round(turns * laws[0].teeth_1)
-    steps = meshes * ceil(max(least_steps, length * internal_rate) / meshes - 1e-9)
-    model = model or modal_model(
-        system, laws, slow_loads(system), drag_loads(system, tuple(drags)), cutoff=cutoff
-    )
-    wound, drive, stiffness = wound_state(
-        system, laws, speed=speed, torque=torque, twist=twist, drag_torques=drags
-    )
-    if start is not None:
-        wound, drive = (
-            _restarted(start, speed, ratios, wound if twist is not None else None),
-            start.drive_torque,
-        )
-    march = TimeMarch(
-        system, laws, wound, step=length / steps, substeps=1 if system.shaft_torques else steps, drags=tuple(drags),
-        drive_torque=drive, drag_torques=tuple(drags.values()), model=model,
-    )  # fmt: skip
-    tables = np.array([[value, value] for value in drags.values()]).reshape(len(drags), 2)
-    per_block = max(1, ceil(2e-3 / length))
-    search = _Search(
-        march, system, ratios, speed, torque, stiffness, drive, wound.twist, tolerance, turns, steps
-    )
-    blocks = max(4, ceil(longest_time / (per_block * length)))
-    done = 0
-    before, block = march.accounts(), None
-    for _ in range(blocks):
-        before = march.accounts()
-        block = search.block(per_block, length, tables)
-        done += per_block
-        if search.steady:
-            break
-    assert block is not None
-    after = march.accounts()
-    span = per_block * length
-    last = slice(block.force.shape[1] - steps, None)
-    radius = np.array([law.base_radius_1 for law in laws])
-    force = block.force[:, last]
-    dynamic = radius[:, None] * force
-    bracing, braking = after.slow_work[1] - before.slow_work[1], after.drag - before.drag
-    warnings: list[str] = []
-    if not search.steady:
-        warnings.append(
-            f"periodic response at {speed * 30 / pi:.1f} rpm: residual {search.residual:.2e} after {done} "
-            f"periods, limit {tolerance:.0e}; allow a longer time or another period "
-            "(subharmonic motion has none of this length)"
-        )
-    if march.unsettled:
-        warnings.append(f"{march.unsettled} contact iterations ended early, limit 0; use more internal steps")
-    return PeriodicResponse(
-        speed=speed,
-        period=length,
-        time=np.asarray(march.step * np.arange(1, steps + 1), float),
-        torque=dynamic,
-        force=force,
-        approach=block.approach[:, last],
-        approach_rate=block.rate[:, last],
-        angle_1=block.angle_1[:, last],
-        omega_1=block.omega_1[:, last],
-        torque_1=block.torque_1[:, last],
-        mean_torque=dynamic.mean(axis=1),
-        least_torque=dynamic.min(axis=1),
-        greatest_torque=dynamic.max(axis=1),
-        lift_off_share=np.mean(force == 0.0, axis=1),
-        drive_torque=search.balanced_drive,
-        twist=search.twist,
-        friction_loss=(after.friction - before.friction) / span,
-        mesh_damping_loss=(after.mesh_damping - before.mesh_damping) / span,
-        joint_loss=(after.joint_damping - before.joint_damping) / span,
-        drag_loss=dict(zip(drags, (braking / span).tolist())),
-        drive_power=search.balanced_drive * speed * float(ratios[system.drive_dof]),
-        bracing_power=float(bracing) / span,
-        steady=search.steady,
-        residual=search.residual,
-        periods=done,
-        unsettled_steps=march.unsettled,
-        end=march.state(),
-        warnings=tuple(warnings),
-    )
+    return TimeIntegration(system, laws, settings).periodic(speed, load, drag_torques)
 
 
-class _Search:
-    """March blocks, hold mean speed and mean torque by corrections between them, and test for the steady state."""
+class TimeIntegration:
+    """Periodic responses of one drivetrain by time integration; its modal models are shared between speeds."""
 
     def __init__(
-        self, march: TimeMarch, system: LinearSystem, ratios: Array, speed: float, torque: float | None,
-        stiffness: float, drive: float, twist: float, tolerance: float, turns: float, steps: int,
-    ) -> None:  # fmt: skip
-        self.march, self.speed, self.torque, self.tolerance = march, speed, torque, tolerance
-        self.drive, self.twist, self.balanced_drive = drive, twist, drive
-        self.steady, self.residual = False, float("inf")
-        self._stiffness, self._steps = stiffness, steps
-        self._torques = [
-            replace(own, parts=tuple(p for p in own.parts if waves_within(p.order, ratios[own.dof], turns)))
-            for own in system.shaft_torques
-        ]
-        self._ratios = ratios
-        self._inertia = float(system.inertia @ ratios**2) / ratios[system.drive_dof]
-        self._last: Array | None = None
-        self._speed_before: float | None = None
-        self._change = float("inf")
-        self._quiet = 0
+        self, system: LinearSystem, laws: Sequence[MeshLaw], settings: TimeSettings = DEFAULT_TIME
+    ) -> None:
+        """Raises DynamicsInputError as ``pinion_ratios`` and ``period_length``."""
+        self.system, self.laws, self.settings = system, laws, settings
+        self._ratios = pinion_ratios(system, laws)
+        self._turns = period_length(laws, [self._ratios[p] for p in system.mesh_ports[:, 0]], settings.period)
+        self._models: dict[tuple[str, ...], ModalModel] = {}
 
-    def block(self, periods: int, length: float, tables: Array) -> Block:
-        march = self.march
-        steps = self._steps
-        samples = periods * steps // march.substeps
-        given = np.zeros((samples, 4 + len(self._torques)))
-        given[:, 0], given[:, 1] = self.drive, self.twist
-        turned = march.pinion_angle()
-        angle = turned + self.speed * march.step * march.substeps * np.arange(1, samples + 1)
-        for i, torques in enumerate(self._torques):
-            given[:, 4 + i] = torques.at(self._ratios[torques.dof] * angle)
-        result = march.advance(given, drag_tables=tables)
-        span = periods * length
-        mean_speed = (march.pinion_angle() - turned) / span
-        radius = np.array([law.base_radius_1 for law in march.laws])
-        wave = radius[:, None] * result.force[:, -steps:]
-        mean = float(radius[0] * result.force[0].mean())
-        torque_error = 0.0 if self.torque is None else self.torque - mean
-        drift = 0.0 if self._speed_before is None else (mean_speed - self._speed_before) / span
-        self.balanced_drive = self.drive - self._inertia * drift
-        self._test(wave, mean, torque_error, mean_speed)
-        if not self.steady:
-            self._correct(mean_speed, drift, span, torque_error)
-        return result
+    def periodic(
+        self,
+        speed: float,
+        load: LoopLoad,
+        drag_torques: Mapping[str, float] | None = None,
+        start: PeriodicResponse | None = None,
+    ) -> PeriodicResponse:
+        """Run to a tested steady state at constant mean speed and return one period of it.
 
-    def _test(self, wave: Array, mean: float, torque_error: float, mean_speed: float) -> None:
-        if self._last is not None:
-            dynamic = np.ptp(wave, axis=1)
-            scale = np.maximum(dynamic, 1e-3 * np.abs(wave).max(axis=1)) + 1e-300
-            change = float(np.max(np.abs(wave - self._last).max(axis=1) / scale))
-            decay = min(change / self._change, 0.95) if self._change > 0.0 else 0.0
-            self._change = change
-            self.residual = max(change, change * decay / (1.0 - decay))
-            held = (
-                abs(torque_error) <= 1e-4 * abs(mean)
-                and abs(mean_speed / self.speed - 1.0) <= 1e-6
-                and abs(self.balanced_drive - self.drive) <= 1e-4 * abs(self.drive)
+        Parameters
+        ----------
+        speed : mean speed of the pinion of the first mesh [rad/s], positive
+        load : mean dynamic torque of the first mesh, which the twist follows, or the twist that is held
+        drag_torques : constant drag torque of each name of ``system.drag_loads`` at this speed [N m]
+        start : response at a neighbouring speed (keeps the branch of a jump); default a wound-up rigid rotation
+
+        Raises
+        ------
+        DynamicsInputError
+            For impossible input, see ``wound_state``.
+        DynamicsNotConverged
+            If the initial state is not found or the march leaves the finite numbers.
+        """
+        if not speed > 0.0:
+            raise DynamicsInputError(
+                f"speed = {speed} rad/s must be positive; reverse the direction of all freedoms instead"
             )
-            self._quiet = self._quiet + 1 if self.residual <= self.tolerance and held else 0
-            self.steady = self._quiet >= 2
-        self._last = wave
+        drags = dict(drag_torques or {})
+        period = self._period(speed)
+        wound = wound_state(self.system, self.laws, speed, load, drags)
+        if start is not None:
+            state = _restarted(start, speed, self._ratios, wound.state if load.twist is not None else None)
+            wound = wound._replace(state=state, drive_torque=start.drive_torque)
+        march = TimeMarch(
+            self.system,
+            self.laws,
+            wound.state,
+            MarchSettings(
+                step=period.length / period.steps, substeps=1 if self.system.shaft_torques else period.steps
+            ),
+            DriveLoads(drive_torque=wound.drive_torque, drag_torques=drags),
+            self._model(tuple(drags)),
+        )
+        search = SteadySearch(march, self.system, load, wound, period, self.settings.tolerance)
+        return self._run(march, search, period, drags)
 
-    def _correct(self, mean_speed: float, drift: float, span: float, torque_error: float) -> None:
-        self.drive -= 0.7 * self._inertia * drift
-        # at the end of the block the rigid motion is half a block ahead of its mean
-        kick = self.speed - mean_speed - 0.5 * drift * span
-        self.march.kick(kick * self._ratios)
-        self._speed_before = mean_speed + kick
-        self.twist += 0.5 * torque_error / self._stiffness
-        self.march.set_slow(self.drive, self.twist)
+    def _period(self, speed: float) -> PeriodGrid:
+        length = 2.0 * pi / speed * self._turns
+        # whole steps per mesh of the first pair: what lies above the step rate then folds back on mesh orders only
+        meshes = round(self._turns * self.laws[0].teeth_1)
+        least = max(self.settings.least_steps, length * self.settings.internal_rate)
+        return PeriodGrid(
+            speed=speed, turns=self._turns, length=length, steps=meshes * ceil(least / meshes - 1e-9)
+        )
+
+    def _model(self, drags: tuple[str, ...]) -> ModalModel:
+        if drags not in self._models:
+            self._models[drags] = march_model(self.system, self.laws, drags, self.settings.cutoff)
+        return self._models[drags]
+
+    def _run(
+        self, march: TimeMarch, search: SteadySearch, period: PeriodGrid, drags: Mapping[str, float]
+    ) -> PeriodicResponse:
+        """March blocks of periods until the search is steady or the time is over."""
+        tables = np.array([[value, value] for value in drags.values()]).reshape(len(drags), 2)
+        per_block = max(1, ceil(2e-3 / period.length))
+        blocks = max(4, ceil(self.settings.longest_time / (per_block * period.length)))
+        done = 0
+        before, block = march.accounts(), None
+        for _ in range(blocks):
+            before = march.accounts()
+            block = search.block(per_block, tables)
+            done += per_block
+            if search.steady:
+                break
+        assert block is not None
+        work = march.accounts().since(before)
+        span = per_block * period.length
+        speed, steps = period.speed, period.steps
+        last = slice(block.force.shape[1] - steps, None)
+        radius = np.array([law.base_radius_1 for law in self.laws])
+        force = block.force[:, last]
+        dynamic = radius[:, None] * force
+        warnings: list[str] = []
+        if not search.steady:
+            warnings.append(
+                f"periodic response at {speed * 30 / pi:.1f} rpm: residual {search.residual:.2e} after {done} "
+                f"periods, limit {self.settings.tolerance:.0e}; allow a longer time or another period "
+                "(subharmonic motion has none of this length)"
+            )
+        if march.unconverged:
+            warnings.append(
+                f"{march.unconverged} contact iterations ended early, limit 0; use more internal steps"
+            )
+        return PeriodicResponse(
+            speed=speed,
+            period=period.length,
+            time=np.asarray(march.step * np.arange(1, steps + 1), float),
+            torque=dynamic,
+            force=force,
+            approach=block.approach[:, last],
+            approach_rate=block.rate[:, last],
+            angle_1=block.angle_1[:, last],
+            omega_1=block.omega_1[:, last],
+            torque_1=block.torque_1[:, last],
+            mean_torque=dynamic.mean(axis=1),
+            least_torque=dynamic.min(axis=1),
+            greatest_torque=dynamic.max(axis=1),
+            lift_off_share=np.mean(force == 0.0, axis=1),
+            drive_torque=search.balanced_drive,
+            twist=search.twist,
+            friction_loss=work.friction / span,
+            mesh_damping_loss=work.mesh_damping / span,
+            joint_loss=work.joint_damping / span,
+            drag_loss=dict(zip(drags, (work.drag / span).tolist())),
+            drive_power=search.balanced_drive * speed * float(self._ratios[self.system.drive_dof]),
+            bracing_power=float(work.slow_work[1]) / span,
+            steady=search.steady,
+            residual=search.residual,
+            periods=done,
+            unconverged_steps=march.unconverged,
+            end=march.state(),
+            warnings=tuple(warnings),
+        )
 
 
 def _restarted(start: PeriodicResponse, speed: float, ratios: Array, held: DriveState | None) -> DriveState:

@@ -5,7 +5,7 @@ that neither speed nor acceleration jumps where stages meet. A ramp-down is a st
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import pairwise
 from typing import Literal
 
@@ -29,7 +29,7 @@ def s_function(share: ArrayLike) -> Array:
     return np.asarray(u**3 * (10.0 - 15.0 * u + 6.0 * u**2))
 
 
-def s_slope(share: ArrayLike) -> Array:
+def s_derivative(share: ArrayLike) -> Array:
     """Derivative of ``s_function``: 30 u^2 (1 - u)^2; 1.875 at most."""
     u = np.clip(np.asarray(share, dtype=float), 0.0, 1.0)
     return np.asarray(30.0 * u**2 * (1.0 - u) ** 2)
@@ -42,7 +42,7 @@ class Stage:
     kind : what changes: ``hold`` nothing, ``speed`` the speed alone, ``torque`` the torque alone
     speed, torque : at start and end [rad/s], [N m]; duration [s]
     direction : what the stage says it does; None takes it from the numbers
-    held : True if temperatures settle here and the steady state is evaluated
+    held : True if the steady temperatures are evaluated here
     """
 
     name: str
@@ -83,7 +83,7 @@ class Stage:
         if self.held:
             raise ScheduleError(
                 f"stage {self.name!r}: is held while its {self.kind} changes: a steady state needs constant "
-                "speed and torque; mark a stage of kind 'hold' instead"
+                "speed and torque; state 'held' at a stage of kind 'hold' instead"
             )
 
     @property
@@ -154,11 +154,11 @@ class Schedule:
         share = (when - starts[index]) / length
         speed = np.array([stage.speed for stage in self.stages])[index]
         torque = np.array([stage.torque for stage in self.stages])[index]
-        step, slope = s_function(share), s_slope(share) / length
+        step, rate = s_function(share), s_derivative(share) / length
         return StageCommand(
             time=when,
             speed=speed[:, 0] + (speed[:, 1] - speed[:, 0]) * step,
-            acceleration=(speed[:, 1] - speed[:, 0]) * slope,
+            acceleration=(speed[:, 1] - speed[:, 0]) * rate,
             torque=torque[:, 0] + (torque[:, 1] - torque[:, 0]) * step,
             stage=index.astype(np.int64),
         )
@@ -175,9 +175,9 @@ class Schedule:
 class RampLimits:
     """Limits of the ramp rules (P2, "Definition of the Operating Points").
 
-    standstill_torque : least torque before the rig turns, takes up the backlash [N m]
+    standstill_torque : least torque before the rig rotates, takes up the backlash [N m]
     start_torque_limit : most torque below the transition speed of the journal bearings [N m]
-    transition_speed : from here the bearings float [rad/s]; test_speed [rad/s]; test_torque [N m]
+    transition_speed : from here the bearings run on a full film [rad/s]; test_speed [rad/s]; test_torque [N m]
     run_up_share : most share of the test torque between transition and test speed [-]
     """
 
@@ -206,36 +206,45 @@ class RampRule:
 def ramp_rules(schedule: Schedule, limits: RampLimits, samples_per_stage: int = 401) -> tuple[RampRule, ...]:
     """The four ramp rules of P2 over the whole schedule, ramp-down included.
 
-    1. While the rig turns the torque is at least the standstill torque, so that the flanks stay closed.
+    1. While the rig rotates the torque is at least the standstill torque, so that the flanks stay closed.
     2. Below the transition speed the torque is at most the start torque limit of the bearings.
     3. Between transition speed and test speed it is at most the run-up share of the test torque.
     4. It is at most the test torque, which is reached at test speed only.
     """
     command = schedule.at(_dense_times(schedule, samples_per_stage))
     tolerance = 1e-9 * max(limits.test_speed, 1.0)
-    turning = command.speed > tolerance
-    moving_off = _just_before(turning)
+    rotating = command.speed > tolerance
+    starting = _just_before(rotating)
     below = command.speed < limits.transition_speed - tolerance
     between = ~below & (command.speed < limits.test_speed - tolerance)
-    return (
-        _rule(
-            schedule, command, "ramp.standstill_torque",
-            "least torque while the rig turns, backlash taken up", turning | moving_off,
-            limits.standstill_torque, ">=",
+    rules = (
+        (
+            rotating | starting,
+            _TorqueLimit(
+                "ramp.standstill_torque", "least torque while the rig turns, backlash taken up",
+                limits.standstill_torque, ">=",
+            ),
         ),
-        _rule(
-            schedule, command, "ramp.start_torque", "most torque below the transition speed of the bearings",
-            below, limits.start_torque_limit, "<=",
+        (
+            below,
+            _TorqueLimit(
+                "ramp.start_torque", "most torque below the transition speed of the bearings",
+                limits.start_torque_limit, "<=",
+            ),
         ),
-        _rule(
-            schedule, command, "ramp.run_up_torque", "most torque between transition and test speed", between,
-            limits.run_up_share * limits.test_torque, "<=",
+        (
+            between,
+            _TorqueLimit(
+                "ramp.run_up_torque", "most torque between transition and test speed",
+                limits.run_up_share * limits.test_torque, "<=",
+            ),
         ),
-        _rule(
-            schedule, command, "ramp.test_torque", "most torque at test speed",
-            ~below & ~between, limits.test_torque, "<=",
+        (
+            ~below & ~between,
+            _TorqueLimit("ramp.test_torque", "most torque at test speed", limits.test_torque, "<="),
         ),
     )  # fmt: skip
+    return tuple(_rule(schedule, command, where, rule) for where, rule in rules)
 
 
 def _dense_times(schedule: Schedule, samples: int) -> Array:
@@ -243,46 +252,39 @@ def _dense_times(schedule: Schedule, samples: int) -> Array:
     return np.unique(np.concatenate([np.linspace(a, b, samples) for a, b in pairwise(starts)]))
 
 
-def _just_before(turning: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Last sample at rest before the rig turns."""
-    before = np.zeros_like(turning)
-    before[:-1] = ~turning[:-1] & turning[1:]
+def _just_before(rotating: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Last sample at rest before the rig starts."""
+    before = np.zeros_like(rotating)
+    before[:-1] = ~rotating[:-1] & rotating[1:]
     return before
 
 
+@dataclass(frozen=True)
+class _TorqueLimit:
+    """One ramp rule as stated: identifier, sentence, limit [N m] and on which side the torque has to stay."""
+
+    id: str
+    text: str
+    limit: float
+    comparison: Literal["<=", ">="]
+
+
 def _rule(
-    schedule: Schedule,
-    command: StageCommand,
-    name: str,
-    text: str,
-    where: NDArray[np.bool_],
-    limit: float,
-    comparison: Literal["<=", ">="],
+    schedule: Schedule, command: StageCommand, where: NDArray[np.bool_], rule: _TorqueLimit
 ) -> RampRule:
     """Worst torque among the samples ``where``; a rule without a sample holds at its limit."""
     index = np.flatnonzero(where)
+    limit, at_most = rule.limit, rule.comparison == "<="
     if index.size == 0:
-        return RampRule(
-            id=name,
-            text=text,
-            holds=True,
-            value=limit,
-            limit=limit,
-            comparison=comparison,
-            stage="",
-            time=0.0,
-        )
+        return RampRule(**asdict(rule), holds=True, value=limit, stage="", time=0.0)
     torque = np.abs(command.torque[index])
-    worst = int(index[np.argmax(torque) if comparison == "<=" else np.argmin(torque)])
+    worst = int(index[np.argmax(torque) if at_most else np.argmin(torque)])
     value = float(abs(command.torque[worst]))
     slack = 1e-9 * max(abs(limit), 1.0)
     return RampRule(
-        id=name,
-        text=text,
-        holds=value <= limit + slack if comparison == "<=" else value >= limit - slack,
+        **asdict(rule),
+        holds=value <= limit + slack if at_most else value >= limit - slack,
         value=value,
-        limit=limit,
-        comparison=comparison,
         stage=schedule.stages[int(command.stage[worst])].name,
         time=float(command.time[worst]),
     )

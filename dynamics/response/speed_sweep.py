@@ -2,32 +2,32 @@
 
 Harmonic balance is used where its harmonics reach 1.5 times the highest oscillating mode that the propagator
 keeps; it walks over the speeds in the order given, each start taken from the speed before, so that a rising
-and a falling list may settle on different branches of a jump. Where it fails or may not be used,
+and a falling list may end on different branches of a jump. Where it fails or may not be used,
 ``dynamics.response.periodic_response`` runs to a tested steady state in time.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import PortModel, port_model
 from dynamics.errors import DynamicsInputError, DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.harmonic_balance import BalanceProblem, HarmonicSolution
+from dynamics.response.harmonic_problem import BalanceProblem, HarmonicSolution
 from dynamics.response.harmonic_walk import LEAST_HARMONICS, HarmonicWalk
 from dynamics.response.initial_state import pinion_ratios
-from dynamics.response.periodic_response import Period, PeriodicResponse, periodic_by_time
-from dynamics.response.propagator import DEFAULT_CUTOFF, ModalModel, modal_model
-from dynamics.response.time_march import drag_loads, slow_loads
+from dynamics.response.modal_model import DEFAULT_CUTOFF
+from dynamics.response.periodic_response import Period, PeriodicResponse, TimeIntegration, TimeSettings
 from dynamics.response.waveform import Waveform, waveform
 
 Array = NDArray[np.float64]
 Method = Literal["harmonic_balance", "time_integration"]
-Drags = Mapping[str, float] | Callable[[float], Mapping[str, float]] | None
+DragTorques = Mapping[str, float] | Callable[[float], Mapping[str, float]] | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +64,7 @@ class CurvePoint:
     def dynamic_factor(self) -> Array:
         """K_V = max / mean of every mesh (n_meshes,) [-] (P2, Formula 1).
 
-        Raises ValueError for a mesh that carries no mean torque.
+        Raises DynamicsInputError for a mesh that carries no mean torque.
         """
         return np.asarray(self.maximum / self._loaded_mean())
 
@@ -99,76 +99,82 @@ class ResponseCurve:
         return np.array([point.dynamic_factor[mesh] for point in self.points])
 
 
+@dataclass(frozen=True, kw_only=True)
+class SweepSettings:
+    """Numerics of a periodic response over speed.
+
+    period : one mesh, one revolution of the pinion of the control mesh, or until the same teeth meet in all meshes
+    cutoff : highest mode that counts [Hz]; harmonics must reach 1.5 times the highest mode below it
+    tolerance : of the harmonic balance, error of the approach over its mean [-]
+    methods : what may be used, tried in this order at every speed
+    """
+
+    period: Period = "mesh"
+    cutoff: float = DEFAULT_CUTOFF
+    tolerance: float = 1e-5
+    methods: Sequence[Method] = ("harmonic_balance", "time_integration")
+
+
+DEFAULT_SWEEP = SweepSettings()
+
+
 def periodic_response(
     system: LinearSystem,
     laws: Sequence[MeshLaw],
     speeds: Sequence[float] | Array,
-    torque: float | None,
-    *,
-    twist: float | None = None,
-    control_mesh: int = 0,
-    period: Period = "mesh",
-    drag_torques: Drags = None,
-    cutoff: float = DEFAULT_CUTOFF,
-    tolerance: float = 1e-5,
-    methods: Sequence[Method] = ("harmonic_balance", "time_integration"),
+    load: LoopLoad,
+    drag_torques: DragTorques = None,
+    settings: SweepSettings = DEFAULT_SWEEP,
 ) -> ResponseCurve:
     """Steady state over speed with contact loss, both meshes coupled.
 
     Parameters
     ----------
+    laws : of the meshes, in the order of ``system.mesh_ports``
     speeds : mean speeds of the pinion of the first mesh [rad/s], > 0, in the order in which they are walked
-    torque : mean torque at the pinion of ``control_mesh`` [N m] (negative: back flank); the bracing twist
-    that
-        makes it is solved along. None: ``twist`` [rad] is held and the torque follows
-    period : one mesh, one turn of the pinion of ``control_mesh``, or until the same teeth meet in all meshes
+    load : mean torque at the pinion of a mesh, along which the bracing twist is solved, or the twist that is held
     drag_torques : torque by name of ``system.drag_loads`` [N m], or a function of the speed that gives it
-    cutoff : highest mode that counts [Hz]; harmonics must reach 1.5 times the highest mode below it
-    methods : what may be used, tried in this order at every speed
+    settings : period, modes that count, tolerance and methods
+
+    Returns
+    -------
+    ResponseCurve
+        With a reason for every speed without a point; no speed raises because it did not converge.
 
     Raises
     ------
-    ValueError
-        If a speed is not positive, not exactly one of torque and twist is given, or the mesh frequencies of
-        the meshes have no common period.
+    DynamicsInputError
+        If a speed is not positive, time integration is to control another mesh than the first, or the mesh
+        frequencies have no common period.
     """
     if any(not speed > 0.0 for speed in speeds):
         raise DynamicsInputError(
             f"speeds: {min(speeds)} rad/s: must be above 0; leave standstill to the static state"
         )
-    if (torque is None) == (twist is None):
-        raise DynamicsInputError("give either the torque or the twist of the loop, not both and not neither")
-    if "time_integration" in methods and control_mesh != 0:
+    if "time_integration" in settings.methods and load.control_mesh != 0:
         raise DynamicsInputError(
-            f"control_mesh = {control_mesh}: time integration controls mesh 0; use harmonic balance alone"
+            f"control_mesh = {load.control_mesh}: time integration controls mesh 0; use harmonic balance alone"
         )
     ratios = pinion_ratios(system, laws)
     problem = BalanceProblem(
         model=port_model(system, laws),
         form=system.form,
-        torque=torque,
-        twist=twist,
-        control_mesh=control_mesh,
+        load=load,
         shaft_torques=system.shaft_torques,
         ratios=ratios / ratios[system.drive_dof] if system.shaft_torques else None,
     )
-    walk = HarmonicWalk(problem, period, cutoff, tolerance)
+    walk = HarmonicWalk(problem, settings.period, settings.cutoff, settings.tolerance)
     given = [float(speed) for speed in speeds]
     drags = [drag_torques(speed) if callable(drag_torques) else drag_torques for speed in given]
     found: dict[int, CurvePoint] = {}
     reasons: dict[int, str] = dict.fromkeys(range(len(given)), "")
-    if "harmonic_balance" in methods:
+    if "harmonic_balance" in settings.methods:
         found, reasons = _by_harmonics(walk, given, drags)
-    if "time_integration" in methods:
-        models: dict[tuple[str, ...], ModalModel] = {}
+    if "time_integration" in settings.methods and reasons:
+        in_time = TimeIntegration(system, laws, TimeSettings(period=settings.period, cutoff=settings.cutoff))
         for i, reason in reasons.items():
-            names = tuple(drags[i] or {})
             try:
-                if names not in models:
-                    models[names] = modal_model(
-                        system, laws, slow_loads(system), drag_loads(system, names), cutoff=cutoff
-                    )
-                found[i] = _in_time(walk, system, given[i], drags[i], period, cutoff, models[names])
+                found[i] = _in_time(walk, in_time, given[i], drags[i])
             except DynamicsNotConverged as also:
                 reasons[i] = "; ".join(filter(None, (reason, str(also))))
     return ResponseCurve(
@@ -186,13 +192,15 @@ def refined_response(
 ) -> ResponseCurve:
     """Response over rising speeds with points put in wherever the curve bends, so that no peak is cut off.
 
-    Beside every speed at which the half peak-to-peak over the mean torque of a mesh leaves the straight line
+    At every speed at which the half peak-to-peak over the mean torque of a mesh leaves the straight line
     between its neighbours by more than ``bend`` [-], both intervals are halved, and again up to ``rounds`` times.
 
     Parameters
     ----------
     solve : response at given rising speeds [rad/s], e.g. `periodic_response` with all else fixed
     speeds : first grid [rad/s], rising
+    bend : least distance from the straight line that calls for a further point [-]
+    rounds : halvings at most
     """
     curve = solve([float(speed) for speed in speeds])
     points = {point.speed: point for point in curve.points}
@@ -247,41 +255,40 @@ def _by_harmonics(
 
 
 def _in_time(
-    walk: HarmonicWalk,
-    system: LinearSystem,
-    speed: float,
-    drags: Mapping[str, float] | None,
-    period: Period,
-    cutoff: float,
-    model: ModalModel,
+    walk: HarmonicWalk, solver: TimeIntegration, speed: float, drags: Mapping[str, float] | None
 ) -> CurvePoint:
-    problem = walk.problem
-    result = periodic_by_time(
-        system, problem.model.laws, speed=speed, torque=problem.torque, twist=problem.twist,
-        period=period, drag_torques=drags, cutoff=cutoff, model=model,
-    )  # fmt: skip
+    result = solver.periodic(speed, walk.problem.load, drags)
     if not result.steady:
         raise DynamicsNotConverged("; ".join(result.warnings))
-    return point_in_time(problem.model, result, walk.cells)
+    return point_in_time(walk.problem.model, result, walk.cells)
 
 
 def point_of(model: PortModel, solution: HarmonicSolution) -> CurvePoint:
-    """Torques, factors and losses of a harmonic solution."""
-    return _point(
-        waveform(model, solution),
-        cells=solution.grid.cells,
-        orders=solution.grid.harmonics,
+    """Torques, factors and losses of a harmonic solution.
+
+    model : the loop that was solved; the harmonics of the torque reach as far as those of the solution
+    """
+    wave = waveform(model, solution)
+    return CurvePoint(
+        **_statistics(wave, solution.grid.cells, solution.grid.harmonics)._asdict(),
         speed=solution.speed * float(model.ratios[0]),
         method="harmonic_balance",
         residual=solution.residual,
         iterations=solution.iterations,
         twist=solution.twist,
         drive_torque=solution.drive,
+        friction_power=wave.friction_power,
+        damping_power=wave.damping_power,
+        wave=wave,
     )
 
 
 def point_in_time(model: PortModel, result: PeriodicResponse, cells: int) -> CurvePoint:
-    """The same from one period of the time integration."""
+    """The same from one period of the time integration.
+
+    cells : mesh periods in the period [-]; the harmonics of the torque are those of the harmonic balance, as far as
+    the internal steps resolve them
+    """
     radius_1, radius_2 = model.base_radii.T
     wave = Waveform(
         time=result.time,
@@ -294,50 +301,43 @@ def point_in_time(model: PortModel, result: PeriodicResponse, cells: int) -> Cur
         friction_power=result.friction_loss,
         damping_power=result.mesh_damping_loss,
     )
-    return _point(
-        wave,
-        cells=cells,
-        orders=min(LEAST_HARMONICS, result.time.size // cells // 2),
+    return CurvePoint(
+        **_statistics(wave, cells, min(LEAST_HARMONICS, result.time.size // cells // 2))._asdict(),
         speed=result.speed,
         method="time_integration",
         residual=result.residual,
         iterations=result.periods,
         twist=result.twist,
         drive_torque=result.drive_torque,
+        friction_power=wave.friction_power,
+        damping_power=wave.damping_power,
+        wave=wave,
     )
 
 
-def _point(
-    wave: Waveform,
-    *,
-    cells: int,
-    orders: int,
-    speed: float,
-    method: Method,
-    residual: float,
-    iterations: int,
-    twist: float,
-    drive_torque: float,
-) -> CurvePoint:
+class _TorqueStatistics(NamedTuple):
+    """Fields of ``CurvePoint`` with the same names, from the torque over one period."""
+
+    flank: Array
+    mean: Array
+    maximum: Array
+    minimum: Array
+    harmonics: Array
+    lift_off_share: Array
+
+
+def _statistics(wave: Waveform, cells: int, orders: int) -> _TorqueStatistics:
+    """Torque over one period of ``cells`` mesh periods, its harmonics up to ``orders`` of the mesh frequency."""
     mean = wave.torque.mean(axis=1)
     flank = np.where(mean < 0.0, -1.0, 1.0)
     loaded = flank[:, None] * wave.torque
     amplitudes = np.abs(np.fft.rfft(loaded, axis=1)[:, ::cells][:, : orders + 1]) / loaded.shape[1]
     amplitudes[:, 1:] *= 2.0
-    return CurvePoint(
-        speed=speed,
-        method=method,
-        residual=residual,
-        iterations=iterations,
+    return _TorqueStatistics(
         flank=flank,
         mean=loaded.mean(axis=1),
         maximum=loaded.max(axis=1),
         minimum=loaded.min(axis=1),
         harmonics=amplitudes,
         lift_off_share=1.0 - wave.touching.mean(axis=1),
-        twist=twist,
-        drive_torque=drive_torque,
-        friction_power=wave.friction_power,
-        damping_power=wave.damping_power,
-        wave=wave,
     )

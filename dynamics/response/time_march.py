@@ -1,11 +1,10 @@
 """A drivetrain in motion: modal state, gear contacts and accounts that are carried from call to call.
 
-``DriveState`` is where a run starts and ends; ``TimeMarch`` advances it in blocks and keeps the work done by
+``TimeMarch`` advances a ``DriveState`` in blocks and keeps the work done by
 each slow input and the losses of meshes and joints, so that drive torque and losses are known from two sides.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -13,57 +12,26 @@ from numpy.typing import NDArray
 
 from dynamics import kernels
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.errors import DynamicsInputError, DynamicsNotConverged
+from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.force import evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.propagator import (
-    DEFAULT_CUTOFF,
-    ModalModel,
-    discretise,
-    modal_model,
-    modal_state,
-    scaled_state,
+from dynamics.response.march_inputs import (
+    DragTables,
+    DriveLoads,
+    DriveState,
+    MarchSettings,
+    SpeedControl,
+    TorqueControl,
 )
+from dynamics.response.march_loads import drag_loads, drag_places, march_model, slow_loads
+from dynamics.response.modal_model import ModalModel
+from dynamics.response.propagator import discretise, modal_state, scaled_state
 
 Array = NDArray[np.float64]
 
 CREEP_SHARE = 1e-3
 """Share of the highest speed of a drag table below which its torque goes smoothly through zero [-]."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class DriveState:
-    """Angles [rad] and speeds [rad/s] of all freedoms, shape (n,), and the bracing twist [rad]."""
-
-    angles: Array
-    speeds: Array
-    twist: float = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class SpeedControl:
-    """Speed controller of the motor: torque = proportional * error + integral * integrated error, limited.
-
-    proportional : [N m s/rad]; integral : [N m/rad]; torque_limit : largest motor torque [N m]
-    time_constant : of the average over the measured speed, which keeps the torsional vibration out [s]
-    """
-
-    proportional: float
-    integral: float
-    torque_limit: float
-    time_constant: float = 0.01
-
-
-@dataclass(frozen=True, kw_only=True)
-class TorqueControl:
-    """Torque-controlled bracing: the twist follows the averaged torque of the first mesh.
-
-    stiffness : torque of the first mesh per twist of the bracing [N m/rad]
-    time_constant : of the control loop and of the average it acts on [s]
-    """
-
-    stiffness: float
-    time_constant: float = 0.02
+NO_LOADS = DriveLoads()
 
 
 class MarchDiverged(DynamicsNotConverged):
@@ -91,7 +59,7 @@ class Block(NamedTuple):
     """(n_samples, n_slow) speed that each slow input works on: its power is input times this."""
     drags: Array
     """(n_samples, n_drags) drag torques [N m] at the end of each sample."""
-    turned: Array
+    angle: Array
     """(n_samples,) angle of the pinion of the first mesh at the end of each sample [rad]."""
 
 
@@ -108,6 +76,16 @@ class Accounts(NamedTuple):
     """(n_drags,)"""
     joint_damping: float
 
+    def since(self, before: "Accounts") -> "Accounts":
+        """Work since an earlier account."""
+        return Accounts(
+            self.friction - before.friction,
+            self.mesh_damping - before.mesh_damping,
+            self.slow_work - before.slow_work,
+            self.drag - before.drag,
+            self.joint_damping - before.joint_damping,
+        )
+
 
 class TimeMarch:
     """A drivetrain that is advanced in time; the only object of the dynamics that changes.
@@ -122,40 +100,44 @@ class TimeMarch:
         system: LinearSystem,
         laws: Sequence[MeshLaw],
         start: DriveState,
-        *,
-        step: float,
-        substeps: int = 1,
-        drags: Sequence[str] = (),
-        drive_torque: float = 0.0,
-        drag_torques: Sequence[float] = (),
-        cutoff: float = DEFAULT_CUTOFF,
-        accounts: bool = True,
-        record_all: bool = True,
-        derivative_torques: bool = True,
+        settings: MarchSettings,
+        loads: DriveLoads = NO_LOADS,
         model: ModalModel | None = None,
     ) -> None:
-        """Prepare the march; ``step`` is the internal step [s], a sample has ``substeps`` of them.
+        """Prepare the march.
 
-        ``model`` is a modal model of the same system, laws and drags, to be shared between runs.
-        Raises ValueError for disagreeing shapes or unknown drags, DefectiveModes as ``modal_model``.
+        Parameters
+        ----------
+        laws : of the meshes, in the order of ``system.mesh_ports``
+        start : angles, speeds and twist of the first instant
+        settings : steps and what is kept
+        loads : motor and drag torques of the first instant; their names say which drags may act
+        model : ``march_model`` of the same system, laws and drags, to be shared between runs; made when left out
+
+        Raises
+        ------
+        DynamicsInputError
+            For disagreeing shapes or unknown drags.
+        DefectiveModes
+            As ``modal_model``.
         """
+        drags = tuple(loads.drag_torques)
+        accounts = settings.accounts
         self.laws = tuple(laws)
-        self.step = step
-        self.substeps = substeps
-        self.drags = tuple(drags)
-        self.model = model or modal_model(
-            system, laws, slow_loads(system), drag_loads(system, drags), cutoff=cutoff
-        )
-        self.propagator = discretise(self.model, step, substeps=substeps, with_losses=accounts)
-        self.packed = pack_meshes(laws, derivative_torques=derivative_torques)
-        self.unsettled = 0
+        self.step = settings.step
+        self.substeps = settings.substeps
+        self.drags = drags
+        self.model = model or march_model(system, laws, drags, settings.cutoff)
+        self.propagator = discretise(self.model, self.step, substeps=self.substeps, with_losses=accounts)
+        self.packed = pack_meshes(laws, derivative_torques=settings.derivative_torques)
+        self.unconverged = 0
         self._marched = 0
         self._names = system.dofs
-        self._record_all = record_all
+        self._record_all = settings.record_all
         self._laws_packed = [pack_meshes([law]) for law in self.laws]
         self._places = drag_places(system, drags)
         braked = drag_loads(system, drags)
-        loads = np.column_stack((slow_loads(system), braked))
+        columns = np.column_stack((slow_loads(system), braked))
         n_meshes, n_slow, n_drags = len(self.laws), 2 + len(system.shaft_torques), braked.shape[1]
         self._n_slow = n_slow
         n_power = 2 * n_meshes + n_slow + n_drags + 1 if accounts else 0
@@ -175,10 +157,10 @@ class TimeMarch:
                 :n_power
             ]
         slow = np.zeros(n_slow)
-        slow[:2] = drive_torque, start.twist
+        slow[:2] = loads.drive_torque, start.twist
         braking = np.zeros(n_drags)
-        braking[self._places[: len(drag_torques)]] = drag_torques
-        speeds = loads.T @ start.speeds
+        braking[self._places] = list(loads.drag_torques.values())
+        speeds = columns.T @ start.speeds
         if accounts:
             powers[2 * n_meshes : -1] = np.concatenate((slow, braking)) * speeds
             powers[-1] = start.speeds @ system.damping @ start.speeds
@@ -188,7 +170,7 @@ class TimeMarch:
             slow=slow,
             drags=braking,
             offset=self.packed.offsets.copy(),
-            memory=np.zeros(5),
+            controller=np.zeros(5),
             speeds=speeds,
             powers=powers,
             work=np.zeros(n_power),
@@ -199,7 +181,7 @@ class TimeMarch:
                 self.model, self.propagator, start.angles, start.speeds, self._inputs()
             )
         torque = self.mean_torque_of_first_mesh()
-        self._carried.memory[2:] = torque, speeds[0], torque
+        self._carried.controller[2:] = torque, speeds[0], torque
 
     def advance(
         self,
@@ -208,8 +190,7 @@ class TimeMarch:
         offsets: Array | None = None,
         speed_control: SpeedControl | None = None,
         torque_control: TorqueControl | None = None,
-        drag_tables: Array | None = None,
-        drag_speeds: Array | None = None,
+        drags: DragTables | None = None,
     ) -> Block:
         """March over ``len(given)`` samples.
 
@@ -219,8 +200,8 @@ class TimeMarch:
             [N m], twist [rad], speed of the drive freedom [rad/s], torque of the first mesh [N m], then the value of
             each entry of ``system.shaft_torques`` [N m]
         offsets : (n_samples, n_meshes) approach imposed on each mesh [m], in place of the offsets of the laws
-        drag_tables : (n_drags, n_table) drag torque over speed, from 0 to ``drag_speeds`` [N m]
-        drag_speeds : (n_drags,) last speed of each table [rad/s]
+        speed_control, torque_control : of motor and bracing; without one its command is followed as it is
+        drags : torque over speed of each drag; none brakes when left out
 
         Raises MarchDiverged if the motion leaves the finite numbers.
         """
@@ -237,12 +218,12 @@ class TimeMarch:
             share = min(1.0, sample_time / torque_control.time_constant)
             control[4:] = 0.25 * share / torque_control.stiffness, share
         n_drags = len(self._carried.drags)
-        tables = np.zeros((n_drags, 2 if drag_tables is None else drag_tables.shape[1]))
+        tables = np.zeros((n_drags, 2 if drags is None else drags.torque.shape[1]))
         ends = np.ones(n_drags)
-        if drag_tables is not None:
-            tables[self._places] = drag_tables
-        if drag_speeds is not None:
-            ends[self._places] = drag_speeds
+        if drags is not None:
+            tables[self._places] = drags.torque
+            if drags.last_speed is not None:
+                ends[self._places] = drags.last_speed
         held = (
             np.tile(self._carried.offset, (n_samples, 1))
             if offsets is None
@@ -250,7 +231,7 @@ class TimeMarch:
         )
         history = np.empty((n_meshes, 6 if self._record_all else 1, n_samples * self.substeps))
         samples = np.empty((n_samples, 2 * n_slow + n_drags + 1))
-        orders = kernels.Orders(
+        commands = kernels.Commands(
             given=np.ascontiguousarray(given, float),
             offsets=held,
             control=control,
@@ -258,10 +239,10 @@ class TimeMarch:
                 torque=tables, per_step=(tables.shape[1] - 1) / ends, creep=CREEP_SHARE * ends
             ),
         )
-        self.unsettled += kernels.march(
+        self.unconverged += kernels.march(
             self.packed,
             self.propagator.modes,
-            orders,
+            commands,
             self._carried,
             self.step,
             self.substeps,
@@ -275,9 +256,9 @@ class TimeMarch:
         force, approach, angle, rate, omega, torque = (
             (history[:, i] for i in range(6)) if self._record_all else (history[:, 0], *[none] * 5)
         )
-        slow, speed, drags, turned = np.split(samples, (n_slow, 2 * n_slow, 2 * n_slow + n_drags), axis=1)
-        drags = drags[:, self._places]
-        return Block(force, approach, angle, rate, omega, torque, slow, speed, drags, turned[:, 0])
+        slow, speed, braking, angle_1 = np.split(samples, (n_slow, 2 * n_slow, 2 * n_slow + n_drags), axis=1)
+        braking = braking[:, self._places]
+        return Block(force, approach, angle, rate, omega, torque, slow, speed, braking, angle_1[:, 0])
 
     def _diverged(self, force: Array, samples: Array) -> str:
         """What is known of a march that left the finite numbers in its last block.
@@ -297,7 +278,7 @@ class TimeMarch:
             f"the march left the finite numbers: mesh of {pinion} and {wheel}, "
             f"{(self._marched * self.substeps + step) * self.step:.6g} s after its start, last drive speed "
             f"{speed:.6g} rpm; slowest elastic mode {frequency:.4g} Hz, largest at {where}, step {self.step:.3g} s. "
-            "Correct inertia, stiffness or torque that is orders of magnitude off there, or take more internal "
+            "Correct inertia, stiffness or torque that is commands of magnitude off there, or take more internal "
             "steps"
         )
 
@@ -340,12 +321,9 @@ class TimeMarch:
         placed: set[int] = set()
         for mesh in range(len(self.laws)):
             law = self.laws[mesh]
-            turned = self._carried.ports[mesh, 5], 0.0
-            turned = (
-                turned[0],
-                (law.base_radius_1 * turned[0] - self._carried.ports[mesh, 4]) / law.base_radius_2,
-            )
-            for port, angle in zip(model.mesh_ports[mesh], turned):
+            approach, pinion = self._carried.ports[mesh, 4:]
+            wheel = (law.base_radius_1 * pinion - approach) / law.base_radius_2
+            for port, angle in zip(model.mesh_ports[mesh], (pinion, wheel)):
                 line = int(np.argmax(np.abs(model.shapes[port, :rigid])))
                 if line not in placed:
                     members = model.shapes[:, line] != 0.0
@@ -355,7 +333,7 @@ class TimeMarch:
 
     def preset_speed_integral(self, torque: float) -> None:
         """Let the speed controller start from a motor torque [N m]."""
-        self._carried.memory[0] = torque
+        self._carried.controller[0] = torque
 
     def pinion_angle(self) -> float:
         """Angle of the pinion of the first mesh at this instant [rad]."""
@@ -380,44 +358,3 @@ class TimeMarch:
     def _inputs(self) -> Array:
         carried = self._carried
         return np.concatenate((carried.ports[:, :2].ravel(), carried.slow, carried.drags))
-
-
-def slow_loads(system: LinearSystem) -> Array:
-    """Return the loads (n, 2 + n_shaft_torques) of motor, twist and swinging torques."""
-    drive = np.zeros(len(system.inertia))
-    drive[system.drive_dof] = 1.0
-    return np.column_stack((drive, system.twist_load, *(torques.load for torques in system.shaft_torques)))
-
-
-def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]:
-    """Return (n_drags,) the columns of named drags in ``drag_loads``: every line begins a new four of them.
-
-    Raises ValueError for unknown names.
-    """
-    unknown = [name for name in drags if name not in system.drag_loads]
-    if unknown:
-        raise DynamicsInputError(
-            f"no drag load named {', '.join(unknown)}; known: {', '.join(system.drag_loads) or 'none'}"
-        )
-    lines = [system.lines[np.argmax(np.abs(system.drag_loads[name]))] for name in drags]
-    places = np.empty(len(drags), np.int64)
-    first = 0
-    for line in np.unique(lines):
-        own = np.flatnonzero(lines == line)
-        places[own] = first + np.arange(len(own))
-        first += -(-len(own) // kernels.FOUR) * kernels.FOUR
-    return places
-
-
-def drag_loads(system: LinearSystem, drags: Sequence[str]) -> Array:
-    """Return the loads (n, n_places) of named drag torques in fours, see ``drag_places``; zeros where no drag stands.
-
-    Raises ValueError for unknown names.
-    """
-    places = drag_places(system, drags)
-    loads = np.zeros(
-        (len(system.inertia), -(-int(max(places, default=-1) + 1) // kernels.FOUR) * kernels.FOUR)
-    )
-    for place, name in zip(places, drags):
-        loads[:, place] = system.drag_loads[name]
-    return loads

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from dynamics.drivetrain.static_loop import PortModel
 from dynamics.mesh.force import evaluate_mesh
-from dynamics.response.harmonic_balance import HarmonicSolution, in_time, motion_of_mesh
+from dynamics.response.harmonic_balance import in_time, motion_of_mesh
+from dynamics.response.harmonic_problem import HarmonicSolution
 
 Array = NDArray[np.float64]
 
@@ -34,7 +35,11 @@ class Waveform:
 
 
 def waveform(model: PortModel, solution: HarmonicSolution, samples: int | None = None) -> Waveform:
-    """Mesh motions and torques over one period, ``samples`` per mesh period (default: those of the grid)."""
+    """Mesh motions and torques over one period of a harmonic solution.
+
+    model : the loop that was solved
+    samples : per mesh period; default those of the grid
+    """
     grid, speed = solution.grid, solution.speed
     count = grid.cells * (samples or grid.samples)
     base = speed * 2.0 * np.pi / (grid.cell_angle * grid.cells)

@@ -78,7 +78,7 @@ class Tolerances:
 def tolerances(z: int, d: float, m_n: float, b: float, A: int, beta: float = 0.0) -> Tolerances:
     """All tolerances of a gear of ``z`` teeth, ``d``, ``m_n``, ``b`` [mm], grade ``A``, ``beta`` [deg].
 
-    Raises ValueError for a grade outside 1..11; sizes outside the scope of clause 1 give warnings.
+    Raises DynamicsInputError for a grade outside 1..11; sizes outside the scope of clause 1 give warnings.
     """
     scope: tuple[tuple[str, float, float, float], ...] = (
         ("z", z, 5, 1000),

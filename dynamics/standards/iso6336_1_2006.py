@@ -143,10 +143,23 @@ def C_R(b_s_over_b: float | None, s_R_over_m_n: float) -> float:
     return 1.0 + log(web) / (5.0 * exp(rim / 5.0))
 
 
-def stiffness(
-    data: MeshData, specific_load: float, *, low_load_factor: bool = True, C_M: float = 0.8
-) -> Stiffness:
-    """Single and mesh stiffness of clause 9 at ``specific_load`` = F_t K_A / b [N/mm]."""
+@dataclass(frozen=True, kw_only=True)
+class StiffnessChoices:
+    """Choices of clause 9: whether c' falls with loads below 100 N/mm, and the measured correction C_M."""
+
+    low_load_factor: bool = True
+    C_M: float = 0.8
+
+
+DEFAULT_CHOICES = StiffnessChoices()
+
+
+def stiffness(data: MeshData, specific_load: float, choices: StiffnessChoices = DEFAULT_CHOICES) -> Stiffness:
+    """Single and mesh stiffness of clause 9 at ``specific_load`` = F_t K_A / b [N/mm].
+
+    Raises DynamicsInputError where the regression of q' gives nothing positive.
+    """
+    C_M = choices.C_M
     warnings = list(_regression_warnings(data))
     q = q_prime(data.z_n1, data.z_n2, data.x_1, data.x_2)
     if not q > 0.0:
@@ -156,7 +169,7 @@ def stiffness(
         )
     C_B_mean = 0.5 * (C_B(data.h_fP1, data.alpha_Pn) + C_B(data.h_fP2, data.alpha_Pn))
     C_R_value = C_R(data.b_s_over_b, data.s_R_over_m_n)
-    C_L = min(specific_load / 100.0, 1.0) ** 0.25 if low_load_factor else 1.0
+    C_L = min(specific_load / 100.0, 1.0) ** 0.25 if choices.low_load_factor else 1.0
     E = 2.0 * data.E_1 * data.E_2 / (data.E_1 + data.E_2)
     c_prime = C_M * C_R_value * C_B_mean * cos(radians(data.beta)) / q * (E / E_ST) * C_L
     c_gamma_alpha = c_prime * (0.75 * data.epsilon_alpha + 0.25)
@@ -279,45 +292,80 @@ def K_V(
     return above + (main - above) * (1.5 - N) / 0.35
 
 
+@dataclass(frozen=True, kw_only=True)
+class GearLoad:
+    """Operating point: F_t [N] transverse tangential force at d_1, n_1 [1/min], K_A [-].
+
+    Raises DynamicsInputError for a force or factor that is not positive or a negative speed.
+    """
+
+    F_t: float
+    n_1: float
+    K_A: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, value, unit in (("F_t", self.F_t, "N"), ("K_A", self.K_A, "")):
+            if not value > 0.0:
+                raise DynamicsInputError(f"{name} = {value} {unit} must be positive; method B needs a load")
+        if self.n_1 < 0.0:
+            raise DynamicsInputError(
+                f"n_1 = {self.n_1} 1/min must not be negative; give the amount of the speed"
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ToothDeviations:
+    """f_pb and f_falpha [um], larger of both gears, and their tolerance grade.
+
+    relief_grade : coarsest tolerance grade whose tip relief counts; deviations of a coarser gear drown it, B_k = 1
+    """
+
+    f_pb: float
+    f_falpha: float
+    grade: int
+    relief_grade: int = 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunningIn:
+    """C_a [um] designed tip relief or None for the running-in relief C_ay; sigma_Hlim [N/mm2] of both gears."""
+
+    C_a: float | None = None
+    sigma_Hlim: tuple[float, float] = (1500.0, 1500.0)
+    run_in_class: RunIn = "case_hardened"
+
+
+NOT_RELIEVED = RunningIn()
+
+
 def dynamic_factor(
     data: MeshData,
-    *,
-    F_t: float,
-    n_1: float,
-    f_pb: float,
-    f_falpha: float,
-    grade: int,
-    C_a: float | None = None,
-    sigma_Hlim: tuple[float, float] = (1500.0, 1500.0),
-    run_in_class: RunIn = "case_hardened",
-    K_A: float = 1.0,
-    low_load_factor: bool = True,
-    C_M: float = 0.8,
+    load: GearLoad,
+    deviations: ToothDeviations,
+    running_in: RunningIn = NOT_RELIEVED,
+    choices: StiffnessChoices = DEFAULT_CHOICES,
     exact_m_red: float | None = None,
-    relief_grade: int = 6,
 ) -> DynamicFactor:
-    """K_V by method B.
+    """K_V by method B (clause 6.5), every factor with it.
 
-    F_t [N] transverse tangential force at d_1, n_1 [1/min], f_pb and f_falpha [um] larger of both gears,
-    C_a [um] designed tip relief or None for the running-in relief C_ay, sigma_Hlim [N/mm2] of both gears,
-    exact_m_red [kg/mm] replaces the disc formula. relief_grade: coarsest tolerance grade whose tip relief counts;
-    deviations of a coarser gear drown it, B_k = 1. Raises ValueError for a load or speed that is not positive.
+    exact_m_red : reduced mass [kg/mm] in place of the disc formula
+
+    Raises DynamicsInputError where the stiffness regression fails or a through-hardened gear has no sigma_Hlim.
     """
-    for name, value, unit in (("F_t", F_t, "N"), ("K_A", K_A, "")):
-        if not value > 0.0:
-            raise DynamicsInputError(f"{name} = {value} {unit} must be positive; method B needs a load")
-    if n_1 < 0.0:
-        raise DynamicsInputError(f"n_1 = {n_1} 1/min must not be negative; give the amount of the speed")
-    load = F_t * K_A / data.b
-    tooth = stiffness(data, load, low_load_factor=low_load_factor, C_M=C_M)
+    F_t, n_1, K_A = load.F_t, load.n_1, load.K_A
+    f_pb, f_falpha, grade = deviations.f_pb, deviations.f_falpha, deviations.grade
+    relief_grade = deviations.relief_grade
+    C_a, sigma_Hlim, run_in_class = running_in.C_a, running_in.sigma_Hlim, running_in.run_in_class
+    specific_load = F_t * K_A / data.b
+    tooth = stiffness(data, specific_load, choices)
     warnings = list(tooth.warnings)
     v = pi * data.d_1 * n_1 / 60000.0
     y_p = run_in(f_pb, v, run_in_class, min(sigma_Hlim))
     y_f = run_in(f_falpha, v, run_in_class, min(sigma_Hlim))
     relief = C_ay(*sigma_Hlim) if C_a is None else C_a
-    B_p = tooth.c_prime * (f_pb - y_p) / load
-    B_f = tooth.c_prime * (f_falpha - y_f) / load
-    B_k = abs(1.0 - tooth.c_prime * relief / load)
+    B_p = tooth.c_prime * (f_pb - y_p) / specific_load
+    B_f = tooth.c_prime * (f_falpha - y_f) / specific_load
+    B_k = abs(1.0 - tooth.c_prime * relief / specific_load)
     if grade > relief_grade:
         warnings.append(
             f"tolerance grade {grade} coarser than {relief_grade}: tip relief is not counted, B_k = 1 instead of "
@@ -326,7 +374,7 @@ def dynamic_factor(
         B_k = 1.0
     mass = m_red(data) if exact_m_red is None else exact_m_red
     n_E1 = 30000.0 / (pi * data.z_1) * sqrt(tooth.c_gamma_alpha / mass)
-    N, limit = n_1 / n_E1, N_S(load)
+    N, limit = n_1 / n_E1, N_S(specific_load)
     C = C_v(data.epsilon_gamma)
     if data.epsilon_gamma > 11.4:
         warnings.append(
@@ -343,7 +391,7 @@ def dynamic_factor(
         F_t=F_t,
         v=v,
         K_A=K_A,
-        specific_load=load,
+        specific_load=specific_load,
         f_pb_eff=f_pb - y_p,
         f_falpha_eff=f_falpha - y_f,
         y_p=y_p,

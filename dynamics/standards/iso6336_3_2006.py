@@ -81,7 +81,7 @@ class RootSection:
 
 
 def root_section(root: ToothRoot) -> RootSection:
-    """Critical section of clause 6.2.1; raises ValueError if the tangent cannot be found."""
+    """Critical section of clause 6.2.1; raises DynamicsInputError if the tangent cannot be found."""
     alpha = radians(root.alpha_n)
     E = (
         pi / 4.0
@@ -135,7 +135,10 @@ class LoadedRoot:
 
 
 def loaded_root(root: ToothRoot, section: RootSection, diameters: Array) -> LoadedRoot:
-    """Y_F and Y_S (clauses 6.1, 7.2) for loads at virtual-gear diameters [mm]."""
+    """Y_F and Y_S (clauses 6.1, 7.2) for loads at virtual-gear diameters.
+
+    diameters : (n,) [mm]; one below the base diameter counts as the base diameter
+    """
     alpha = radians(root.alpha_n)
     ratio = np.minimum(root.d_bn / np.asarray(diameters, dtype=float), 1.0)
     alpha_en = np.arccos(ratio)
@@ -159,7 +162,7 @@ def Y_beta(epsilon_beta: float, beta: float) -> float:
 def Y_B(s_R: float, h_t: float) -> float:
     """Rim thickness factor of an external gear (clause 9); ``s_R = inf`` is a solid body.
 
-    Raises ValueError for s_R <= 0.5 h_t, which the clause excludes.
+    Raises DynamicsInputError for s_R <= 0.5 h_t, which the clause excludes.
     """
     ratio = s_R / h_t
     if ratio >= 1.2:
@@ -243,36 +246,59 @@ class RootStress:
     warnings: tuple[str, ...]
 
 
+@dataclass(frozen=True, kw_only=True)
+class ToothLoad:
+    """F_t [N] on the width b [mm], and the contact ratios that share it."""
+
+    F_t: float
+    b: float
+    epsilon_alpha: float
+    epsilon_beta: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadFactors:
+    """K factors of ISO 6336 for root stress: application, dynamic, face load and transverse load factor."""
+
+    K_A: float = 1.0
+    K_V: float = 1.0
+    K_Fbeta: float = 1.0
+    K_Falpha: float = 1.0
+
+
+NOMINAL_LOAD = LoadFactors()
+
+
 def root_stress(
     root: ToothRoot,
+    load: ToothLoad,
+    factors: LoadFactors = NOMINAL_LOAD,
     *,
-    F_t: float,
-    b: float,
-    epsilon_alpha: float,
-    epsilon_beta: float = 0.0,
     grade: int = 5,
     s_R: float = inf,
-    K_A: float = 1.0,
-    K_V: float = 1.0,
-    K_Fbeta: float = 1.0,
-    K_Falpha: float = 1.0,
 ) -> RootStress:
-    """Nominal stress sigma_F0 (clause 5.2) and local stress sigma_F (5.1) for F_t [N] on the width b [mm]."""
+    """Nominal stress sigma_F0 (clause 5.2) and local stress sigma_F (5.1).
+
+    grade : ISO 1328-1 tolerance grade, for Y_DT; s_R : rim thickness [mm]
+
+    Raises DynamicsInputError as `Y_B` and `root_section`.
+    """
+    F_t, b, epsilon_alpha, epsilon_beta = load.F_t, load.b, load.epsilon_alpha, load.epsilon_beta
     section = root_section(root)
     diameter = d_en(root, epsilon_alpha)
-    load = loaded_root(root, section, np.array([diameter]))
-    Y_F, Y_S = float(load.Y_F[0]), float(load.Y_S[0])
+    loaded = loaded_root(root, section, np.array([diameter]))
+    Y_F, Y_S = float(loaded.Y_F[0]), float(loaded.Y_S[0])
     h_t = 0.5 * (root.d_a - root.d) - root.m_n * (root.x - root.h_fP)
-    factors = (
+    shares = (
         Y_beta(epsilon_beta, root.beta),
         Y_B(s_R, h_t),
         Y_DT(epsilon_alpha / cos(root.beta_b) ** 2, grade),
     )
-    sigma_F0 = F_t / (b * root.m_n) * Y_F * Y_S * factors[0] * factors[1] * factors[2]
+    sigma_F0 = F_t / (b * root.m_n) * Y_F * Y_S * shares[0] * shares[1] * shares[2]
     warnings = []
-    if not 1.0 <= load.q_s < 8.0:
+    if not 1.0 <= loaded.q_s < 8.0:
         warnings.append(
-            f"q_s = {load.q_s:.3f} outside 1..8 of Y_S (ISO 6336-3:2006, 7.2); use a larger tool tip radius"
+            f"q_s = {loaded.q_s:.3f} outside 1..8 of Y_S (ISO 6336-3:2006, 7.2); use a larger tool tip radius"
         )
     if epsilon_alpha / cos(root.beta_b) ** 2 >= 2.0:
         warnings.append(
@@ -284,20 +310,20 @@ def root_stress(
     return RootStress(
         d_en=diameter,
         s_Fn=section.s_Fn * root.m_n,
-        h_Fe=float(load.h_Fe[0]) * root.m_n,
+        h_Fe=float(loaded.h_Fe[0]) * root.m_n,
         rho_F=section.rho_F * root.m_n,
-        q_s=load.q_s,
-        alpha_Fen=float(np.degrees(load.alpha_Fen[0])),
+        q_s=loaded.q_s,
+        alpha_Fen=float(np.degrees(loaded.alpha_Fen[0])),
         Y_F=Y_F,
         Y_S=Y_S,
-        Y_beta=factors[0],
-        Y_B=factors[1],
-        Y_DT=factors[2],
+        Y_beta=shares[0],
+        Y_B=shares[1],
+        Y_DT=shares[2],
         sigma_F0=sigma_F0,
-        K_A=K_A,
-        K_V=K_V,
-        K_Fbeta=K_Fbeta,
-        K_Falpha=K_Falpha,
-        sigma_F=sigma_F0 * K_A * K_V * K_Fbeta * K_Falpha,
+        K_A=factors.K_A,
+        K_V=factors.K_V,
+        K_Fbeta=factors.K_Fbeta,
+        K_Falpha=factors.K_Falpha,
+        sigma_F=sigma_F0 * factors.K_A * factors.K_V * factors.K_Fbeta * factors.K_Falpha,
         warnings=tuple(warnings),
     )

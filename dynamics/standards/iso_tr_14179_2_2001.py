@@ -6,6 +6,7 @@ textbooks (Schlenk 1994; Niemann/Winter II) and should be compared with a copy b
 """
 
 import math
+from typing import NamedTuple
 
 from dynamics.errors import DynamicsInputError
 
@@ -26,31 +27,39 @@ LUBRICANT_FACTOR = {
 """X_L by base oil; medium confidence (Schlenk 1994), a measured value is better."""
 
 
-def mu_mz(F_bt_b: float, v_SigmaC: float, rho_redC: float, eta_oil: float, Ra: float, X_L: float) -> float:
-    """Mean friction coefficient of the mesh (Schlenk).
+class PitchPointContact(NamedTuple):
+    """Contact at the pitch point as the mean friction coefficient reads it."""
+
+    F_bt_b: float
+    """Tooth force in the transverse base tangent plane per face width [N/mm]."""
+    v_SigmaC: float
+    """Sum of the surface speeds, 2 v_t sin(alpha_wt) [m/s]."""
+    rho_redC: float
+    """Relative radius of curvature [mm]."""
+    eta_oil: float
+    """Dynamic viscosity at the oil temperature [mPa s]."""
+    Ra: float
+    """Mean roughness of both flanks [um]."""
+
+
+def mu_mz(contact: PitchPointContact, X_L: float) -> float:
+    """Mean friction coefficient of the mesh (Schlenk), X_L the lubricant factor [-].
 
     mu_mz = 0.048 (F_bt/b / (v_SigmaC rho_redC))^0.2 eta_oil^-0.05 Ra^0.25 X_L
-
-    F_bt_b : tooth force in the transverse base tangent plane per face width [N/mm]
-    v_SigmaC : sum of the surface speeds at the pitch point, 2 v_t sin(alpha_wt) [m/s]
-    rho_redC : relative radius of curvature at the pitch point [mm]
-    eta_oil : dynamic viscosity at the oil temperature [mPa s]
-    Ra : mean roughness of both flanks [um]
-    X_L : lubricant factor [-]
     """
+    F_bt_b, v_SigmaC, rho_redC, eta_oil, Ra = contact
     mu: float = 0.048 * (F_bt_b / (v_SigmaC * rho_redC)) ** 0.2 * eta_oil**-0.05 * Ra**0.25 * X_L
     return mu
 
 
-def mu_mz_michaelis(
-    F_bt_b: float, v_SigmaC: float, rho_redC: float, eta_oil: float, Ra: float, d_1: float, X_L: float
-) -> float:
+def mu_mz_michaelis(contact: PitchPointContact, d_1: float, X_L: float) -> float:
     """Mean friction coefficient of the mesh (Michaelis; Niemann/Winter II).
 
     mu_mz = 0.045 (F_bt/b / (v_SigmaC rho_redC))^0.2 eta_oil^-0.05 X_R X_L , X_R = 3.8 (Ra / d_1)^0.25
 
-    Units as in `mu_mz`; Ra [um], d_1 reference diameter of the pinion [mm].
+    d_1 : reference diameter of the pinion [mm]; X_L : lubricant factor [-]
     """
+    F_bt_b, v_SigmaC, rho_redC, eta_oil, Ra = contact
     X_R = 3.8 * (Ra / d_1) ** 0.25
     mu: float = 0.045 * (F_bt_b / (v_SigmaC * rho_redC)) ** 0.2 * eta_oil**-0.05 * X_R * X_L
     return mu
@@ -61,7 +70,7 @@ def H_V(z_1: int, u: float, beta_b: float, eps_1: float, eps_2: float) -> float:
 
     H_V = pi (u + 1) / (z_1 u cos beta_b) (1 - eps_alpha + eps_1^2 + eps_2^2)
 
-    beta_b [rad]. Raises ValueError where the formula does not hold: pitch point outside the path of contact
+    beta_b [rad]. Raises DynamicsInputError where the formula does not hold: pitch point outside the path of contact
     (eps_1 or eps_2 negative) or eps_alpha outside 1 to 2.
     """
     eps_alpha = eps_1 + eps_2

@@ -1,7 +1,7 @@
 """A gearbox: gears, bearings, seals, their oil, and the housing if temperatures are wanted."""
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
@@ -28,6 +28,9 @@ from rigdesign.case.fields import (
 from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.housing import Housing
 from rigdesign.case.losses import LossFactors
+
+if TYPE_CHECKING:
+    from dynamics.bearing.protocol import Bearing
 
 
 class GearOil(Part):
@@ -124,6 +127,21 @@ class JournalBearingInput(Part):
     radial_damping: LinearDamping | None = None
     """For the record: the drivetrain is torsional."""
 
+    def at_clearance(self, diametral_clearance: float) -> "Bearing":
+        """The bearing for the solver with its clearance as it runs [m]; BearingError where that is impossible."""
+        from dynamics.bearing.journal import JournalBearing
+
+        return JournalBearing(
+            diameter=self.diameter,
+            width=self.width,
+            diametral_clearance=diametral_clearance,
+            feed_share=self.feed_share,
+        )
+
+
+BearingInput: TypeAlias = JournalBearingInput
+"""Bearing of any kind; a further kind joins here."""
+
 
 class Seals(Part):
     """Seals of one shaft: where it passes the walls of the chamber, and where it leaves the gearbox.
@@ -201,7 +219,7 @@ class Gearbox(Part):
     gears: Mapping[Name, Gear] = Field(min_length=2)
     meshes: Mapping[Name, GearMesh] = Field(min_length=1)
     oil: GearOil
-    bearings: Mapping[Name, JournalBearingInput] = Field(min_length=1)
+    bearings: Mapping[Name, BearingInput] = Field(min_length=1)
     bearing_oil: BearingOil
     seals: Mapping[Name, Seals] = {}
     heat_split: HeatSplit

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping
 
-from rigdesign.case.gearbox import Gearbox, JournalBearingInput
+from rigdesign.case.gearbox import BearingInput, Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.housing import GapExchange, Housing, HousingShaft, SeriesExchange
 from thermal.housing.geometry import ClampingField, GearDisc, HousingGeometry, ShaftGeometry
@@ -63,7 +63,7 @@ def gear_on(gearbox: Gearbox, shaft: str) -> tuple[str, Gear] | None:
     return next(((name, gear) for name, gear in gearbox.gears.items() if gear.shaft == shaft), None)
 
 
-def bearing_on(gearbox: Gearbox, shaft: str, side: str) -> JournalBearingInput:
+def bearing_on(gearbox: Gearbox, shaft: str, side: str) -> BearingInput:
     """Bearing of a shaft at one end of the housing; KeyError when there is none."""
     for bearing in gearbox.bearings.values():
         if (bearing.shaft, bearing.side) == (shaft, side):

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dynamics.response.schedule import RampLimits, ramp_rules
 from rigdesign.checks.component_limits import bought_parts
 from rigdesign.checks.rules import Rule, exact, hold, not_applicable
-from rigdesign.checks.thermal import transition_speed_rpm
+from rigdesign.checks.thermal import transition_speeds_rpm
 from rigdesign.coupling.time_run import schedule_of
-from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig
+from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig, worst
 from rigdesign.results.result import Check
 
 RPM = 30.0 / math.pi
@@ -74,7 +74,8 @@ def _transition(solved: SolvedRig) -> Check:
         limit=None if limit is None else limit * RPM,
     )  # fmt: skip
     start = solved.case.limits.bearing.start_torque_limit
-    if limit is None or start is None or not any(point.point.torque for point in solved.points):
+    speeds = [] if start is None else transition_speeds_rpm(solved, start)
+    if limit is None or not speeds:
         return not_applicable(rule, NO_LIMIT)
-    value, where = transition_speed_rpm(solved, start)
+    value, where = worst(speeds)
     return hold(rule, value, f"{where}, load of the start torque")

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 from dynamics.rating.iso_rating import permissible_factors, root_stress, transverse_load_factor
+from dynamics.standards.iso6336_3_2006 import LoadFactors
 from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.records.curves import iso_factor
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
@@ -97,9 +98,14 @@ def _iso_stresses(solved: SolvedRig, mesh: int, index: int) -> Iterator[tuple[fl
             pair, iso_factor(rig, name, torque, speed), dynamic=factor, face_load=entry.face_load_factor
         )
         stress = root_stress(
-            pair, torque, index, grade=gear.quality_grade, application_factor=entry.application_factor,
-            dynamic=factor, face_load=entry.face_load_factor, transverse_load=shared,
-        )  # fmt: skip
+            pair,
+            torque,
+            index,
+            LoadFactors(
+                K_A=entry.application_factor, K_V=factor, K_Fbeta=entry.face_load_factor, K_Falpha=shared
+            ),
+            grade=gear.quality_grade,
+        )
         yield (
             stress.sigma_F,
             f"nominal {stress.sigma_F0:.0f} MPa, simulated K_V {factor:.3f}, K_Fbeta {entry.face_load_factor:.2f}, "

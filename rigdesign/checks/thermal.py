@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator
 
-from dynamics.bearing.journal import BearingState
+from dynamics.bearing.protocol import BearingState
 from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.coupling.loads import MeshModel
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LIMIT, SolvedRig, worst
@@ -125,7 +125,7 @@ def _tempering_distances(solved: SolvedRig) -> Iterator[tuple[float, str]]:
 
 
 def _films(solved: SolvedRig) -> list[tuple[str, BearingState]]:
-    """(place and stage, state) of every journal bearing at every held stage."""
+    """(place and stage, state) of every bearing at every held stage."""
     return [
         (f"{name}, stage {point.point.stage}", state)
         for point in solved.points
@@ -227,13 +227,21 @@ def _bearings(solved: SolvedRig) -> Iterator[Check]:
     yield _held(
         "bearing.minimum_film", "smallest film of a journal bearing", "um",
         _scaled(limits.film_thickness_minimum, UM),
-        ((UM * state.minimum_film, where) for where, state in _films(solved)),
+        (
+            (UM * state.minimum_film, where)
+            for where, state in _films(solved)
+            if state.minimum_film is not None
+        ),
         source="limits.bearing.film_thickness_minimum; film after ISO 7902-1", at_least=True,
     )  # fmt: skip
     yield _held(
         "bearing.specific_load", "largest specific load of a journal bearing", "MPa",
         _scaled(limits.specific_load_maximum, 1e-6),
-        ((1e-6 * state.specific_load, where) for where, state in _films(solved)),
+        (
+            (1e-6 * state.specific_load, where)
+            for where, state in _films(solved)
+            if state.specific_load is not None
+        ),
         source="limits.bearing.specific_load_maximum",
     )  # fmt: skip
 
@@ -254,12 +262,12 @@ def _oil(solved: SolvedRig) -> Iterator[Check]:
         )  # fmt: skip
 
 
-def transition_speed_rpm(solved: SolvedRig, torque: float) -> tuple[float, str]:
-    """Highest Vogelpohl transition speed [rpm] of all bearings under the load of a stated torque [N m], and where.
+def transition_speeds_rpm(solved: SolvedRig, torque: float) -> list[tuple[float, str]]:
+    """Vogelpohl transition speeds [rpm] of the bearings that have one under the load of a torque [N m], and where.
 
     Taken from the films of each loaded held stage; the speed grows with the load.
     """
-    return worst(
+    return [
         (
             torque / abs(point.point.torque) * state.transition_speed * 30.0 / math.pi,
             f"{name} at the viscosity of stage {point.point.stage}",
@@ -267,4 +275,5 @@ def transition_speed_rpm(solved: SolvedRig, torque: float) -> tuple[float, str]:
         for point in solved.points
         if point.point.torque
         for name, state in point.last.bearings.items()
-    )
+        if state.transition_speed is not None
+    ]

@@ -1,12 +1,11 @@
-"""Films of the journal bearings at one operating point: what they carry and what heats them."""
+"""Bearings at one operating point: what they carry and what heats their oil."""
 
 import math
 from collections.abc import Callable
 
-from dynamics.bearing.journal import BearingState, JournalBearing, solve_bearing
+from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState, OilSupply
 from rigdesign.base.errors import named
-from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.gearbox import JournalBearingInput as CaseBearing
+from rigdesign.case.gearbox import BearingInput, Gearbox
 from rigdesign.case.gears import GearMesh
 from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.state import CouplingState, OperatingPoint
@@ -16,24 +15,29 @@ from rigdesign.rig.oil_supply import bearing_feed
 GRAVITY = 9.81
 
 
+def solve_bearing(bearing: Bearing, operation: BearingOperation) -> BearingState:
+    """State of one bearing, whatever its kind."""
+    return bearing.operating_state(operation)
+
+
 def solve_bearings(
     rig: Rig,
     point: OperatingPoint,
     coupling_state: CouplingState,
-    solve: Callable[..., BearingState] = solve_bearing,
+    solve: Callable[[Bearing, BearingOperation], BearingState] = solve_bearing,
 ) -> dict[str, BearingState]:
-    """Film of every journal bearing by ``gearbox.bearing``.
+    """State of every bearing by ``gearbox.bearing``.
 
-    solve : of one film; one that remembers may stand in its place
+    solve : of one bearing; one with memoisation may take its place
 
-    A loss that the case prescribes heats its film in place of the friction the film would make.
+    A loss that the case prescribes heats the oil in place of the friction the bearing would make.
 
     Raises
     ------
     BearingError
         A hot clearance that is used up.
     BearingNotConvergedError
-        No film temperature balances friction and oil flow.
+        No oil temperature balances friction and oil flow.
     """
     states = {}
     loads = bearing_loads(rig, coupling_state)
@@ -41,28 +45,26 @@ def solve_bearings(
         box_name, part = name.split(".")
         feed = bearing_feed(rig, box_name)
         with named(f"gearboxes.{box_name}.bearings.{part}"):
-            states[name] = solve(
-                JournalBearing(
-                    diameter=entry.diameter,
-                    width=entry.width,
-                    diametral_clearance=coupling_state.bearing_clearance[name],
-                    feed_share=entry.feed_share,
+            bearing = entry.at_clearance(coupling_state.bearing_clearance[name])
+            operation = BearingOperation(
+                load=loads[name],
+                speed=rig.shaft_speed(entry.shaft, point.speed),
+                oil=OilSupply(
+                    inlet_temperature=feed.inlet,
+                    flow=feed.flow,
+                    viscosity=feed.oil.dynamic_viscosity,
+                    density=feed.oil.density(feed.inlet),
+                    heat_capacity=feed.oil.heat_capacity(feed.inlet),
                 ),
-                loads[name],
-                rig.shaft_speed(entry.shaft, point.speed),
-                feed.inlet,
-                feed.flow,
-                feed.oil.dynamic_viscosity,
-                feed.oil.density(feed.inlet),
-                feed.oil.heat_capacity(feed.inlet),
-                coupling_state.bearing_heat[name],
+                heat_from_bodies=coupling_state.bearing_heat[name],
                 friction_heat=_imposed_heat(rig, name, entry, point),
                 friction_factor=box.loss_factors.bearing,
             )
+            states[name] = solve(bearing, operation)
     return states
 
 
-def _imposed_heat(rig: Rig, name: str, entry: CaseBearing, point: OperatingPoint) -> float | None:
+def _imposed_heat(rig: Rig, name: str, entry: BearingInput, point: OperatingPoint) -> float | None:
     """Friction heat that the case prescribes for a film [W]; None where the film makes its own."""
     box, part = name.split(".")
     given = given_power(rig.case, point, box, "bearing", part)
@@ -71,7 +73,7 @@ def _imposed_heat(rig: Rig, name: str, entry: CaseBearing, point: OperatingPoint
     return 0.0 if rig.case.losses.basis == "input" else constant_drag(rig, box, entry, point)
 
 
-def constant_drag(rig: Rig, box: str, entry: CaseBearing, point: OperatingPoint) -> float | None:
+def constant_drag(rig: Rig, box: str, entry: BearingInput, point: OperatingPoint) -> float | None:
     """Power of a bearing whose drag the case states as constant damping [W]; None where the film decides."""
     if rig.case.losses.bearing_drag == "film" or entry.torsional_damping is None:
         return None
@@ -96,7 +98,7 @@ def bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, float]:
 
 
 def _radial_load(
-    rig: Rig, name: str, box: Gearbox, entry: CaseBearing, coupling_state: CouplingState
+    rig: Rig, name: str, box: Gearbox, entry: BearingInput, coupling_state: CouplingState
 ) -> float:
     box_name = name.split(".")[0]
     tangential, separating, weight = 0.0, 0.0, 0.5 * GRAVITY * rig.shaft_mass(entry.shaft)

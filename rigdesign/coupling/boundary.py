@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from dynamics.bearing.journal import BearingState
+from dynamics.bearing.protocol import BearingState
 from rigdesign.case import housing as laws
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, partner_of

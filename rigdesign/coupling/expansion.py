@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigdesign.case.gearbox import JournalBearingInput
+from rigdesign.case.gearbox import BearingInput
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.rig.model import Rig
 from thermal.expansion.clearances import BearingGrowth, CentreDistance
@@ -75,8 +75,8 @@ def axes_of(rig: Rig, name: str, shape: Expansion, shafts: tuple[str, str]) -> C
     )
 
 
-def bearing_expansion(rig: Rig, name: str, shape: Expansion, entry: JournalBearingInput) -> BearingGrowth:
-    """Growth of the bearing of the case at one end of a shaft."""
+def bearing_expansion(rig: Rig, name: str, shape: Expansion, entry: BearingInput) -> BearingGrowth:
+    """Thermal expansion of the bearing of the case at one end of a shaft."""
     surface = f"bearing_bore_{entry.shaft}_{entry.side}"
     station = next(b for b in rig.models[name].bearings if b.bore_surface == surface)
     return shape.bearings[station.name]
@@ -97,8 +97,8 @@ def hot_clearances(rig: Rig, speed: float, expansion: Mapping[str, HousingExpans
     return clearances
 
 
-def centrifugal_expansion(rig: Rig, entry: JournalBearingInput, speed: float) -> float:
-    """Growth of the journal diameter by rotation [m]: solid disc, rho w^2 R^3 (1 - nu) / (4 E) on the radius.
+def centrifugal_expansion(rig: Rig, entry: BearingInput, speed: float) -> float:
+    """Expansion of the journal diameter by rotation [m]: solid disc, rho w^2 R^3 (1 - nu) / (4 E) on the radius.
 
     Source: Timoshenko and Goodier, Theory of Elasticity, section 32.
     """

@@ -4,7 +4,7 @@ expansion."""
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from dynamics.bearing.journal import BearingState
+from dynamics.bearing.protocol import BearingState
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.finite import finite
 from rigdesign.coupling.bearing_films import solve_bearings

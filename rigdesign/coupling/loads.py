@@ -4,17 +4,18 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from dynamics.drivetrain.bracing import Mode, ShiftedGear, brace
+from dynamics.drivetrain.bracing import LoopBracing, Mode, ShiftedGear, brace
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsNotConverged
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import (
-    Microgeometry,
+    ContactDiscretisation,
+    MeshDissipation,
+    MeshPosition,
     alike_teeth,
-    cumulative_pitch,
     default_slices,
     mesh_law,
-    pitch_waves,
 )
 from dynamics.mesh.friction import (
     Doleschel,
@@ -26,9 +27,10 @@ from dynamics.mesh.friction import (
     friction_coefficient,
 )
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.microgeometry import Microgeometry, cumulative_pitch, pitch_waves
 from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
-from dynamics.response.speed_sweep import CurvePoint, periodic_response
+from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
 from rigdesign.case.gears import FlankModification, Gear
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
@@ -102,16 +104,20 @@ def mesh_model(
     micro = microgeometry(gears[0], pair, 0), microgeometry(gears[1], pair, 1, entry.tooth_offset)
     law = mesh_law(
         pair,
-        stiffness=shape,
+        shape,
         micro=micro,
-        n_slices=_slices(rig, pair, micro),
-        damping=entry.damping,
-        damping_acts_on=entry.damping_acts_on,
-        friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
-        offset=coupling_state.axial_expansion[name] * math.tan(pair.base_helix_angle)
-        + flank_expansion(rig.pairs[name], pair),
-        phase=mesh_phase(rig, name),
-        tooth_offset_2=entry.tooth_offset % gears[1].teeth,
+        position=MeshPosition(
+            offset=coupling_state.axial_expansion[name] * math.tan(pair.base_helix_angle)
+            + flank_expansion(rig.pairs[name], pair),
+            phase=mesh_phase(rig, name),
+            tooth_offset_2=entry.tooth_offset % gears[1].teeth,
+        ),
+        dissipation=MeshDissipation(
+            damping=entry.damping,
+            damping_acts_on=entry.damping_acts_on,
+            friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
+        ),
+        discretisation=ContactDiscretisation(n_slices=_slices(rig, pair, micro)),
     )
     return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law)
 
@@ -318,7 +324,7 @@ def brace_initial(
         return BracingState(mode=mode)
     met = mesh_models(rig, point, cold) if models is None else models
     laws = [alike_teeth(law) for law in laws_of(met)]
-    state = brace(rig.system, laws, signed_torque(rig, point), mode, gear=shifted_gear(rig))
+    state = brace(rig.system, laws, signed_torque(rig, point), LoopBracing(mode=mode, gear=shifted_gear(rig)))
     return BracingState(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
 
 
@@ -342,11 +348,12 @@ def respond(
         rig.system,
         periodic_laws(rig, shifted_laws(rig, models, setting)),
         [rig.pinion_speed(point.speed)],
-        signed_torque(rig, point) if controlled else None,
-        twist=None if controlled else setting.twist,
-        period=rig.case.numerics.response_period,
+        LoopLoad(
+            torque=signed_torque(rig, point) if controlled else None,
+            twist=None if controlled else setting.twist,
+        ),
         drag_torques=drags,
-        cutoff=rig.highest_mode,
+        settings=SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
     )
     if curve.failed:
         raise DynamicsNotConverged(f"periodic response at stage {point.stage!r}: {curve.failed[0][1]}")

@@ -4,11 +4,11 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from dynamics.bearing.journal import BearingState
+from dynamics.bearing.protocol import BearingState
 from dynamics.gear.pair import GearPair
 from dynamics.losses.mesh_loss import Loss, ToothPath, mesh_loss, squeeze_loss
-from dynamics.losses.oil_jet import JET_ANGLES, jet_power, oil_acceleration
-from dynamics.losses.seal_loss import gap_seal_loss, lip_seal_loss
+from dynamics.losses.oil_jet import JET_ANGLES, OilJet, oil_acceleration
+from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals
@@ -194,6 +194,18 @@ def _squeezing(rig: Rig, point: OperatingPoint, models: Sequence[MeshModel]) -> 
         yield PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=0.0)
 
 
+def bearing_ratings(state: BearingState) -> dict[str, float]:
+    """Entries of a record for what a bearing is rated by; those its kind knows nothing of are left out."""
+    ratings = {}
+    if state.specific_load is not None:
+        ratings["specific_load_MPa"] = 1e-6 * state.specific_load
+    if state.minimum_film is not None:
+        ratings["minimum_film_um"] = 1e6 * state.minimum_film
+    if state.transition_speed is not None:
+        ratings["transition_speed_rpm"] = state.transition_speed * 30.0 / math.pi
+    return ratings
+
+
 def _bearing_loss(
     rig: Rig, box_name: str, part: str, point: OperatingPoint, state: BearingState
 ) -> PlacedLoss:
@@ -205,12 +217,10 @@ def _bearing_loss(
         power=state.power if drag is None else drag,
         details={
             "load_N": state.load,
-            "specific_load_MPa": 1e-6 * state.specific_load,
-            "minimum_film_um": 1e6 * state.minimum_film,
+            **bearing_ratings(state),
             "film_temperature_degC": state.film_temperature - 273.15,
             "torsional_damping_Nms_rad": state.torsional_damping,
-            "transition_speed_rpm": state.transition_speed * 30.0 / math.pi,
-            "source": "ISO 7902-1 / DIN 31652-1, film solved",
+            "source": state.source,
         },
         warnings=state.warnings,
     )
@@ -260,16 +270,14 @@ def _oil_jets(
     for mesh_name, mesh in box.meshes.items():
         name = f"{box_name}.{mesh_name}"
         omega = rig.shaft_speed(box.gears[mesh.pinion].shaft, point.speed)
-        loss = oil_acceleration(
-            name,
-            injected_flow(box),
-            oil.density(box.oil.inlet_temperature),
-            omega * pairs[name].working_radii[0],
-            jet_velocity(box),
-            JET_ANGLES[box.oil.jet_direction],
+        jet = OilJet(
+            flow=injected_flow(box),
+            density=oil.density(box.oil.inlet_temperature),
+            speed=jet_velocity(box),
+            angle=JET_ANGLES[box.oil.jet_direction],
         )
-        pumped = jet_power(injected_flow(box), oil.density(box.oil.inlet_temperature), jet_velocity(box))
-        yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0, pumped=pumped)
+        loss = oil_acceleration(name, jet, omega * pairs[name].working_radii[0])
+        yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0, pumped=jet.power)
 
 
 def _seals(
@@ -317,8 +325,8 @@ def _seal_losses(
         if seal.leaves and seals.kind == "radial_lip":
             found.append((seal, lip_seal_loss(place, seal.diameter, omega)))
         elif seal.length is not None:
-            gap = seals.radial_gap, seal.length
-            loss = gap_seal_loss(place, 0.5 * seal.diameter, *gap, omega, mist.density, mist.viscosity)
+            gap = SealGap(radius=0.5 * seal.diameter, gap=seals.radial_gap, length=seal.length)
+            loss = gap_seal_loss(place, gap, omega, mist.density, mist.viscosity)
             found.append((seal, loss))
     return found
 

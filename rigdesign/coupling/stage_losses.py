@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from dynamics.bearing.journal import BearingState
+from dynamics.bearing.protocol import BearingState
 from dynamics.errors import DynamicsNotConverged
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings

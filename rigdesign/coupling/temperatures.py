@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.bearing.journal import BearingState
+from dynamics.bearing.protocol import BearingState
 from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, STORED, boundary_conditions
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.state import CouplingState, OperatingPoint

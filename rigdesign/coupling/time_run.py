@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.response.propagator import DEFAULT_CUTOFF
+from dynamics.response.command import Command as RunCommand
+from dynamics.response.command import DragCurve, MotorDrive, Sampling
+from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.schedule import Kind, Schedule, Stage, StageCommand, s_function
-from dynamics.response.time_response import Command as RunCommand
-from dynamics.response.time_response import DragCurve, TimeResponse, run_schedule
+from dynamics.response.time_response import TimeResponse, run_schedule
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case.schedule import StageValues
 from rigdesign.coupling.bearing_films import solve_bearings
@@ -27,8 +28,8 @@ DRAG_SHARES = (0.02, 0.0625, 0.125, 0.25, 0.4, 0.55, 0.7, 0.85, 1.0)
 """Shares of the highest speed at which drag torques are computed for the run."""
 SPEED_TOLERANCE = 0.01
 """Share of the test speed that may be missing at the end of a run-up."""
-SLOT = 0.01
-"""Length of the envelope slots [s]."""
+WINDOW = 0.01
+"""Length of the envelope windows [s]."""
 LEAST_TORQUE = 1.0
 """Bracing torque [N m] that is kept at standstill: the flanks just touch."""
 QUICK_CUTOFF = 20e3
@@ -88,14 +89,16 @@ def run_ramp(
             torque=np.maximum(command.torque * locked_share(rig), LEAST_TORQUE) if controlled else None,
             twist=None if controlled else np.full_like(command.time, setting.twist),
         ),
-        torque_limit=torque_limits(rig)[command.stage],
         drags=drag_curves(rig, warm, coupling_state),
-        sample_rate=numerics.sample_rate,
-        substeps=numerics.internal_steps,
-        slot=SLOT,
-        keep_channels=False,
-        keep_accounts=False,
-        cutoff=QUICK_CUTOFF if rig.fidelity == "quick" else DEFAULT_CUTOFF,
+        motor=MotorDrive(torque_limit=torque_limits(rig)[command.stage]),
+        sampling=Sampling(
+            sample_rate=numerics.sample_rate,
+            substeps=numerics.internal_steps,
+            window=WINDOW,
+            keep_channels=False,
+            keep_accounts=False,
+            cutoff=QUICK_CUTOFF if rig.fidelity == "quick" else DEFAULT_CUTOFF,
+        ),
     )
     require_speeds(rig, schedule, response)
     return response
@@ -188,12 +191,12 @@ def _traces(response: TimeResponse) -> dict[str, list[float]]:
 
 
 def mesh_synchronous_window(rig: Rig, speed: float, duration: float) -> float:
-    """Whole periods of the first mesh that last one slot at least, within the stage [s].
+    """Whole periods of the first mesh that last one window at least, within the stage [s].
 
     speed : of the pinion of the first mesh [rad/s]; duration : of the stage [s]
     """
-    period = 2.0 * np.pi / (speed * rig.pairs[rig.mesh_names[0]].gears[0].teeth) if speed > 0.0 else SLOT
-    return min(float(np.ceil(SLOT / period)) * period, duration)
+    period = 2.0 * np.pi / (speed * rig.pairs[rig.mesh_names[0]].gears[0].teeth) if speed > 0.0 else WINDOW
+    return min(float(np.ceil(WINDOW / period)) * period, duration)
 
 
 def _missed(stage: Stage, excess: float) -> str:

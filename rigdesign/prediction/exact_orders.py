@@ -7,14 +7,15 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.orders.deviation_response import OrderLoads
 from dynamics.response.harmonic_walk import mesh_cells
-from dynamics.response.periodic_response import periodic_by_time
-from dynamics.response.speed_sweep import periodic_response
+from dynamics.response.periodic_response import TimeSettings, periodic_by_time
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.coupling.loads import BracingState, signed_torque
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
@@ -77,9 +78,15 @@ def exact_motion(
         march = mesh_cells(port_model(rig.system, laws), "hunting_cycle", 0)[0] > MOST_CELLS
     if not march:
         curve = periodic_response(
-            rig.system, laws, [speed], torque, twist=twist, period="hunting_cycle", drag_torques=drags,
-            methods=("harmonic_balance",), cutoff=rig.highest_mode,
-        )  # fmt: skip
+            rig.system,
+            laws,
+            [speed],
+            LoopLoad(torque=torque, twist=twist),
+            drag_torques=drags,
+            settings=SweepSettings(
+                period="hunting_cycle", cutoff=rig.highest_mode, methods=("harmonic_balance",)
+            ),
+        )
         if curve.points:
             found = curve.points[0]
             wave = found.wave
@@ -88,9 +95,13 @@ def exact_motion(
                 twist=found.twist, drive=found.drive_torque,
             )  # fmt: skip
     marched = periodic_by_time(
-        rig.system, laws, speed=speed, torque=torque, twist=twist, period="hunting_cycle", drag_torques=drags,
-        longest_time=LONGEST_MARCH, cutoff=rig.highest_mode,
-    )  # fmt: skip
+        rig.system,
+        laws,
+        speed=speed,
+        drag_torques=drags,
+        load=LoopLoad(torque=torque, twist=twist),
+        settings=TimeSettings(period="hunting_cycle", longest_time=LONGEST_MARCH, cutoff=rig.highest_mode),
+    )
     if not marched.steady:
         raise DynamicsNotConverged(
             f"march over the hunting cycle at {point.stage!r}: {'; '.join(marched.warnings)}"

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.bearing.journal import BearingState
+from dynamics.bearing.protocol import BearingState
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.expansion import HousingExpansion
 from rigdesign.coupling.iteration import IterationParts

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.bearing.journal import BearingState, solve_bearing
+from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.losses.mesh_loss import ToothPath
 from dynamics.mesh.flank import alike_teeth
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import CurvePoint
-from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_films import solve_bearing, solve_bearings
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.iteration import IterationParts
 from rigdesign.coupling.loads import (
@@ -59,11 +59,11 @@ class Memoisation:
         """As `solve_bearings`."""
         return solve_bearings(rig, point, coupling_state, self._film)
 
-    def _film(self, *given: Any, **named: Any) -> BearingState:
-        key = (given, tuple(named.items()))
+    def _film(self, bearing: Bearing, operation: BearingOperation) -> BearingState:
+        key = (bearing, operation)
         known = self._room("films")
         if key not in known:
-            known[key] = solve_bearing(*given, **named)
+            known[key] = solve_bearing(bearing, operation)
         found: BearingState = known[key]
         return found
 

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.orders.deviation_response import (
@@ -27,7 +28,7 @@ from dynamics.orders.deviation_response import (
     mean_windup,
 )
 from dynamics.response.initial_state import pinion_ratios
-from dynamics.response.speed_sweep import CurvePoint, periodic_response
+from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.loads import BracingState, MeshModel, shifted_laws, signed_torque
 from rigdesign.coupling.state import OperatingPoint
@@ -218,10 +219,12 @@ def ideal_response(
         _still(rig.system),
         [alike_teeth(law) for law in shifted_laws(rig, models, setting)],
         [rig.pinion_speed(point.speed)],
-        signed_torque(rig, point) if controlled else None,
-        twist=None if controlled else setting.twist,
+        LoopLoad(
+            torque=signed_torque(rig, point) if controlled else None,
+            twist=None if controlled else setting.twist,
+        ),
         drag_torques=drags,
-        cutoff=rig.highest_mode,
+        settings=SweepSettings(cutoff=rig.highest_mode),
     )
     if curve.failed:
         raise DynamicsNotConverged(f"mesh-periodic response at {point.stage!r}: {curve.failed[0][1]}")

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modes import LoopMode, loop_modes
 from dynamics.drivetrain.static_loop import port_model, solve_static
 from dynamics.mesh.flank import alike_teeth
@@ -84,7 +85,7 @@ def standing_laws(rig: Rig) -> list[MeshLaw]:
         for law in shifted_laws(rig, mesh_models(rig, point, cold), brace_initial(rig, point, cold))
     ]
     loop = port_model(rig.system, laws)
-    state = solve_static(loop, torque=signed_torque(rig, point))
+    state = solve_static(loop, LoopLoad(torque=signed_torque(rig, point)))
     found = []
     for m, (law, packed) in enumerate(zip(laws, loop.packed)):
         pinion = loop.pinions[m]

@@ -7,9 +7,10 @@ from functools import partial
 
 import numpy as np
 
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import MeshLaw
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor
-from dynamics.response.speed_sweep import ResponseCurve, periodic_response, refined_response
+from dynamics.response.speed_sweep import ResponseCurve, SweepSettings, periodic_response, refined_response
 from dynamics.standards.iso6336_1_2006 import DynamicFactor
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loads import laws_of, locked_share, mesh_models, signed_torque
@@ -153,8 +154,8 @@ def _curve(
 ) -> ResponseCurve:
     assert rig.system is not None
     solve = partial(
-        periodic_response, rig.system, periodic_laws(rig, laws), torque=torque, drag_torques=warm.drags,
-        period=rig.case.numerics.response_period, cutoff=rig.highest_mode,
+        periodic_response, rig.system, periodic_laws(rig, laws), load=LoopLoad(torque=torque), drag_torques=warm.drags,
+        settings=SweepSettings(period=rig.case.numerics.response_period, cutoff=rig.highest_mode),
     )  # fmt: skip
     return refined_response(solve, speeds, rounds=ROUNDS) if refined and resolved(rig) else solve(speeds)
 

@@ -5,8 +5,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from dynamics.drivetrain.bracing import BracingDrift, drift
+from dynamics.drivetrain.bracing import BracingDrift, LoopBracing, drift
 from dynamics.drivetrain.loop_crossings import loop_crossings
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modes import (
     LoopMode,
     damping_audit,
@@ -16,7 +17,7 @@ from dynamics.drivetrain.modes import (
     shaft_frequencies,
 )
 from dynamics.drivetrain.static_loop import port_model, solve_static
-from dynamics.response.propagator import DEFAULT_CUTOFF
+from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import laws_of, mesh_models, shifted_gear, signed_torque
@@ -166,7 +167,7 @@ def gearbox_dynamics(rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopM
         },
         stage_loads=stage_loads(rig, run.ramp, mesh),
         dynamic_torque_peak_Nm=max(
-            torque_peak(run.ramp.slots, mesh),
+            torque_peak(run.ramp.windows, mesh),
             *(float(p.last.response.maximum[mesh]) for p in run.points if p.last.response is not None),
         ),
         iso_factors=_flat(asdict(iso)),
@@ -225,7 +226,7 @@ def _stresses(rig: Rig, point: PointResult, mesh: int) -> tuple[root.Pair, root.
     """Dynamic and quasi-static root stress of pinion and wheel at a held point."""
     assert rig.system is not None and point.last.response is not None
     ports = port_model(rig.system, laws_of(point.last.models))
-    state = solve_static(ports, torque=signed_torque(rig, point.point))
+    state = solve_static(ports, LoopLoad(torque=signed_torque(rig, point.point)))
     model = point.last.models[mesh]
     return root.dynamic_stress(model, point.last.response, mesh), root.static_stress(
         model, state, ports, mesh
@@ -263,7 +264,7 @@ def geometry(rig: Rig, test: PointResult, mesh: int) -> dict[str, float | str]:
 def bracing_record(rig: Rig, point: PointResult) -> dict[str, Any]:
     """Setting of one held stage, cold and hot."""
     change = bracing_drift(rig, point)
-    hot, cold = change.hot, change.cold
+    hot, cold = change.warm, change.initial
     return {
         "stage": point.point.stage,
         "mode": hot.mode,
@@ -289,7 +290,13 @@ def bracing_drift(rig: Rig, point: PointResult) -> BracingDrift:
     mode = power.bracing.mode
     if mode == "torque_controlled" and gear is None:
         mode = "twist_held"
-    return drift(system, cold, laws_of(point.last.models), signed_torque(rig, point.point), mode, gear=gear)
+    return drift(
+        system,
+        cold,
+        laws_of(point.last.models),
+        signed_torque(rig, point.point),
+        LoopBracing(mode=mode, gear=gear),
+    )
 
 
 def torque_balance(rig: Rig, point: PointResult) -> dict[str, Any]:

@@ -10,7 +10,7 @@ import numpy as np
 from rigdesign.coupling.expansion import axes_of, bearing_expansion
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult
-from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.losses import PlacedLoss, bearing_ratings
 from rigdesign.coupling.oil import OilStream, heater_and_cooler
 from rigdesign.coupling.temperatures import HousingField, heat_stored, heat_to_room, solve_housing
 from rigdesign.records.alignment import axis_rows, bore_rows, coupling_rows
@@ -258,10 +258,8 @@ def _bearings(rig: Rig, result: PointResult, name: str, shape: Expansion) -> lis
                 "diametral_clearance_cold_um": UM * entry.diametral_clearance,
                 "diametral_clearance_hot_um": UM * result.last.coupling_state.bearing_clearance[full],
                 "bore_ovality_um": UM * expansion.bore_ovality,
-                "minimum_film_um": UM * state.minimum_film,
                 "film_temperature_degC": state.film_temperature - ZERO,
-                "specific_load_MPa": 1e-6 * state.specific_load,
-                "transition_speed_rpm": state.transition_speed * 30.0 / math.pi,
+                **bearing_ratings(state),
             }
         )
     return rows

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.response.envelopes import Slots, split_lift_off
+from dynamics.response.envelopes import EnvelopeWindows, split_lift_off
 from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.time_run import LEAST_TORQUE, schedule_of, stage_names
 from rigdesign.records.curves import own_ratio
@@ -16,27 +16,27 @@ Array = NDArray[np.float64]
 RPM = 30.0 / np.pi
 
 
-def bounds(slots: Slots, mesh: int) -> tuple[Array, Array, Array]:
-    """Lowest, mean and highest torque of a mesh in every slot [N m], positive on the flank that carries the run."""
-    sign = -1.0 if slots.mean[mesh].sum() < 0.0 else 1.0
-    edges = sign * slots.least[mesh], sign * slots.greatest[mesh]
-    return np.minimum(*edges), sign * slots.mean[mesh], np.maximum(*edges)
+def bounds(windows: EnvelopeWindows, mesh: int) -> tuple[Array, Array, Array]:
+    """Lowest, mean and highest torque of a mesh in every window [N m], positive on the flank that carries the run."""
+    sign = -1.0 if windows.mean[mesh].sum() < 0.0 else 1.0
+    edges = sign * windows.least[mesh], sign * windows.greatest[mesh]
+    return np.minimum(*edges), sign * windows.mean[mesh], np.maximum(*edges)
 
 
-def torque_peak(slots: Slots, mesh: int) -> float:
+def torque_peak(windows: EnvelopeWindows, mesh: int) -> float:
     """Highest dynamic torque of the run [N m], whichever flank carries."""
-    return float(max(np.abs(slots.least[mesh]).max(), np.abs(slots.greatest[mesh]).max()))
+    return float(max(np.abs(windows.least[mesh]).max(), np.abs(windows.greatest[mesh]).max()))
 
 
 def stage_loads(rig: Rig, ramp: TimeResponse, mesh: int) -> list[dict[str, Any]]:
     """Load of one mesh in every stage that turns under torque, by the envelopes of the time run.
 
-    dynamic_factor : highest torque over the mean of its slot, and the speed of the mesh's pinion where it
-        occurs; least_share : lowest torque over the mean of its slot, below zero where the other flank is hit
+    dynamic_factor : highest torque over the mean of its window, and the speed of the mesh's pinion where it
+        occurs; least_share : lowest torque over the mean of its window, below zero where the other flank is hit
     """
-    low, mean, high = bounds(ramp.slots, mesh)
-    speed = own_ratio(rig, mesh) * ramp.slots.speed * RPM
-    stages = np.array(_slot_stages(rig, ramp))
+    low, mean, high = bounds(ramp.windows, mesh)
+    speed = own_ratio(rig, mesh) * ramp.windows.speed * RPM
+    stages = np.array(_window_stages(rig, ramp))
     rows = []
     for stage in schedule_of(rig).stages:
         own = np.flatnonzero((stages == stage.name) & (mean > LEAST_TORQUE) & (speed > 0.0))
@@ -63,7 +63,7 @@ def lift_off(rig: Rig, ramp: TimeResponse, mesh: int) -> list[dict[str, Any]]:
     """Intervals of the run in which a mesh kept losing contact, cut at the ends of the stages."""
     schedule = schedule_of(rig)
     own = [interval for interval in ramp.lift_off if interval.mesh == mesh]
-    pieces = split_lift_off(ramp.slots, own, schedule.starts[1:-1])
+    pieces = split_lift_off(ramp.windows, own, schedule.starts[1:-1])
     middles = np.array([0.5 * (piece.start + piece.end) for piece in pieces])
     return [
         {
@@ -78,22 +78,22 @@ def lift_off(rig: Rig, ramp: TimeResponse, mesh: int) -> list[dict[str, Any]]:
 
 
 def ramp_history(rig: Rig, ramp: TimeResponse) -> RampHistory:
-    """Envelopes of the time run in slots."""
-    slots = ramp.slots
+    """Envelopes of the time run in windows."""
+    windows = ramp.windows
     command = schedule_of(rig).at(_middles(ramp))
-    drive = np.interp(slots.time, ramp.time, ramp.drive_torque)
+    drive = np.interp(windows.time, ramp.time, ramp.drive_torque)
     torque = {}
     for mesh, name in enumerate(rig.mesh_names):
-        low, mean, high = bounds(slots, mesh)
+        low, mean, high = bounds(windows, mesh)
         torque[rig.mesh_labels[name]] = {
             "mean": mean.tolist(),
             "maximum": high.tolist(),
             "minimum": low.tolist(),
         }
     return RampHistory(
-        time_s=slots.time.tolist(),
-        speed_rpm=(slots.speed * RPM).tolist(),
-        stage=_slot_stages(rig, ramp),
+        time_s=windows.time.tolist(),
+        speed_rpm=(windows.speed * RPM).tolist(),
+        stage=_window_stages(rig, ramp),
         target_torque_Nm=command.torque.tolist(),
         drive_torque_Nm=drive.tolist(),
         torque=torque,
@@ -101,9 +101,9 @@ def ramp_history(rig: Rig, ramp: TimeResponse) -> RampHistory:
 
 
 def _middles(ramp: TimeResponse) -> Array:
-    return np.asarray(ramp.slots.time - 0.5 * ramp.slots.duration)
+    return np.asarray(ramp.windows.time - 0.5 * ramp.windows.duration)
 
 
-def _slot_stages(rig: Rig, ramp: TimeResponse) -> list[str]:
-    """Stage of every slot, by its middle."""
+def _window_stages(rig: Rig, ramp: TimeResponse) -> list[str]:
+    """Stage of every window, by its middle."""
     return stage_names(schedule_of(rig), _middles(ramp))

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from dynamics.gear.cylindrical_gear import Rack
 from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import GearBodies
+from dynamics.gear.pair_geometry import GearBodies, TipShortening
 from rigdesign.base.errors import named
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import GearMesh
@@ -43,17 +43,19 @@ def build_pair(box: Gearbox, mesh: GearMesh, materials: Mapping[str, Material]) 
         "poisson_ratios": (solid[0].poisson_ratio, solid[1].poisson_ratio),
         "densities": (solid[0].density, solid[1].density),
     }
-    first = None if mesh.profile_shift_split else _pinion_shift(box, mesh)
+    first = mesh.profile_shift_split or _pinion_shift(box, mesh)
+    assert first is not None
     return GearPair.from_centre_distance(
         normal_module=mesh.normal_module,
         teeth=(pinion.teeth, wheel.teeth),
         centre_distance=mesh.centre_distance,
         face_widths=(pinion.face_width, wheel.face_width),
         profile_shift_1=first,
-        split=mesh.profile_shift_split,
-        tip_shortening=(pinion.tip_shortening, wheel.tip_shortening),
-        contact_ratio=mesh.contact_ratio,
-        tip_cut=mesh.tip_cut or "both",
+        tips=TipShortening(
+            shortening=(pinion.tip_shortening, wheel.tip_shortening),
+            contact_ratio=mesh.contact_ratio,
+            cut_gear=mesh.tip_cut or "both",
+        ),
         **bodies,
     )
 

@@ -8,9 +8,9 @@ from functools import cached_property
 from dynamics.drivetrain.graph import Drivetrain, TorsionalJoint, assemble, joints
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.gear.pair import GearPair
-from dynamics.response.propagator import DEFAULT_CUTOFF
+from dynamics.response.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.case.gearbox import Gearbox, JournalBearingInput
+from rigdesign.case.gearbox import BearingInput, Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.model import Case
@@ -231,7 +231,7 @@ class Rig:
         assert power is not None
         return self.shaft_speed(power.motor.shaft, speed)
 
-    def bearings(self) -> list[tuple[str, Gearbox, JournalBearingInput]]:
+    def bearings(self) -> list[tuple[str, Gearbox, BearingInput]]:
         """(``gearbox.bearing``, gearbox, bearing) of the whole rig."""
         return [
             (f"{box_name}.{name}", box, bearing)

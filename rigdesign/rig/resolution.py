@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from dynamics.drivetrain.graph import Drivetrain
 from dynamics.drivetrain.shaft import Shaft
-from dynamics.response.propagator import DEFAULT_CUTOFF
+from dynamics.response.modal_model import DEFAULT_CUTOFF
 from rigdesign.case.model import Case
 from rigdesign.case.rules.gathered import MOST_SHAFT_ELEMENTS
 from rigdesign.rig.speeds import speed_ratios

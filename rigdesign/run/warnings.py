@@ -7,7 +7,7 @@ import numpy as np
 
 from dynamics.drivetrain.modes import loop_modes, modes_above_samples, sampling_audit
 from dynamics.mesh.flank import reach_beyond
-from dynamics.response.propagator import DEFAULT_CUTOFF
+from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.units import show
 from rigdesign.coupling.boundary import GEAR_OIL, printed_films

@@ -14,7 +14,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from rigdesign.case.gearbox import Gearbox
 from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.stage_losses import StageLosses
@@ -166,7 +165,7 @@ def _bearing_network(
     each = fed.mass_flow
     # a film is balanced with the heat capacity of the oil as fed, the stream with that of its mean temperature
     as_fed = fed.oil.density(fed.inlet) * fed.oil.heat_capacity(fed.inlet) / specific_heat
-    flows = {part: min(each, as_fed * cooling_flow(box, part, state, name)) for part in box.bearings}
+    flows = {part: min(each, as_fed * state.bearings[f"{name}.{part}"].cooling_flow) for part in box.bearings}
     leak = _leak(rig, name, state, specific_heat) if oil else None
     return StreamNetwork(
         specific_heat=specific_heat,
@@ -214,12 +213,6 @@ def _bearing_streams(feed: str, flows: dict[str, float], each: float, leak: floa
         streams.append(Stream(source=LEAK, target=BEARING_OIL, mass_flow=leak, kind="leak"))
     total = math.fsum(s.mass_flow for s in streams if s.target == BEARING_OIL)
     return (*streams, Stream(source=BEARING_OIL, target=None, mass_flow=total))
-
-
-def cooling_flow(box: Gearbox, part: str, state: StageLosses, name: str) -> float:
-    """Oil that passes the film of a bearing [m3/s] (see dynamics.bearing.journal.JournalBearing)."""
-    film = state.bearings[f"{name}.{part}"]
-    return min(film.flow, max(box.bearings[part].feed_share * film.flow, film.side_flow))
 
 
 def _films(kind: str, feed: str, inlet: float, wetted: Sequence[tuple[Film, float]], oil: bool) -> _Stream:

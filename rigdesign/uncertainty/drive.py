@@ -11,7 +11,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.response.time_response import DragCurve, TimeResponse
+from dynamics.response.command import DragCurve
+from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.drag_torques import drag_shafts
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.time_run import drag_curves, schedule_of, torque_limits
@@ -21,11 +22,11 @@ Array = NDArray[np.float64]
 
 
 def peaks_only(ramp: TimeResponse) -> TimeResponse:
-    """The run with one sample a slot, that at which the motor gives most: small enough to be handed on.
+    """The run with one sample a window, that at which the motor gives most: small enough to be handed on.
 
-    Highest torque and slots are those of the whole run.
+    Highest torque and windows are those of the whole run.
     """
-    length = max(1, round(ramp.slots.duration / float(ramp.time[1] - ramp.time[0])))
+    length = max(1, round(ramp.windows.duration / float(ramp.time[1] - ramp.time[0])))
     starts = np.arange(0, len(ramp.time), length)
     size = np.abs(ramp.drive_torque)
     keep = np.array([start + int(np.argmax(size[start : start + length])) for start in starts])

@@ -5,10 +5,11 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.static_loop import port_model, solve_static
 from dynamics.mesh.force import PackedMeshes, evaluate_mesh, pack_meshes
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.periodic_response import periodic_by_time
+from dynamics.response.periodic_response import TimeSettings, periodic_by_time
 from rigdesign.rig.model import Rig
 from rigdesign.validation.oscillator import oscillator_rows
 from rigdesign.validation.prototype import RPM, TEST_TORQUE, Prototype
@@ -146,7 +147,7 @@ def _closure_row(prototype: Prototype) -> ValidationRow:
     rig = prototype.simulated
     assert rig.system is not None
     laws = [smooth(law)._replace(backlash=0.0, damping=0.0, offset=0.0) for law in simulation_laws(prototype)]
-    state = solve_static(port_model(rig.system, laws), torque=TEST_TORQUE)
+    state = solve_static(port_model(rig.system, laws), LoopLoad(torque=TEST_TORQUE))
     return compare(
         id="V12-closure", quantity="stiffness of the closed loop, torque per bracing twist",
         source="series sum of sections, splines, couplings and meshes",
@@ -162,9 +163,12 @@ def _momentum_row(prototype: Prototype) -> ValidationRow:
     rig = prototype.simulated
     assert rig.system is not None
     run = periodic_by_time(
-        rig.system, simulation_laws(prototype), speed=DWELL * RPM, torque=TEST_TORQUE, tolerance=1e-4,
-        internal_rate=640e3,
-    )  # fmt: skip
+        rig.system,
+        simulation_laws(prototype),
+        speed=DWELL * RPM,
+        load=LoopLoad(torque=TEST_TORQUE),
+        settings=TimeSettings(tolerance=1e-4, internal_rate=640e3),
+    )
     return compare(
         id="V12-momentum", quantity=f"drive power of the time integration against its losses, {DWELL:.0f} rpm",
         source="momentum balance", published=run.total_loss, computed=run.drive_power + run.bracing_power, unit="W",

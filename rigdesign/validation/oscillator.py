@@ -11,11 +11,13 @@ from contextlib import suppress
 import numpy as np
 
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modal_form import modal_form
 from dynamics.drivetrain.static_loop import port_model
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.harmonic_balance import BalanceProblem, HarmonicGrid, HarmonicSolution, solve_periodic
+from dynamics.response.harmonic_balance import solve_periodic
+from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
 from dynamics.response.waveform import waveform
 from rigdesign.validation.rows import ValidationRow, compare
 
@@ -59,7 +61,7 @@ def sweep(frequencies: Sequence[float]) -> dict[float, float]:
     system, law = _oscillator()
     model = port_model(system, [law])
     form = modal_form(system.inertia, system.damping, system.stiffness, system.lines)
-    problem = BalanceProblem(model=model, form=form, torque=None, twist=0.0)
+    problem = BalanceProblem(model=model, form=form, load=LoopLoad(twist=0.0))
     grid = HarmonicGrid(cells=1, harmonics=24, samples=512, cell_angle=2.0 * np.pi / TEETH)
     rest = np.zeros((2, grid.top + 1), complex)
     rest[:, 0] = -MEAN_FORCE / SOFT, -MEAN_FORCE / SOFT - 1.1
@@ -74,7 +76,7 @@ def sweep(frequencies: Sequence[float]) -> dict[float, float]:
                 force[0, 1] = 0.5 * FORCE * frequency**2
                 with suppress(DynamicsNotConverged):
                     states[frequency] = solve_periodic(
-                        problem, grid, frequency / TEETH, state, drag_torques={"load": MEAN_FORCE},
+                        problem, frequency / TEETH, state, drag_torques={"load": MEAN_FORCE},
                         excitation=force,
                     )  # fmt: skip
             state = states.get(frequency, state)

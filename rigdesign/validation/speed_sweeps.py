@@ -7,9 +7,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.mesh.flank import mesh_law
+from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.speed_sweep import Method, periodic_response
+from dynamics.response.speed_sweep import Method, SweepSettings, periodic_response
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, mesh_models, microgeometry, signed_torque
 from rigdesign.coupling.state import OperatingPoint
@@ -95,7 +96,13 @@ def course(
     """Periodic response of P2's rig over ``speeds`` [rpm] at 180 N m, without the speeds that find none."""
     rig, point = _point(prototype)
     assert rig.system is not None
-    curve = periodic_response(rig.system, laws, speeds * RPM, signed_torque(rig, point), methods=methods)
+    curve = periodic_response(
+        rig.system,
+        laws,
+        speeds * RPM,
+        LoopLoad(torque=signed_torque(rig, point)),
+        settings=SweepSettings(methods=methods),
+    )
     points = curve.points
     return SpeedSweep(
         speed=np.round(curve.speeds / RPM, 6),
@@ -138,13 +145,16 @@ def reshaped(
         laws.append(
             mesh_law(
                 model.pair,
-                stiffness=model.stiffness,
+                model.stiffness,
                 micro=(first, second),
-                n_slices=len(model.law.slice_shift),
-                damping=model.law.damping,
-                damping_acts_on=model.law.damping_acts_on,
-                friction=model.law.friction,
-                engagement=engagement,
+                dissipation=MeshDissipation(
+                    damping=model.law.damping,
+                    damping_acts_on=model.law.damping_acts_on,
+                    friction=model.law.friction,
+                ),
+                discretisation=ContactDiscretisation(
+                    n_slices=len(model.law.slice_shift), engagement=engagement
+                ),
             )
         )
     return laws

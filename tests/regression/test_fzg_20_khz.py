@@ -52,7 +52,7 @@ def test_rig_keeps_its_test_speed() -> None:
     """The mesh ripple of 600 Hz remains: 0.14 rpm."""
     assert last("test").mean() == pytest.approx(2250.0, abs=0.01)
     assert last("test").std() < 0.2
-    assert run().unsettled_steps == 0
+    assert run().unconverged_steps == 0
 
 
 def test_modes_beyond_the_samples_are_named() -> None:

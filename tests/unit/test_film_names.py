@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.bearing.journal import BearingState
+from dynamics.bearing.protocol import BearingState
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case

@@ -5,8 +5,16 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.mesh.flank import Microgeometry, cumulative_pitch, flank_modification, mesh_law
+from dynamics.gear.pair_geometry import TipShortening
+from dynamics.mesh.flank import (
+    ContactDiscretisation,
+    MeshDissipation,
+    MeshPosition,
+    flank_modification,
+    mesh_law,
+)
 from dynamics.mesh.law import check_mesh_law
+from dynamics.mesh.microgeometry import Microgeometry, cumulative_pitch
 from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import mesh_stiffness
 
@@ -16,9 +24,8 @@ TEST_GEAR = GearPair.from_centre_distance(
     centre_distance=99.5e-3,
     face_widths=(7e-3, 15e-3),
     profile_shift_1=0.0,
-    contact_ratio=1.26,
-    tip_cut="wheel",
     thickness_allowances=(40e-6, 60e-6),
+    tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
 )
 REFERENCE_GEAR = GearPair.from_centre_distance(
     normal_module=0.95e-3,
@@ -27,8 +34,8 @@ REFERENCE_GEAR = GearPair.from_centre_distance(
     helix_angle=radians(18.0),
     face_widths=(40e-3, 40e-3),
     profile_shift_1=0.0,
-    contact_ratio=1.448,
     thickness_allowances=(40e-6, 60e-6),
+    tips=TipShortening(contact_ratio=1.448),
 )
 PUBLISHED = (
     Microgeometry(profile_crowning=7e-6, lead_crowning=5e-6),
@@ -57,7 +64,7 @@ def rigid_mesh_stiffness(law, pair, travel):
 
 @pytest.mark.parametrize("pair", [TEST_GEAR, REFERENCE_GEAR], ids=["spur", "helical"])
 def test_mean_mesh_stiffness_is_c_gamma_alpha_times_width(pair):
-    law = mesh_law(pair, stiffness=scaled(pair), n_path=2001)
+    law = mesh_law(pair, stiffness=scaled(pair), discretisation=ContactDiscretisation(n_path=2001))
     travels = (np.arange(400) + 0.5) / 400 * law.base_pitch
     mean = np.mean([rigid_mesh_stiffness(law, pair, travel) for travel in travels])
     expected = mesh_stiffness(pair, 180.0) * pair.face_width
@@ -67,21 +74,26 @@ def test_mean_mesh_stiffness_is_c_gamma_alpha_times_width(pair):
 
 @pytest.mark.parametrize("pair", [TEST_GEAR, REFERENCE_GEAR], ids=["spur", "helical"])
 def test_law_passes_the_contract_check(pair):
-    check_mesh_law(mesh_law(pair, stiffness=scaled(pair), micro=PUBLISHED, damping=1e3, friction=0.04))
+    check_mesh_law(
+        mesh_law(pair, scaled(pair), micro=PUBLISHED, dissipation=MeshDissipation(damping=1e3, friction=0.04))
+    )
 
 
 def test_default_slices():
     stiffness = scaled(TEST_GEAR)
     assert mesh_law(TEST_GEAR, stiffness=stiffness).stiffness.shape[0] == 1
-    assert mesh_law(TEST_GEAR, stiffness=stiffness, micro=PUBLISHED).stiffness.shape[0] == 8
-    assert mesh_law(TEST_GEAR, stiffness=stiffness, misalignment=1e-4).stiffness.shape[0] == 8
+    assert mesh_law(TEST_GEAR, stiffness, micro=PUBLISHED).stiffness.shape[0] == 8
+    assert (
+        mesh_law(TEST_GEAR, stiffness=stiffness, position=MeshPosition(misalignment=1e-4)).stiffness.shape[0]
+        == 8
+    )
     # a face that lags by 4.14 base pitches from end to end
     assert mesh_law(REFERENCE_GEAR, stiffness=scaled(REFERENCE_GEAR)).stiffness.shape[0] == 34
 
 
 def test_narrow_face_governs_and_slices_share_it():
-    law = mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), n_slices=7)
-    one = mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), n_slices=1)
+    law = mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), discretisation=ContactDiscretisation(n_slices=7))
+    one = mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), discretisation=ContactDiscretisation(n_slices=1))
     assert law.stiffness.sum(axis=0) == pytest.approx(one.stiffness[0])
     middle = np.searchsorted(path_of(one), 2e-3)
     assert one.stiffness[0, middle] == pytest.approx(scaled(TEST_GEAR).at(path_of(one))[middle] * 7e-3)
@@ -137,7 +149,12 @@ def test_twist_and_helix_slope_are_bilinear():
 
 
 def test_misalignment_opens_the_gap_along_the_face():
-    law = mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), misalignment=1e-3, n_slices=7)
+    law = mesh_law(
+        TEST_GEAR,
+        stiffness=scaled(TEST_GEAR),
+        position=MeshPosition(misalignment=1e-3),
+        discretisation=ContactDiscretisation(n_slices=7),
+    )
     middle = np.searchsorted(path_of(law), 2e-3)
     assert np.diff(law.gap[:, middle]) == pytest.approx(1e-3 * 1e-3)
     assert law.gap[3, middle] == pytest.approx(0.0, abs=1e-18)
@@ -153,7 +170,7 @@ def test_slices_of_a_helical_gear_lag_by_the_base_helix():
 
 
 def test_backlash_and_back_flank_follow_the_tooth_thickness():
-    law = mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), phase=0.4e-3)
+    law = mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), position=MeshPosition(phase=0.4e-3))
     assert law.backlash == pytest.approx(100e-6 * cos(TEST_GEAR.working_pressure_angle), rel=2e-2)
     # the pinion turns by its own tooth before the back flank stands where the front flank stood (pitch point)
     to_pitch_point = -law.phase / law.base_radius_1
@@ -175,9 +192,7 @@ def test_pitch_deviations_move_whole_teeth():
     assert np.mean(places) == pytest.approx(0.0, abs=1e-20)
     assert places[10] - places[9] == pytest.approx(5e-6 * (1 - 1 / 99))
     law = mesh_law(
-        TEST_GEAR,
-        stiffness=scaled(TEST_GEAR),
-        micro=(Microgeometry(pitch_deviations=places), Microgeometry()),
+        TEST_GEAR, scaled(TEST_GEAR), micro=(Microgeometry(pitch_deviations=places), Microgeometry())
     )
     assert law.deviation_1.shape == (99, law.gap.shape[1])
     assert law.deviation_1[:, 5] == pytest.approx(-np.array(places))
@@ -189,7 +204,11 @@ def test_run_out_is_one_wave_per_turn_continuous_from_tooth_to_tooth(index, offs
     bent = Microgeometry(run_out=10e-6, run_out_phase=0.3)
     micro = (bent, Microgeometry()) if index == 0 else (Microgeometry(), bent)
     law = mesh_law(
-        TEST_GEAR, stiffness=scaled(TEST_GEAR), micro=micro, tooth_offset_2=offset, phase=0.2e-3, n_path=801
+        TEST_GEAR,
+        scaled(TEST_GEAR),
+        micro=micro,
+        position=MeshPosition(phase=0.2e-3, tooth_offset_2=offset),
+        discretisation=ContactDiscretisation(n_path=801),
     )
     rows = law.deviation_1 if index == 0 else law.deviation_2
     teeth = TEST_GEAR.teeth[index]
@@ -205,7 +224,7 @@ def test_run_out_is_one_wave_per_turn_continuous_from_tooth_to_tooth(index, offs
 def test_tooth_stiffness_scales_are_handed_on():
     scales = (0.7, *(1.0,) * 98)
     law = mesh_law(
-        TEST_GEAR, stiffness=scaled(TEST_GEAR), micro=(Microgeometry(tooth_stiffness=scales), Microgeometry())
+        TEST_GEAR, scaled(TEST_GEAR), micro=(Microgeometry(tooth_stiffness=scales), Microgeometry())
     )
     assert law.scale_1 == pytest.approx(scales)
     assert law.mean_stiffness == pytest.approx(scaled(TEST_GEAR).mesh_mean * 7e-3 * (98.7 / 99), rel=1e-12)
@@ -222,7 +241,7 @@ def test_tooth_stiffness_scales_are_handed_on():
 )
 def test_impossible_microgeometry_is_refused(micro, words):
     with pytest.raises(ValueError, match=words):
-        mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), micro=(micro, Microgeometry()))
+        mesh_law(TEST_GEAR, scaled(TEST_GEAR), micro=(micro, Microgeometry()))
 
 
 def loaded_mesh(law, force, travel):
@@ -244,7 +263,12 @@ def test_deflected_teeth_meet_before_the_path_and_share_the_load():
     force = 180.0 / TEST_GEAR.base_radii[0]
     travels = 1e-3 + np.linspace(0.0, 1.0, 40, endpoint=False) * TEST_GEAR.base_pitch
     laws = {
-        kind: mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), micro=PUBLISHED, engagement=kind)
+        kind: mesh_law(
+            TEST_GEAR,
+            scaled(TEST_GEAR),
+            micro=PUBLISHED,
+            discretisation=ContactDiscretisation(engagement=kind),
+        )
         for kind in ("corner", "path")
     }
     mesh = {kind: [loaded_mesh(law, force, travel) for travel in travels] for kind, law in laws.items()}
@@ -259,7 +283,9 @@ def test_deflected_teeth_meet_before_the_path_and_share_the_load():
 
 
 def test_law_without_corner_contact_keeps_the_mean_stiffness():
-    law = mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), engagement="path")
+    law = mesh_law(
+        TEST_GEAR, stiffness=scaled(TEST_GEAR), discretisation=ContactDiscretisation(engagement="path")
+    )
     check_mesh_law(law)
     assert law.gap[0, [0, -1]] == pytest.approx(0.15e-3)
     assert law.mean_stiffness == pytest.approx(mesh_stiffness(TEST_GEAR, 180.0) * 7e-3)
@@ -267,9 +293,9 @@ def test_law_without_corner_contact_keeps_the_mean_stiffness():
 
 def test_impossible_resolution_is_refused():
     with pytest.raises(ValueError, match="n_slices = 0"):
-        mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), n_slices=0)
+        mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), discretisation=ContactDiscretisation(n_slices=0))
     with pytest.raises(ValueError, match="gap = 0"):
-        mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), reach=0.0)
+        mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), discretisation=ContactDiscretisation(reach=0.0))
 
 
 def test_pair_stiffness_scaling():
@@ -289,5 +315,5 @@ def test_pair_stiffness_scaling():
 
 def test_input_is_not_changed():
     before = replace(TEST_GEAR)
-    mesh_law(TEST_GEAR, stiffness=scaled(TEST_GEAR), micro=PUBLISHED)
+    mesh_law(TEST_GEAR, scaled(TEST_GEAR), micro=PUBLISHED)
     assert before == TEST_GEAR

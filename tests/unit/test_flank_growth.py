@@ -21,7 +21,7 @@ def test_cold_teeth_have_not_grown(cold: GearPair) -> None:
 
 def test_half_of_the_lost_backlash_is_approach_of_the_front_flank(cold: GearPair) -> None:
     """The middle of the play stays where it is: front contact comes as much earlier as back contact later."""
-    warm = replace(cold, growth=(1.2e-3, 0.9e-3))
+    warm = replace(cold, expansion=(1.2e-3, 0.9e-3))
     approach = flank_expansion(cold, warm)
     front, back = -approach, -warm.backlash_along_path - approach
     assert approach > 0.0
@@ -29,6 +29,6 @@ def test_half_of_the_lost_backlash_is_approach_of_the_front_flank(cold: GearPair
 
 
 def test_jammed_teeth_have_lost_no_more_than_their_backlash(cold: GearPair) -> None:
-    jammed = replace(cold, growth=(9e-3, 9e-3))
+    jammed = replace(cold, expansion=(9e-3, 9e-3))
     assert jammed.backlash_along_path < 0.0
     assert flank_expansion(cold, jammed) == pytest.approx(0.5 * cold.backlash_along_path, rel=1e-12)

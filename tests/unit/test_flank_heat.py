@@ -60,7 +60,11 @@ def done(rig: Rig) -> IterationResult:
 
 def equal_gears() -> GearPair:
     return GearPair.from_centre_distance(
-        normal_module=5e-3, teeth=(45, 45), centre_distance=0.225, face_widths=(0.045, 0.045), split="equal"
+        normal_module=5e-3,
+        teeth=(45, 45),
+        centre_distance=0.225,
+        face_widths=(0.045, 0.045),
+        profile_shift_1="equal",
     )
 
 

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from dynamics.gear.cylindrical_gear import CylindricalGear, GearGeometryError, Rack, involute
 from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import TipShortening
 from dynamics.rating import iso_rating
 
 UHCF = {
@@ -16,8 +17,7 @@ UHCF = {
     "centre_distance": 99.5e-3,
     "face_widths": (7e-3, 15e-3),
     "profile_shift_1": 0.0,
-    "contact_ratio": 1.26,
-    "tip_cut": "wheel",
+    "tips": TipShortening(contact_ratio=1.26, cut_gear="wheel"),
 }
 SPUR_50 = {
     "normal_module": 3e-3,
@@ -53,8 +53,8 @@ def test_uhcf_test_gear_has_its_pitch_point_outside_the_path():
 @pytest.mark.parametrize(("shift", "cut"), [(0.0, 0.705), (None, 0.784), (-0.714, 0.802)])
 def test_tip_cut_that_gives_the_contact_ratio_of_the_tips(shift, cut):
     """Published cut depths count the tip circles only; a fine tool radius leaves both limits equal."""
-    choice = {"profile_shift_1": shift} if shift is not None else {"profile_shift_1": None, "split": "equal"}
-    pair = make(UHCF, **choice, contact_ratio=None, tip_shortening=(0.0, cut * 1e-3))
+    first = "equal" if shift is None else shift
+    pair = make(UHCF, profile_shift_1=first, tips=TipShortening(shortening=(0.0, cut * 1e-3)))
     assert pair.tip_contact_ratio == pytest.approx(1.26, abs=1e-3)
     assert pair.transverse_contact_ratio <= pair.tip_contact_ratio
 
@@ -76,7 +76,11 @@ def test_a_thin_rim_warns_and_adds_to_the_root_stress():
 
 def test_reference_gear_contact_ratios():
     full = make(
-        UHCF, normal_module=0.95e-3, helix_angle=radians(18.0), face_widths=(40e-3, 40e-3), contact_ratio=None
+        UHCF,
+        normal_module=0.95e-3,
+        helix_angle=radians(18.0),
+        face_widths=(40e-3, 40e-3),
+        tips=TipShortening(),
     )
     assert full.overlap_ratio == pytest.approx(4.142, abs=5e-4)
     assert sum(full.profile_shifts) == pytest.approx(-0.9060, abs=5e-5)
@@ -161,7 +165,7 @@ def test_warming_twice_starts_from_the_cold_gears():
     once = cold.warm(400.0, 390.0, 99.6e-3, speed=900.0)
     assert cold.warm(440.0, 440.0, 99.7e-3).warm(400.0, 390.0, 99.6e-3, speed=900.0) == once
     assert once.base_pitch_difference == pytest.approx(
-        cold.base_pitch * (once.growth[1] - once.growth[0]), rel=1e-9
+        cold.base_pitch * (once.expansion[1] - once.expansion[0]), rel=1e-9
     )
 
 
@@ -171,8 +175,8 @@ def test_centrifugal_growth_of_a_solid_and_a_bored_disc():
     expected = 7830 * speed**2 * (0.7 * radius**2 + 3.3 * bore**2) / (4 * 206e9)
     assert pair.centrifugal_strain(0, speed) == pytest.approx(expected)
     still, spinning = (pair.warm(293.15, 293.15, 99.5e-3, speed=w) for w in (0.0, speed))
-    assert spinning.growth[0] == pytest.approx(expected)
-    assert spinning.growth[1] == pytest.approx(pair.centrifugal_strain(1, speed * 99 / 102))
+    assert spinning.expansion[0] == pytest.approx(expected)
+    assert spinning.expansion[1] == pytest.approx(pair.centrifugal_strain(1, speed * 99 / 102))
     assert spinning.transverse_backlash < still.transverse_backlash - 1e-6
 
 
@@ -186,15 +190,24 @@ def test_a_jammed_warm_pair_is_a_warning_not_an_error():
     ("base", "changes", "name", "remedy"),
     [
         (UHCF, {"centre_distance": 90e-3}, "working pressure angle", "increase"),
-        (UHCF, {"contact_ratio": 2.5}, "contact_ratio = 2.5", "change addendum"),
         (
             UHCF,
-            {"contact_ratio": None, "tip_shortening": (0.0, 1.0e-3)},
+            {"tips": TipShortening(contact_ratio=2.5, cut_gear="wheel")},
+            "contact_ratio = 2.5",
+            "change addendum",
+        ),
+        (
+            UHCF,
+            {"tips": TipShortening(shortening=(0.0, 1.0e-3))},
             "total contact",
             "lengthen the tips",
         ),
-        (UHCF, {"contact_ratio": 0.2}, "contact_ratio = 0.2", "change addendum"),
-        (UHCF, {"split": "equal"}, "profile_shift_1", "exactly one"),
+        (
+            UHCF,
+            {"tips": TipShortening(contact_ratio=0.2, cut_gear="wheel")},
+            "contact_ratio = 0.2",
+            "change addendum",
+        ),
         (UHCF, {"face_widths": (-7e-3, 15e-3)}, "face_widths[0]", "must be positive"),
         (UHCF, {"bore_diameters": (0.12, 0.0)}, "bore_diameters[0]", "reduce the bore"),
         (UHCF, {"helix_angle": radians(-18.0)}, "helix_angle", "without sign"),
@@ -287,12 +300,12 @@ def test_centre_distance_and_shift_sum_are_inverse(z, sum_shift, helix, split):
         face_widths=(0.02, 0.02),
         helix_angle=helix,
         profile_shift_1=split * sum_shift,
-        tip_shortening=(0.15e-3, 0.15e-3),
+        tips=TipShortening(shortening=(0.15e-3, 0.15e-3)),
     )
     assert sum(pair.profile_shifts) == pytest.approx(sum_shift, abs=1e-9)
     assert pair.transverse_backlash == pytest.approx(0.0, abs=1e-12)
     assert sum(pair.rolling_radii) == pytest.approx(distance * sin(pair.working_pressure_angle))
     assert pair.path.start > pair.path.tangent_1
-    assert replace(pair, growth=(1e-3, 1e-3), centre_distance=distance * 1.001).transverse_backlash == (
+    assert replace(pair, expansion=(1e-3, 1e-3), centre_distance=distance * 1.001).transverse_backlash == (
         pytest.approx(0.0, abs=1e-12)
     )

@@ -6,31 +6,39 @@ import pytest
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modal_form import modal_form
 from dynamics.drivetrain.parts import Motor
 from dynamics.drivetrain.static_loop import port_model
 from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.law import MeshLaw
-from dynamics.response import harmonic_balance
-from dynamics.response.harmonic_balance import BalanceProblem, HarmonicGrid, resample, solve_periodic
+from dynamics.response.harmonic_balance import solve_periodic
+from dynamics.response.harmonic_newton import HarmonicNewton
+from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, resample
 from dynamics.response.harmonic_walk import HarmonicWalk, highest_mode, mesh_cells, quasi_static_start
-from dynamics.response.speed_sweep import ResponseCurve, periodic_response
+from dynamics.response.speed_sweep import DragTorques, ResponseCurve, SweepSettings, periodic_response
 from dynamics.response.waveform import waveform
 from tests.rig_example import prototype, prototype_laws
 
 RPM = math.pi / 30.0
 
 
-def by_harmonics(laws: tuple[MeshLaw, ...], speeds: list[float], **options: object) -> ResponseCurve:
-    system = options.pop("system", None) or assemble(prototype())
-    torque = options.pop("torque", 180.0)
+def by_harmonics(
+    laws: tuple[MeshLaw, ...],
+    speeds: list[float],
+    load: LoopLoad = LoopLoad(torque=180.0),  # noqa: B008 - immutable
+    drag_torques: DragTorques = None,
+    system: LinearSystem | None = None,
+    **settings: object,
+) -> ResponseCurve:
+    chosen = SweepSettings(methods=("harmonic_balance",), **settings)
     speeds = [n * RPM for n in speeds]
-    return periodic_response(system, laws, speeds, torque, methods=("harmonic_balance",), **options)
+    return periodic_response(system or assemble(prototype()), laws, speeds, load, drag_torques, chosen)
 
 
 def problem_of(system: LinearSystem, laws: tuple[MeshLaw, ...]) -> BalanceProblem:
     form = modal_form(system.inertia, system.damping, system.stiffness, system.lines)
-    return BalanceProblem(model=port_model(system, laws), form=form, torque=180.0)
+    return BalanceProblem(model=port_model(system, laws), form=form, load=LoopLoad(torque=180.0))
 
 
 def test_mean_torque_is_the_asked_one_and_the_loop_closes() -> None:
@@ -92,7 +100,7 @@ def test_slow_rotation_is_the_quasi_static_state() -> None:
     _, angle = mesh_cells(problem.model, "mesh", 0)
     grid = HarmonicGrid(cells=1, harmonics=48, samples=512, cell_angle=angle)
     start = quasi_static_start(problem, grid, 5.0, None)
-    solution = solve_periodic(problem, grid, 5.0, start)
+    solution = solve_periodic(problem, 5.0, start)
     assert solution.twist == pytest.approx(start.twist, rel=1e-5)
     apart = waveform(problem.model, solution).torque - waveform(problem.model, start).torque
     assert np.sqrt(np.mean(apart**2, axis=1)).max() < 1e-3 * 180.0
@@ -185,7 +193,7 @@ def test_linear_bearing_drag_is_balanced_by_the_motor() -> None:
 
 def test_held_twist_gives_the_torque_that_needed_it() -> None:
     asked = by_harmonics(prototype_laws(), [5000.0]).points[0]
-    held = by_harmonics(prototype_laws(), [5000.0], torque=None, twist=asked.twist).points[0]
+    held = by_harmonics(prototype_laws(), [5000.0], LoopLoad(twist=asked.twist)).points[0]
     assert held.mean == pytest.approx(asked.mean, rel=1e-4)
 
 
@@ -194,9 +202,9 @@ def test_bad_input_is_refused() -> None:
     with pytest.raises(ValueError, match="must be above 0"):
         by_harmonics(laws, [0.0])
     with pytest.raises(ValueError, match="either the torque or the twist"):
-        by_harmonics(laws, [1000.0], twist=0.001)
+        by_harmonics(laws, [1000.0], LoopLoad(torque=180.0, twist=0.001))
     with pytest.raises(ValueError, match="time integration controls mesh 0"):
-        periodic_response(assemble(prototype()), laws, [100.0], 180.0, control_mesh=1)
+        periodic_response(assemble(prototype()), laws, [100.0], LoopLoad(torque=180.0, control_mesh=1))
     rig = prototype()
     on_gear = replace(assemble(rig), drive_dof=int(assemble(rig).mesh_ports[0, 0]))
     with pytest.raises(ValueError, match="place it on a shaft station"):
@@ -208,9 +216,13 @@ def test_a_singular_newton_matrix_is_no_solution(monkeypatch: pytest.MonkeyPatch
     def singular(*_: object) -> None:
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr(harmonic_balance._Newton, "step", singular)
+    monkeypatch.setattr(HarmonicNewton, "step", singular)
     curve = periodic_response(
-        assemble(prototype()), prototype_laws(), [500.0], 180.0, methods=("harmonic_balance",)
+        assemble(prototype()),
+        prototype_laws(),
+        [500.0],
+        LoopLoad(torque=180.0),
+        settings=SweepSettings(methods=("harmonic_balance",)),
     )
     assert curve.points == ()
     assert "harmonic balance at" in curve.failed[0][1]

@@ -30,7 +30,8 @@ DATA = iso.MeshData(
     epsilon_alpha=1.26,
     epsilon_beta=0.0,
 )
-LOAD = {"F_t": 3636.0, "n_1": 2500.0, "f_pb": 5.0, "f_falpha": 5.5, "grade": 5}
+LOAD = iso.GearLoad(F_t=3636.0, n_1=2500.0)
+DEVIATIONS = iso.ToothDeviations(f_pb=5.0, f_falpha=5.5, grade=5)
 
 
 @pytest.mark.parametrize(
@@ -75,9 +76,11 @@ def test_tolerances_outside_the_scope():
 
 
 def test_dynamic_factor_is_continuous_over_all_ranges():
-    base = iso.dynamic_factor(DATA, **LOAD, C_a=7.0)
+    base = iso.dynamic_factor(DATA, LOAD, DEVIATIONS, iso.RunningIn(C_a=7.0))
     speeds = base.n_E1 * np.linspace(0.01, 2.0, 4001)
-    curve = [iso.dynamic_factor(DATA, **{**LOAD, "n_1": n}, C_a=7.0) for n in speeds]
+    curve = [
+        iso.dynamic_factor(DATA, replace(LOAD, n_1=n), DEVIATIONS, iso.RunningIn(C_a=7.0)) for n in speeds
+    ]
     factors = np.array([f.K_V for f in curve])
     jumps = {}
     for before, after in itertools.pairwise(curve):
@@ -134,21 +137,21 @@ def test_run_in():
 @pytest.mark.parametrize("change", [{"F_t": 0.0}, {"n_1": -1.0}, {"K_A": -1.0}])
 def test_impossible_load_is_refused(change):
     with pytest.raises(ValueError, match=next(iter(change))):
-        iso.dynamic_factor(DATA, **{**LOAD, **change})
+        iso.dynamic_factor(DATA, replace(LOAD, **change), DEVIATIONS)
 
 
 def test_regression_range_and_speed_warnings():
-    swapped = iso.dynamic_factor(replace(DATA, x_1=-0.1), **LOAD)
+    swapped = iso.dynamic_factor(replace(DATA, x_1=-0.1), LOAD, DEVIATIONS)
     assert any("below x2" in warning for warning in swapped.warnings)
-    slow = iso.dynamic_factor(DATA, **{**LOAD, "n_1": 10.0})
+    slow = iso.dynamic_factor(DATA, replace(LOAD, n_1=10.0), DEVIATIONS)
     assert any("below 3 m/s" in warning for warning in slow.warnings)
-    coarse = iso.dynamic_factor(DATA, **{**LOAD, "grade": 8})
+    coarse = iso.dynamic_factor(DATA, LOAD, replace(DEVIATIONS, grade=8))
     assert any("grade 8 coarser than 6" in warning for warning in coarse.warnings)
-    assert (coarse.B_k, iso.dynamic_factor(DATA, **{**LOAD, "grade": 6}).B_k < 1.0) == (1.0, True)
-    long = iso.dynamic_factor(replace(DATA, epsilon_beta=11.0), **LOAD)
+    assert (coarse.B_k, iso.dynamic_factor(DATA, LOAD, replace(DEVIATIONS, grade=6)).B_k < 1.0) == (1.0, True)
+    long = iso.dynamic_factor(replace(DATA, epsilon_beta=11.0), LOAD, DEVIATIONS)
     assert any("C_v4" in warning for warning in long.warnings)
     assert long.C_v4 < 0.0
-    assert iso.dynamic_factor(DATA, **LOAD).warnings == ()
+    assert iso.dynamic_factor(DATA, LOAD, DEVIATIONS).warnings == ()
 
 
 def test_failed_regression_is_refused():
@@ -183,10 +186,9 @@ GEAR = root.ToothRoot(z=99, m_n=1.0, alpha_n=20.0, beta=0.0, x=0.0, h_fP=1.25, r
 
 
 def test_root_stress_factors_multiply():
-    bare = root.root_stress(GEAR, F_t=1000.0, b=7.0, epsilon_alpha=1.26)
-    full = root.root_stress(
-        GEAR, F_t=1000.0, b=7.0, epsilon_alpha=1.26, K_A=1.1, K_V=1.2, K_Fbeta=1.3, K_Falpha=1.05
-    )
+    load = root.ToothLoad(F_t=1000.0, b=7.0, epsilon_alpha=1.26)
+    bare = root.root_stress(GEAR, load)
+    full = root.root_stress(GEAR, load, root.LoadFactors(K_A=1.1, K_V=1.2, K_Fbeta=1.3, K_Falpha=1.05))
     assert bare.sigma_F == bare.sigma_F0
     assert full.sigma_F == pytest.approx(bare.sigma_F0 * 1.1 * 1.2 * 1.3 * 1.05)
     assert bare.sigma_F0 == pytest.approx(1000.0 / 7.0 * bare.Y_F * bare.Y_S)
@@ -194,12 +196,14 @@ def test_root_stress_factors_multiply():
 
 def test_notch_and_contact_ratio_warnings():
     sharp = replace(GEAR, z=2000, d_a=2002.0, rho_fP=0.02)
-    assert "q_s" in root.root_stress(sharp, F_t=1.0, b=1.0, epsilon_alpha=1.3).warnings[0]
-    assert "2 or more" in root.root_stress(GEAR, F_t=1.0, b=1.0, epsilon_alpha=2.01).warnings[0]
+    assert "q_s" in root.root_stress(sharp, root.ToothLoad(F_t=1.0, b=1.0, epsilon_alpha=1.3)).warnings[0]
+    assert (
+        "2 or more" in root.root_stress(GEAR, root.ToothLoad(F_t=1.0, b=1.0, epsilon_alpha=2.01)).warnings[0]
+    )
 
 
 def test_mean_main_resonance_speed_by_hand():
-    factor = iso.dynamic_factor(DATA, **LOAD)
+    factor = iso.dynamic_factor(DATA, LOAD, DEVIATIONS)
     assert factor.n_E1 == pytest.approx(
         30000 / (pi * 99) * (factor.stiffness.c_gamma_alpha / factor.m_red) ** 0.5
     )

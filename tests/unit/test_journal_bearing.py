@@ -8,13 +8,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dynamics.bearing.journal import (
-    BearingError,
-    BearingNotConvergedError,
     JournalBearing,
+    JournalState,
     largest_starting_load,
     petroff_torque,
-    solve_bearing,
     transition_speed,
+)
+from dynamics.bearing.protocol import (
+    Bearing,
+    BearingError,
+    BearingNotConvergedError,
+    BearingOperation,
+    BearingState,
+    OilSupply,
 )
 
 RPM = math.pi / 30.0
@@ -33,10 +39,23 @@ def viscosity(temperature: float) -> float:
 
 def solve(
     bearing: JournalBearing = BEARING, load: float = 2000.0, rpm: float = 12000.0, flow: float = 2.0, **more
-):
-    return solve_bearing(
-        bearing, load, rpm * RPM, INLET, flow / 6e4, viscosity, DENSITY, HEAT_CAPACITY, **more
-    )
+) -> JournalState:
+    oil = OilSupply(
+        inlet_temperature=INLET, flow=flow / 6e4, viscosity=viscosity, density=DENSITY, heat_capacity=HEAT_CAPACITY
+    )  # fmt: skip
+    return bearing.operating_state(BearingOperation(load=load, speed=rpm * RPM, oil=oil, **more))
+
+
+def test_a_journal_bearing_is_a_bearing() -> None:
+    """What every kind answers is there under the common names."""
+    bearing: Bearing = BEARING
+    oil = OilSupply(
+        inlet_temperature=INLET, flow=2.0 / 6e4, viscosity=viscosity, density=DENSITY, heat_capacity=HEAT_CAPACITY
+    )  # fmt: skip
+    state: BearingState = bearing.operating_state(BearingOperation(load=2000.0, speed=500.0, oil=oil))
+    assert state.cooling_flow == state.flow
+    assert state.power == state.drag_torque * state.omega
+    assert state.source
 
 
 def test_heat_balance_closes() -> None:
@@ -149,6 +168,7 @@ def test_own_side_flow_always_cools() -> None:
     wide = replace(BEARING, diametral_clearance=160e-6)
     low, none = (solve(replace(wide, feed_share=share), load=6000.0, flow=3.0) for share in (0.1, 0.0))
     assert low.side_flow > 0.1 * low.flow
+    assert low.cooling_flow == low.side_flow
     assert low.film_temperature == pytest.approx(none.film_temperature)
 
 

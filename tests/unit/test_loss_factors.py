@@ -2,7 +2,8 @@
 
 import pytest
 
-from dynamics.bearing.journal import BearingError, JournalBearing, solve_bearing
+from dynamics.bearing.journal import JournalBearing
+from dynamics.bearing.protocol import BearingError, BearingOperation, OilSupply
 from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
 from rigdesign.coupling.given_losses import given_power
@@ -71,18 +72,13 @@ def test_no_friction_at_all_is_no_friction() -> None:
 
 def test_a_film_that_drags_more_heats_its_oil_more() -> None:
     bearing = JournalBearing(diameter=0.04, width=0.03, diametral_clearance=60e-6)
+    oil = OilSupply(
+        inlet_temperature=313.15, flow=2e-5, viscosity=FVA_3.dynamic_viscosity, density=880.0, heat_capacity=2000.0
+    )  # fmt: skip
 
     def state(factor: float):
-        return solve_bearing(
-            bearing,
-            500.0,
-            500.0,
-            313.15,
-            2e-5,
-            FVA_3.dynamic_viscosity,
-            880.0,
-            2000.0,
-            friction_factor=factor,
+        return bearing.operating_state(
+            BearingOperation(load=500.0, speed=500.0, oil=oil, friction_factor=factor)
         )
 
     one, two = state(1.0), state(2.0)

@@ -7,8 +7,8 @@ import pytest
 import scipy.linalg
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.kernels.contact import DAMP_TIME, R1
 from dynamics.kernels.mesh_solve import left_open
+from dynamics.kernels.mesh_tables import DAMP_TIME, R1
 from dynamics.kernels.mesh_workspace import (
     CURVED,
     GUARD,
@@ -20,8 +20,11 @@ from dynamics.kernels.mesh_workspace import (
     RATE,
     REACH,
 )
-from dynamics.response.propagator import discretise, modal_model
-from dynamics.response.time_march import DriveState, MarchDiverged, TimeMarch, drag_loads, slow_loads
+from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
+from dynamics.response.march_loads import drag_loads, slow_loads
+from dynamics.response.modal_model import modal_model
+from dynamics.response.propagator import discretise
+from dynamics.response.time_march import MarchDiverged, TimeMarch
 from tests.mesh_example import chain, spur_law, two_bodies
 
 OPEN = spur_law(backlash=1.0, offset=-0.5)
@@ -56,7 +59,13 @@ def test_march_is_the_matrix_exponential(joint: tuple[float, float], bearing: fl
     torque = rng.normal(size=41) * 10.0
     angles, speeds = rng.normal(size=12) * 1e-4, rng.normal(size=12)
     start = DriveState(angles=angles, speeds=speeds)
-    march = TimeMarch(system, [OPEN], start, step=step, drive_torque=torque[0], cutoff=np.inf)
+    march = TimeMarch(
+        system,
+        [OPEN],
+        start,
+        settings=MarchSettings(step=step, cutoff=np.inf),
+        loads=DriveLoads(drive_torque=torque[0]),
+    )
     given = np.zeros((40, 4))
     given[:, 0] = torque[1:]
     march.advance(given)
@@ -71,7 +80,13 @@ def test_one_long_step_is_many_short_ones() -> None:
     start = DriveState(angles=np.zeros(12), speeds=np.full(12, 50.0))
     ends = []
     for steps in (1, 1000):
-        march = TimeMarch(system, [OPEN], start, step=1e-2 / steps, drive_torque=5.0, cutoff=np.inf)
+        march = TimeMarch(
+            system,
+            [OPEN],
+            start,
+            settings=MarchSettings(step=1e-2 / steps, cutoff=np.inf),
+            loads=DriveLoads(drive_torque=5.0),
+        )
         given = np.zeros((steps, 4))
         given[:, 0] = 5.0
         march.advance(given)
@@ -86,7 +101,12 @@ def test_substeps_carry_linear_inputs_exactly() -> None:
     ramp = np.linspace(0.0, 8.0, 11)[1:]
     ends = []
     for substeps in (1, 16):
-        march = TimeMarch(system, [OPEN], start, step=1e-4 / substeps, substeps=substeps, cutoff=np.inf)
+        march = TimeMarch(
+            system,
+            [OPEN],
+            start,
+            settings=MarchSettings(step=1e-4 / substeps, substeps=substeps, cutoff=np.inf),
+        )
         given = np.zeros((10, 4))
         given[:, 0] = ramp
         march.advance(given)
@@ -98,7 +118,7 @@ def test_lossless_system_keeps_its_energy() -> None:
     system = chain(joint=(1e6, 0.0))
     rng = np.random.default_rng(5)
     start = DriveState(angles=rng.normal(size=12) * 1e-4, speeds=100.0 + rng.normal(size=12))
-    march = TimeMarch(system, [OPEN], start, step=3.1e-6, cutoff=np.inf)
+    march = TimeMarch(system, [OPEN], start, settings=MarchSettings(step=3.1e-6, cutoff=np.inf))
     by_hand = 0.5 * system.inertia @ start.speeds**2 + 0.5 * start.angles @ system.stiffness @ start.angles
     assert march.energy() == pytest.approx(by_hand, rel=1e-12)
     march.advance(np.zeros((20000, 4)))
@@ -108,7 +128,9 @@ def test_lossless_system_keeps_its_energy() -> None:
 def test_undamped_rigid_rotation_does_not_drift() -> None:
     system = chain(joint=(1e6, 0.0))
     speeds = np.repeat([1234.5, 1234.5 * 99 / 102], 6)
-    march = TimeMarch(system, [OPEN], DriveState(angles=np.zeros(12), speeds=speeds), step=1e-5)
+    march = TimeMarch(
+        system, [OPEN], DriveState(angles=np.zeros(12), speeds=speeds), settings=MarchSettings(step=1e-5)
+    )
     march.advance(np.zeros((50000, 4)))
     np.testing.assert_allclose(march.state().speeds, speeds, rtol=1e-12)
     np.testing.assert_allclose(march.state().angles, 0.5 * speeds, rtol=1e-11)
@@ -123,7 +145,13 @@ def test_truncation_keeps_the_static_effect_of_fast_modes() -> None:
     for cutoff in (np.inf, 3e3):
         start = DriveState(angles=np.zeros(12), speeds=np.zeros(12))
         far = OPEN._replace(backlash=1e6, offset=-5e5)
-        march = TimeMarch(system, [far], start, step=1e-2, drive_torque=1.0, cutoff=cutoff)
+        march = TimeMarch(
+            system,
+            [far],
+            start,
+            settings=MarchSettings(step=1e-2, cutoff=cutoff),
+            loads=DriveLoads(drive_torque=1.0),
+        )
         march.advance(given)
         angles = march.state().angles
         windups.append(angles[5] - angles[0])
@@ -138,7 +166,7 @@ def test_state_goes_in_and_out_unchanged() -> None:
     system = chain(joint=(1e6, 2.0))
     rng = np.random.default_rng(11)
     start = DriveState(angles=rng.normal(size=12), speeds=rng.normal(size=12), twist=0.25)
-    end = TimeMarch(system, [OPEN], start, step=1e-6, cutoff=np.inf).state()
+    end = TimeMarch(system, [OPEN], start, settings=MarchSettings(step=1e-6, cutoff=np.inf)).state()
     np.testing.assert_allclose(end.angles, start.angles, atol=1e-12)
     np.testing.assert_allclose(end.speeds, start.speeds, atol=1e-12)
     assert end.twist == 0.25
@@ -148,7 +176,9 @@ def test_two_marches_are_equal_to_the_last_bit() -> None:
     forces = []
     for _ in range(2):
         start = DriveState(angles=np.array([1e-3, 0.0]), speeds=np.array([100.0, 97.0]))
-        march = TimeMarch(two_bodies(), [spur_law(damping=500.0, friction=0.05)], start, step=3e-6)
+        march = TimeMarch(
+            two_bodies(), [spur_law(damping=500.0, friction=0.05)], start, settings=MarchSettings(step=3e-6)
+        )
         forces.append(march.advance(np.zeros((500, 4))).force)
     assert np.array_equal(*forces)
     assert forces[0].max() > 0.0
@@ -156,7 +186,7 @@ def test_two_marches_are_equal_to_the_last_bit() -> None:
 
 def test_a_run_that_diverges_says_so() -> None:
     start = DriveState(angles=np.array([1e200, 0.0]), speeds=np.array([1e200, 0.0]))
-    march = TimeMarch(two_bodies(), [spur_law()], start, step=1.0)
+    march = TimeMarch(two_bodies(), [spur_law()], start, settings=MarchSettings(step=1.0))
     with pytest.raises(MarchDiverged) as raised:
         march.advance(np.full((200, 4), 1e300))
     for words in (
@@ -205,7 +235,10 @@ def test_critical_damping_is_still_accurate() -> None:
     )
     torque = np.linspace(0.0, 30.0, 21)
     march = TimeMarch(
-        system, [OPEN], DriveState(angles=np.zeros(4), speeds=np.zeros(4)), step=1e-4, cutoff=np.inf
+        system,
+        [OPEN],
+        DriveState(angles=np.zeros(4), speeds=np.zeros(4)),
+        settings=MarchSettings(step=1e-4, cutoff=np.inf),
     )
     given = np.zeros((20, 4))
     given[:, 0] = torque[1:]

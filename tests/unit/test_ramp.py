@@ -13,8 +13,8 @@ from dynamics.response.schedule import (
     cycles_in_test,
     load_cycles,
     ramp_rules,
+    s_derivative,
     s_function,
-    s_slope,
 )
 
 RPM = math.pi / 30.0
@@ -71,9 +71,9 @@ def test_s_function_is_smooth_at_both_ends() -> None:
     values = s_function(u)
     assert (values[0], values[1000], values[-1]) == pytest.approx((0.0, 0.5, 1.0))
     assert np.all(np.diff(values) >= 0.0)
-    assert s_slope(u) == pytest.approx(np.gradient(values, u), abs=2e-3)
-    assert s_slope(u).max() == pytest.approx(1.875)
-    ends = s_slope(np.array([0.0, 1e-3, 1.0 - 1e-3, 1.0]))
+    assert s_derivative(u) == pytest.approx(np.gradient(values, u), abs=2e-3)
+    assert s_derivative(u).max() == pytest.approx(1.875)
+    ends = s_derivative(np.array([0.0, 1e-3, 1.0 - 1e-3, 1.0]))
     assert np.all(ends < 1e-4)
 
 

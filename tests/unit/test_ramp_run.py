@@ -12,7 +12,7 @@ from dynamics.response.time_response import TimeResponse
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import load_case
 from rigdesign.coupling.time_run import (
-    SLOT,
+    WINDOW,
     mesh_synchronous_window,
     require_speeds,
     schedule_of,
@@ -115,13 +115,13 @@ def test_a_vibration_is_no_lack_of_speed() -> None:
 
 @pytest.mark.parametrize("rpm", [12000.0, 750.0, 61.0, 30.0])
 def test_the_window_of_a_mean_speed_is_whole_mesh_periods(rpm: float) -> None:
-    """As many as fill one slot; a single one where a period is longer."""
+    """As many as fill one window; a single one where a period is longer."""
     period = 60.0 / (rpm * 99.0)
     window = mesh_synchronous_window(rig(), rpm * RPM, 1.0)
     assert window / period == pytest.approx(round(window / period), rel=1e-12)
-    assert SLOT <= window < SLOT + period
+    assert WINDOW <= window < WINDOW + period
 
 
 def test_the_window_of_a_mean_speed_ends_with_its_stage() -> None:
     assert mesh_synchronous_window(rig(), 750.0 * RPM, 4e-3) == 4e-3
-    assert mesh_synchronous_window(rig(), 0.0, 1.0) == pytest.approx(SLOT)
+    assert mesh_synchronous_window(rig(), 0.0, 1.0) == pytest.approx(WINDOW)

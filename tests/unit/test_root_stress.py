@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import TipShortening
 from dynamics.rating.root_stress import root_influence, root_stress_history, root_stress_over_face
 
 PAIR = GearPair.from_centre_distance(
@@ -10,8 +11,7 @@ PAIR = GearPair.from_centre_distance(
     centre_distance=99.5e-3,
     face_widths=(7e-3, 15e-3),
     profile_shift_1=0.0,
-    contact_ratio=1.26,
-    tip_cut="wheel",
+    tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
 )
 
 

@@ -7,7 +7,8 @@ from scipy.integrate import solve_ivp
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.tables import pack_meshes
-from dynamics.response.time_march import DriveState, TimeMarch
+from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
+from dynamics.response.time_march import TimeMarch
 from tests.mesh_example import BASE_RADIUS_1, BASE_RADIUS_2, ramped_law
 
 
@@ -65,9 +66,15 @@ def test_march_with_shared_bodies(ports: list[tuple[int, int]], shaft: int) -> N
     )
     errors = []
     for steps in (150, 300, 600):
-        march = TimeMarch(system, laws, start, step=end / steps, drive_torque=torque, cutoff=np.inf)
+        march = TimeMarch(
+            system,
+            laws,
+            start,
+            settings=MarchSettings(step=end / steps, cutoff=np.inf),
+            loads=DriveLoads(drive_torque=torque),
+        )
         march.advance(np.tile([torque, brake, 0.0, 0.0], (steps, 1)))
-        assert march.unsettled == 0
+        assert march.unconverged == 0
         errors.append(
             np.abs(march.state().speeds - exact.y[n:, -1]).max() / np.ptp(exact.y[n:], axis=1).max()
         )

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.response.envelopes import LiftOff, Slots
+from dynamics.response.envelopes import EnvelopeWindows, LiftOff
 from rigdesign.case import load_case
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records import time_run
 from rigdesign.rig.model import Rig, build_rig
 
 CASES = Path(__file__).parents[2] / "cases"
-SLOT = 0.01
+WINDOW = 0.01
 
 
 @cache
@@ -26,30 +26,32 @@ def rig() -> Rig:
 def run(lift_off: tuple[LiftOff, ...] = ()) -> Any:
     """The schedule as commanded; mesh 0 carries on the front flank, mesh 1 on the back flank.
 
-    The torque swings by a tenth, in one slot of the run-up by a half, in mesh 1 more than in mesh 0.
+    The torque swings by a tenth, in one window of the run-up by a half, in mesh 1 more than in mesh 0.
     """
     schedule = schedule_of(rig())
-    time = SLOT * np.arange(1, round(schedule.duration / SLOT) + 1)
-    command = schedule.at(time - 0.5 * SLOT)
+    time = WINDOW * np.arange(1, round(schedule.duration / WINDOW) + 1)
+    command = schedule.at(time - 0.5 * WINDOW)
     swing = np.full(time.size, 0.1)
     swing[500] = 0.5
     mean = np.stack((command.torque, -1.04 * command.torque))
     half = np.stack((swing, 1.2 * swing)) * np.abs(mean)
-    slots = Slots(
-        duration=SLOT, time=time, speed=command.speed, least=mean - half, mean=mean, greatest=mean + half,
+    windows = EnvelopeWindows(
+        duration=WINDOW, time=time, speed=command.speed, least=mean - half, mean=mean, greatest=mean + half,
         out_of_contact=np.where(np.arange(time.size) < 151, 0.6, 0.2) * np.ones((2, 1)),
         longest_gap=np.full(mean.shape, 1e-3),
     )  # fmt: skip
-    return SimpleNamespace(slots=slots, lift_off=lift_off, time=time, drive_torque=np.full(time.size, 9.0))
+    return SimpleNamespace(
+        windows=windows, lift_off=lift_off, time=time, drive_torque=np.full(time.size, 9.0)
+    )
 
 
 def test_the_peak_of_a_mesh_on_its_back_flank_is_its_highest_torque() -> None:
-    slots = run().slots
-    assert time_run.torque_peak(slots, 0) == pytest.approx(180.0 * 1.1)
-    assert time_run.torque_peak(slots, 1) == pytest.approx(1.04 * 180.0 * 1.12)
+    windows = run().windows
+    assert time_run.torque_peak(windows, 0) == pytest.approx(180.0 * 1.1)
+    assert time_run.torque_peak(windows, 1) == pytest.approx(1.04 * 180.0 * 1.12)
     history = time_run.ramp_history(rig(), run())
     for mesh, name in enumerate(("test", "reference")):
-        assert max(history.torque[name]["maximum"]) == pytest.approx(time_run.torque_peak(slots, mesh))
+        assert max(history.torque[name]["maximum"]) == pytest.approx(time_run.torque_peak(windows, mesh))
         assert min(history.torque[name]["mean"]) > 0.0
 
 
@@ -60,7 +62,9 @@ def test_loads_of_a_stage_are_those_of_its_worst_slot() -> None:
     assert row["least_share"] == pytest.approx(0.4)
     assert row["mean_Nm"] == pytest.approx(1.04 * 90.0)
     assert (
-        row["speed_rpm"] == row["least_share_at_rpm"] == pytest.approx(run().slots.speed[500] * 30.0 / np.pi)
+        row["speed_rpm"]
+        == row["least_share_at_rpm"]
+        == pytest.approx(run().windows.speed[500] * 30.0 / np.pi)
     )
     assert rows["test"]["peak_Nm"] == pytest.approx(1.04 * 180.0 * 1.12)
     assert "bracing" not in rows

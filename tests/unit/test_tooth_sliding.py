@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.losses.mesh_loss import LossError, mesh_loss, sliding_power, squeeze_loss
+from dynamics.gear.pair_geometry import TipShortening
+from dynamics.losses.mesh_loss import LossError, ToothContacts, mesh_loss, sliding_power, squeeze_loss
 from dynamics.mesh.friction import GivenFriction, Schlenk, friction_coefficient
 from dynamics.mesh.sliding import (
     ToothPath,
@@ -95,7 +96,11 @@ def test_steady_force_history_gives_the_steady_loss() -> None:
     s = path.start + phase[:, None] + np.arange(3)[None, :] * path.base_pitch
     touching = s <= path.end
     force = touching * (torque / path.base_radius_1 / touching.sum(axis=1))[:, None]
-    power = sliding_power(path, force, s, omega_1, omega_2, 0.05).sum(axis=1).mean()
+    power = (
+        sliding_power(path, ToothContacts(force=force, position=s, omega_1=omega_1, omega_2=omega_2), 0.05)
+        .sum(axis=1)
+        .mean()
+    )
     friction = friction_coefficient(
         path.contact(torque, omega_1, reference_diameter_1=0.1, roughness=4e-7, viscosity=0.01),
         GivenFriction(value=0.05),
@@ -106,8 +111,12 @@ def test_steady_force_history_gives_the_steady_loss() -> None:
 def test_smooth_reversal_takes_a_little_off_near_the_pitch_point() -> None:
     path = spur_path()
     s = np.linspace(-4e-3, 5e-3, 2001)
-    sharp = sliding_power(path, np.full_like(s, 1e3), s, 100.0, 62.5, 0.05)
-    smooth = sliding_power(path, np.full_like(s, 1e3), s, 100.0, 62.5, 0.05, reversal_speed=0.05)
+    sharp = sliding_power(
+        path, ToothContacts(force=np.full_like(s, 1e3), position=s, omega_1=100.0, omega_2=62.5), 0.05
+    )
+    smooth = sliding_power(
+        path, ToothContacts(force=np.full_like(s, 1e3), position=s, omega_1=100.0, omega_2=62.5), 0.05, 0.05
+    )
     assert np.all(smooth >= 0.0)
     assert 0.95 < smooth.sum() / sharp.sum() < 1.0
     far = np.abs(s) > 0.05 / 162.5 + 1e-5
@@ -135,7 +144,7 @@ def test_path_of_a_gear_pair() -> None:
         centre_distance=99.5e-3,
         face_widths=(40e-3, 40e-3),
         profile_shift_1=0.0,
-        contact_ratio=1.448,
+        tips=TipShortening(contact_ratio=1.448),
     )
     path = ToothPath.of_pair(pair)
     assert path.contact_ratio == pytest.approx(1.448)

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.shaft_torque import ShaftTorque
-from dynamics.mesh.flank import Microgeometry, alike_teeth, flank_modification, mesh_law, pitch_waves
+from dynamics.mesh.flank import alike_teeth, flank_modification, mesh_law
+from dynamics.mesh.microgeometry import Microgeometry, pitch_waves
 from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
@@ -99,9 +100,7 @@ def test_no_tooth_pushes_by_less_than_nothing() -> None:
     for shares in ((-0.1,) + (1.0,) * 27, (0.0,) * 28):
         with pytest.raises(ValueError, match="use 0 for a missing tooth"):
             mesh_law(
-                model.pair,
-                stiffness=model.stiffness,
-                micro=(Microgeometry(tooth_stiffness=shares), Microgeometry()),
+                model.pair, model.stiffness, micro=(Microgeometry(tooth_stiffness=shares), Microgeometry())
             )
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import TipShortening
 from dynamics.losses.mesh_loss import LossError
 from dynamics.losses.windage import (
     LAMINAR_LIMIT,
@@ -33,8 +34,7 @@ def prototype_pinion() -> GearRotor:
         centre_distance=99.5e-3,
         face_widths=(7e-3, 15e-3),
         profile_shift_1=0.0,
-        contact_ratio=1.26,
-        tip_cut="wheel",
+        tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
     )
     return GearRotor.of_pair(pair, 0)
 

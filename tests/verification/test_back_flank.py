@@ -13,9 +13,11 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.mesh.flank import Microgeometry, alike_teeth, mesh_law, pitch_waves
+from dynamics.gear.pair_geometry import TipShortening
+from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, MeshPosition, alike_teeth, mesh_law
 from dynamics.mesh.force import evaluate_mesh, pack_meshes, tooth_forces
 from dynamics.mesh.law import MeshLaw
+from dynamics.mesh.microgeometry import Microgeometry, pitch_waves
 from dynamics.mesh.stiffness import pair_stiffness
 
 PAIR = GearPair.from_centre_distance(
@@ -24,8 +26,8 @@ PAIR = GearPair.from_centre_distance(
     centre_distance=93.0e-3,
     face_widths=(14e-3, 14e-3),
     profile_shift_1=0.2,
-    contact_ratio=1.4,
     thickness_allowances=(60e-6, 80e-6),
+    tips=TipShortening(contact_ratio=1.4),
 )
 HELICAL = GearPair.from_centre_distance(
     normal_module=3e-3,
@@ -38,9 +40,16 @@ HELICAL = GearPair.from_centre_distance(
 )
 
 
-def law_of(pair: GearPair, *micro: Microgeometry, **changes: object) -> MeshLaw:
-    values: dict[str, object] = {"stiffness": pair_stiffness(pair, 2e5), "n_path": 801} | changes
-    return mesh_law(pair, micro=(micro[0], micro[1]), **values)  # type: ignore[arg-type]
+def law_of(
+    pair: GearPair,
+    *micro: Microgeometry,
+    position: MeshPosition = MeshPosition(),  # noqa: B008 - immutable
+    dissipation: MeshDissipation = MeshDissipation(),  # noqa: B008 - immutable
+) -> MeshLaw:
+    return mesh_law(
+        pair, pair_stiffness(pair, 2e5), (micro[0], micro[1]), position=position, dissipation=dissipation,
+        discretisation=ContactDiscretisation(n_path=801),
+    )  # fmt: skip
 
 
 def first_touch(law: MeshLaw, theta_1: np.ndarray, back: bool) -> np.ndarray:
@@ -70,7 +79,7 @@ def involute_touch(pair: GearPair, shift: np.ndarray, back: bool) -> np.ndarray:
 def test_eccentric_gears_touch_on_both_flanks_where_their_involutes_do(sizes: tuple[float, float]) -> None:
     phases = 0.7, -1.9
     micro = [Microgeometry(run_out=e, run_out_phase=p) for e, p in zip(sizes, phases)]
-    law = law_of(PAIR, *micro, tooth_offset_2=3, phase=0.4e-3)
+    law = law_of(PAIR, *micro, position=MeshPosition(tooth_offset_2=3, phase=0.4e-3))
     theta_1 = np.linspace(0.0, 25.0 * 2.0 * pi, 900, endpoint=False)
     theta_2 = theta_1 * 16.0 / 25.0
     # at rotation = phase the centre of the teeth is off along the front line of action, then it turns with the gear:
@@ -138,7 +147,12 @@ def test_back_flank_of_a_tooth_meets_the_next_tooth_of_the_wheel() -> None:
     """The pinion tooth stands in the space of the wheel: teeth p + offset before it, p + 1 + offset behind it."""
     shares = np.ones(25)
     shares[7] = 0.5
-    law = law_of(PAIR, Microgeometry(), Microgeometry(tooth_stiffness=tuple(shares)), tooth_offset_2=3)
+    law = law_of(
+        PAIR,
+        Microgeometry(),
+        Microgeometry(tooth_stiffness=tuple(shares)),
+        position=MeshPosition(tooth_offset_2=3),
+    )
     for approach, side, sound in ((2e-5, "front", 4), (-law.backlash - 2e-5, "back", 3)):
         whole = tooth_forces(law._replace(scale_2=np.ones(25)), np.linspace(0.0, 6.0, 200), approach)
         found = tooth_forces(law, np.linspace(0.0, 6.0, 200), approach)
@@ -163,10 +177,8 @@ def mirrored(pair: GearPair, micro: tuple[Microgeometry, Microgeometry], law: Me
     turned = law_of(
         pair,
         *seen,
-        phase=law.back_phase,
-        tooth_offset_2=-1 - law.tooth_offset_2,
-        damping=400.0,
-        friction=0.05,
+        position=MeshPosition(phase=law.back_phase, tooth_offset_2=-1 - law.tooth_offset_2),
+        dissipation=MeshDissipation(damping=400.0, friction=0.05),
     )
     assert turned.back_phase == pytest.approx(law.phase, abs=1e-15)
     return turned._replace(slice_shift=-turned.slice_shift)
@@ -186,7 +198,10 @@ def test_a_pair_driven_the_other_way_round_is_its_mirror_image(pair: GearPair) -
         )
         for phase, teeth in zip((0.4, 2.2), pair.teeth)
     )
-    law = law_of(pair, first, second, phase=0.3e-3, tooth_offset_2=5, damping=400.0, friction=0.05)
+    law = law_of(
+        pair, first, second, position=MeshPosition(phase=0.3e-3, tooth_offset_2=5),
+        dissipation=MeshDissipation(damping=400.0, friction=0.05),
+    )  # fmt: skip
     image = mirrored(pair, (first, second), law)
     theta_1 = np.linspace(0.0, 40.0, 500)
     for approach in (2.5e-5, -law.backlash - 2.5e-5):

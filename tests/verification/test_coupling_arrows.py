@@ -82,7 +82,7 @@ def drift_by_backlash(arrow: str) -> float:
     with base radius r_b it turns by j / (2 r_b), and the loop answers with its stiffness k,
     dT = k (j_test / r_b,test + j_reference / r_b,reference) / 2.
     """
-    stiffness = bracing_drift(held_rig(), warm()).cold.loop_stiffness
+    stiffness = bracing_drift(held_rig(), warm()).initial.loop_stiffness
     turn = sum(
         0.5 * (without.pair.backlash_along_path - whole.pair.backlash_along_path) / whole.pair.base_radii[0]
         for whole, without in zip(warm().last.models, cut(arrow).last.models)
@@ -322,7 +322,7 @@ def test_tooth_growth_winds_up_a_helical_loop(tmp_path: Path) -> None:
     helix = math.radians(18.0)
     transverse = math.atan(math.tan(math.radians(20.0)) / math.cos(helix))
     approach = travel * math.tan(helix) * math.cos(transverse)
-    stiffness = bracing_drift(rig, whole).cold.loop_stiffness
+    stiffness = bracing_drift(rig, whole).initial.loop_stiffness
     models = zip(whole.last.models, without.last.models)
     slack = [0.5 * (b.pair.backlash_along_path - a.pair.backlash_along_path) for a, b in models]
     turn = (approach + slack[0]) / whole.last.models[0].pair.base_radii[0]

@@ -11,10 +11,12 @@ from functools import cache
 import numpy as np
 import pytest
 
-from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.static_loop import SlowRotation, port_model, solve_static
 from dynamics.mesh.flank import reach_beyond
-from dynamics.response.speed_sweep import periodic_response
-from dynamics.response.time_response import Command, run_schedule
+from dynamics.response.command import Command, MotorDrive, Sampling
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
+from dynamics.response.time_response import run_schedule
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.initial_state import initial_state
@@ -50,7 +52,7 @@ def windup() -> float:
     rig, models = built(loop())
     assert rig.system is not None
     model = port_model(rig.system, laws_of(models))
-    state = solve_static(model, torque=POINT.torque)
+    state = solve_static(model, LoopLoad(torque=POINT.torque))
     return float(state.ports[:, model.pinions[0]].mean())
 
 
@@ -61,7 +63,9 @@ def turn(case: Case, steps: int = 28 * 24) -> tuple[np.ndarray, np.ndarray]:
     model = port_model(rig.system, laws_of(models))
     twist = brace_initial(rig, POINT, initial_state(rig, POINT)).twist
     angles = np.arange(steps) * 2.0 * math.pi / steps
-    state = solve_static(model, twist=twist, angles=angles)  # at no speed: without friction
+    state = solve_static(
+        model, LoopLoad(twist=twist), rotation=SlowRotation(angles=angles)
+    )  # at no speed: without friction
     return np.asarray(state.torque[:, 0]), np.asarray(state.approach[:, 0])
 
 
@@ -102,7 +106,7 @@ def test_run_out_on_the_back_flank_turns_by_twice_the_working_angle(gear: str, s
     assert rig.system is not None
     law = models[1].law
     model = port_model(rig.system, laws_of(models))
-    ahead = float(solve_static(model, torque=POINT.torque).ports[:, model.pinions[1]].mean())
+    ahead = float(solve_static(model, LoopLoad(torque=POINT.torque)).ports[:, model.pinions[1]].mean())
     expected = 20e-6 / law.base_radius_1 / loop_compliance(models)
     later = math.radians(50.0) + math.pi + sign * 2.0 * models[1].pair.working_pressure_angle
     found = order(torque, 1)
@@ -177,7 +181,11 @@ def swung(method: str, path: str, number: int, torque: float) -> complex:
     assert rig.system is not None
     twist = brace_initial(rig, POINT, initial_state(rig, POINT)).twist
     found = periodic_response(
-        rig.system, laws_of(models), [200.0], None, twist=twist, period="revolution", methods=(method,)
+        rig.system,
+        laws_of(models),
+        [200.0],
+        LoopLoad(twist=twist),
+        settings=SweepSettings(period="revolution", methods=(method,)),
     )
     wave = found.points[0].wave
     start = float(np.mean(wave.angle[0] - 200.0 * wave.time))
@@ -204,9 +212,12 @@ def test_run_in_time_swings_as_the_periodic_response() -> None:
     twist = brace_initial(rig, POINT, initial_state(rig, POINT)).twist
     time = np.array([0.0, 0.8])
     run = run_schedule(
-        rig.system, laws_of(models), Command(time=time, speed=np.full(2, 200.0), twist=np.full(2, twist)),
-        torque_limit=20.0, sample_rate=20e3, keep_accounts=False,
-    )  # fmt: skip
+        rig.system,
+        laws_of(models),
+        Command(time=time, speed=np.full(2, 200.0), twist=np.full(2, twist)),
+        motor=MotorDrive(torque_limit=20.0),
+        sampling=Sampling(sample_rate=20e3, keep_accounts=False),
+    )
     late = run.time > run.time[-1] - 10.0 * 2.0 * math.pi / 200.0
     wave = run.torque[0, late] - run.torque[0, late].mean()
     found = 2.0 * np.mean(wave * np.exp(-2j * 200.0 * run.time[late]))
@@ -232,10 +243,8 @@ def test_motor_ripple_swings_the_speed_of_the_whole_rig() -> None:
         rig.system,
         laws_of(models),
         [100.0],
-        None,
-        twist=twist,
-        period="revolution",
-        methods=("time_integration",),
+        LoopLoad(twist=twist),
+        settings=SweepSettings(period="revolution", methods=("time_integration",)),
     ).points[0]
     speed = abs(order(np.asarray(found.wave.omega_1[0]), 1))
     assert speed == pytest.approx(2.0 / (float(rig.system.inertia.sum()) * 100.0), rel=0.03)

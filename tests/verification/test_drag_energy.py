@@ -10,7 +10,8 @@ import pytest
 import scipy.linalg
 
 from dynamics.drivetrain.linear_system import LinearSystem
-from dynamics.response.time_march import DriveState, TimeMarch
+from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings
+from dynamics.response.time_march import TimeMarch
 from tests.mesh_example import spur_law
 
 OPEN = spur_law(backlash=1e9, offset=-5e8)
@@ -51,13 +52,17 @@ def marched(
     """The march at its end, and the vibration of the braked disc [rad/s] (amplitude) over time."""
     now = float(np.interp(begin.speeds[0], np.linspace(0.0, TOP, len(torque)), torque))
     march = TimeMarch(
-        system(), [OPEN], begin, step=1.0 / rate / substeps, substeps=substeps, drags=["bearing"],
-        drag_torques=[now * np.sign(begin.speeds[0])],
-    )  # fmt: skip
+        system(),
+        [OPEN],
+        begin,
+        settings=MarchSettings(step=1.0 / rate / substeps, substeps=substeps),
+        loads=DriveLoads(drag_torques={"bearing": now * np.sign(begin.speeds[0])}),
+    )
     vibration = []
     for _ in range(20):
         march.advance(
-            np.zeros((steps // substeps // 20, 4)), drag_tables=torque[None], drag_speeds=np.array([TOP])
+            np.zeros((steps // substeps // 20, 4)),
+            drags=DragTables(torque=torque[None], last_speed=np.array([TOP])),
         )
         state = march.state()
         twist, rate_of_twist = np.diff(state.angles[:2])[0], np.diff(state.speeds[:2])[0]
@@ -70,7 +75,7 @@ def marched(
 def test_constant_drag_leaves_the_mode_of_a_turning_shaft_alone(rate: float) -> None:
     march, vibration = marched(start(SPEED, 5.0), np.full(513, 1e-3), rate, STEPS)
     assert vibration == pytest.approx(5.0, rel=1e-3)
-    assert march.unsettled == 0
+    assert march.unconverged == 0
 
 
 @pytest.mark.parametrize("rate", RATES)

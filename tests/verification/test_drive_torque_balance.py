@@ -1,6 +1,8 @@
 """At a dwell the motor torque of the momentum balance equals the losses integrated one by one.
 
 Drive torque times speed is the sum of all losses: an identity that no model parameter can repair. The torque comes
+from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.response.periodic_response import TimeSettings, TimeSettings
 from the momentum gained and lost, the losses from the contacts, the joint rates and the drags.
 """
 
@@ -9,8 +11,9 @@ import pytest
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.periodic_response import PeriodicResponse, periodic_by_time
+from dynamics.response.periodic_response import PeriodicResponse, TimeSettings, periodic_by_time
 from tests.rig_example import prototype, prototype_laws
 
 RPM = np.pi / 30.0
@@ -28,11 +31,9 @@ def dwell(rig: tuple[LinearSystem, tuple[MeshLaw, ...]], rpm: float, **options: 
         system,
         laws,
         speed=rpm * RPM,
-        torque=180.0,
         drag_torques=drags,
-        tolerance=1e-4,
-        internal_rate=640e3,
-        **options,
+        load=LoopLoad(torque=180.0),
+        settings=TimeSettings(tolerance=1e-4, internal_rate=640e3, **options),
     )
 
 

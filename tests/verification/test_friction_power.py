@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.losses.mesh_loss import mesh_loss, sliding_power
-from dynamics.mesh.flank import mesh_law
+from dynamics.gear.pair_geometry import TipShortening
+from dynamics.losses.mesh_loss import ToothContacts, mesh_loss, sliding_power
+from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.force import evaluate_mesh, tooth_forces
 from dynamics.mesh.friction import GivenFriction, friction_coefficient
 from dynamics.mesh.sliding import ToothPath
@@ -23,8 +24,7 @@ PAIRS = {
         centre_distance=99.5e-3,
         face_widths=(7e-3, 15e-3),
         profile_shift_1=0.0,
-        contact_ratio=1.26,
-        tip_cut="wheel",
+        tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
     ),
     "helical": GearPair.from_centre_distance(
         normal_module=0.95e-3,
@@ -33,7 +33,7 @@ PAIRS = {
         centre_distance=99.5e-3,
         face_widths=(40e-3, 40e-3),
         profile_shift_1=0.0,
-        contact_ratio=1.448,
+        tips=TipShortening(contact_ratio=1.448),
     ),
 }
 
@@ -47,7 +47,12 @@ def law_and_states(pair: GearPair, torque: float = TORQUE):
     """Mesh law with friction, and one base pitch of pinion angles at constant load (elastic, no friction)."""
     path = ToothPath.of_pair(pair)
     stiffness = pair_stiffness(pair, torque / pair.base_radii[0] / pair.face_width)
-    law = mesh_law(pair, stiffness=stiffness, friction=path.transverse_friction(FRICTION), n_slices=24)
+    law = mesh_law(
+        pair,
+        stiffness=stiffness,
+        dissipation=MeshDissipation(friction=path.transverse_friction(FRICTION)),
+        discretisation=ContactDiscretisation(n_slices=24),
+    )
     theta = (np.arange(200) + 0.5) / 200 * law.base_pitch / law.base_radius_1
     low, high = np.zeros(200), np.full(200, 1e-4)
     for _ in range(50):
@@ -64,7 +69,10 @@ def test_kernel_and_loss_integral_count_the_same_power(pair: GearPair) -> None:
     teeth = tooth_forces(law, theta, approach, OMEGA, omega_2)
     position = teeth.path[:, :, None] - law.slice_shift
     power = sliding_power(
-        path, teeth.front, position, OMEGA, omega_2, FRICTION, law.friction_reversal_speed
+        path,
+        ToothContacts(force=teeth.front, position=position, omega_1=OMEGA, omega_2=omega_2),
+        FRICTION,
+        law.friction_reversal_speed,
     ).sum(axis=(1, 2))
     assert power.min() > 0.0
     # teeth that are all alike are tabulated over the phase, a second interpolation of the same cubics

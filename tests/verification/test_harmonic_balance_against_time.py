@@ -13,9 +13,10 @@ import pytest
 from numpy.typing import NDArray
 
 from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import DampedRate
-from dynamics.response.periodic_response import periodic_by_time
-from dynamics.response.speed_sweep import periodic_response
+from dynamics.response.periodic_response import TimeSettings, periodic_by_time
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from tests.rig_example import prototype, prototype_laws
 
 RPM = math.pi / 30.0
@@ -27,11 +28,23 @@ def deviations(
     """Relative deviation of K_V, the larger of both meshes, at pinion speeds [rpm] (n,)."""
     system = assemble(prototype())
     laws = [law._replace(damping_acts_on=acts_on) for law in prototype_laws()]
-    curve = periodic_response(system, laws, speeds * RPM, 180.0, methods=("harmonic_balance",))
+    curve = periodic_response(
+        system,
+        laws,
+        speeds * RPM,
+        LoopLoad(torque=180.0),
+        settings=SweepSettings(methods=("harmonic_balance",)),
+    )
     assert curve.failed == ()
     found = []
     for point in curve.points:
-        run = periodic_by_time(system, laws, speed=point.speed, torque=180.0, least_steps=least_steps)
+        run = periodic_by_time(
+            system,
+            laws,
+            speed=point.speed,
+            load=LoopLoad(torque=180.0),
+            settings=TimeSettings(least_steps=least_steps),
+        )
         flank = np.sign(run.mean_torque)
         peak = np.maximum(flank * run.greatest_torque, flank * run.least_torque)
         factor = peak / np.abs(run.mean_torque)

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.modes import loop_modes
 from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS
 from dynamics.drivetrain.static_loop import port_model, solve_static
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_walk import mesh_cells
 from dynamics.response.periodic_response import periodic_by_time
-from dynamics.response.speed_sweep import periodic_response
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from tests.idler_example import COUPLING_STIFFNESS, RADIUS, SPLINE_STIFFNESS, idler_laws, idler_rig
 
 RPM = math.pi / 30.0
@@ -48,7 +49,7 @@ def test_torque_goes_round_the_loop_and_stiffness_adds_in_series() -> None:
     The twist is made on a wheel line: it turns a wheel ahead, where the pinion's own torque asks for the contrary.
     """
     laws = tuple(constant(law) for law in idler_laws())
-    state = solve_static(port_model(assemble(idler_rig()), laws), torque=TORQUE)
+    state = solve_static(port_model(assemble(idler_rig()), laws), LoopLoad(torque=TORQUE))
     assert state.mean_torque == pytest.approx([TORQUE, -TORQUE, -TORQUE, TORQUE], rel=1e-9)
     half_shaft = 0.1 / (STEEL_SHEAR_MODULUS * math.pi * 0.05**4 / 32.0)
     wheel_line = 2.0 * (half_shaft + 1.0 / SPLINE_STIFFNESS) + 1.0 / COUPLING_STIFFNESS
@@ -59,19 +60,25 @@ def test_torque_goes_round_the_loop_and_stiffness_adds_in_series() -> None:
 def test_backlash_of_every_mesh_that_turns_to_its_back_flank_counts_once() -> None:
     laws = [constant(law) for law in idler_laws()]
     system = assemble(idler_rig())
-    closed = solve_static(port_model(system, laws), torque=TORQUE)
+    closed = solve_static(port_model(system, laws), LoopLoad(torque=TORQUE))
     played = [law._replace(backlash=50e-6) for law in laws]
-    open_ = solve_static(port_model(system, played), torque=TORQUE)
+    open_ = solve_static(port_model(system, played), LoopLoad(torque=TORQUE))
     assert closed.twist - open_.twist == pytest.approx(2 * 50e-6 / RADIUS, rel=1e-8)
 
 
 def test_both_solvers_agree_and_the_motor_gives_what_is_lost() -> None:
     system, laws = assemble(idler_rig()), idler_laws()
     speeds = np.array([2000.0, 4000.0, 7500.0])
-    curve = periodic_response(system, laws, speeds * RPM, TORQUE, methods=("harmonic_balance",))
+    curve = periodic_response(
+        system,
+        laws,
+        speeds * RPM,
+        LoopLoad(torque=TORQUE),
+        settings=SweepSettings(methods=("harmonic_balance",)),
+    )
     assert curve.failed == ()
     for point in curve.points:
-        run = periodic_by_time(system, laws, speed=point.speed, torque=TORQUE)
+        run = periodic_by_time(system, laws, speed=point.speed, load=LoopLoad(torque=TORQUE))
         assert point.flank.tolist() == [1.0, -1.0, -1.0, 1.0]
         peak = np.maximum(run.greatest_torque, -run.least_torque)
         assert point.maximum == pytest.approx(peak, rel=0.01)

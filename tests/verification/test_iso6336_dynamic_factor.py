@@ -13,6 +13,7 @@ import pytest
 
 from dynamics.gear.cylindrical_gear import Rack
 from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import TipShortening
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, dynamic_factor_curve, mesh_data
 from dynamics.standards import iso6336_1_2006 as iso
 
@@ -33,8 +34,7 @@ TEST_GEAR = GearPair.from_centre_distance(
     centre_distance=99.5e-3,
     face_widths=(7e-3, 15e-3),
     profile_shift_1=0.0,
-    contact_ratio=1.26,
-    tip_cut="wheel",
+    tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
 )
 AS_IN_THE_PAPER = RatingOptions(low_load_factor=False)
 RESONANCE_CONSISTENT = [(0.05, 1.25, False), (-0.67, 1.25, False), (0.05, 1.2, True), (-0.67, 1.2, True)]
@@ -52,7 +52,7 @@ def reference_gear(profile_shift_1=0.0, dedendum=1.25, tip_cut="both", contact_r
     }
     overlap = 40.0 * sin(radians(18.0)) / (pi * 0.95)
     return GearPair.from_centre_distance(
-        **uncut, tip_cut=tip_cut, contact_ratio=contact_ratio or 5.59 - overlap
+        tips=TipShortening(contact_ratio=contact_ratio or 5.59 - overlap, cut_gear=tip_cut), **uncut
     )
 
 
@@ -97,7 +97,7 @@ def test_exact_inertia_of_equal_widths_differs_as_calculated_by_hand():
         centre_distance=99.5e-3,
         face_widths=(7e-3, 7e-3),
         profile_shift_1=0.0,
-        tip_shortening=(0.0, 0.705e-3),
+        tips=TipShortening(shortening=(0.0, 0.705e-3)),
     )
     sheet = dynamic_factor(uncut_rim, 180.0, 2500 * RPM, replace(AS_IN_THE_PAPER, exact_inertia=True))
     assert sheet.m_red == pytest.approx(0.016516, rel=1e-4)
@@ -251,7 +251,7 @@ class TestFaultsOfPublicCodes:
         data = mesh_data(reference_gear())
         assert (
             iso.stiffness(data, 10.0).c_prime
-            < 0.57 * iso.stiffness(data, 10.0, low_load_factor=False).c_prime
+            < 0.57 * iso.stiffness(data, 10.0, iso.StiffnessChoices(low_load_factor=False)).c_prime
         )
 
     @pytest.mark.parametrize("fixed", [1.0, 0.975])

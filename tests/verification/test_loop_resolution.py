@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.shaft import Section, Shaft, free_frequencies
-from dynamics.response.speed_sweep import periodic_response
+from dynamics.response.speed_sweep import SweepSettings, periodic_response
 from rigdesign.case import load_case
 from rigdesign.checks import all_checks
 from rigdesign.coupling.initial_state import initial_state
@@ -37,9 +38,12 @@ def factors(name: str, speeds: Array, **numerics: object) -> Array:
     point = held_points(own)[-1]
     laws = laws_of(mesh_models(own, point, initial_state(own, point)))
     curve = periodic_response(
-        own.system, laws, speeds * RPM, signed_torque(own, point), methods=("harmonic_balance",),
-        cutoff=own.highest_mode,
-    )  # fmt: skip
+        own.system,
+        laws,
+        speeds * RPM,
+        LoopLoad(torque=signed_torque(own, point)),
+        settings=SweepSettings(cutoff=own.highest_mode, methods=("harmonic_balance",)),
+    )
     assert not curve.failed
     return np.array([point.dynamic_factor for point in curve.points])
 

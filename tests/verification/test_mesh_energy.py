@@ -12,7 +12,8 @@ import pytest
 
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import DampedRate, MeshLaw
-from dynamics.response.time_march import DriveState, TimeMarch
+from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
+from dynamics.response.time_march import TimeMarch
 from tests.mesh_example import BASE_RADIUS_1, BASE_RADIUS_2, TEETH, ramped_law, spur_law, two_bodies, wavy_law
 
 TORQUE = 180.0
@@ -33,13 +34,17 @@ def drift(
     )
     step = 1.0 / 40e3 / substeps
     march = TimeMarch(
-        two_bodies(), [law], start, step=step, drive_torque=TORQUE, derivative_torques=derivative_torques
+        two_bodies(),
+        [law],
+        start,
+        settings=MarchSettings(step=step, derivative_torques=derivative_torques),
+        loads=DriveLoads(drive_torque=TORQUE),
     )
     before = march.energy()
     march.advance(np.tile([TORQUE, brake, 0.0, 0.0], (round(meshes / (rpm / 60.0 * TEETH[0]) / step), 1)))
     turned = march.state().angles - start.angles
     work = TORQUE * turned[0] - brake * turned[1]
-    assert march.unsettled == 0
+    assert march.unconverged == 0
     return float(march.energy() - before - work) / (0.5 * force * deflection)
 
 
@@ -72,7 +77,13 @@ def test_motion_converges_at_second_order_in_smooth_contact() -> None:
     )
     ends = []
     for steps in (250, 500, 1000, 16000):
-        march = TimeMarch(two_bodies(), [law], start, step=2e-3 / steps, drive_torque=TORQUE)
+        march = TimeMarch(
+            two_bodies(),
+            [law],
+            start,
+            settings=MarchSettings(step=2e-3 / steps),
+            loads=DriveLoads(drive_torque=TORQUE),
+        )
         block = march.advance(np.tile([TORQUE, start.twist, 0.0, 0.0], (steps, 1)))
         ends.append(block.approach[0, -1])
     errors = np.abs(np.array(ends[:3]) - ends[3])
@@ -93,7 +104,13 @@ def test_accounts_tell_the_same_drift(rpm: float) -> None:
         speeds=speed * np.array([1.0, BASE_RADIUS_1 / BASE_RADIUS_2]),
         twist=brake,
     )
-    march = TimeMarch(two_bodies(), [law], start, step=1.0 / 640e3, drive_torque=TORQUE)
+    march = TimeMarch(
+        two_bodies(),
+        [law],
+        start,
+        settings=MarchSettings(step=1.0 / 640e3),
+        loads=DriveLoads(drive_torque=TORQUE),
+    )
     march.advance(np.tile([TORQUE, brake, 0.0, 0.0], (6400, 1)))
     turned = march.state().angles - start.angles
     work = march.accounts().slow_work
@@ -115,7 +132,13 @@ def test_march_books_all_that_the_damper_takes(acts_on: DampedRate) -> None:
     )
     errors = []
     for step in (1.0 / 640e3, 1.0 / 2560e3):
-        march = TimeMarch(two_bodies(), [law], start, step=step, drive_torque=TORQUE)
+        march = TimeMarch(
+            two_bodies(),
+            [law],
+            start,
+            settings=MarchSettings(step=step),
+            loads=DriveLoads(drive_torque=TORQUE),
+        )
         before = march.energy()
         march.advance(np.tile([TORQUE, brake, 0.0, 0.0], (round(5e-3 / step), 1)))
         work = march.accounts().slow_work.sum()

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.time_march import DriveState, TimeMarch
+from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
+from dynamics.response.time_march import TimeMarch
 from rigdesign.validation.oscillator import DOWN, FORCE, MEAN_FORCE, UP, ZETA
 from tests.mesh_example import two_bodies
 
@@ -40,11 +41,17 @@ def sweep(frequencies: tuple[float, ...], cycles: int = 120) -> np.ndarray:
         force = MEAN_FORCE + FORCE * frequency**2 * np.cos(frequency * time)
         given = np.zeros((len(time), 4))
         given[:, 0] = force
-        march = TimeMarch(system, [law()], state, step=step, drive_torque=force[-1], accounts=False)
+        march = TimeMarch(
+            system,
+            [law()],
+            state,
+            settings=MarchSettings(step=step, accounts=False),
+            loads=DriveLoads(drive_torque=force[-1]),
+        )
         displacement = march.advance(given).approach[0, -STEPS:] - law().offset
         state = march.state()
         rows.append((0.5 * np.ptp(displacement), displacement.min(), displacement.mean()))
-        assert march.unsettled == 0
+        assert march.unconverged == 0
     return np.array(rows).T
 
 

@@ -7,8 +7,9 @@ import pytest
 
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.drivetrain.shaft import STEEL_SHEAR_MODULUS
-from dynamics.drivetrain.static_loop import port_model, solve_static
+from dynamics.drivetrain.static_loop import SlowRotation, port_model, solve_static
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.initial_state import wound_state
@@ -59,7 +60,7 @@ def rig() -> tuple[LinearSystem, tuple[MeshLaw, MeshLaw]]:
 @pytest.mark.parametrize("torque", [180.0, 10.0, -90.0])
 def test_twist_times_loop_stiffness_is_the_torque(torque: float) -> None:
     system, laws = rig()
-    state = solve_static(port_model(system, laws), torque=torque)
+    state = solve_static(port_model(system, laws), LoopLoad(torque=torque))
     assert state.twist * series_stiffness() == pytest.approx(torque, rel=1e-8)
     assert state.mean_torque == pytest.approx([torque, -torque], rel=1e-9)
     assert np.abs(state.drive).max() < 1e-9 * abs(torque)
@@ -69,16 +70,16 @@ def test_backlash_adds_its_windup() -> None:
     """Front flank in one mesh, back flank in the other: the loop first turns through the play."""
     system, laws = rig()
     played = (laws[0], laws[1]._replace(backlash=50e-6))
-    closed = solve_static(port_model(system, laws), torque=180.0)
-    open_ = solve_static(port_model(system, played), torque=180.0)
+    closed = solve_static(port_model(system, laws), LoopLoad(torque=180.0))
+    open_ = solve_static(port_model(system, played), LoopLoad(torque=180.0))
     assert open_.twist - closed.twist == pytest.approx(50e-6 / BASE_RADIUS_REFERENCE, rel=1e-8)
 
 
 def test_held_twist_gives_the_torque_back() -> None:
     system, laws = assemble(prototype()), prototype_laws(friction=0.0)
     model = port_model(system, laws)
-    wound = solve_static(model, torque=180.0)
-    held = solve_static(model, twist=wound.twist)
+    wound = solve_static(model, LoopLoad(torque=180.0))
+    held = solve_static(model, LoopLoad(twist=wound.twist))
     assert held.mean_torque == pytest.approx(wound.mean_torque, rel=1e-9)
 
 
@@ -87,12 +88,11 @@ def test_drive_torque_of_slow_rotation_is_friction_over_speed() -> None:
     system, laws = assemble(prototype()), prototype_laws(friction=0.04)
     model = port_model(system, laws)
     angles = np.arange(512) / 512 * 2.0 * np.pi / (99 * model.ratios[0])
-    state = solve_static(model, torque=180.0, angles=angles, speed=78.5)
+    state = solve_static(model, LoopLoad(torque=180.0), rotation=SlowRotation(angles=angles, speed=78.5))
     lossless = solve_static(
         port_model(system, [law._replace(friction=0.0) for law in laws]),
-        torque=180.0,
-        angles=angles,
-        speed=78.5,
+        LoopLoad(torque=180.0),
+        rotation=SlowRotation(angles=angles, speed=78.5),
     )
     assert lossless.drive.mean() == pytest.approx(0.0, abs=2e-3)
     taken = 0.0
@@ -112,14 +112,14 @@ def test_drive_torque_of_slow_rotation_is_friction_over_speed() -> None:
 
 def test_twist_inside_the_backlash_carries_nothing() -> None:
     system, laws = rig()
-    state = solve_static(port_model(system, (laws[0], laws[1]._replace(backlash=1e-3))), twist=1e-4)
+    state = solve_static(port_model(system, (laws[0], laws[1]._replace(backlash=1e-3))), LoopLoad(twist=1e-4))
     assert np.abs(state.torque).max() < 1e-9
 
 
 def test_torque_or_twist_must_be_given() -> None:
     system, laws = rig()
     with pytest.raises(ValueError, match="either the torque or the twist"):
-        solve_static(port_model(system, laws))
+        solve_static(port_model(system, laws), LoopLoad())
     with pytest.raises(ValueError, match="1 mesh laws for 2 meshes"):
         port_model(system, laws[:1])
 
@@ -129,7 +129,7 @@ def test_drag_torques_wind_the_loop_as_every_line_balances() -> None:
     system, laws = rig()
     on_pinion, on_wheel = "test_pinion left", "test_wheel right"
     drags = {on_pinion: 0.7, on_wheel: 0.4}
-    state, drive, _ = wound_state(system, laws, speed=1000.0, torque=180.0, drag_torques=drags)
+    state, drive, _ = wound_state(system, laws, speed=1000.0, drag_torques=drags, load=LoopLoad(torque=180.0))
     assert drive == pytest.approx(0.4 + 0.7 * 102 / 99, rel=1e-9)
     torque = [
         law.base_radius_1

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import TipShortening
 from dynamics.rating import iso_rating
 from dynamics.rating.root_stress import root_influence, root_stress_history
 
@@ -28,8 +29,7 @@ def uhcf(profile_shift_1):
         centre_distance=99.5e-3,
         face_widths=(7e-3, 15e-3),
         profile_shift_1=profile_shift_1,
-        contact_ratio=1.26,
-        tip_cut="wheel",
+        tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
     )
 
 
@@ -86,7 +86,7 @@ def test_local_lever_of_a_helical_gear_at_the_virtual_load_point(index):
         centre_distance=112.5e-3,
         helix_angle=radians(18.0),
         face_widths=(30e-3, 30e-3),
-        split="equal",
+        profile_shift_1="equal",
     )
     influence = root_influence(pair, index, n_path=2001)
     # d_en sits p_bn (eps_an - 1) from the tip of the virtual gear, cos(beta_b) times that on the real path

@@ -12,6 +12,7 @@ import pytest
 from scipy.optimize import brentq
 
 from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import TipShortening
 from dynamics.mesh.tip_contact import path_reach, tip_separation
 
 UHCF = GearPair.from_centre_distance(
@@ -20,8 +21,7 @@ UHCF = GearPair.from_centre_distance(
     centre_distance=99.5e-3,
     face_widths=(7e-3, 15e-3),
     profile_shift_1=0.0,
-    contact_ratio=1.26,
-    tip_cut="wheel",
+    tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
 )
 FZG_C = GearPair.from_centre_distance(
     normal_module=4.5e-3,
@@ -31,11 +31,7 @@ FZG_C = GearPair.from_centre_distance(
     profile_shift_1=0.1817,
 )
 UNDERCUT = GearPair.from_centre_distance(
-    normal_module=2e-3,
-    teeth=(11, 40),
-    centre_distance=51e-3,
-    face_widths=(14e-3, 14e-3),
-    profile_shift_1=0.0,
+    normal_module=2e-3, teeth=(11, 40), centre_distance=51e-3, face_widths=(14e-3, 14e-3), profile_shift_1=0.0
 )
 PAIRS = pytest.mark.parametrize("pair", [UHCF, FZG_C], ids=["UHCF", "FZG-C"])
 
@@ -123,7 +119,7 @@ def test_helical_gears_take_the_transverse_section():
         helix_angle=radians(18.0),
         face_widths=(40e-3, 40e-3),
         profile_shift_1=0.0,
-        contact_ratio=1.448,
+        tips=TipShortening(contact_ratio=1.448),
     )
     path = np.linspace(*path_reach(pair, 50e-6), 200)
     gap = tip_separation(pair, path)

@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
+from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import MeshLaw
-from dynamics.response.periodic_response import PeriodicResponse, period_length, periodic_by_time
+from dynamics.response.periodic_response import (
+    PeriodicResponse,
+    TimeSettings,
+    period_length,
+    periodic_by_time,
+)
 from tests.mesh_example import BASE_RADIUS_1, BASE_RADIUS_2, chain, spur_law
 
 TEETH = 20
@@ -25,7 +31,11 @@ def orders(laws: MeshLaw) -> tuple[np.ndarray, PeriodicResponse]:
     """Amplitudes of the dynamic torque over the orders of the pinion shaft, and the response."""
     system = chain(2, joint=(1e6, 100.0), bearing=0.02)
     response = periodic_by_time(
-        system, [laws], speed=900.0, torque=100.0, period="revolution", tolerance=1e-5, longest_time=6.0
+        system,
+        [laws],
+        speed=900.0,
+        load=LoopLoad(torque=100.0),
+        settings=TimeSettings(period="revolution", tolerance=1e-5, longest_time=6.0),
     )
     assert response.steady, response.warnings
     return 2.0 * np.abs(np.fft.rfft(response.torque[0])) / response.torque.shape[1], response

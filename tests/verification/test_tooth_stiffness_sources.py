@@ -12,6 +12,7 @@ import pytest
 
 from dynamics.gear.cylindrical_gear import Rack
 from dynamics.gear.pair import GearPair
+from dynamics.gear.pair_geometry import TipShortening
 from dynamics.mesh.stiffness import pair_stiffness, single_pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 
@@ -21,7 +22,7 @@ UHCF = {
     "centre_distance": 99.5e-3,
     "face_widths": (7e-3, 15e-3),
     "profile_shift_1": 0.0,
-    "tip_shortening": (0.0, 0.70545e-3),
+    "tips": TipShortening(shortening=(0.0, 0.70545e-3)),
 }
 
 
@@ -97,7 +98,7 @@ def test_fzg_c():
 
 
 def test_ring_body_of_sainsot():
-    uhcf = GearPair.from_centre_distance(**UHCF, bore_diameters=(60e-3, 60e-3))
+    uhcf = GearPair.from_centre_distance(bore_diameters=(60e-3, 60e-3), **UHCF)
     assert tip_mean(uhcf, 553e3, body="ring") == pytest.approx(14.95, rel=2e-3)
     pair = equal_pair(3e-3, 50, 20e-3, bore=50e-3)
     ring = pair_stiffness(pair, line_load(pair, 340.0), body="ring")
@@ -133,6 +134,6 @@ def test_helical_pair_of_zero_helix_limit():
         teeth=(50, 50),
         centre_distance=0.15,
         face_widths=(20e-3, 20e-3),
-        split="equal",
+        profile_shift_1="equal",
     )
     assert course(helical, 2e5, [0.0]) == pytest.approx(course(spur, 2e5, [0.0]), rel=1e-3)

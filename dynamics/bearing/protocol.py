@@ -1,0 +1,144 @@
+"""What every kind of bearing answers: its steady state at a load, a speed, an oil supply and the heat of its bodies.
+
+A kind of bearing is a module of its own behind `Bearing`. What a kind adds to the common `BearingState` stays between
+its module and its tests; whoever reads a state reads the common fields and need not know the kind.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from dynamics.errors import DynamicsInputError, DynamicsNotConverged
+
+
+class BearingError(DynamicsInputError):
+    """An impossible bearing or operation of one; the message names value, limit and remedy."""
+
+
+class BearingNotConvergedError(DynamicsNotConverged):
+    """No oil temperature balances friction and oil flow."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OilSupply:
+    """Oil as it is fed to one bearing.
+
+    inlet_temperature : [K]
+    flow : above 0 [m3/s]
+    viscosity : dynamic viscosity [Pa s] of a temperature [K], falling with it
+    density, heat_capacity : at the inlet [kg/m3], [J/(kg K)]
+
+    Raises BearingError for a number that is not above 0.
+    """
+
+    inlet_temperature: float
+    flow: float
+    viscosity: Callable[[float], float]
+    density: float
+    heat_capacity: float
+
+    def __post_init__(self) -> None:
+        for name, value, unit in (
+            ("oil flow", self.flow, "m3/s"),
+            ("oil density", self.density, "kg/m3"),
+            ("oil heat capacity", self.heat_capacity, "J/(kg K)"),
+            ("oil inlet temperature", self.inlet_temperature, "K"),
+        ):
+            if not value > 0.0:
+                raise BearingError(
+                    f"bearing: {name} = {value} {unit}: must be above 0; correct the oil supply"
+                )
+
+    def temperature_rise(self, heat: float, flow: float) -> float:
+        """Rise of ``flow`` [m3/s] of this oil that takes up ``heat`` [W], with properties at the inlet [K]."""
+        return heat / (self.density * self.heat_capacity * flow)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BearingOperation:
+    """Operating condition of one bearing.
+
+    load : radial force, not negative [N]
+    speed : of the shaft; its sign does not matter [rad/s]
+    oil : as it is fed
+    heat_from_bodies : heat that shaft and shell give to the oil in the bearing; negative if they cool it [W]
+    friction_heat : measured or assumed friction heat, not negative [W]; it takes the place of the computed friction in
+        the heat balance, the drag torque is the computed one all the same
+    friction_factor : multiplies the friction, and with it its heat; not negative [-]
+
+    Raises BearingError for a load, friction heat or factor that is negative or not finite.
+    """
+
+    load: float
+    speed: float
+    oil: OilSupply
+    heat_from_bodies: float = 0.0
+    friction_heat: float | None = None
+    friction_factor: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name, value, unit, remedy in (
+            ("load", self.load, " N", "give its magnitude"),
+            (
+                "friction_heat", self.friction_heat, " W",
+                "give the measured loss, or none to let the bearing make its own",
+            ),
+            ("friction_factor", self.friction_factor, "", "give 1 for the friction of the bearing itself"),
+        ):  # fmt: skip
+            if value is not None and not (value >= 0.0 and math.isfinite(value)):
+                raise BearingError(
+                    f"bearing: {name} = {value}{unit}: must be finite and not negative; {remedy}"
+                )
+
+
+@dataclass(frozen=True, kw_only=True)
+class BearingState:
+    """Steady state of one bearing of any kind; SI units."""
+
+    load: float
+    """Radial [N]."""
+    omega: float
+    """Magnitude of the shaft speed [rad/s]."""
+    drag_torque: float
+    """[N m]"""
+    power: float
+    """Friction heat [W]."""
+    torsional_damping: float
+    """drag_torque / omega [N m s/rad]."""
+    film_temperature: float
+    """Of the oil that separates shaft and bearing [K]."""
+    outlet_temperature: float
+    """All oil fed, mixed behind the bearing [K]."""
+    flow: float
+    """Oil fed [m3/s]."""
+    cooling_flow: float
+    """Part of it that takes up the friction heat; the rest leaves past it [m3/s]."""
+    mean_inverse_gap: float
+    """Mean of 1/h of the oil between shaft and shell [1/m]; times the oil conductivity a heat transfer coefficient."""
+    heat_from_bodies: float
+    """Heat conducted into the oil from shaft and shell [W]."""
+    specific_load: float | None
+    """F / (B D) [Pa]; None for a kind that is not rated by it."""
+    minimum_film: float | None
+    """Smallest film [m]; None for a kind that is not rated by it."""
+    transition_speed: float | None
+    """Fluid friction above this speed at this load and viscosity [rad/s]; None for a kind without mixed friction."""
+    source: str
+    """Document behind the friction."""
+    warnings: tuple[str, ...]
+    """What lies outside the theory: name, value, limit, remedy."""
+
+
+class Bearing(Protocol):
+    """A bearing with its clearance as it runs: thermal and centrifugal expansion taken off by whoever makes it."""
+
+    def operating_state(self, operation: BearingOperation) -> BearingState:
+        """Solve friction and heat balance together.
+
+        Raises
+        ------
+        BearingError : an operation that the kind cannot have
+        BearingNotConvergedError : no oil temperature balances friction and oil flow
+        """
+        ...

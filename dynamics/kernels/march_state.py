@@ -1,0 +1,76 @@
+"""What a march reads and writes: commands, the state from call to call, scratch arrays."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.kernels.drag import DragLaws, DragWork
+from dynamics.kernels.mesh_solve import ListedContacts
+
+# compiled from sources 49af733f
+Array = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class Commands(NamedTuple):
+    """What a march is told, values at the end of each sample."""
+
+    given: Array
+    """(n_samples, 4 + n_given) motor torque, twist, speed of the drive, torque of the first mesh, then the other slow
+    inputs."""
+    offsets: Array
+    """(n_samples, n_meshes) imposed approach."""
+    control: Array
+    """Proportional gain, integral gain per sample, torque limit (0: no control), share of the averaged speed;
+    bracing gain per sample (0: no control), share of the averaged torque."""
+    drags: DragLaws
+
+
+class Carried(NamedTuple):
+    """State of a march from call to call; every array is written."""
+
+    state: Array
+    """(n_states,) modal state."""
+    ports: Array
+    """(n_meshes, 6) tau_1, tau_2, both one step earlier, approach, pinion angle."""
+    slow: Array
+    """(n_slow,) motor torque, twist, torques that are given."""
+    drags: Array
+    """(n_drags,) drag torques."""
+    offset: Array
+    """(n_meshes,) imposed approach."""
+    controller: Array
+    """Integral of the speed controller, correction of the twist, then averages: torque, speed, asked torque."""
+    speeds: Array
+    """(n_slow + n_drags,) speed of the load of every slow input and drag."""
+    powers: Array
+    """Last powers: friction and damping of each mesh, every slow input, every drag, joints; empty without accounts."""
+    work: Array
+    """Their integrals."""
+    damping: Array
+    """(n_meshes, 2) last damping force and approach rate."""
+
+
+class Workspace(NamedTuple):
+    """Scratch arrays of a march."""
+
+    listed: ListedContacts
+    bank: Array
+    """That of the modes with the state in it."""
+    slow_outputs: Array
+    """Flat (substeps, n_outputs + n_rows): what the slow inputs give in each step of the sample."""
+    ends: Array
+    """(n_rows,) the outputs of no port; without accounts those of the slow inputs alone."""
+    torques: Array
+    """(2, n_ports + n_drags) torques of ports and drags at start and end of a step."""
+    give: Array
+    """Flat (n_meshes, n_meshes, 4): reach of another mesh per torque of both ports of one at the end of the step,
+    then its rate."""
+    space: Array
+    """Flat (n_meshes + 1, N_SPACE), see ``kernels.mesh_workspace``."""
+    target: Array
+    """(n_slow,) slow inputs at the end of the sample."""
+    fresh: Array
+    """Powers at the end of the step."""
+    drags: DragWork

@@ -1,0 +1,134 @@
+"""Commands of a time run: speed and bracing over time, motor, drag torques, sampling."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.errors import DynamicsInputError
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.initial_state import pinion_ratios
+from dynamics.response.march_inputs import DragTables, SpeedControl
+from dynamics.response.modal_model import DEFAULT_CUTOFF
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Command:
+    """Speed and bracing of the rig, on a coarse time grid, linear between its points.
+
+    time : (n,) increasing [s]; speed : (n,) of the pinion of the first mesh [rad/s]
+    torque : (n,) mean dynamic torque of the first mesh, negative on the back flank [N m] (torque-controlled
+        bracing), or None; twist : (n,) bracing twist that is held [rad], or None; one of the two is given
+    offsets : (n, n_meshes) approach imposed on each mesh [m], or None for the offsets of the laws
+    """
+
+    time: Array
+    speed: Array
+    torque: Array | None = None
+    twist: Array | None = None
+    offsets: Array | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class DragCurve:
+    """Drag torque over the speed of its place: speed (n,) from 0, increasing [rad/s]; torque (n,) >= 0 [N m]."""
+
+    speed: Array
+    torque: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotorDrive:
+    """Motor of the rig in a time run.
+
+    torque_limit : of the motor [N m], or one for every time of the command, each from its time on; changes count
+        from the nearest window end
+    speed_control : controller; default ``default_speed_control``
+    """
+
+    torque_limit: float | Array
+    speed_control: SpeedControl | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sampling:
+    """Steps of a time run and what it keeps.
+
+    sample_rate : of controller and kept channels [Hz]; substeps : internal steps per sample, 8 or more
+    window : length of the envelope windows [s]
+    lift_off_share : a gap without contact counts from this share of the mesh period on [-]
+    keep_channels : keep the torques at the sample rate
+    keep_accounts : integrate the energy of every joint and contact; without it the run is about twice as fast and
+        its energy balance is None
+    cutoff : modes above this frequency keep their static effect only [Hz]
+
+    Raises DynamicsInputError for fewer than 8 internal steps.
+    """
+
+    sample_rate: float = 40e3
+    substeps: int = 8
+    window: float = 0.01
+    lift_off_share: float = 0.05
+    keep_channels: bool = True
+    keep_accounts: bool = True
+    cutoff: float = DEFAULT_CUTOFF
+
+    def __post_init__(self) -> None:
+        if self.substeps < 8:
+            raise DynamicsInputError(
+                f"substeps = {self.substeps}, limit 8: the sample rate of {self.sample_rate:g} Hz is no "
+                "integration step"
+            )
+
+
+def default_speed_control(
+    system: LinearSystem, laws: Sequence[MeshLaw], torque_limit: float, *, bandwidth: float = 2.0
+) -> SpeedControl:
+    """Return a controller of ``bandwidth`` [Hz] for the rigid inertia of the rig, damped 1.0.
+
+    Source: second-order loop J s^2 + k_p s + k_i with both roots at -2 pi bandwidth.
+    """
+    ratios = pinion_ratios(system, laws)
+    inertia = float(system.inertia @ ratios**2) / float(ratios[system.drive_dof]) ** 2
+    rate = 2.0 * pi * bandwidth
+    return SpeedControl(
+        proportional=2.0 * inertia * rate,
+        integral=inertia * rate**2,
+        torque_limit=torque_limit,
+        time_constant=0.1 / rate,
+    )
+
+
+def check_command(command: Command, n_meshes: int) -> None:
+    """Raise DynamicsInputError for a command that contradicts itself, ValueError for offsets of another shape."""
+    n = len(command.time)
+    if n < 2 or np.any(np.diff(command.time) <= 0.0):
+        raise DynamicsInputError("command: time must have two points at least and increase")
+    if (command.torque is None) == (command.twist is None):
+        raise DynamicsInputError("command: give either torque or twist")
+    for name in ("speed", "torque", "twist"):
+        values = getattr(command, name)
+        if values is not None and (len(values) != n or not np.all(np.isfinite(values))):
+            raise DynamicsInputError(
+                f"command: {name} has {len(values)} values, needs {n} finite ones, one for each time"
+            )
+    if command.offsets is not None and command.offsets.shape != (n, n_meshes):
+        raise ValueError(f"command: offsets has shape {command.offsets.shape}, expected {(n, n_meshes)}")
+
+
+def drag_tables(curves: Mapping[str, DragCurve]) -> DragTables:
+    """All curves on uniform grids of 513 points; DynamicsInputError for speeds or torques that cannot be."""
+    ends = np.array([curve.speed[-1] for curve in curves.values()], float)
+    rows = []
+    for name, curve in curves.items():
+        if curve.speed[0] != 0.0 or np.any(np.diff(curve.speed) <= 0.0) or np.any(curve.torque < 0.0):
+            raise DynamicsInputError(
+                f"drag {name}: speed must start at 0 and increase, torque must not be negative"
+            )
+        rows.append(np.interp(np.linspace(0.0, curve.speed[-1], 513), curve.speed, curve.torque))
+    return DragTables(torque=np.array(rows, float).reshape(len(rows), 513), last_speed=ends)

@@ -1,0 +1,173 @@
+"""Newton steps of the harmonic balance: one small block of equations per residue class of harmonics."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.static_loop import PortModel
+from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class MeshHarmonics:
+    """Mesh torques over time and their cell-averaged tangents, as harmonics.
+
+    torque : (n_bodies, top + 1) on each gear body, of all its meshes
+    per_approach, per_rate : (n_meshes, 2, samples) of the torques on pinion and wheel, two-sided over one cell
+    transmitted : (n_meshes, count) torque at the pinion over the period [N m]
+    """
+
+    torque: Complex
+    per_approach: Complex
+    per_rate: Complex
+    transmitted: Array
+
+
+def mesh_sides(model: PortModel) -> NDArray[np.int64]:
+    """(n_meshes, 2) ports of pinion and wheel."""
+    return np.stack([model.pinions, model.wheels], axis=1)
+
+
+class HarmonicNewton:
+    """Newton steps of one speed: for each residue class of harmonics one block over the meshes."""
+
+    def __init__(self, problem: BalanceProblem, grid: HarmonicGrid, base: float, receptance: Complex) -> None:
+        self.problem, self.grid, self.base = problem, grid, base
+        self.receptance = receptance
+        self.sides = mesh_sides(problem.model)
+        approach = problem.model.approach[:, :-1]
+        self.gain = np.einsum("mi,kij->kmj", approach, receptance)
+        """(top, n_meshes, n_bodies) approach per port torque."""
+
+    def step(
+        self, reactions: MeshHarmonics, miss: Complex, balance: Array, asked: float
+    ) -> tuple[Complex, Array, float, float]:
+        """Changes of the harmonics (n_bodies, top), of the mean windup (n,), of drive torque and twist."""
+        approach_miss = self.problem.model.approach[:, :-1] @ miss
+        change, rest, drive, twist = self._meshing(reactions, approach_miss, balance, asked)
+        grid = self.grid
+        torque = np.zeros(miss.shape, complex)
+        torque[:, grid.cells - 1 :: grid.cells] = change
+        for residue in range(1, grid.cells // 2 + 1):
+            self._sideband(reactions, approach_miss, residue, torque)
+        return miss + np.einsum("kij,jk->ik", self.receptance, torque), rest, drive, twist
+
+    def _tangent(self, reactions: MeshHarmonics, order: NDArray[np.int64], omega: Array) -> Complex:
+        """(n_meshes, 2, n, n): harmonics of pinion and wheel torque per harmonics of approach."""
+        lag = np.subtract.outer(order, order)
+        stiff, damp = reactions.per_approach[:, :, lag], reactions.per_rate[:, :, lag]
+        return np.asarray(stiff + damp * (1j * omega))
+
+    def _gain_at(self, index: NDArray[np.int64]) -> Complex:
+        """(n_index, n_meshes, n_bodies) approach per torque at signed harmonics, zero at the mean."""
+        gain = self.gain[np.maximum(np.abs(index) - 1, 0)]
+        gain = np.where((index < 0)[:, None, None], gain.conj(), gain)
+        gain[index == 0] = 0.0
+        return np.asarray(gain)
+
+    def _block(self, tangent: Complex, gain: Complex) -> Complex:
+        """Identity less gain times tangent, ordered mesh by mesh: (n_meshes n, n_meshes n)."""
+        n_meshes, n = self.problem.model.n_meshes, tangent.shape[-1]
+        split = gain[:, :, self.sides]
+        coupled = np.einsum("kamp,mpkl->akml", split, tangent, optimize=True)
+        return np.asarray(np.eye(n_meshes * n) - coupled.reshape(n_meshes * n, n_meshes * n))
+
+    def _on_bodies(self, tangent: Complex, approach: NDArray[np.complexfloating]) -> Complex:
+        """Torque on every gear body (n_bodies, n) from the change of approach (n_meshes, n)."""
+        torque = np.zeros((self.problem.model.n_bodies, approach.shape[1]), complex)
+        np.add.at(torque, self.sides, np.einsum("mpkl,ml->mpk", tangent, approach))
+        return torque
+
+    def _meshing(
+        self, reactions: MeshHarmonics, approach_miss: Complex, balance: Array, asked: float
+    ) -> tuple[Complex, Array, float, float]:
+        """Class of the mesh harmonics, solved with the mean windup, drive torque and twist."""
+        model, grid = self.problem.model, self.grid
+        n_meshes, size = model.n_meshes, model.ratios.size
+        order = np.arange(-grid.harmonics, grid.harmonics + 1)
+        n, mean = order.size, grid.harmonics
+        omega = self.base * grid.cells * order
+        tangent = self._tangent(reactions, order, np.asarray(omega, float))
+        flat = np.arange(n_meshes) * n + mean
+        total = n_meshes * n + size + 2
+        matrix = np.zeros((total, total), complex)
+        right = np.zeros(total, complex)
+        matrix[: n_meshes * n, : n_meshes * n] = self._block(tangent, self._gain_at(order * grid.cells))
+        at = order[mean + 1 :] * grid.cells - 1
+        for m in range(n_meshes):
+            right[m * n + mean + 1 : (m + 1) * n] = approach_miss[m, at]
+            right[m * n : m * n + mean] = approach_miss[m, at].conj()[::-1]
+        # the mean approach follows from the mean windup
+        rest = n_meshes * n
+        matrix[flat, :] = 0.0
+        matrix[flat, flat] = 1.0
+        matrix[flat, rest : rest + size] = -model.approach
+        # balance of mean torques
+        matrix[rest : rest + size, rest : rest + size] = model.stiffness
+        for m in range(n_meshes):
+            for side, body in enumerate(self.sides[m]):
+                matrix[rest + body, m * n : (m + 1) * n] -= tangent[m, side, mean]
+        matrix[rest + size - 1, rest + size] = -1.0
+        matrix[rest : rest + size, rest + size + 1] = -model.twist
+        right[rest : rest + size] = -balance
+        # reference angle stays, torque of the control mesh or twist is met
+        matrix[rest + size, rest + size - 1] = 1.0
+        if self.problem.load.torque is None:
+            matrix[rest + size + 1, rest + size + 1] = 1.0
+        else:
+            c = self.problem.load.control_mesh
+            matrix[rest + size + 1, c * n : (c + 1) * n] = -tangent[c, 0, mean]
+            right[rest + size + 1] = asked
+        solution = _solve_paired(matrix, right, n_meshes, n)
+        approach = solution[:rest].reshape(n_meshes, n)
+        torque = self._on_bodies(tangent, approach)
+        tail = solution[rest:].real
+        return torque[:, mean + 1 :], tail[:size], float(tail[size]), float(tail[size + 1])
+
+    def _sideband(self, reactions: MeshHarmonics, miss: Complex, residue: int, torque: Complex) -> None:
+        """Class of the harmonics ``residue + cells * j``: fills its places in ``torque`` (n_bodies, top)."""
+        model, grid = self.problem.model, self.grid
+        j = np.arange(-grid.harmonics, grid.harmonics)
+        index = residue + grid.cells * j
+        omega = self.base * index
+        tangent = self._tangent(reactions, j, np.asarray(omega, float))
+        block = self._block(tangent, self._gain_at(index))
+        known = miss[:, np.abs(index) - 1]
+        known = np.where(index < 0, known.conj(), known)
+        approach = np.linalg.solve(block, known.ravel()).reshape(model.n_meshes, j.size)
+        change = self._on_bodies(tangent, approach)
+        positive = index > 0
+        torque[:, index[positive] - 1] = change[:, positive]
+        torque[:, -index[~positive] - 1] = change[:, ~positive].conj()
+
+
+def _solve_paired(matrix: Complex, right: Complex, n_meshes: int, n: int) -> Complex:
+    """Solution of a system for real motions, in real numbers: a quarter of the work.
+
+    The first unknowns are ``n_meshes`` spectra of ``n`` signed harmonics, the rest are real. Harmonics of opposite
+    sign are conjugate, a + ib and a - ib, and so are their equations: of each pair one is kept, as its real and
+    imaginary part for a and b.
+    """
+    mean = n // 2
+    start = np.arange(n_meshes)[:, None] * n + mean
+    positive, negative = ((start + sign * np.arange(1, mean + 1)).ravel() for sign in (1, -1))
+    single = np.append(start.ravel(), np.arange(n_meshes * n, len(right)))
+
+    def of_parts(rows: Complex) -> Complex:
+        after, before = rows[:, positive], rows[:, negative]
+        return np.hstack([after + before, 1j * (after - before), rows[:, single]])
+
+    pairs = of_parts(matrix[positive])
+    real = np.vstack([pairs.real, pairs.imag, of_parts(matrix[single]).real])
+    load = np.concatenate([right[positive].real, right[positive].imag, right[single].real])
+    scale = np.abs(real).max(axis=1)
+    cosine, sine, others = np.split(
+        np.linalg.solve(real / scale[:, None], load / scale), [positive.size, 2 * positive.size]
+    )
+    solution = np.empty(len(right), complex)
+    solution[positive], solution[negative], solution[single] = cosine + 1j * sine, cosine - 1j * sine, others
+    return solution

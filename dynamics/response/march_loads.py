@@ -1,0 +1,67 @@
+"""Columns of load through which a march acts on the drivetrain: motor, bracing, swinging and drag torques."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics import kernels
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.errors import DynamicsInputError
+from dynamics.mesh.law import MeshLaw
+from dynamics.response.modal_model import DEFAULT_CUTOFF, ModalModel, modal_model
+
+Array = NDArray[np.float64]
+
+
+def march_model(
+    system: LinearSystem, laws: Sequence[MeshLaw], drags: Sequence[str] = (), cutoff: float = DEFAULT_CUTOFF
+) -> ModalModel:
+    """Modal model of a drivetrain with the loads of a march: motor, twist, swinging torques and the drags named.
+
+    cutoff : modes above this frequency keep their static effect only [Hz]
+
+    Raises DynamicsInputError and DefectiveModes as ``modal_model``, DynamicsInputError for unknown names of drags.
+    """
+    return modal_model(system, laws, slow_loads(system), drag_loads(system, drags), cutoff=cutoff)
+
+
+def slow_loads(system: LinearSystem) -> Array:
+    """Return the loads (n, 2 + n_shaft_torques) of motor, twist and swinging torques."""
+    drive = np.zeros(len(system.inertia))
+    drive[system.drive_dof] = 1.0
+    return np.column_stack((drive, system.twist_load, *(torques.load for torques in system.shaft_torques)))
+
+
+def drag_places(system: LinearSystem, drags: Sequence[str]) -> NDArray[np.int64]:
+    """Return (n_drags,) the columns of named drags in ``drag_loads``: every line begins a new four of them.
+
+    Raises DynamicsInputError for unknown names.
+    """
+    unknown = [name for name in drags if name not in system.drag_loads]
+    if unknown:
+        raise DynamicsInputError(
+            f"no drag load named {', '.join(unknown)}; known: {', '.join(system.drag_loads) or 'none'}"
+        )
+    lines = [system.lines[np.argmax(np.abs(system.drag_loads[name]))] for name in drags]
+    places = np.empty(len(drags), np.int64)
+    first = 0
+    for line in np.unique(lines):
+        own = np.flatnonzero(lines == line)
+        places[own] = first + np.arange(len(own))
+        first += -(-len(own) // kernels.FOUR) * kernels.FOUR
+    return places
+
+
+def drag_loads(system: LinearSystem, drags: Sequence[str]) -> Array:
+    """Return the loads (n, n_places) of named drag torques in fours, see ``drag_places``; zeros where there is no drag.
+
+    Raises DynamicsInputError for unknown names.
+    """
+    places = drag_places(system, drags)
+    loads = np.zeros(
+        (len(system.inertia), -(-int(max(places, default=-1) + 1) // kernels.FOUR) * kernels.FOUR)
+    )
+    for place, name in zip(places, drags):
+        loads[:, place] = system.drag_loads[name]
+    return loads

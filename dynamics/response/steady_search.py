@@ -1,0 +1,108 @@
+"""Search for a steady state in time: mean speed and mean torque held by corrections between blocks of periods."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.loop_load import LoopLoad
+from dynamics.drivetrain.shaft_torque import waves_within
+from dynamics.response.initial_state import WoundLoop, pinion_ratios
+from dynamics.response.march_inputs import DragTables
+from dynamics.response.time_march import Block, TimeMarch
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PeriodGrid:
+    """One period: mean speed of the first pinion [rad/s], its turns, length [s] and internal steps."""
+
+    speed: float
+    turns: float
+    length: float
+    steps: int
+
+
+class SteadySearch:
+    """March blocks, hold mean speed and mean torque by corrections between them, and test for the steady state."""
+
+    def __init__(
+        self,
+        march: TimeMarch,
+        system: LinearSystem,
+        load: LoopLoad,
+        wound: WoundLoop,
+        period: PeriodGrid,
+        tolerance: float,
+    ) -> None:
+        self.march, self.speed, self.torque, self.tolerance = march, period.speed, load.torque, tolerance
+        self.drive, self.twist = wound.drive_torque, wound.state.twist
+        self.balanced_drive = self.drive
+        self.steady, self.residual = False, float("inf")
+        self._stiffness, self._period = wound.loop_stiffness, period
+        ratios = pinion_ratios(system, march.laws)
+        self._torques = [
+            replace(
+                own, parts=tuple(p for p in own.parts if waves_within(p.order, ratios[own.dof], period.turns))
+            )
+            for own in system.shaft_torques
+        ]
+        self._ratios = ratios
+        self._inertia = float(system.inertia @ ratios**2) / ratios[system.drive_dof]
+        self._last: Array | None = None
+        self._speed_before: float | None = None
+        self._change = float("inf")
+        self._quiet = 0
+
+    def block(self, periods: int, tables: Array) -> Block:
+        """March some periods with constant drag torques (n_drags, 2), correct, and return what was marched."""
+        march = self.march
+        steps = self._period.steps
+        samples = periods * steps // march.substeps
+        given = np.zeros((samples, 4 + len(self._torques)))
+        given[:, 0], given[:, 1] = self.drive, self.twist
+        before = march.pinion_angle()
+        angle = before + self.speed * march.step * march.substeps * np.arange(1, samples + 1)
+        for i, torques in enumerate(self._torques):
+            given[:, 4 + i] = torques.at(self._ratios[torques.dof] * angle)
+        result = march.advance(given, drags=DragTables(torque=tables))
+        span = periods * self._period.length
+        mean_speed = (march.pinion_angle() - before) / span
+        radius = np.array([law.base_radius_1 for law in march.laws])
+        wave = radius[:, None] * result.force[:, -steps:]
+        mean = float(radius[0] * result.force[0].mean())
+        torque_error = 0.0 if self.torque is None else self.torque - mean
+        drift = 0.0 if self._speed_before is None else (mean_speed - self._speed_before) / span
+        self.balanced_drive = self.drive - self._inertia * drift
+        self._test(wave, mean, torque_error, mean_speed)
+        if not self.steady:
+            self._correct(mean_speed, drift, span, torque_error)
+        return result
+
+    def _test(self, wave: Array, mean: float, torque_error: float, mean_speed: float) -> None:
+        if self._last is not None:
+            dynamic = np.ptp(wave, axis=1)
+            scale = np.maximum(dynamic, 1e-3 * np.abs(wave).max(axis=1)) + 1e-300
+            change = float(np.max(np.abs(wave - self._last).max(axis=1) / scale))
+            decay = min(change / self._change, 0.95) if self._change > 0.0 else 0.0
+            self._change = change
+            self.residual = max(change, change * decay / (1.0 - decay))
+            held = (
+                abs(torque_error) <= 1e-4 * abs(mean)
+                and abs(mean_speed / self.speed - 1.0) <= 1e-6
+                and abs(self.balanced_drive - self.drive) <= 1e-4 * abs(self.drive)
+            )
+            self._quiet = self._quiet + 1 if self.residual <= self.tolerance and held else 0
+            self.steady = self._quiet >= 2
+        self._last = wave
+
+    def _correct(self, mean_speed: float, drift: float, span: float, torque_error: float) -> None:
+        self.drive -= 0.7 * self._inertia * drift
+        # at the end of the block the rigid motion is half a block ahead of its mean
+        kick = self.speed - mean_speed - 0.5 * drift * span
+        self.march.kick(kick * self._ratios)
+        self._speed_before = mean_speed + kick
+        self.twist += 0.5 * torque_error / self._stiffness
+        self.march.set_slow(self.drive, self.twist)
