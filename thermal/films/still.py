@@ -50,6 +50,7 @@ def niemann_winter(height: float, place_factor: float = 1.0) -> FilmLaw:
             valid_range="still room air, 0 <= dT <= 150 K, 0.1 <= h <= 3 m (limits assumed)",
             source="Niemann/Winter, Maschinenelemente II; P2 Formula 2",
             warnings=warnings,
+            radiation_included=True,
         )
 
     return law

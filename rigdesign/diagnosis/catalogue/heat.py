@@ -8,20 +8,11 @@ pressed metal joint with oil in its gap (5e4 W/m2K), friction of seals 10 W at 1
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from rigdesign.case.films import SurfaceFilm
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.housing import (
-    BearingFilm,
-    Condition,
-    ConstantFilm,
-    FixedTemperature,
-    FlankFilm,
-    GapExchange,
-    Housing,
-    Insulated,
-    SeriesExchange,
-    ThermalRadiation,
-)
+from rigdesign.case.housing import Housing
 from rigdesign.case.model import Case
+from rigdesign.case.surface_conditions import ThermalRadiation
 from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Family, Parameter
 from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, Scaled, factor, share
 
@@ -232,10 +223,9 @@ factor of three (`thermal.films.convection.bearing_film`)."""
 def _films(name: str, housing: Housing) -> Iterator[Effect]:
     at = f"gearboxes.{name}.housing"
     for entry, condition in housing.boundary.items():
-        fluid = getattr(condition, "fluid", None)
-        if isinstance(condition, ThermalRadiation) or fluid is None or fluid == "ambient":
+        if not isinstance(condition, SurfaceFilm) or condition.wetted_by == "ambient":
             continue
-        given = isinstance(condition, ConstantFilm)
+        given = condition.coefficient_given
         low, high = (0.3, 3.0) if given else (0.2, 5.0)
         yield Effect(
             name=f"film:{name}.{entry}",
@@ -243,7 +233,7 @@ def _films(name: str, housing: Housing) -> Iterator[Effect]:
             family="film",
             signature="moves the bodies it wets against the oil, leaves drive torque",
             parameters=(factor("factor", low, high),),
-            change=Scaled(((f"{at}.boundary.{entry}.film_factor", getattr(condition, "film_factor", 1.0)),)),
+            change=Scaled(((f"{at}.boundary.{entry}.film_factor", condition.film_factor),)),
             healthy=0.25 if given else IN_MIST,
             links=_wetted(name, condition.surfaces),
         )
@@ -252,7 +242,12 @@ def _films(name: str, housing: Housing) -> Iterator[Effect]:
         "film to room air",
         f"{at}.ambient_film_factor",
         housing.ambient_film_factor,
-        tuple(link for c in housing.boundary.values() if _in_air(c) for link in _wetted(name, c.surfaces)),
+        tuple(
+            link
+            for c in housing.boundary.values()
+            if c.wetted_by == "ambient"
+            for link in _wetted(name, c.surfaces)
+        ),
     )
     yield _film(
         f"bearing_film:{name}",
@@ -291,17 +286,6 @@ def _films(name: str, housing: Housing) -> Iterator[Effect]:
 def _wetted(name: str, surfaces: Sequence[str]) -> tuple[str, ...]:
     """Local conductances of the films on surfaces."""
     return tuple(f"film:{name}.{surface}" for surface in surfaces)
-
-
-NOT_IN_AIR = (
-    BearingFilm, FixedTemperature, FlankFilm, GapExchange, Insulated, SeriesExchange, ThermalRadiation,
-)  # fmt: skip
-"""Conditions that are no film to the room's air whatever they say of a fluid."""
-
-
-def _in_air(condition: Condition) -> bool:
-    """Whether a film is one to room air, as `rigdesign.coupling.boundary` takes it."""
-    return not isinstance(condition, NOT_IN_AIR) and getattr(condition, "fluid", "ambient") == "ambient"
 
 
 class _Shifted:
