@@ -103,7 +103,7 @@ def effects_page(cases: Sequence[Case]) -> str:
     lines.append("What these make is reported as located but unknown, or not seen at all.\n")
     lines += _table(
         ("effect", "what", "how it shows", "what it waits for"),
-        [(f"`{one.name}`", one.title, one.signature, one.lacks) for one in WAITING],
+        [(f"`{one.name}`", one.title, one.signature, one.lacks) for one in WAITING if one.name not in kinds],
     )
     return "\n".join(lines).rstrip() + "\n"
 

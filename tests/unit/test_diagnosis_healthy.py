@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
+from rigdesign.diagnosis.catalogue.families import FILM
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.residual import residual_problem as subjects
 from rigdesign.diagnosis.residual.covariance_inflation import LARGEST, WIDEN_ABOVE, widen
@@ -34,7 +35,7 @@ def film(healthy=0.25):
     return Effect(
         name="film:test.wall_oil",
         title="oil on the walls",
-        family="film",
+        family=FILM,
         signature="",
         parameters=(Parameter(name="factor", unit="", low=0.3, high=3.0, source="", factor=True),),
         change=lambda case, values: {},

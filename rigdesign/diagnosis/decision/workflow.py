@@ -11,7 +11,6 @@ from typing import Literal
 
 import numpy as np
 
-from rigdesign.diagnosis.catalogue.effects import CIRCUIT, DYNAMIC
 from rigdesign.diagnosis.decision.claims import Refusal, Traces, claim
 from rigdesign.diagnosis.decision.decision import Decision, posterior
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
@@ -235,7 +234,7 @@ def _search(
         evaluate,
         thresholds=calibration.thresholds(problem.baseline is not None),
         points=[feature.setting for feature in subject.features],
-        loop=frozenset(effect.claim for effect in subject.effects if effect.family in DYNAMIC),
+        loop=frozenset(effect.claim for effect in subject.effects if effect.family.dynamic),
         signature=signature,
     )
     examinations = [look(space, explanations)]
@@ -272,7 +271,7 @@ def _signature(problem: Problem, subject: ResidualProblem, calibration: Calibrat
         relative_speed(subject.features, subject.library.settings),
         calibration.signature_error,
         None if problem.baseline is None else own,
-        circuit=frozenset(effect.claim for effect in subject.effects if effect.family in CIRCUIT),
+        circuit=frozenset(effect.claim for effect in subject.effects if effect.family.circuit),
     )
 
 
