@@ -5,7 +5,7 @@ from typing import Any
 
 from rigdesign.report.csv_text import csv_text
 from rigdesign.report.fields import file_stem
-from rigdesign.report.pages.transient_section import transient_tables
+from rigdesign.report.transient_tables import transient_tables
 from rigdesign.results.result import (
     DynamicFactorPoint,
     DynamicsResult,

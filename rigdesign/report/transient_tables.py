@@ -1,51 +1,14 @@
-"""The thermal course in the report and as curves: figures by course, one table of all steps a course."""
+"""The thermal histories as curves: one table of all steps a history."""
 
-from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator
+from typing import Any
 
 from rigdesign.report.fields import file_stem
 from rigdesign.results.transient import TransientCurve, TransientResult
 
-if TYPE_CHECKING:
-    from markupsafe import Markup
-    from matplotlib.figure import Figure
-
-
-def transient_figures(
-    result: TransientResult | None, draw: Callable[["Figure", str], "Markup"]
-) -> dict[str, Any]:
-    """Figures of every course by its title; none without a thermal course."""
-    if result is None:
-        return {}
-    from rigdesign.report.figures.transient import transient_figure
-
-    return {
-        f"{curve.gearbox}, {curve.branch.replace('_', ' ')}": draw(
-            transient_figure(result, curve),
-            f"Temperatures and clearances of gearbox {curve.gearbox} over the course {curve.branch}",
-        )
-        for curve in result.curves
-    }
-
-
-def oil_power_figures(
-    result: TransientResult | None, draw: Callable[["Figure", str], "Markup"]
-) -> dict[str, Any]:
-    """Heaters and cooler of every course by its title; none without a thermal course."""
-    if result is None:
-        return {}
-    from rigdesign.report.figures.transient import oil_power_figure
-
-    return {
-        curve.branch.replace("_", " "): draw(
-            oil_power_figure(result, curve), f"Power of heaters and cooler over the course {curve.branch}"
-        )
-        for curve in result.oil_power
-    }
-
 
 def transient_tables(result: TransientResult | None) -> Iterator[tuple[str, str]]:
-    """File name and CSV text of every course."""
+    """File name and CSV text of every thermal history."""
     from rigdesign.report.csv_text import csv_text
 
     for curve in () if result is None else result.curves:

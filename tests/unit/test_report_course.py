@@ -18,7 +18,7 @@ from rigdesign.report.figures.transient import (
     transient_figure,
 )
 from rigdesign.report.numbers import power_text
-from rigdesign.report.pages.transient_section import transient_tables
+from rigdesign.report.transient_tables import transient_tables
 from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 from tests.report_example import thermal_and_expansion
 
