@@ -27,6 +27,18 @@ class FilmCoefficient:
     """The coefficient is of the size of convection and radiation together."""
 
 
+@dataclass(frozen=True)
+class Correlation:
+    """A published correlation of a dimensionless number.
+
+    formula : its name; limits : of the number it depends on; source : document and equation
+    """
+
+    formula: str
+    limits: tuple[float, float]
+    source: str
+
+
 FilmLaw = Callable[[float, float], FilmCoefficient]
 """Coefficient from (area-mean wall temperature [K], fluid temperature [K])."""
 

@@ -117,28 +117,43 @@ def posterior(
     return Posterior(masses=masses, inclusion=inclusion, families=families, best=best)
 
 
+@dataclass(frozen=True, kw_only=True)
+class WhitenedSquare:
+    """Whitened square of a residual and the number of readings in it."""
+
+    value: float
+    count: int
+
+    @property
+    def deviation(self) -> float:
+        """Of the whitened square of a healthy rig."""
+        return float((2.0 * self.count) ** 0.5)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Candidates:
+    """What a decision may name.
+
+    effects : of catalogue and sensors, not the unmodelled causes
+    detectable : effect -> whether these sensors could see it within its bounds at all
+    orders : those of the effects that show in orders and natural frequencies
+    sensors : those that are errors of sensors and settings
+    """
+
+    effects: frozenset[str]
+    detectable: Mapping[str, bool]
+    orders: frozenset[str] = frozenset()
+    sensors: frozenset[str] = frozenset()
+
+
 def decide(
     evidence: Sequence[Evidence],
     weights: Posterior,
-    *,
-    chi_square: float,
-    count: int,
-    effects: frozenset[str],
-    detectable: Mapping[str, bool],
+    square: WhitenedSquare,
+    candidates: Candidates,
     thresholds: Thresholds,
-    loop: frozenset[str] = frozenset(),
-    sensors: frozenset[str] = frozenset(),
 ) -> Decision:
-    """The verdict.
-
-    Parameters
-    ----------
-    chi_square, count : whitened square of the residual and number of readings
-    effects : names that may be named: catalogue and sensors, not the anonymous ones
-    detectable : effect -> whether these sensors could see it within its bounds at all
-    loop : those of the names that show in orders and natural frequencies
-    sensors : those that are errors of sensors and settings
-    """
+    """The verdict."""
     if weights.families.get("input", 0.0) > thresholds.input:
         named = _parts_of_family(evidence, weights, "input")
         return Decision(
@@ -148,20 +163,24 @@ def decide(
         )
     best = weights.best
     if best is None:
-        return _silent(weights, evidence, chi_square, count, thresholds, detectable)
-    floor = thresholds.evidence if loop.isdisjoint(best.hypothesis.parts) else thresholds.evidence_loop
+        return _silent(weights, square, candidates, thresholds)
+    floor = (
+        thresholds.evidence
+        if candidates.orders.isdisjoint(best.hypothesis.parts)
+        else thresholds.evidence_loop
+    )
     if best.log_bayes < floor * len(set(best.hypothesis.parts)) and weights.masses["none"] < 0.5:
         reason = "an effect may be present; healthy rigs have given as much evidence"
         return Decision(verdict="too_small", named=(), reason=reason)
-    left = chi_square - best.gain - count
-    if left > max(thresholds.misfit * (2.0 * count) ** 0.5, thresholds.share * best.gain):
-        excess = left / (2.0 * count) ** 0.5
+    left = square.value - best.gain - square.count
+    if left > max(thresholds.misfit * square.deviation, thresholds.share * best.gain):
+        excess = left / square.deviation
         return Decision(
             verdict="unknown_located",
             named=(),
             reason=f"the best explanation leaves {excess:.1f} standard deviations more than a healthy rig does",
         )
-    known = [one for one in evidence if _credible(one, effects, sensors)]
+    known = [one for one in evidence if _credible(one, candidates)]
     leads = best.log_bayes - max((one.log_bayes for one in known), default=0.0)
     if weights.masses["none"] < 0.5 and leads > thresholds.catalogue:
         return Decision(
@@ -172,14 +191,14 @@ def decide(
     named = tuple(
         part
         for part, mass in sorted(weights.inclusion.items(), key=lambda item: -item[1])
-        if part in effects and mass >= thresholds.named
+        if part in candidates.effects and mass >= thresholds.named
     )
     if named:
         return Decision(
             verdict="named", named=named, reason=f"{named[0]} is in every explanation that counts"
         )
     if weights.masses["none"] < 1.0 - thresholds.named:
-        group = _smallest_group(evidence, weights, effects, thresholds)
+        group = _smallest_group(evidence, weights, candidates.effects, thresholds)
         if group:
             return Decision(
                 verdict="alias_group",
@@ -191,13 +210,13 @@ def decide(
             named=(),
             reason="an effect is present that no few of the catalogue account for",
         )
-    return _silent(weights, evidence, chi_square, count, thresholds, detectable)
+    return _silent(weights, square, candidates, thresholds)
 
 
-def _credible(one: Evidence, effects: frozenset[str], sensors: frozenset[str]) -> bool:
+def _credible(one: Evidence, candidates: Candidates) -> bool:
     """Of the catalogue alone; an error of a sensor by itself, not to mend what something else leaves."""
     parts = frozenset(one.hypothesis.parts)
-    return parts <= effects and (len(parts) == 1 or parts.isdisjoint(sensors))
+    return parts <= candidates.effects and (len(parts) == 1 or parts.isdisjoint(candidates.sensors))
 
 
 def _smallest_group(
@@ -221,20 +240,16 @@ def _smallest_group(
 
 
 def _silent(
-    weights: Posterior,
-    evidence: Sequence[Evidence],
-    chi_square: float,
-    count: int,
-    thresholds: Thresholds,
-    detectable: Mapping[str, bool],
+    weights: Posterior, square: WhitenedSquare, candidates: Candidates, thresholds: Thresholds
 ) -> Decision:
-    if not any(detectable.values()):
+    """Why nothing is named."""
+    if not any(candidates.detectable.values()):
         return Decision(
             verdict="data_insufficient",
             named=(),
             reason="no effect of the catalogue could be seen with these sensors and points",
         )
-    if (chi_square - count) / (2.0 * count) ** 0.5 > thresholds.misfit:
+    if (square.value - square.count) / square.deviation > thresholds.misfit:
         return Decision(
             verdict="unknown_located",
             named=(),

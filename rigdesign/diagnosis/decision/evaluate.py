@@ -1,16 +1,18 @@
 """One look at a residual: every explanation evaluated, the best of them joined in pairs, a verdict."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from rigdesign.diagnosis.decision.decision import (
     PRIOR,
     UNNAMED,
+    Candidates,
     Decision,
     Posterior,
     Thresholds,
+    WhitenedSquare,
     decide,
     posterior,
 )
@@ -69,57 +71,57 @@ class Examination:
     count: int
 
 
+@dataclass(frozen=True, kw_only=True)
+class Criteria:
+    """What every evaluation of one set of data has in common.
+
+    points : (n,) operating point of each number; left out, a name may depend on one
+    orders : names of effects that show in orders and natural frequencies
+    signature : how wrong the model may answer to a right cause; left out, not at all
+    """
+
+    thresholds: Thresholds
+    priors: Mapping[str, float] = field(default_factory=lambda: dict(PRIOR))
+    points: Sequence[str] = ()
+    orders: frozenset[str] = frozenset()
+    signature: Signature | None = None
+
+
 def evaluate(
     space: Whitened,
     explanations: Explanations,
-    thresholds: Thresholds,
-    priors: Mapping[str, float] = PRIOR,
+    criteria: Criteria,
     *,
-    points: Sequence[str] = (),
-    loop: frozenset[str] = frozenset(),
-    signature: Signature | None = None,
-    table: Sequence[Detectability] | None = None,
     explained: float = 0.0,
     earlier: "Earlier | None" = None,
 ) -> Examination:
     """Evaluate every hypothesis and decide.
 
-    points : (n,) operating point of each number; left out, a name may depend on one
-    loop : names of effects that show in orders and natural frequencies
-    signature : how wrong the model may answer to a right cause; left out, not at all
-    table : detectability where it is known already; it depends on covariance and explanations alone
     explained : largest fall of the whitened square by what was named before
-    earlier : the look that named it
+    earlier : the evaluation that named it
     """
     known = (*explanations.physical, *explanations.sensor)
-    if table is None:
-        table = detectabilities(space, known, explanations.anonymous)
-    contest = None if signature is None else Contest(space, signature)
+    table = detectabilities(space, known, explanations.anonymous)
+    contest = None if criteria.signature is None else Contest(space, criteria.signature)
     singles = _judged(contest, [evaluate_hypothesis(space, one) for one in (*known, *explanations.anonymous)])
     singles = _without_copies(singles)
     data = [evaluate_hypothesis(space, one) for one in explanations.data]
     pairs = _judged(contest, _pairs(space, singles))
     evidence = sorted((*singles, *data, *pairs), key=lambda one: -one.log_bayes)
-    weights = posterior(evidence, explanations.members, priors)
-    decision = decide(
-        evidence,
-        weights,
-        chi_square=space.chi_square,
-        count=len(space.residual),
+    weights = posterior(evidence, explanations.members, criteria.priors)
+    candidates = Candidates(
         effects=frozenset(part for one in known for part in one.parts),
         detectable={row.effect: row.detectable <= row.bound for row in table},
-        thresholds=thresholds,
-        loop=loop,
+        orders=criteria.orders,
         sensors=frozenset(part for one in explanations.sensor for part in one.parts),
     )
+    square = WhitenedSquare(value=space.chi_square, count=len(space.residual))
+    decision = decide(evidence, weights, square, candidates, criteria.thresholds)
+    decision = _supported(space, decision, evidence, weights, criteria, explained)
     return Examination(
         evidence=tuple(evidence),
         weights=weights,
-        decision=_undivided(
-            _supported(space, points, decision, evidence, weights, thresholds, explained, loop),
-            earlier,
-            thresholds,
-        ),
+        decision=_undivided(decision, earlier, criteria.thresholds),
         detectability=tuple(table),
         chi_square=space.chi_square,
         count=len(space.residual),
@@ -162,31 +164,30 @@ def _undivided(decision: Decision, earlier: Earlier | None, thresholds: Threshol
 
 def _supported(
     space: Whitened,
-    points: Sequence[str],
     decision: Decision,
     evidence: Sequence[Evidence],
     weights: Posterior,
-    thresholds: Thresholds,
+    criteria: Criteria,
     explained: float,
-    loop: frozenset[str],
 ) -> Decision:
     """The decision without the names that depend on one operating point or explain too little beside the others.
 
     Of an alias group its leader is asked.
     """
-    if not points or decision.verdict not in ("named", "alias_group"):
+    if not criteria.points or decision.verdict not in ("named", "alias_group"):
         return decision
+    thresholds = criteria.thresholds
     ordered = sorted(evidence, key=lambda one: -weights.masses[one.hypothesis.name])
     refused: dict[str, str] = {}
     for part in decision.named if decision.verdict == "named" else decision.named[:1]:
         best = next(one for one in ordered if part in one.hypothesis.parts)
-        least, where = support(space, points, best, part)
+        least, where = support(space, criteria.points, best, part)
         whole = max(explained, best.gain)
         if least < thresholds.support:
             alone = f"operating point {where}" if where else "chance"
             refused[part] = f"what speaks for {part} comes from {alone} alone"
         elif least < thresholds.share * whole or (
-            part in loop and _added(best, part, evidence) < thresholds.share_loop * whole
+            part in criteria.orders and _added(best, part, evidence) < thresholds.share_loop * whole
         ):
             refused[part] = f"{part} explains too little beside what is known already"
     kept = tuple(part for part in decision.named if part not in refused)

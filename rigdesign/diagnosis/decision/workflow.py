@@ -6,7 +6,6 @@ readings -> single outliers out -> points held out -> evidence -> verdict, again
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -14,7 +13,7 @@ import numpy as np
 from rigdesign.diagnosis.decision.claims import Refusal, Traces, claim
 from rigdesign.diagnosis.decision.decision import Decision, posterior
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
-from rigdesign.diagnosis.decision.evaluate import Earlier, Examination, Explanations, evaluate
+from rigdesign.diagnosis.decision.evaluate import Criteria, Earlier, Examination, Explanations, evaluate
 from rigdesign.diagnosis.decision.proof import Proof, Rerun
 from rigdesign.diagnosis.residual.baseline import differenced
 from rigdesign.diagnosis.residual.data_error import data_error
@@ -230,14 +229,13 @@ def _search(
 ) -> tuple[list[Examination], tuple[Evidence, ...]]:
     """Examine, take what is named into the model, evaluate what is left."""
     signature = _signature(problem, subject, calibration)
-    look = partial(
-        evaluate,
+    criteria = Criteria(
         thresholds=calibration.thresholds(problem.baseline is not None),
         points=[feature.setting for feature in subject.features],
-        loop=frozenset(effect.claim for effect in subject.effects if effect.family.dynamic),
+        orders=frozenset(effect.claim for effect in subject.effects if effect.family.dynamic),
         signature=signature,
     )
-    examinations = [look(space, explanations)]
+    examinations = [evaluate(space, explanations, criteria)]
     found: list[Evidence] = []
     while examinations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
         new = _best_of(examinations[-1])
@@ -254,7 +252,8 @@ def _search(
             data=rest.data,
         )
         earlier = Earlier(look=examinations[0], named=frozenset(claimed))
-        examinations.append(look(after, left, explained=max(one.gain for one in found), earlier=earlier))
+        explained = max(one.gain for one in found)
+        examinations.append(evaluate(after, left, criteria, explained=explained, earlier=earlier))
     return examinations, tuple(found)
 
 
