@@ -66,7 +66,7 @@ class Housing(Part):
     mesh: HousingMesh = HousingMesh()
     """Element sizes by zone where the usual ones do not do."""
     mesh_file: Text | None = None
-    """A gmsh .msh beside the case file in place of the parametric box: 10-node tetrahedra or hexahedra of 20 or
+    """A gmsh .msh next to the case file in place of the parametric box: 10-node tetrahedra or hexahedra of 20 or
     27 nodes, in metres, physical volumes named like the bodies of the box, physical surfaces with the names that
     ``boundary`` covers, every boundary facet in one of them; ``rigdesign mesh CASE --out DIR`` writes an example.
     A housing alone will do where heat goes nowhere else: the body ``housing`` is always needed, ``gear_<shaft>_rim``
@@ -77,10 +77,10 @@ class Housing(Part):
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
     boundary: Mapping[Name, Condition] = Field(min_length=1)
     ambient_film_factor: FilmFactor = 1.0
-    """Multiplies every film to room air, beside the ``film_factor`` of each: draught, a stuffy corner."""
+    """Multiplies every film to room air on top of the ``film_factor`` of each: draught, a badly ventilated place."""
     bearing_film_factor: FilmFactor = 1.0
-    """Multiplies the conductance between every bearing film and its walls, beside the ``film_factor`` of each."""
+    """Multiplies the conductance between every bearing film and its walls on top of the ``film_factor`` of each."""
     radiation_included: bool
     """True: a Niemann/Winter film to room air already contains radiation, explicit radiation of those surfaces is
-    left out of the verdicts; the other reading is computed beside it. Other films hold none: beside them explicit
+    left out of the verdicts; the other reading is computed as well. Other films contain none: with them explicit
     radiation stays."""

@@ -20,7 +20,7 @@ Written by `python -m rigdesign.diagnosis.effects_page CASE ...`; do not edit by
 `kind:place`. It changes the case, and the ordinary model computes what follows; bounds are what is believed of a rig, a
 healthy spread is what no rig is free of. What a healthy rig does not have at all is named from the size on that
 matters. Effects whose traces correlate above 0.95 end as a group, and a name has to close the gap on operating points
-that were kept aside. Which of them a measurement can see and tell apart is in its report.
+that were held out. Which of them a measurement can see and tell apart is in its report.
 """
 
 SENSORS = (
@@ -121,7 +121,7 @@ def _bounds(parameter: Parameter) -> str:
 
 
 def _more(effect: Effect) -> str:
-    """What an entry leaves open besides its size."""
+    """What an entry leaves open apart from its size."""
     if len(effect.parameters) == 2:
         return " along cosine and sine: phase free"
     return ", any tooth" if effect.any_tooth else ""

@@ -144,7 +144,7 @@ def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, str]]:
 
 
 def _dynamic_factor(gearbox: GearboxDynamics) -> str:
-    """K_V(n): the curves of all torques and variants below each other, told apart by the last two columns."""
+    """K_V(n): the curves of all torques and variants below each other, distinguished by the last two columns."""
     header = (
         "speed [rpm]",
         "max/mean [1]",

@@ -6,7 +6,7 @@ import pytest
 from rigdesign.diagnosis.decision.decision import Candidates, Thresholds, WhitenedSquare, decide, posterior
 from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 
-COUNTS = {"physical": 50, "anonymous": 100, "pair": 1000, "sensor": 20}
+COUNTS = {"physical": 50, "unmodelled": 100, "pair": 1000, "sensor": 20}
 
 
 def evidence(name, log_bayes, family="physical"):

@@ -52,14 +52,14 @@ def explanations(covariance, effects, rng, *, half=5.0):
     unknown = [
         Hypothesis(
             name=f"unknown: {i}",
-            family="anonymous",
+            family="unmodelled",
             parts=(f"unknown: {i}",),
             columns=covariance.whiten(rng.normal(size=(N, 1))),
             half=1.0,
         )
         for i in range(30)
     ]
-    return Explanations(physical=physical, sensor=[], anonymous=unknown, data=[])
+    return Explanations(physical=physical, sensor=[], unmodelled=unknown, data=[])
 
 
 def draw(rng, covariance):
@@ -154,7 +154,7 @@ def test_what_is_not_in_the_catalogue_stays_unknown():
         assert evaluate(space, found, USUAL).decision.verdict == "unknown_located"
 
 
-def unnamed(covariance, column, family="anonymous"):
+def unnamed(covariance, column, family="unmodelled"):
     white = covariance.whiten(column[:, None])
     return Hypothesis(name="unknown: copy", family=family, parts=("unknown: copy",), columns=white, half=3.0)
 
@@ -162,9 +162,9 @@ def unnamed(covariance, column, family="anonymous"):
 def test_a_copy_without_a_name_does_not_hide_what_has_one():
     rng, effects, covariance = toy(6)
     found = explanations(covariance, effects, rng)
-    rivals = [*found.anonymous, unnamed(covariance, 2.0 * effects[:, 3])]
+    rivals = [*found.unmodelled, unnamed(covariance, 2.0 * effects[:, 3])]
     space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
-    result = evaluate(space, replace(found, anonymous=rivals), USUAL)
+    result = evaluate(space, replace(found, unmodelled=rivals), USUAL)
     assert result.decision.named == ("effect 3",)
     assert not any("copy" in one.hypothesis.name for one in result.evidence)
 
@@ -179,7 +179,7 @@ def test_an_error_of_a_sensor_is_not_told_from_heat_that_looks_the_same():
     space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
     named = {}
     for rivals in ([], [unnamed(covariance, effects[:, 3], "local")]):
-        both = Explanations(physical=catalogue, sensor=[reads_wrong], anonymous=rivals, data=[])
+        both = Explanations(physical=catalogue, sensor=[reads_wrong], unmodelled=rivals, data=[])
         named[len(rivals)] = evaluate(space, both, USUAL).decision
     assert named[0].named == ("sensor_offset:T",)
     assert named[1].verdict == "unknown_located"
@@ -188,7 +188,7 @@ def test_an_error_of_a_sensor_is_not_told_from_heat_that_looks_the_same():
 def test_two_without_a_name_are_weighed_together():
     rng, effects, covariance = toy(7)
     found = explanations(covariance, effects, rng)
-    both = [one.columns[:, 0] / np.linalg.norm(one.columns) for one in found.anonymous[:2]]
+    both = [one.columns[:, 0] / np.linalg.norm(one.columns) for one in found.unmodelled[:2]]
     hidden = covariance.lower @ (14.0 * both[0] + 11.0 * both[1])
     result = evaluate(Whitened.of(covariance, draw(rng, covariance) + hidden), found, USUAL)
     assert result.evidence[0].hypothesis.parts == ("unknown: 0", "unknown: 1")
@@ -209,7 +209,7 @@ def test_a_further_effect_must_explain_a_share_of_what_the_first_did():
         explained=25.0 * alone.evidence[0].gain,
     )
     assert (beside.decision.verdict, beside.decision.named) == ("too_small", ())
-    assert "beside" in beside.decision.reason
+    assert "in addition" in beside.decision.reason
 
 
 def test_in_orders_a_further_effect_must_explain_more():

@@ -24,14 +24,14 @@ Verdict = Literal[
 ]
 
 PRIOR = {
-    "none": 0.50, "physical": 0.22, "sensor": 0.08, "local": 0.08, "anonymous": 0.10, "pair": 0.10, "input": 0.03,
+    "none": 0.50, "physical": 0.22, "sensor": 0.08, "local": 0.08, "unmodelled": 0.10, "pair": 0.10, "input": 0.03,
 }  # fmt: skip
 """Prior weight of each family of explanations, split evenly among its members.
 
 Heat that one thermometer alone feels is as likely as an error of that thermometer.
 """
 
-UNNAMED = frozenset({"anonymous", "local"})
+UNNAMED = frozenset({"unmodelled", "local"})
 """Families of what is outside the catalogue."""
 
 
@@ -159,7 +159,7 @@ def decide(
         return Decision(
             verdict="input_error_suspected",
             named=named,
-            reason=f"the data fit the rig once {named[0]} is undone",
+            reason=f"the data agree with the model once {named[0]} is corrected",
         )
     best = weights.best
     if best is None:
@@ -178,7 +178,8 @@ def decide(
         return Decision(
             verdict="unknown_located",
             named=(),
-            reason=f"the best explanation leaves {excess:.1f} standard deviations more than a healthy rig does",
+            reason=f"after the best explanation the residual is {excess:.1f} standard deviations above that of a "
+            "healthy rig",
         )
     known = [one for one in evidence if _credible(one, candidates)]
     leads = best.log_bayes - max((one.log_bayes for one in known), default=0.0)
@@ -195,7 +196,7 @@ def decide(
     )
     if named:
         return Decision(
-            verdict="named", named=named, reason=f"{named[0]} is in every explanation that counts"
+            verdict="named", named=named, reason=f"{named[0]} is part of every probable explanation"
         )
     if weights.masses["none"] < 1.0 - thresholds.named:
         group = _smallest_group(evidence, weights, candidates.effects, thresholds)
@@ -203,12 +204,12 @@ def decide(
             return Decision(
                 verdict="alias_group",
                 named=group,
-                reason="one of them is present; these data cannot tell which",
+                reason="one of them is present; the data do not identify which",
             )
         return Decision(
             verdict="unknown_located",
             named=(),
-            reason="an effect is present that no few of the catalogue account for",
+            reason="an effect is present; no small group of the catalogue accounts for it",
         )
     return _silent(weights, square, candidates, thresholds)
 
@@ -247,16 +248,18 @@ def _silent(
         return Decision(
             verdict="data_insufficient",
             named=(),
-            reason="no effect of the catalogue could be seen with these sensors and points",
+            reason="no effect of the catalogue is detectable with these sensors and operating points",
         )
     if (square.value - square.count) / square.deviation > thresholds.misfit:
         return Decision(
             verdict="unknown_located",
             named=(),
-            reason="the residual is larger than a healthy rig's, nothing explains it",
+            reason="the residual exceeds that of a healthy rig; no explanation fits",
         )
     if weights.masses["none"] >= 0.5:
-        return Decision(verdict="within_noise", named=(), reason="the residual of a healthy rig is as large")
+        return Decision(
+            verdict="within_noise", named=(), reason="the residual is within that of a healthy rig"
+        )
     return Decision(
         verdict="too_small",
         named=(),

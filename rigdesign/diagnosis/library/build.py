@@ -25,10 +25,10 @@ LINEAR_SHARE = 0.1
 """Run of an effect that the numbers answer to in proportion."""
 
 SWING_SHARE = 0.01
-"""The same of an excitation: what grows with its square stays small beside."""
+"""The same of an excitation: what grows with its square stays small."""
 
 POWER = Channel(name="losses of the rig", quantity="motor_power", place="motor")
-"""Read beside the channels of the measurement: all losses together; without a drivetrain they are given."""
+"""Read in addition to the channels of the measurement: all losses together; without a drivetrain they are given."""
 
 
 def build_library(
@@ -111,8 +111,8 @@ def _responses(
     size = BATCH * cores()
     for start in range(0, len(works), size):
         say(f"response {len(effects) - len(left) + 1} of {len(effects)}")
-        with BackgroundTasks(works[start : start + size]) as beside:
-            new = {name: one for made in beside.results() for name, one in made.items()}
+        with BackgroundTasks(works[start : start + size]) as tasks:
+            new = {name: one for made in tasks.results() for name, one in made.items()}
         parts.keep(new)
         found |= new
         left = [effect for effect in left if effect.name not in new]
@@ -189,7 +189,7 @@ def _exponents(
         response = responses.get(effect.name)
         if response is None:
             continue
-        slope = response.slope()[:, 0]
+        slope = response.sensitivity()[:, 0]
         for law in effect.exponents:
             logs = dict(zip((s.name for s in predictor.settings), np.log(_ratios(predictor.settings, law))))
             share = np.array([logs.get(feature.setting, 0.0) for feature in predictor.features])

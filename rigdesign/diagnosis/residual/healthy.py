@@ -66,7 +66,7 @@ def _constants(library: Library, effects: Sequence[Effect]) -> list[Column]:
             effect=effect.name,
         )
         for effect in wanted
-        for number, values in enumerate(library.responses[effect.name].slope().T)
+        for number, values in enumerate(library.responses[effect.name].sensitivity().T)
     ]
 
 
@@ -176,7 +176,7 @@ def answer_error(library: Library, effects: Sequence[Effect]) -> Array:
     explanation (`rigdesign.diagnosis.residual.signature`) a healthy rig has as well.
     """
     answers = [
-        effect.healthy * library.responses[effect.name].slope()
+        effect.healthy * library.responses[effect.name].sensitivity()
         for effect in effects
         if effect.healthy > 0.0 and effect.family.heat and effect.name in library.responses
     ]

@@ -29,7 +29,7 @@ SHOWN = 3
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """Measured beside simulated.
+    """Measured and simulated.
 
     simulated, expected, residual, spread : (n_features,) SI in the order of ``data.features``, NaN where nothing
         is measured; expected = simulated and, where a healthy set has the number, its residual there;

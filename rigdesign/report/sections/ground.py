@@ -16,9 +16,11 @@ def _convergence(result: RunResult, draw: Draw) -> Values:
     }
 
 
-ASSUMPTIONS = Section(id="assumptions", title="Assumptions behind verdicts", template="assumptions.html.j2")
+ASSUMPTIONS = Section(
+    id="assumptions", title="Assumptions behind the verdicts", template="assumptions.html.j2"
+)
 OVERRIDES = Section(id="overrides", template="overrides.html.j2", within="assumptions")
-HAND_CHECKS = Section(id="hand", title="Numbers to redo by hand", template="hand.html.j2")
+HAND_CHECKS = Section(id="hand", title="Hand checks", template="hand.html.j2")
 NOT_MODELLED = Section(id="limits", title="What is not modelled", template="limits.html.j2")
 WARNINGS = Section(id="warnings", title="Warnings", template="warnings.html.j2")
 PROVENANCE = Section(id="provenance", title="Provenance", template="provenance.html.j2", values=_convergence)

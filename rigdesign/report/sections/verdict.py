@@ -21,4 +21,4 @@ def _drivers(result: RunResult, draw: Draw) -> Values:
 
 
 VERDICT = Section(id="verdict", title="Verdict and margins", template="verdict.html.j2", values=_verdict)
-DRIVERS = Section(id="drivers", title="What drives it", template="drivers.html.j2", values=_drivers)
+DRIVERS = Section(id="drivers", title="Governing checks", template="drivers.html.j2", values=_drivers)
