@@ -53,7 +53,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
     for order in (2, 3, 4):
         yield Effect(
             name=f"cumulative_pitch:{label}/{order}",
-            title=f"pitch of {label} with {order} waves a turn",
+            title=f"cumulative pitch deviation of {label}, {order} waves per revolution",
             family=EXCITATION,
             signature=f"order {order} of its shaft, sidebands of the mesh orders at that distance",
             parameters=_amplitudes("amplitude", 40.0 * MICROMETRE),
@@ -63,9 +63,9 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         )
     yield Effect(
         name=f"single_pitch:{label}",
-        title=f"pitch of one tooth of {label}",
+        title=f"single pitch deviation of {label}",
         family=EXCITATION,
-        signature="all orders of its shaft alike, the more the less torque",
+        signature="all orders of its shaft alike, larger at low torque",
         parameters=(_length("deviation", -60.0, 60.0),),
         change=_SinglePitch(at, gear.teeth),
         any_tooth=gear.teeth,
@@ -74,7 +74,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
     )
     yield Effect(
         name=f"weak_tooth:{label}",
-        title=f"one tooth of {label} that gives way",
+        title=f"reduced stiffness of one tooth of {label}",
         family=TOOTH,
         signature="all orders of its shaft, growing with torque",
         parameters=(Parameter(name="softening", unit="", low=0.0, high=0.8, source=PRACTICE),),
@@ -258,7 +258,7 @@ def couplings(case: Case) -> Iterator[Effect]:
         )
         yield stiffness.effect(
             f"coupling_stiffness:{name}", f"stiffness of the coupling {name}", STIFFNESS,
-            "low torsional modes and the torque that run-out makes",
+            "low torsional modes and the torque caused by run-out",
         )  # fmt: skip
         damping = UncertainValue(
             path=f"{at}.torsional_damping", now=coupling.torsional_damping, bounds=(0.2, 5.0), healthy=0.25
@@ -269,7 +269,7 @@ def couplings(case: Case) -> Iterator[Effect]:
         )  # fmt: skip
         yield Effect(
             name=f"coupling_order_2:{name}",
-            title=f"axes out of line at the coupling {name}",
+            title=f"misalignment at the coupling {name}",
             family=EXCITATION,
             signature="order 2 of its shaft, the same at any torque",
             parameters=_amplitudes("torque", 20.0, "N m"),
@@ -304,7 +304,7 @@ def drive(case: Case) -> Iterator[Effect]:
     for order in (1, 2, 3, 4, 6):
         yield Effect(
             name=f"motor_ripple/{order}",
-            title=f"torque ripple of the motor, {order} a turn",
+            title=f"torque ripple of the motor, order {order}",
             family=EXCITATION,
             signature=f"order {order} of the motor, the same at any torque",
             parameters=_amplitudes("torque", 20.0, "N m"),
@@ -319,9 +319,9 @@ def drive(case: Case) -> Iterator[Effect]:
         yield inertia.effect("inertia:motor", "inertia of the motor", INERTIA, "the lowest torsional modes")
     yield Effect(
         name="bracing_drift",
-        title="bracing torque that drifts with the oil temperature",
+        title="drift of the bracing torque with the oil temperature",
         family=STATE,
-        signature="mean torque and all that follows it change with the oil temperature",
+        signature="mean torque and what depends on it change with the oil temperature",
         parameters=(Parameter(name="drift", unit="1/K", low=-0.003, high=0.003, source=PRACTICE),),
         change=Added("drivetrain.bracing.temperature_drift", bracing.temperature_drift),
         linear=True,

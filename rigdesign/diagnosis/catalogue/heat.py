@@ -51,11 +51,11 @@ LOSSES = (
         exponents=("speed",),
     ),
     _Loss(
-        key="jet", words="oil brought up to speed by the gears", bounds=(0.3, 3.0), healthy=0.20,
+        key="jet", words="acceleration of the jet oil", bounds=(0.3, 3.0), healthy=0.20,
         signature="grows with flow and n^2: gear oil and drive torque",
     ),
     _Loss(
-        key="squeeze", words="oil squeezed out of the mesh", bounds=(0.2, 5.0), healthy=0.25,
+        key="squeeze", words="squeezing of oil out of the mesh", bounds=(0.2, 5.0), healthy=0.25,
         signature="grows with torque and speed, straight into the oil",
     ),
 )  # fmt: skip
@@ -66,9 +66,9 @@ def not_steady(case: Case) -> Iterator[Effect]:
     """A rig whose points were read too early."""
     yield Effect(
         name="not_steady",
-        title="points read before the housing was warm",
+        title="readings before steady temperatures",
         family=STATE,
-        signature="heavy parts too cold at every point, oil and drive torque kept; reported is the time of one "
+        signature="heavy parts too cold at every point, oil and drive torque unchanged; reported is the time of one "
         "implicit step, about twice the true one",
         parameters=(
             Parameter(name="rate", unit="1/s", low=0.0, high=2.0 / 3600.0, source="two runs within an hour"),
@@ -117,7 +117,7 @@ def seals(part: GearboxPart) -> Iterator[Effect]:
     if paths:
         yield Effect(
             name=f"seal_loss:{name}",
-            title=f"seals of {name} that rub",
+            title=f"seal friction of {name}",
             family=LOSS,
             signature="grows with n at any torque: shafts, seal bores and drive torque",
             parameters=(Parameter(name="friction torque", unit="N m", low=0.0, high=2.0, source=PRACTICE),),
@@ -138,21 +138,21 @@ FLOW_METER = 0.01
 
 FLOWS = {
     "leak_warm_cold": (
-        "gear oil that leaks into the bearing oil",
+        "leakage of gear oil into the bearing oil",
         0.15,
-        "warm outlet falls, cold rises, sum kept",
+        "warm outlet falls, cold rises, sum unchanged",
         0.0,
     ),
     "bypass": (
-        "gear oil that goes round the meshes",
+        "gear oil bypassing the meshes",
         0.30,
         "gears and walls warmer, outlet mixed, less jet loss",
         0.0,
     ),
     "short_circuit": (
-        "gear oil that leaves past the walls",
+        "gear oil leaving without wall contact",
         0.30,
-        "walls answer less to the oil, outlet nearly kept",
+        "walls respond less to the oil, outlet nearly unchanged",
         0.2,
     ),
 }
@@ -197,7 +197,7 @@ def oil(part: GearboxPart) -> Iterator[Effect]:
         name=f"aeration:{name}",
         title=f"air in the oil of {name}",
         family=OIL,
-        signature="every oil rise of the gearbox larger, losses nearly kept",
+        signature="every oil rise of the gearbox larger, losses nearly unchanged",
         parameters=(share("air content", 0.2),),
         change=Added(f"{at}.air_content", state.air_content),
         matters=0.01,
@@ -215,7 +215,7 @@ def oil(part: GearboxPart) -> Iterator[Effect]:
         name=f"oil_heat_capacity:{name}",
         title=f"heat capacity of the oil of {name}",
         family=OIL,
-        signature="every oil rise of the gearbox by one factor, drive torque kept",
+        signature="every oil rise of the gearbox by one factor, drive torque unchanged",
         parameters=(factor("factor", 0.8, 1.25),),
         change=Scaled(((f"{at}.heat_capacity_factor", state.heat_capacity_factor),)),
         healthy=0.03,

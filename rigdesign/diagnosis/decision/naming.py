@@ -272,7 +272,7 @@ def _without_entry(explanation: str) -> str:
     """Words for what has no entry."""
     kind, _, rest = explanation.partition(":")
     if kind == "unknown":
-        return f"not in the catalogue:{rest}"
+        return f"not in the catalogue:{rest}".replace("heat unpaid", "heat not from the motor")
     first, _, second = rest.partition(",")
     if kind == "swapped_channels":
         return f"channels {first} and {second} exchanged"

@@ -91,7 +91,7 @@ def _where(outcome: Outcome) -> str:
 
 
 def _foremost(outcome: Outcome) -> str:
-    """Where model and data part most, and what fits best there, as far as too few data tell."""
+    """The largest residual and the best explanation of it, as far as few data allow."""
     first = outcome.before[0] if outcome.before else None
     if first is None or first.rms < NOTABLE:
         return ""

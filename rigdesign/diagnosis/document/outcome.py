@@ -262,7 +262,10 @@ def _why_not(result: Result, sensors: bool) -> str:
         return "only sensors or settings are off; the case stays as it is"
     match result.diagnosis.decision.verdict:
         case "alias_group":
-            return "these data do not tell the members of the group apart; pick one with --name, or measure what would"
+            return (
+                "the data do not separate the members of the group; choose one with --name, or make a measurement "
+                "that separates them"
+            )
         case "unknown_located":
             return "an effect is present, the data do not identify it; pick one with --name, or measure more"
         case "input_error_suspected":

@@ -91,7 +91,7 @@ def _reach(hypothesis: Hypothesis) -> float:
 
 
 def sensor(covariance: Covariance | None, errors: Sequence[SensorError]) -> list[Hypothesis]:
-    """Sensors and settings that may read wrong; without a covariance in the units of the features."""
+    """Sensors and settings that may be in error; without a covariance in the units of the features."""
     columns = whitened(covariance, [error.values[None, :] for error in errors])
     return [
         Hypothesis(

@@ -15,7 +15,7 @@ from rigdesign.prediction.model import Feature, OperatingCondition
 
 Array = NDArray[np.float64]
 VARIABLES: Mapping[str, str] = {
-    "constant": "is much the same at all operating points",
+    "constant": "is nearly constant over the operating points",
     "speed": "grows with speed",
     "torque": "grows with torque",
     "oil_temperature": "grows with the oil temperature",

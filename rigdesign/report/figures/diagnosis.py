@@ -91,7 +91,7 @@ def _points(outcome: Outcome, features: Sequence[Feature]) -> list[str]:
 def _labels(outcome: Outcome, points: Sequence[str]) -> list[str]:
     """Names of the points, held-out ones with a star."""
     aside = outcome.result.diagnosis.held_out_points
-    return [(plain(name) + (" *" if name in aside else "")) if name else "at rest" for name in points]
+    return [(plain(name) + (" *" if name in aside else "")) if name else "static tests" for name in points]
 
 
 def _by_series(outcome: Outcome, features: Sequence[Feature], whitened: Array) -> dict[str, Array]:

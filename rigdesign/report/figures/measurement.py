@@ -186,7 +186,7 @@ def residual_map(comparison: Comparison) -> "Figure":
         cmap=colours, vmin=-COLOUR_END, vmax=COLOUR_END, edgecolors="white", linewidth=0.5,
     )  # fmt: skip
     axes.set_yticks(np.arange(len(shown)) + 0.5, [plain(label) for label in shown])
-    names = [plain(name) if name else "at rest" for name in points]
+    names = [plain(name) if name else "static tests" for name in points]
     axes.set_xticks(np.arange(len(points)) + 0.5, names, rotation=90 if len(points) > 12 else 0)
     axes.invert_yaxis()
     axes.grid(visible=False)
