@@ -108,7 +108,7 @@ def settings(count: int) -> tuple[OperatingCondition, ...]:
 
 
 def mesh_loss(run: OperatingCondition) -> float:
-    """No law that an anonymous source has [W]."""
+    """No law that an unmodelled source has [W]."""
     return 0.12 * run.speed**0.6 * run.torque**1.15
 
 
@@ -244,7 +244,7 @@ def write_set(folder: Path, rig: Rig, *, title: str = "trial", baseline: str = "
 
 
 DESIGN = Calibration(
-    amplitudes=Amplitudes(), widening={}, plain=Thresholds(named=0.9), given_baseline=Thresholds(named=0.9)
+    amplitudes=Amplitudes(), inflation={}, plain=Thresholds(named=0.9), given_baseline=Thresholds(named=0.9)
 )
 """Numbers of the design: what is frozen for real rigs must not change these stories."""
 
@@ -261,10 +261,10 @@ def result_of(folder: Path, *, without: Sequence[str] = (), calibration: Calibra
         made = library(data.settings, [entry.channel for entry in one.channels.values()], without=without)
         return data, compare(data, made, effects, stated_settings(one), mesh_orders(case), teeth_a_turn(case))
 
-    data, subject = compared(measurement)
+    data, residuals = compared(measurement)
     before = None if healthy is None else compared(healthy)[1]
     problem = Problem(
-        subject=subject, baseline=before, seed=measurement.hash,
+        residuals=residuals, baseline=before, seed=measurement.hash,
         repeated=data.strength == "proven",
     )  # fmt: skip
     return Result(

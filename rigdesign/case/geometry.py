@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 
 from rigdesign.case.gearbox import BearingInput, Gearbox
 from rigdesign.case.gears import Gear
-from rigdesign.case.housing import GapExchange, Housing, HousingShaft, SeriesExchange
+from rigdesign.case.housing import Housing, HousingShaft
 from thermal.housing.geometry import ClampingField, GearDisc, HousingGeometry, ShaftGeometry
 
 
@@ -82,14 +82,6 @@ def matched(patterns: Iterable[str], names: Iterable[str]) -> dict[str, tuple[st
             if match is not None:
                 found[name] = match.groups()
     return found
-
-
-def partner_of(condition: GapExchange | SeriesExchange, stood_for: Iterable[str]) -> str:
-    """Name of the partner surface, each ``*`` filled with what it stood for in the surface."""
-    name = condition.partner
-    for text in stood_for:
-        name = name.replace("*", text, 1)
-    return name
 
 
 def conditions_of(housing: Housing, names: Iterable[str]) -> list[tuple[str, str, tuple[str, ...]]]:

@@ -4,13 +4,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.bearing.protocol import BearingState
-from rigdesign.case import housing as laws
+from rigdesign.case import surface_conditions as laws
+from rigdesign.case.films import ConstantFilm, Fluid, SurfaceCondition, SurfaceFilm, TakenFrom
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.geometry import bearing_on, conditions_of, partner_of
+from rigdesign.case.geometry import bearing_on, conditions_of
+from rigdesign.case.housing import Housing
+from rigdesign.case.surface_place import ShaftPlace, SurfacePlace
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.state import CouplingState, OperatingPoint
-from rigdesign.rig.films import plate_film, shaft_film
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, bearing_oil, conducting_share, gear_feed, wetted_width
@@ -27,7 +29,6 @@ from thermal.conditions.boundary import (
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
-from thermal.films.law import FilmLaw
 from thermal.housing.geometry import SIDES, HousingGeometry, ShaftGeometry
 
 GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_film", "air"
@@ -52,26 +53,22 @@ class _Context:
         return self.rig.case.gearboxes[self.name]
 
     @property
-    def housing(self) -> laws.Housing:
+    def housing(self) -> Housing:
         housing = self.box.housing
         assert housing is not None
         return housing
 
-    def source(self, condition: laws.ConstantFilm) -> str:
+    def source(self, condition: SurfaceCondition) -> str:
         """Where the case has the coefficient of a given film from."""
         entry = next(name for name, own in self.housing.boundary.items() if own is condition)
         path = f"gearboxes.{self.name}.housing.boundary.{entry}.heat_transfer_coefficient"
         return self.rig.case.provenance(path)
 
-    def density(self, medium: laws.Medium) -> float | None:
-        """Density of the mist a surface turns in [kg/m3]; None for dry air."""
-        return self.rig.case.losses.chamber_density if medium == "mist" else None
-
     @property
     def geometry(self) -> HousingGeometry:
         return self.rig.geometries[self.name]
 
-    def fluid(self, name: laws.Fluid) -> tuple[str, float]:
+    def fluid(self, name: Fluid) -> tuple[str, float]:
         """Kind and temperature [K] of a fluid of the case."""
         if name == "ambient":
             return AIR, self.rig.case.ambient.temperature
@@ -80,7 +77,7 @@ class _Context:
         outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
         return kind, {"inlet": feed.inlet, "outlet": outlet, "mean": feed.mean(outlet)}[which]
 
-    def wetting(self, fluid: laws.Fluid, surface: str) -> float:
+    def wetting(self, fluid: Fluid, surface: str) -> float:
         """Share of a given oil film that is left: bubbles conduct less than oil, blocked jets leave flanks dry."""
         kind, _ = self.fluid(fluid)
         if kind == AIR:
@@ -89,10 +86,27 @@ class _Context:
         on_flanks = kind == GEAR_OIL and surface in rim_surfaces(self.box).values()
         return share * wetted_width(self.box) if on_flanks else share
 
+    def place(self, condition: SurfaceCondition, surface: str) -> SurfacePlace:
+        """Numbers of a surface for the law of its condition."""
+        shaft = None
+        if self._shafts_of(surface):
+            gap = self.shaft(surface).seal_gap
+            shaft = ShaftPlace(speed=self.speed(surface), diameter=self.diameter(surface), seal_gap=gap)
+        fluid = condition.wetted_by
+        return SurfacePlace(
+            height=self.housing.height,
+            shaft=shaft,
+            mist_density=self.rig.case.losses.chamber_density,
+            wetted_share=1.0 if fluid is None else self.wetting(fluid, surface),
+            source=self.source(condition),
+        )
+
     def shaft(self, surface: str) -> ShaftGeometry:
         """The shaft a surface belongs to, from its name."""
-        candidates = [shaft for shaft in self.geometry.shafts if f"_{shaft.name}_" in f"{surface}_"]
-        return max(candidates, key=lambda shaft: len(shaft.name))
+        return max(self._shafts_of(surface), key=lambda shaft: len(shaft.name))
+
+    def _shafts_of(self, surface: str) -> list[ShaftGeometry]:
+        return [shaft for shaft in self.geometry.shafts if f"_{shaft.name}_" in f"{surface}_"]
 
     def speed(self, surface: str) -> float:
         """Speed of the shaft of a surface [rad/s]."""
@@ -130,18 +144,28 @@ def boundary_conditions(
     housing = context.box.housing
     assert housing is not None
     rows = conditions_of(housing, rig.surface_names(name))
-    covered = {surface for entry, surface, _ in rows if laws.holds_radiation(housing.boundary[entry])}
+    covered = {surface for entry, surface, _ in rows if _radiation_in_film(context, entry, surface)}
     conditions: list[Condition] = [*foot_joint(rig, name)]
     for entry, surface, stood_for in rows:
         condition = housing.boundary[entry]
         if radiation_included and isinstance(condition, laws.ThermalRadiation) and surface in covered:
-            conditions += _radiation_beside(context, condition, surface)
+            conditions += _radiation_beyond_film(context, condition, surface)
             continue
         found = _condition(context, condition, surface, stood_for)
         if isinstance(found, Film):
             found = replace(found, law=behind_shell(rig, name, surface, found.law))
         conditions.append(found)
     return [*conditions, *_sources(context, losses), *_stored(rig, name)]
+
+
+def _radiation_in_film(context: _Context, entry: str, surface: str) -> bool:
+    """Whether the film to room air of a surface is of the size of convection and radiation together."""
+    condition = context.housing.boundary[entry]
+    return (
+        isinstance(condition, SurfaceFilm)
+        and condition.wetted_by == "ambient"
+        and condition.radiation_included(context.place(condition, surface))
+    )
 
 
 def _stored(rig: Rig, name: str) -> Iterator[StoredHeat]:
@@ -152,13 +176,13 @@ def _stored(rig: Rig, name: str) -> Iterator[StoredHeat]:
         yield StoredHeat(capacity=capacity, start=room.temperature, time=room.warming_time, kind=STORED)
 
 
-def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, laws.TakenFrom]]:
+def printed_films(rig: Rig, name: str) -> Iterator[tuple[str, TakenFrom]]:
     """(surface, what its coefficient was read from) of every film of a housing that assumes a difference."""
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
     for entry, surface, _ in conditions_of(housing, rig.surface_names(name)):
         condition = housing.boundary[entry]
-        if isinstance(condition, laws.ConstantFilm) and condition.taken_from is not None:
+        if isinstance(condition, ConstantFilm) and condition.taken_from is not None:
             yield surface, condition.taken_from
 
 
@@ -171,22 +195,29 @@ def _condition(
         return PrescribedTemperature(surface=surface, temperature=condition.temperature)
     if isinstance(condition, laws.Insulated):
         return Adiabatic(surface=surface)
-    if isinstance(condition, laws.GapExchange | laws.SeriesExchange):
+    if isinstance(condition, laws.SurfaceExchange):
         return Exchange(
             surface_a=surface,
-            surface_b=partner_of(condition, stood_for),
+            surface_b=condition.partner_of(stood_for),
             kind="exchange",
-            law=_exchange_law(context, condition, surface),
+            law=condition.exchange_law(context.place(condition, surface)),
         )
     if isinstance(condition, laws.BearingFilm):
         return _bearing_film(context, condition, surface)
     if isinstance(condition, laws.FlankFilm):
         gear = next(gear for gear, rim in rim_surfaces(context.box).items() if rim == surface)
         return gear_flanks(context.rig, context.name, gear, context.point, condition).film(surface, GEAR_OIL)
-    kind, temperature = _fluid_of(context, condition)
-    law = _film_law(context, condition, surface)
+    return _film(context, condition, surface)
+
+
+def _film(context: _Context, condition: SurfaceFilm, surface: str) -> Film:
+    """Film to a fluid of the case; those to room air times the factor of them all."""
+    assert condition.wetted_by is not None
+    kind, usual = context.fluid(condition.wetted_by)
+    law = condition.film_law(context.place(condition, surface))
     if kind == AIR:
         law = convection.scaled(law, context.housing.ambient_film_factor)
+    temperature = condition.fluid_temperature_given(usual)
     return Film(surface=surface, kind=kind, fluid_temperature=temperature, law=law)
 
 
@@ -198,55 +229,13 @@ def _radiation(
     return Radiation(surface=surface, emissivity=emissivity, surroundings_temperature=walls)
 
 
-def _radiation_beside(
+def _radiation_beyond_film(
     context: _Context, condition: laws.ThermalRadiation, surface: str
 ) -> list[BoundaryCondition]:
     """What a surface radiates beyond the radiation that its film to room air holds already."""
     if condition.emissivity_excess == 0.0:
         return []
     return [_radiation(context, condition, surface, condition.emissivity_excess)]
-
-
-def _fluid_of(context: _Context, condition: laws.Condition) -> tuple[str, float]:
-    if isinstance(condition, laws.ConstantFilm):
-        kind, temperature = context.fluid(condition.fluid)
-        return kind, condition.fluid_temperature or temperature
-    if isinstance(condition, laws.RotatingCylinder | laws.RotatingDisc):
-        return context.fluid(condition.fluid)
-    return AIR, context.rig.case.ambient.temperature
-
-
-def _film_law(context: _Context, condition: laws.Condition, surface: str) -> FilmLaw:
-    if isinstance(condition, laws.PlateFilm):
-        return plate_film(condition, context.housing.height)
-    if isinstance(condition, laws.ShaftFilm):
-        density = None
-        if not isinstance(condition, laws.HorizontalCylinder):
-            density = context.density(condition.medium)
-        return shaft_film(condition, context.speed(surface), context.diameter(surface), density)
-    if isinstance(condition, laws.ConstantFilm):
-        taken = condition.taken_from
-        formula = "constant" if taken is None or taken.law is None else taken.law
-        usual = None if condition.fluid == "ambient" else convection.OIL_RANGE
-        value, source = condition.heat_transfer_coefficient, context.source(condition)
-        factor = condition.film_factor * context.wetting(condition.fluid, surface)
-        return convection.scaled(convection.constant(value, source, formula, usual), factor)
-    raise TypeError(f"no film law for {type(condition).__name__}")
-
-
-def _exchange_law(
-    context: _Context, condition: laws.GapExchange | laws.SeriesExchange, surface: str
-) -> FilmLaw:
-    if isinstance(condition, laws.GapExchange):
-        gap = condition.gap or context.shaft(surface).seal_gap
-        turning = context.speed(surface), 0.5 * context.diameter(surface)
-        jungnickel = condition.correlation == "jungnickel"
-        across = convection.narrow_gap_jungnickel if jungnickel else convection.narrow_gap_taylor
-        return convection.scaled(across(*turning, gap), condition.film_factor)
-    first, second = condition.coefficients
-    source = "input of the case"
-    films = convection.series(convection.constant(first, source), convection.constant(second, source))
-    return convection.scaled(films, condition.film_factor)
 
 
 def _bearing_film(context: _Context, condition: laws.BearingFilm, surface: str) -> Film:

@@ -16,7 +16,7 @@ from dynamics.losses.mesh_loss import ToothPath
 from dynamics.losses.oil_jet import JET_ANGLES
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import conditions_of
-from rigdesign.case.housing import FlankFilm
+from rigdesign.case.surface_conditions import FlankFilm
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.properties.materials import Material
 from rigdesign.rig.model import Rig

@@ -16,36 +16,36 @@ HEAD = """# Effects that a diagnosis can name
 
 Written by `python -m rigdesign.diagnosis.effects_page CASE ...`; do not edit by hand.
 
-`rigdesign diagnose` names an effect of this page, a few that the data cannot tell apart, or nothing. An entry is named
-`kind:place`. It changes the case, and the ordinary model computes what follows; bounds are what is believed of a rig, a
-healthy spread is what no rig is free of. What a healthy rig does not have at all is named from the size on that
-matters. Effects whose traces correlate above 0.95 end as a group, and a name has to close the gap on operating points
-that were kept aside. Which of them a measurement can see and tell apart is in its report.
+`rigdesign diagnose` names an effect of this page, a group that the data cannot separate, or nothing. An entry is named
+`kind:place`. It changes the case, and the ordinary model computes what follows; bounds are physical limits,
+the healthy spread is the scatter of healthy rigs. An effect that healthy rigs do not have is named from the size on
+that matters. Effects whose signatures correlate above 0.95 form a group, and a named effect has to close the gap on
+operating points that were held out. Which of them a measurement can detect and separate is in its report.
 """
 
 SENSORS = (
-    ("sensor_offset:<channel>", "reads a constant amount off", "constant over all points"),
+    ("sensor_offset:<channel>", "offset of a channel", "constant over all points"),
     (
         "sensor_scale:<channel>",
-        "reads a constant share off; of a thermocouple of its excess over ambient (fin error)",
+        "scale error of a channel; of a thermocouple of its excess over ambient (fin error)",
         "grows with the reading",
     ),
     ("torque_zero:<channel>", "zero of a torque or angle channel", "mean only, the same at any torque"),
-    ("angle_zero", "index pulse offset", "all orders turned, the higher the more"),
+    ("angle_zero", "index pulse offset", "phase of all orders shifted in proportion to the order"),
     (
         "inlet_offset:<stream>, inlet_scale:<stream>",
-        "inlet temperature of an oil stream read wrong",
-        "all that the stream wets, and its outlet",
+        "error of the inlet temperature of an oil stream",
+        "all surfaces wetted by the stream, and its outlet",
     ),
     (
         "flow_offset:<stream>, flow_scale:<stream>",
-        "flow of an oil stream read wrong",
+        "error of the flow of an oil stream",
         "oil rise against losses",
     ),
-    ("ambient", "room temperature read wrong", "the whole outside of the housing"),
+    ("ambient", "error of the room temperature", "all outer surfaces of the housing"),
     (
         "speed_offset, speed_scale, torque_offset, torque_scale",
-        "speed or torque read wrong",
+        "error of speed or torque",
         "losses and mesh orders together",
     ),
     ("swapped_channels:<a>,<b>", "two channels exchanged", "each fits the other's prediction"),
@@ -54,7 +54,11 @@ SENSORS = (
         "readings of two operating points exchanged",
         "each fits the other's prediction",
     ),
-    ("unit:<channel>", "channel in another unit or with the wrong sign", "a factor or shift no sensor has"),
+    (
+        "unit:<channel>",
+        "channel in another unit or with the wrong sign",
+        "a factor or shift outside of sensor errors",
+    ),
 )
 """Entries of sensors and settings: name, words, signature."""
 
@@ -95,15 +99,15 @@ def effects_page(cases: Sequence[Case]) -> str:
     lines.append(f"Bounds: {'; '.join(sources)}.\n")
     lines.append("## In the measurement\n")
     lines.append(
-        f"Sizes up to {TIMES:g} times the systematic uncertainty that the measurement states are believed. They leave "
-        "the case alone and are written to `measurement.patch.json`.\n"
+        f"Sizes up to {TIMES:g} times the stated systematic uncertainty are admitted. They do not change "
+        "the case and are written to `measurement.patch.json`.\n"
     )
     lines += _table(("entry", "what", "how it shows"), [(f"`{name}`", *words) for name, *words in SENSORS])
-    lines.append("## Waiting for a model\n")
-    lines.append("What these make is reported as located but unknown, or not seen at all.\n")
+    lines.append("## Not modelled yet\n")
+    lines.append("Their effect is reported as located but unknown, or is not detected.\n")
     lines += _table(
-        ("effect", "what", "how it shows", "what it waits for"),
-        [(f"`{one.name}`", one.title, one.signature, one.lacks) for one in WAITING],
+        ("effect", "what", "how it shows", "what is required"),
+        [(f"`{one.name}`", one.title, one.signature, one.lacks) for one in WAITING if one.name not in kinds],
     )
     return "\n".join(lines).rstrip() + "\n"
 
@@ -121,7 +125,7 @@ def _bounds(parameter: Parameter) -> str:
 
 
 def _more(effect: Effect) -> str:
-    """What an entry leaves open besides its size."""
+    """What an entry leaves open apart from its size."""
     if len(effect.parameters) == 2:
         return " along cosine and sine: phase free"
     return ", any tooth" if effect.any_tooth else ""

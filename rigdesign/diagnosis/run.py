@@ -64,10 +64,10 @@ def diagnose_measurement(
     healthy = None if measurement.baseline is None else load_measurement(measurement.baseline, case)
     effects = effects_of(case)
     with solver_errors(case):
-        data, subject = read_subject(case, measurement, effects, say)
-        before = None if healthy is None else read_subject(case, healthy, effects, say)[1]
+        data, residuals = read_residuals(case, measurement, effects, say)
+        before = None if healthy is None else read_residuals(case, healthy, effects, say)[1]
         problem = Problem(
-            subject=subject,
+            residuals=residuals,
             baseline=before,
             seed=measurement.hash,
             repeated=data.strength == "proven",
@@ -122,9 +122,9 @@ def calibrate_case(
     measurement = load_measurement(folder, case)
     effects = effects_of(case)
     with solver_errors(case):
-        subject = read_subject(case, measurement, effects, say)[1]
+        residuals = read_residuals(case, measurement, effects, say)[1]
         say("fitting constants")
-        found = constants(plain(subject, calibration.amplitudes, calibration.widening), effects)
+        found = constants(plain(residuals, calibration.amplitudes, calibration.inflation), effects)
         reason = f"fitted to the healthy measurement {measurement.title!r} ({measurement.hash[:16]})"
         values = patched_values(case, [entry.fitted(reason) for entry in found.entries])
     return Calibrated(
@@ -146,13 +146,13 @@ def candidates_of(
 
 
 def _channels(case: Case, measurement: MeasurementSet) -> tuple[tuple[Channel, ...], tuple[Channel, ...]]:
-    """Channels of a set, and those it could have besides."""
+    """Channels of a set, and those it could have in addition."""
     channels = tuple(entry.channel for entry in measurement.channels.values())
     orders = max((channel.orders for channel in channels), key=len, default=())
     return channels, spare_channels(case, channels, orders)
 
 
-def read_subject(
+def read_residuals(
     case: Case,
     measurement: MeasurementSet,
     effects: tuple[Effect, ...],

@@ -36,4 +36,4 @@ class Data:
     channels: Mapping[str, MeasuredChannel]
     findings: tuple[DataFinding, ...]
     strength: Strength
-    """indicative: without repeats, noise is what the set declares."""
+    """indicative: without repeats, the declared noise is used."""

@@ -11,7 +11,7 @@ from rigdesign.base.errors import Fault, MeasurementError
 from rigdesign.case import Case
 from rigdesign.case.faults import faults_of, unknown, written
 from rigdesign.measurement.places import Places
-from rigdesign.measurement.processing.recorded import read_recordings
+from rigdesign.measurement.processing.recorded import SetPlan, read_recordings
 from rigdesign.measurement.reading.columns import channels_of, column_faults, sensors_of
 from rigdesign.measurement.reading.document import MeasurementFile
 from rigdesign.measurement.reading.files import digest_of, document_text, set_file
@@ -66,7 +66,10 @@ def load_measurement(path: str | Path, case: Case) -> MeasurementSet:
         if document.data.orders is not None:
             readings |= read_orders(folder, document, channels, rows, readings, findings)
         if document.data.recordings:
-            readings |= read_recordings(folder, document, places, channels, points, rows, readings, findings)
+            plan = SetPlan(
+                folder=folder, document=document, places=places, channels=channels, points=points, rows=rows
+            )
+            readings |= read_recordings(plan, readings, findings)
     except MeasurementError as error:
         raise MeasurementError(error.faults, str(file)) from None
     at = {"", *(point.name for point in points)}

@@ -9,7 +9,7 @@ from rigdesign.base.output_folder import staged
 from rigdesign.case import Case
 from rigdesign.measurement.loader import FILE
 from rigdesign.measurement.places import Places
-from rigdesign.measurement.quantities import CHANNELS, SETTINGS
+from rigdesign.measurement.quantities import CHANNELS, SETTINGS, Measured
 
 TABLE = "data.csv"
 SPREADS = {
@@ -80,11 +80,7 @@ def template_texts(case: Case) -> tuple[str, str]:
         f"# Speed and torque count at {places.counting_gear}; flows as in the case: per mesh, per bearing.\n"
     )
     for name, (quantity, place) in settings.items():
-        blocks.append(
-            _table(
-                "settings", name, quantity, place, SETTINGS[quantity].unit, SETTINGS[quantity].uncertainty, ()
-            )
-        )
+        blocks.append(_table(f"settings.{name}", quantity, place, SETTINGS[quantity], ()))
     blocks.append(_offer(places))
     for name, (quantity, place) in channels.items():
         measured = CHANNELS[quantity]
@@ -95,16 +91,16 @@ def template_texts(case: Case) -> tuple[str, str]:
                 *extra,
                 f"# orders = [{shown}, …]   # per turn of {places.counting_gear}; by tooth numbers when left out",
             )
-        blocks.append(_table("channels", name, quantity, place, measured.unit, measured.uncertainty, extra))
+        blocks.append(_table(f"channels.{name}", quantity, place, measured, extra))
     return "\n".join(blocks), _data(case, settings, channels)
 
 
-def _table(
-    part: str, name: str, quantity: str, place: str, unit: str, uncertainty: str, extra: tuple[str, ...]
-) -> str:
-    lines = [f"[{part}.{name}]", f'quantity = "{quantity}"']
+def _table(path: str, quantity: str, place: str, measured: Measured, extra: tuple[str, ...]) -> str:
+    """Table of a setting or channel at ``path``; ``extra``: lines after the usual ones."""
+    lines = [f"[{path}]", f'quantity = "{quantity}"']
     lines += [f'place = "{place}"'] if place else []
-    return "\n".join([*lines, f'unit = "{unit}"', f'uncertainty = "{uncertainty}"', *extra, ""])
+    usual = (f'unit = "{measured.unit}"', f'uncertainty = "{measured.uncertainty}"')
+    return "\n".join([*lines, *usual, *extra, ""])
 
 
 def _setting_columns(places: Places) -> dict[str, tuple[str, str]]:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from rigdesign.case.geometry import conditions_of
-from rigdesign.case.housing import FlankFilm
+from rigdesign.case.surface_conditions import FlankFilm
 from rigdesign.coupling.boundary import GEAR_OIL
 from rigdesign.coupling.flank_heat import GearFlanks, flank_films, gear_flanks, rim_surfaces
 from rigdesign.coupling.loop import PointResult

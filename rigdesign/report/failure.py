@@ -11,7 +11,7 @@ from rigdesign.base.output_folder import write_whole
 from rigdesign.base.version import __version__
 
 FAILURE = "failure.json"
-"""Written beside the files of an earlier run, which stay; a run that ends well removes it."""
+"""Written next to the files of an earlier run, which stay; a run that ends well removes it."""
 
 
 def write_failure(error: NotConvergedError, out: Path) -> Path | None:

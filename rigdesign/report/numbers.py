@@ -99,9 +99,14 @@ def split_key(key: str) -> tuple[str, str]:
     return key.replace("_", " "), ""
 
 
+HEADINGS = {"open": "imbalance"}
+"""Words of keys that read otherwise in a heading."""
+
+
 def heading_text(key: str) -> str:
     """Column heading of a key, unit in square brackets."""
     words, unit = split_key(key)
+    words = HEADINGS.get(words, words)
     return f"{words} [{unit}]" if unit else words
 
 

@@ -13,7 +13,7 @@ SCHEMA_VERSION = "1"
 def results_document(result: RunResult) -> dict[str, Any]:
     """Content of results.json as plain dicts, lists, strings and finite numbers.
 
-    Units stand in the key (``_Nm``, ``_degC``) or in the field ``unit`` beside the value.
+    Units stand in the key (``_Nm``, ``_degC``) or in the field ``unit`` next to the value.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def results_document(result: RunResult) -> dict[str, Any]:
 
 
 def _coupling(histories: Sequence[CouplingHistory]) -> dict[str, Any]:
-    """``iterations`` of the slowest stage and the residuals of every pass of every stage."""
+    """``iterations`` of the slowest stage and the residuals of every iteration of every stage."""
     return {
         "iterations": max((history.iterations for history in histories), default=0),
         "residuals": [

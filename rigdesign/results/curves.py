@@ -78,7 +78,7 @@ def _dynamics(dynamics: "DynamicsResult") -> Iterator[tuple[str, Columns]]:
 
 
 def _dynamic_factor(gearbox: "GearboxDynamics") -> Columns:
-    """K_V(n): the curves of all torques and variants below each other, told apart by the last two columns."""
+    """K_V(n): the curves of all torques and variants below each other, distinguished by the last two columns."""
     header = (
         "speed [rpm]", "max/mean [1]", "half peak-to-peak [1]", "ISO 6336-1 method B [1]", "method", "torque",
         "variant",

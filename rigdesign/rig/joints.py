@@ -11,7 +11,7 @@ from thermal.conditions.contact import Contact
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
 from thermal.films.air import air
-from thermal.films.joint_conductance import pressed_joint
+from thermal.films.joint_conductance import GapFilling, RoughContact, pressed_joint
 from thermal.films.law import ExchangeLaw, FilmCoefficient, FilmLaw
 from thermal.housing.surfaces import FOOT, SEAT
 
@@ -43,16 +43,14 @@ def foot_joint(rig: Rig, name: str) -> list[Contact]:
 def _pressed(rig: Rig, joint: PressedJoint, materials: tuple[str, str]) -> ExchangeLaw:
     first, second = (rig.materials[material].conductivity for material in materials)
     dry = joint.filling_conductivity is None
-    return pressed_joint(
-        pressure=joint.pressure,
-        hardness=joint.hardness,
-        conductivity_a=first,
-        conductivity_b=second,
-        roughness=joint.roughness,
-        slope=joint.slope,
-        gap_conductivity=joint.filling_conductivity or air(rig.case.ambient.temperature).conductivity,
+    contact = RoughContact(
+        pressure=joint.pressure, hardness=joint.hardness, roughness=joint.roughness, slope=joint.slope
+    )
+    filling = GapFilling(
+        conductivity=joint.filling_conductivity or air(rig.case.ambient.temperature).conductivity,
         gas_parameter=AIR_JUMP if dry else 0.0,
     )
+    return pressed_joint(contact, (first, second), filling)
 
 
 def behind_shell(rig: Rig, name: str, surface: str, law: FilmLaw) -> FilmLaw:

@@ -20,7 +20,6 @@ from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check, Finding
-from rigdesign.rig.films import printed_law
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
 from rigdesign.run.load_convergence import missing_load_errors
@@ -264,7 +263,7 @@ def _assumed_differences(solved: SolvedRig, field: HousingField) -> Iterator[str
             surface,
             assumed=taken.temperature_difference,
             solved=rows[(surface, film.kind)].mean_temperature - film.fluid_temperature,
-            law=printed_law(taken),
+            law=taken.film_law(),
             fluid_temperature=film.fluid_temperature,
         )
         if text is not None:

@@ -41,7 +41,7 @@ def own_variants(calibration: Calibration) -> Calibration:
     kept = {
         name: value for name, value in calibration.amplitudes.as_dict().items() if name not in (*MODEL, *OWN)
     }
-    return replace(calibration, amplitudes=gone.with_values(kept), widening={})
+    return replace(calibration, amplitudes=gone.with_values(kept), inflation={})
 
 
 def bands(calibration: Calibration) -> Calibration:
@@ -57,20 +57,20 @@ def no_hedge(calibration: Calibration) -> Calibration:
 
 
 def no_widening(calibration: Calibration) -> Calibration:
-    """No widening along single effects."""
-    return replace(calibration, widening={}, drift=replace(calibration.drift, widening={}))
+    """No inflation along single effects."""
+    return replace(calibration, inflation={}, drift=replace(calibration.drift, inflation={}))
 
 
 def no_anonymous(calibration: Calibration) -> Calibration:
     """No competitors without a name."""
-    workflow.anonymous = lambda library, channels: iter(())
+    workflow.unmodelled_causes = lambda library, channels: iter(())
     return calibration
 
 
 def _only(calibration: Calibration, kept: tuple[str, ...]) -> Calibration:
     values = calibration.amplitudes.as_dict()
     gone = {name: 0.0 for name in values if name not in kept}
-    return replace(calibration, amplitudes=calibration.amplitudes.with_values(gone), widening={})
+    return replace(calibration, amplitudes=calibration.amplitudes.with_values(gone), inflation={})
 
 
 ABLATIONS: dict[str, Callable[[Calibration], Calibration]] = {

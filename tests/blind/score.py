@@ -37,7 +37,7 @@ from rigdesign.diagnosis.residual.calibration import calibrate as fit_all
 from rigdesign.diagnosis.residual.calibration import calibrate_drift
 from rigdesign.diagnosis.residual.covariance_inflation import inflate_drift
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
-from rigdesign.diagnosis.run import diagnose_measurement, read_subject
+from rigdesign.diagnosis.run import diagnose_measurement, read_residuals
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.measurement import load_measurement
 from tests.blind.ablations import ABLATIONS
@@ -46,7 +46,7 @@ from tests.blind.splits import RIGS, SENSORS, Spec, specs
 from tests.virtual_rig.generate import make_set
 
 ROOT = Path(__file__).resolve().parents[2]
-FIXED = frozenset({"sensor", "input", "widening"})
+FIXED = frozenset({"sensor", "input", "inflation"})
 """Amplitudes that are what the measurement states."""
 
 
@@ -102,31 +102,31 @@ def effects_for(rig: str) -> tuple[Effect, ...]:
 
 
 MOST_NUMBERS = {"plain": 700, "baseline": 900}
-"""Healthy sets with more numbers take too long to fit amplitudes and drifts to; the widening counts them too."""
+"""Healthy sets with more numbers take too long to fit amplitudes and drifts to; the inflation counts them too."""
 
 
 def calibrate(out: Path, without: str | None, target: Path) -> None:
-    """Amplitudes, widening and drifts from the null split in both modes, rigs but one if asked; written as JSON."""
+    """Amplitudes, inflation and drifts from the null split in both modes, rigs but one if asked; written as JSON."""
     wanted = [spec for spec in specs("null", "plain") if spec.rig != without]
     folders = [(spec.rig, folder_of(out, "null", "plain", spec)) for spec in wanted]
-    subjects = [_subject(rig, folder) for rig, folder in folders if folder.is_dir()]
-    larger = [one for one in subjects if len(one.features) >= MOST_NUMBERS["plain"]]
-    alike = list(_alike(one for one in subjects if len(one.features) < MOST_NUMBERS["plain"]))
-    amplitudes, widening = fit_all(alike, Amplitudes(), FIXED, larger)
+    problems = [_subject(rig, folder) for rig, folder in folders if folder.is_dir()]
+    larger = [one for one in problems if len(one.features) >= MOST_NUMBERS["plain"]]
+    alike = list(_alike(one for one in problems if len(one.features) < MOST_NUMBERS["plain"]))
+    amplitudes, inflation = fit_all(alike, Amplitudes(), FIXED, larger)
     squares = [
         space.chi_square / len(space.residual)
-        for space in (plain(subject, amplitudes, widening) for subject in subjects)
+        for space in (plain(residuals, amplitudes, inflation) for residuals in problems)
     ]
     pairs = [pair for spec in specs("null", "baseline") if spec.rig != without for pair in _pairs(out, spec)]
     small = [pair for pair in pairs if len(pair[0].features) < MOST_NUMBERS["baseline"]]
     shares = calibrate_drift(small, amplitudes, FIRST_DRIFT)
     drift = inflate_drift(pairs, amplitudes, shares)
     content = {
-        "sets": [len(subjects) - len(larger), len(subjects)],
+        "sets": [len(problems) - len(larger), len(problems)],
         "pairs": [len(small), len(pairs)],
         "chi_square": [float(np.median(squares)), float(np.max(squares))],
         "amplitudes": asdict(amplitudes),
-        "widening": widening,
+        "widening": inflation,
         "drift": asdict(drift),
     }
     target.write_text(json.dumps(content, indent=1))
@@ -144,17 +144,17 @@ def _pairs(out: Path, spec: Spec) -> Iterable[tuple[ResidualProblem, ResidualPro
         yield _subject(spec.rig, folder / "set_1"), _subject(spec.rig, folder / "set_0")
 
 
-def _alike(subjects: Iterable[ResidualProblem]) -> Iterable[list[ResidualProblem]]:
+def _alike(problems: Iterable[ResidualProblem]) -> Iterable[list[ResidualProblem]]:
     """Sets with the very same numbers."""
     groups: dict[tuple[object, ...], list[ResidualProblem]] = {}
-    for subject in subjects:
-        groups.setdefault(subject.features, []).append(subject)
+    for residuals in problems:
+        groups.setdefault(residuals.features, []).append(residuals)
     return groups.values()
 
 
 def _subject(rig: str, folder: Path) -> ResidualProblem:
     case = case_of(rig)
-    return read_subject(case, load_measurement(set_of(folder), case), effects_for(rig))[1]
+    return read_residuals(case, load_measurement(set_of(folder), case), effects_for(rig))[1]
 
 
 def calibration_of(file: Path | None) -> Calibration:
@@ -165,7 +165,7 @@ def calibration_of(file: Path | None) -> Calibration:
     return replace(
         DEFAULT,
         amplitudes=Amplitudes(**content["amplitudes"]),
-        widening=content["widening"],
+        inflation=content["widening"],
         drift=Drift(**content["drift"]),
     )
 
@@ -236,8 +236,8 @@ def _run(job: tuple[str, str, Path, Spec, Method]) -> Row | None:
         "refused": [one.explanation for one in found.refused],
         "top": [list(one.parts) for one in found.alternatives],
         "masses": [one.posterior for one in found.alternatives],
-        "evidence": max(one.log_bayes for one in found.examinations[0].evidence),
-        "chi_square": found.examinations[0].chi_square / found.examinations[0].count,
+        "evidence": max(one.log_bayes for one in found.evaluations[0].evidence),
+        "chi_square": found.evaluations[0].chi_square / found.evaluations[0].count,
         "rejected": len(found.rejected),
         "seconds": time.perf_counter() - started,
         "covered": None,

@@ -22,7 +22,7 @@ def test_a_library_and_the_sets_it_serves(rig, tmp_path, monkeypatch):
     start = time.perf_counter()
     first = diagnose_measurement(case, folders[0])
     whole = time.perf_counter() - start
-    library = first.problem.subject.library
+    library = first.problem.residuals.library
     start = time.perf_counter()
     predict(case, library.settings[:1], library.channels)
     point = time.perf_counter() - start

@@ -16,7 +16,7 @@ from rigdesign.prediction.model import Feature, OperatingCondition
 from tests.diagnosis_example import story
 
 STEP = 0.01
-"""By how much the subject ran faster than its baseline, as a logarithm."""
+"""By how much the residuals ran faster than its baseline, as a logarithm."""
 
 STILL = Drift(shared=0.01, slope=0.0, shaft=0.0, mesh=0.0, amplitude=0.0)
 
@@ -26,16 +26,16 @@ def moved(library: Library, settings: tuple[OperatingCondition, ...]) -> Library
     return replace(library, settings=settings)
 
 
-def faster(subject: ResidualProblem, step: float) -> ResidualProblem:
+def faster(residuals: ResidualProblem, step: float) -> ResidualProblem:
     """The same readings at points run faster."""
-    runs = tuple(replace(one, speed=one.speed * float(np.exp(step))) for one in subject.library.settings)
-    return replace(subject, library=moved(subject.library, runs))
+    runs = tuple(replace(one, speed=one.speed * float(np.exp(step))) for one in residuals.library.settings)
+    return replace(residuals, library=moved(residuals.library, runs))
 
 
 @pytest.fixture(scope="module")
 def pair() -> tuple[ResidualProblem, ResidualProblem]:
     problem = story("mesh loss").problem
-    return faster(problem.subject, STEP), problem.baseline
+    return faster(problem.residuals, STEP), problem.baseline
 
 
 def more_by(pair: tuple[ResidualProblem, ResidualProblem], drift: Drift) -> np.ndarray:
@@ -51,13 +51,13 @@ def amplitude(feature: Feature, read) -> float:
 
 
 def test_orders_follow_the_speed_as_natural_frequencies_near_them_make_them(pair):
-    subject, baseline = pair
+    residuals, baseline = pair
     more = more_by(pair, replace(STILL, shaft=0.3, mesh=2.0, amplitude=0.05))
     read = dict(zip(baseline.features, baseline.values, strict=True))
-    steep = steepness(subject.features, subject.library.settings, subject.library.modes)
+    steep = steepness(residuals.features, residuals.library.settings, residuals.library.modes)
     kinds = set()
-    for feature, near, variance in zip(subject.features, steep, np.diag(more), strict=True):
-        mesh = feature.order in subject.mesh_orders
+    for feature, near, variance in zip(residuals.features, steep, np.diag(more), strict=True):
+        mesh = feature.order in residuals.mesh_orders
         kinds.add((bool(feature.order), mesh))
         follows = STEP * near * (2.0 if mesh else 0.3)
         alone = 0.05 if mesh else 0.0
@@ -67,11 +67,11 @@ def test_orders_follow_the_speed_as_natural_frequencies_near_them_make_them(pair
 
 
 def test_orders_follow_the_speed_by_a_share_of_what_the_model_says(pair):
-    subject, baseline = pair
-    first = subject.library.settings[0]
-    slope = np.array([0.02 if one.order and one.setting == first.name else 0.0 for one in subject.features])
-    library = replace(subject.library, inputs={("speed", "", first.name): slope})
-    more = more_by((replace(subject, library=library), baseline), replace(STILL, slope=0.5))
+    residuals, baseline = pair
+    first = residuals.library.settings[0]
+    slope = np.array([0.02 if one.order and one.setting == first.name else 0.0 for one in residuals.features])
+    library = replace(residuals.library, inputs={("speed", "", first.name): slope})
+    more = more_by((replace(residuals, library=library), baseline), replace(STILL, slope=0.5))
     both = np.sqrt(2.0) * first.speed * slope
     assert np.diag(more) == pytest.approx((0.5 * STEP * both) ** 2)
 
@@ -82,7 +82,7 @@ def test_a_point_met_at_the_same_speed_drifts_by_the_shared_part_alone(pair):
 
 
 def test_points_are_known_by_their_settings_whatever_their_names_and_order(pair):
-    subject, baseline = pair
+    residuals, baseline = pair
     runs = baseline.library.settings
     names = {one.name: f"Q{number}" for number, one in enumerate(runs)}
     other = tuple(replace(one, name=names[one.name]) for one in reversed(runs))
@@ -90,7 +90,7 @@ def test_points_are_known_by_their_settings_whatever_their_names_and_order(pair)
     powers = {names[name]: power for name, power in baseline.library.powers.items()}
     library = replace(baseline.library, settings=other, features=features, powers=powers)
     renamed = replace(baseline, features=features, library=library)
-    whole, again = (Change.of(subject, one, Amplitudes()) for one in (baseline, renamed))
+    whole, again = (Change.of(residuals, one, Amplitudes()) for one in (baseline, renamed))
     assert again.expected == pytest.approx(whole.expected, rel=1e-9)
     assert again.known == pytest.approx(whole.known, rel=1e-9)
     assert again.steep == pytest.approx(whole.steep)
@@ -98,28 +98,28 @@ def test_points_are_known_by_their_settings_whatever_their_names_and_order(pair)
 
 def test_an_order_the_model_does_not_know_is_foretold_as_it_was_read(pair):
     """Even where the model's own mesh orders, over which its errors count, follow the other speeds."""
-    subject, baseline = pair
-    once = np.array([one.order == 2.0 and one.part == "real" for one in subject.features])
-    mesh = np.array([one.order in subject.mesh_orders for one in subject.features])
-    base = subject.library.base * np.where(mesh, 1.3, 1.0)
-    library = replace(subject.library, base=base)
-    level = np.where([bool(one.order) for one in subject.features], 1.3, 1.0) * subject.level
-    steeper = replace(subject, library=library, level=level)
+    residuals, baseline = pair
+    once = np.array([one.order == 2.0 and one.part == "real" for one in residuals.features])
+    mesh = np.array([one.order in residuals.mesh_orders for one in residuals.features])
+    base = residuals.library.base * np.where(mesh, 1.3, 1.0)
+    library = replace(residuals.library, base=base)
+    level = np.where([bool(one.order) for one in residuals.features], 1.3, 1.0) * residuals.level
+    steeper = replace(residuals, library=library, level=level)
     healthy = replace(baseline, values=baseline.library.base + 2.0 * once)
     assert Change.of(steeper, healthy, Amplitudes()).expected[once] == pytest.approx(2.0, rel=0.03)
 
 
 def test_a_point_that_the_baseline_lacks_is_known_less_well(pair):
-    subject, baseline = pair
+    residuals, baseline = pair
     gone = baseline.library.settings[0].name
     fewer = baseline.rows([row for row, one in enumerate(baseline.features) if one.setting != gone])
     fewer = replace(fewer, library=moved(fewer.library, fewer.library.settings[1:]))
-    own = [row for row, one in enumerate(subject.features) if one.setting == gone]
+    own = [row for row, one in enumerate(residuals.features) if one.setting == gone]
     with_it, without = (
-        np.diag(Change.of(subject, one, Amplitudes()).known)[own] for one in (baseline, fewer)
+        np.diag(Change.of(residuals, one, Amplitudes()).known)[own] for one in (baseline, fewer)
     )
     assert (without > with_it).all()
-    assert not Change.of(subject, fewer, Amplitudes()).steep[own].any()
+    assert not Change.of(residuals, fewer, Amplitudes()).steep[own].any()
 
 
 def test_some_numbers_of_a_change_keep_what_is_known_of_them(pair):
@@ -134,16 +134,16 @@ def test_some_numbers_of_a_change_keep_what_is_known_of_them(pair):
 
 def test_drifts_of_healthy_pairs_are_found_again(pair):
     rng = np.random.default_rng(4)
-    subject, baseline = pair
+    residuals, baseline = pair
     true = Drift(shared=0.02, slope=0.5, shaft=4.0, mesh=4.0, amplitude=0.05)
     drawn = []
     for _ in range(6):
         covariance = baseline.covariance(Amplitudes())
         before = baseline.library.base + covariance.lower @ rng.normal(size=len(baseline.features))
         healthy = replace(baseline, values=before)
-        change = Change.of(subject, healthy, Amplitudes())
-        spread = np.linalg.cholesky(change.covariance(true)) @ rng.normal(size=len(subject.features))
-        drawn.append((replace(subject, values=subject.library.base + change.expected + spread), healthy))
+        change = Change.of(residuals, healthy, Amplitudes())
+        spread = np.linalg.cholesky(change.covariance(true)) @ rng.normal(size=len(residuals.features))
+        drawn.append((replace(residuals, values=residuals.library.base + change.expected + spread), healthy))
     found = calibrate_drift(
         drawn, Amplitudes(), Drift(shared=0.05, slope=0.5, shaft=2.0, mesh=2.0, amplitude=0.02)
     )
@@ -153,21 +153,21 @@ def test_drifts_of_healthy_pairs_are_found_again(pair):
 
 
 def test_the_drift_is_widened_along_what_changed_from_set_to_set(pair):
-    subject, baseline = pair
+    residuals, baseline = pair
     drift = Drift(shared=0.01, slope=1.0, shaft=0.1, mesh=0.1, amplitude=0.01)
-    found = inflate_drift([(subject, baseline)] * 3, Amplitudes(), drift)
-    assert replace(found, widening={}) == drift
-    before = differenced(subject, baseline, Amplitudes(), drift).chi_square
-    assert found.widening and differenced(subject, baseline, Amplitudes(), found).chi_square < 0.5 * before
+    found = inflate_drift([(residuals, baseline)] * 3, Amplitudes(), drift)
+    assert replace(found, inflation={}) == drift
+    before = differenced(residuals, baseline, Amplitudes(), drift).chi_square
+    assert found.inflation and differenced(residuals, baseline, Amplitudes(), found).chi_square < 0.5 * before
 
 
 def test_what_both_sets_share_is_all_that_is_no_noise(pair):
     """A healthy rig's covariance less noise, scatter and what its answers have wrong: the part that may drift."""
-    subject = pair[0]
+    residuals = pair[0]
     amplitudes = replace(Amplitudes(), answer=0.0)
     shared = Change.of(*pair, amplitudes).shared
-    scale = subject.on_the_scale_of(pair[1])
-    alone = np.diag(subject.noise**2) + subject.scatter
+    scale = residuals.on_the_scale_of(pair[1])
+    alone = np.diag(residuals.noise**2) + residuals.scatter
     own = scale.own_spread(amplitudes)
     assert shared == pytest.approx(scale.covariance(amplitudes).matrix - alone, rel=1e-9)
     assert own.max() > 1e-3 * np.sqrt(np.diag(shared)).max()

@@ -5,6 +5,7 @@ import pytest
 
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
+from rigdesign.diagnosis.catalogue.families import DAMPING, TOOTH
 from rigdesign.diagnosis.library.build import _responses, _together, run_places
 from rigdesign.diagnosis.library.cache import Parts
 
@@ -43,11 +44,11 @@ def made(model, effects, folder, said=None):
 
 
 def test_sizes_of_a_tooth_that_gives_way_and_of_flanks():
-    weak = effect("weak_tooth:a.b", "tooth", 0.0, 0.8, any_tooth=20)
+    weak = effect("weak_tooth:a.b", TOOTH, 0.0, 0.8, any_tooth=20)
     assert np.concatenate(run_places(weak)) == pytest.approx([0.096, 0.32, 0.56, 0.8])
-    slope = effect("profile_slope:a.b", "tooth", -20.0, 10.0)
+    slope = effect("profile_slope:a.b", TOOTH, -20.0, 10.0)
     assert np.concatenate(run_places(slope)) == pytest.approx([-20.0, -6.0, 3.0, 10.0])
-    assert len(run_places(effect("damping:a.b", "damping", -1.0, 1.0))) == 6
+    assert len(run_places(effect("damping:a.b", DAMPING, -1.0, 1.0))) == 6
 
 
 def test_a_size_that_is_refused_leaves_out_the_larger_ones_on_its_side(tmp_path, monkeypatch):
@@ -55,7 +56,7 @@ def test_a_size_that_is_refused_leaves_out_the_larger_ones_on_its_side(tmp_path,
     model = Model(limit=0.5)
     found = made(
         model,
-        [effect("weak_tooth:a.b", "tooth", 0.0, 0.8), effect("damping:a", "damping", -1.0, 0.5)],
+        [effect("weak_tooth:a.b", TOOTH, 0.0, 0.8), effect("damping:a", DAMPING, -1.0, 0.5)],
         tmp_path / "x",
     )
     assert found["weak_tooth:a.b"].coordinates[:, 0] == pytest.approx([0.0, 0.096, 0.32])
@@ -67,7 +68,7 @@ def test_a_size_that_is_refused_leaves_out_the_larger_ones_on_its_side(tmp_path,
 def test_an_interrupted_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
     monkeypatch.setattr("rigdesign.base.parallel.cores", lambda: 1)
     monkeypatch.setattr("rigdesign.diagnosis.library.build.cores", lambda: 1)
-    effects = [effect(f"damping:{number}", "damping", -1.0, 1.0) for number in range(10)]
+    effects = [effect(f"damping:{number}", DAMPING, -1.0, 1.0) for number in range(10)]
 
     class Interrupted(Model):
         def response(self, changes):
@@ -91,7 +92,7 @@ def test_an_interrupted_run_goes_on_where_it_stopped(tmp_path, monkeypatch):
 
 def test_what_the_model_refuses_altogether_is_not_asked_again(tmp_path, monkeypatch):
     monkeypatch.setattr("rigdesign.base.parallel.cores", lambda: 1)
-    one = effect("damping:a", "damping", -1.0, 1.0)
+    one = effect("damping:a", DAMPING, -1.0, 1.0)
     assert made(Model(limit=0.0), [one], tmp_path / "parts") == {}
     model = Model()
     assert made(model, [one], tmp_path / "parts") == {}
@@ -101,7 +102,7 @@ def test_what_the_model_refuses_altogether_is_not_asked_again(tmp_path, monkeypa
 def test_flanks_of_one_gearbox_are_run_in_one_process():
     """The same deviation of both gears of a mesh meets contacts that were solved before; all else runs by itself."""
     names = ("slope:test.pinion", "slope:test.wheel", "slope:other.pinion", "crowning:test.pinion")
-    flanks = [effect(name, "tooth", -1.0, 1.0) for name in names]
-    others = [effect(name, "damping", -1.0, 1.0) for name in ("damping:test.a", "damping:test.b")]
+    flanks = [effect(name, TOOTH, -1.0, 1.0) for name in names]
+    others = [effect(name, DAMPING, -1.0, 1.0) for name in ("damping:test.a", "damping:test.b")]
     groups = {frozenset(one.name for one in group) for group in _together([*flanks, *others])}
     assert groups == {frozenset(names[:2]), *(frozenset([one.name]) for one in (*flanks[2:], *others))}

@@ -1,4 +1,4 @@
-"""What may be claimed: sizes that matter, a gap that shrinks on points kept aside, no effect of the same trace."""
+"""What may be claimed: sizes that matter, a gap that shrinks on points held out, no effect of the same trace."""
 
 from dataclasses import replace
 from math import log
@@ -32,25 +32,25 @@ SIZE = {"mesh_loss:test": (log(1.3),)}
 
 def stored(problem, sizes):
     """(n,) what effects at these sizes add to the numbers of a problem, by the stored runs."""
-    subject = problem.subject
-    space = Whitened.of(Covariance.of_noise(subject.noise, [], {}), subject.residual)
-    return Proof(subject=subject, whole=space, points=()).stored(sizes)
+    residuals = problem.residuals
+    space = Whitened.of(Covariance.of_noise(residuals.noise, [], {}), residuals.residual)
+    return Proof(residuals=residuals, whole=space, points=()).stored(sizes)
 
 
 def with_added(problem: Problem, added) -> Problem:
     """The problem with something added to what was read."""
-    subject = problem.subject
-    return replace(problem, subject=replace(subject, values=subject.values + added))
+    residuals = problem.residuals
+    return replace(problem, residuals=replace(residuals, values=residuals.values + added))
 
 
 def aside(problem: Problem) -> np.ndarray:
-    """(n,) whether a number is of a point kept aside."""
-    points = held_out([one.name for one in problem.subject.library.settings], problem.seed)
-    return np.array([feature.setting in points for feature in problem.subject.features])
+    """(n,) whether a number is of a point held out."""
+    points = held_out([one.name for one in problem.residuals.library.settings], problem.seed)
+    return np.array([feature.setting in points for feature in problem.residuals.features])
 
 
 def diagnosed(problem: Problem, again=None):
-    return diagnose(problem, DESIGN, again or rerun(problem.subject.library.settings))
+    return diagnose(problem, DESIGN, again or rerun(problem.residuals.library.settings))
 
 
 def healthy() -> Problem:
@@ -60,14 +60,14 @@ def healthy() -> Problem:
 
 
 def contradicted() -> Problem:
-    """Readings that show an effect at the points of the fit, and its opposite at those kept aside."""
+    """Readings that show an effect at the points of the fit, and its opposite at those held out."""
     problem = healthy()
     answer = stored(problem, SIZE)
     return with_added(problem, np.where(aside(problem), -answer, answer))
 
 
 def test_no_name_and_nothing_proven_where_the_gap_grows():
-    """As a weak tooth that was named a ripple of the motor while the gap on the points kept aside grew."""
+    """As a weak tooth that was named a ripple of the motor while the gap on the points held out grew."""
     found = diagnosed(contradicted())
     assert (found.decision.verdict, found.named, found.strength) == ("unknown_located", (), "indicative")
     (refusal,) = found.refused
@@ -109,7 +109,7 @@ def test_a_gap_that_shrinks_by_less_than_its_scatter_proves_nothing():
 
 def test_the_gap_reported_is_that_of_the_full_run():
     problem = with_added(healthy(), stored(healthy(), SIZE))
-    formulas = rerun(problem.subject.library.settings)
+    formulas = rerun(problem.residuals.library.settings)
     by_stored = diagnosed(problem)
     assert by_stored.strength == "proven" and by_stored.named == ("mesh_loss:test",)
     less = diagnosed(problem, lambda features, sizes: 0.9 * formulas(features, sizes))
@@ -180,25 +180,25 @@ def test_what_a_healthy_rig_does_not_have_has_a_smallest_size(rig):
 def thin_oil(problem: Problem) -> Problem:
     """With a viscosity that answers as friction of the bearings does, but for a little of the friction of the teeth."""
 
-    def more(subject):
-        known = subject.library.responses
+    def more(residuals):
+        known = residuals.library.responses
         bearing, mesh = known["bearing_loss:test"], known["mesh_loss:test"]
-        answers = bearing.answers + 0.02 * bearing.coordinates * mesh.slope()[:, 0]
+        answers = bearing.answers + 0.02 * bearing.coordinates * mesh.sensitivity()[:, 0]
         viscosity = Response(coordinates=0.45 * bearing.coordinates, answers=answers)
-        library = replace(subject.library, responses={**known, "oil_viscosity:test": viscosity})
-        return replace(subject, library=library)
+        library = replace(residuals.library, responses={**known, "oil_viscosity:test": viscosity})
+        return replace(residuals, library=library)
 
-    return replace(problem, subject=more(problem.subject), baseline=more(problem.baseline))
+    return replace(problem, residuals=more(problem.residuals), baseline=more(problem.baseline))
 
 
 def test_effects_of_one_trace_end_as_a_group():
     """As viscosity, which was named friction of the bearings at a correlation of 0.997."""
     problem = thin_oil(healthy())
     found = diagnosed(with_added(problem, stored(problem, {"bearing_loss:test": (log(1.35),)})))
-    assert found.examinations[0].decision.verdict == "named"
+    assert found.evaluations[0].decision.verdict == "named"
     assert found.decision.verdict == "alias_group" and found.strength == "indicative"
     assert set(found.named) == {"bearing_loss:test", "oil_viscosity:test"}
-    assert "oil_viscosity:test leaves the trace of bearing_loss:test" in found.decision.reason
+    assert "oil_viscosity:test has the signature of bearing_loss:test" in found.decision.reason
 
 
 def test_what_is_at_work_apart_from_a_group_is_told():
@@ -213,7 +213,10 @@ def test_what_is_at_work_apart_from_a_group_is_told():
     assert "What the model lacks: pitch of one tooth of test.pinion: tooth 5" in document["headline"]
     assert told.case_patch is None and "--name" in told.refused and document["gap"]["shrunk"]
     assert document["gap"]["effects_added"] == ["single_pitch:test.pinion/5", "bearing_loss:test"]
-    assert document["strength"] == "indicative" and "a group is no name" in document["certainty"]
+    assert (
+        document["strength"] == "indicative"
+        and "an alias group identifies no single effect" in document["certainty"]
+    )
     for pick in ("bearing_loss:test", "oil_viscosity:test"):
         picked = outcome(told.result, pick=pick)
         assert [one.name for one in picked.applied] == ["single_pitch:test.pinion", pick]
@@ -280,7 +283,7 @@ def test_a_second_group_is_not_apart_from_the_first():
     sizes = dict.fromkeys("ace", (9.0,))
     decision = _group(found, sizes, Traces(space=space, explanations=evaluated, assembly=[()] * 6))
     assert decision is not None and decision.named == ("a", "b") and decision.apart == ("e",)
-    assert "b leaves the trace of a" in decision.reason and "d leaves the trace of c" in decision.reason
+    assert "b has the signature of a" in decision.reason and "d has the signature of c" in decision.reason
     assert (
         _group([evaluated[4]], sizes, Traces(space=space, explanations=evaluated, assembly=[()] * 6)) is None
     )

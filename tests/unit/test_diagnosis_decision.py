@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.decision.decision import Thresholds, decide, posterior
+from rigdesign.diagnosis.decision.decision import Candidates, Thresholds, WhitenedSquare, decide, posterior
 from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis
 
-COUNTS = {"physical": 50, "anonymous": 100, "pair": 1000, "sensor": 20}
+COUNTS = {"physical": 50, "unmodelled": 100, "pair": 1000, "sensor": 20}
 
 
 def evidence(name, log_bayes, family="physical"):
@@ -26,13 +26,14 @@ def verdict(*evaluated, thresholds=USUAL, loop=(), sensors=(), left=0.0):
     return decide(
         ordered,
         posterior(ordered, COUNTS),
-        chi_square=ordered[0].gain + 60.0 + left,
-        count=60,
-        effects=frozenset({"leak", "ripple", *sensors}),
-        detectable={"leak": True},
-        thresholds=thresholds,
-        loop=frozenset(loop),
-        sensors=frozenset(sensors),
+        WhitenedSquare(value=ordered[0].gain + 60.0 + left, count=60),
+        Candidates(
+            effects=frozenset({"leak", "ripple", *sensors}),
+            detectable={"leak": True},
+            orders=frozenset(loop),
+            sensors=frozenset(sensors),
+        ),
+        thresholds,
     )
 
 

@@ -39,7 +39,7 @@ def document(name: str, **keys):
 
 def names(name: str = "healthy") -> Names:
     result: Result = story(name)
-    return Names(result.effects, result.problem.subject.errors)
+    return Names(result.effects, result.problem.residuals.errors)
 
 
 @pytest.mark.parametrize("name", STORIES)
@@ -161,9 +161,9 @@ def test_gap_of_a_channel_is_that_of_its_readings_on_the_points_kept_aside() -> 
     result, found = story("mesh loss"), document("mesh loss")
     aside = found["gap"]["held_out_points"]
     assert aside == [row["point"] for row in found["data"]["points"] if row["held_out"]]
-    diagnosis, subject = result.diagnosis, result.problem.subject
-    rows = [i for i, f in enumerate(subject.features) if f.channel == "T_gear" and f.setting in aside]
-    assert diagnosis.kept == tuple(range(len(subject.features)))
+    diagnosis, residuals = result.diagnosis, result.problem.residuals
+    rows = [i for i, f in enumerate(residuals.features) if f.channel == "T_gear" and f.setting in aside]
+    assert diagnosis.kept == tuple(range(len(residuals.features)))
     before = np.sqrt(np.mean(diagnosis.residual[rows] ** 2))
     after = np.sqrt(np.mean((diagnosis.residual - diagnosis.answer)[rows] ** 2))
     row = next(row for row in found["gap"]["channels"] if row["channel"] == "T_gear")
@@ -210,7 +210,7 @@ def test_a_pick_that_means_nothing_is_refused_with_what_is_near() -> None:
 def test_refusals_say_why_and_what_to_do() -> None:
     one = document("one point")
     assert one["strength"] == "indicative" and one["gap"] is None
-    assert "single reading" in one["certainty"] and "kept aside" in one["certainty"]
+    assert "single reading" in one["certainty"] and "held out" in one["certainty"]
     asked = [row["measurement"] for row in one["next_measurements"]]
     assert any("9 to 15 operating points" in text for text in asked)
     assert any("repeat every" in text for text in asked)
@@ -321,10 +321,10 @@ def proposed(name: str, *, rivals: int = 3) -> tuple[Ranked, ...]:
     there = np.array([feature.setting == f"{SPARE}re-indexed" for feature in offered.features])
     turned = replace(wheel, answers=np.where(there, -wheel.answers, wheel.answers))
     offered = replace(offered, responses={**offered.responses, "run_out:test.wheel": turned})
-    first, *others = result.diagnosis.examinations
+    first, *others = result.diagnosis.evaluations
     alone = [one for one in first.evidence if one.hypothesis.family == "physical"]
     few = replace(first, evidence=tuple(alone[:rivals]))
-    found = replace(result.diagnosis, examinations=(few, *others))
+    found = replace(result.diagnosis, evaluations=(few, *others))
     return proposals(result.problem, found, offered, extras, result.calibration.amplitudes)
 
 

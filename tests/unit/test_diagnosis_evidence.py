@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rigdesign.diagnosis.decision.decision import Thresholds
-from rigdesign.diagnosis.decision.evaluate import Earlier, Explanations, evaluate
+from rigdesign.diagnosis.decision.evaluate import Criteria, Earlier, Explanations, evaluate
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Release, Whitened
 from rigdesign.diagnosis.statistics.evidence import (
@@ -20,6 +20,7 @@ from rigdesign.diagnosis.statistics.evidence import (
 )
 
 N = 120
+USUAL = Criteria(thresholds=Thresholds())
 
 
 def toy(seed, *, own=0.0):
@@ -51,14 +52,14 @@ def explanations(covariance, effects, rng, *, half=5.0):
     unknown = [
         Hypothesis(
             name=f"unknown: {i}",
-            family="anonymous",
+            family="unmodelled",
             parts=(f"unknown: {i}",),
             columns=covariance.whiten(rng.normal(size=(N, 1))),
             half=1.0,
         )
         for i in range(30)
     ]
-    return Explanations(physical=physical, sensor=[], anonymous=unknown, data=[])
+    return Explanations(physical=physical, sensor=[], unmodelled=unknown, data=[])
 
 
 def draw(rng, covariance):
@@ -106,7 +107,7 @@ def test_nothing_is_named_in_healthy_sets():
         rng, effects, covariance = toy(seed, own=0.3)
         found = explanations(covariance, effects, rng)
         space = Whitened.of(covariance, draw(rng, covariance))
-        verdicts.append(evaluate(space, found, Thresholds()).decision.verdict)
+        verdicts.append(evaluate(space, found, USUAL).decision.verdict)
     assert verdicts.count("within_noise") + verdicts.count("too_small") == 60
 
 
@@ -116,7 +117,7 @@ def test_a_clear_effect_is_named_with_its_size():
         rng, effects, covariance = toy(seed)
         found = explanations(covariance, effects, rng)
         space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
-        result = evaluate(space, found, Thresholds())
+        result = evaluate(space, found, USUAL)
         right += result.decision.verdict == "named" and result.decision.named == ("effect 3",)
         best = next(one for one in result.evidence if one.hypothesis.name == "effect 3")
         assert best.coordinates[0] == pytest.approx(1.2, abs=5.0 * best.deviations[0])
@@ -129,7 +130,7 @@ def test_two_effects_are_both_named():
         rng, effects, covariance = toy(seed)
         found = explanations(covariance, effects, rng)
         residual = draw(rng, covariance) + 1.2 * effects[:, 3] - 1.5 * effects[:, 6]
-        result = evaluate(Whitened.of(covariance, residual), found, Thresholds())
+        result = evaluate(Whitened.of(covariance, residual), found, USUAL)
         right += set(result.decision.named) == {"effect 3", "effect 6"}
     assert right == 20
 
@@ -139,7 +140,7 @@ def test_twins_end_as_an_alias_group():
     effects[:, 4] = effects[:, 3] + 1e-4 * rng.normal(size=N)
     found = explanations(covariance, effects, rng)
     space = Whitened.of(covariance, draw(rng, covariance) + 1.5 * effects[:, 3])
-    decision = evaluate(space, found, Thresholds()).decision
+    decision = evaluate(space, found, USUAL).decision
     assert decision.verdict == "alias_group"
     assert set(decision.named) == {"effect 3", "effect 4"}
 
@@ -150,10 +151,10 @@ def test_what_is_not_in_the_catalogue_stays_unknown():
         found = explanations(covariance, effects, rng)
         stranger = 1.5 * rng.normal(size=N)
         space = Whitened.of(covariance, draw(rng, covariance) + stranger)
-        assert evaluate(space, found, Thresholds()).decision.verdict == "unknown_located"
+        assert evaluate(space, found, USUAL).decision.verdict == "unknown_located"
 
 
-def unnamed(covariance, column, family="anonymous"):
+def unnamed(covariance, column, family="unmodelled"):
     white = covariance.whiten(column[:, None])
     return Hypothesis(name="unknown: copy", family=family, parts=("unknown: copy",), columns=white, half=3.0)
 
@@ -161,9 +162,9 @@ def unnamed(covariance, column, family="anonymous"):
 def test_a_copy_without_a_name_does_not_hide_what_has_one():
     rng, effects, covariance = toy(6)
     found = explanations(covariance, effects, rng)
-    rivals = [*found.anonymous, unnamed(covariance, 2.0 * effects[:, 3])]
+    rivals = [*found.unmodelled, unnamed(covariance, 2.0 * effects[:, 3])]
     space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
-    result = evaluate(space, replace(found, anonymous=rivals), Thresholds())
+    result = evaluate(space, replace(found, unmodelled=rivals), USUAL)
     assert result.decision.named == ("effect 3",)
     assert not any("copy" in one.hypothesis.name for one in result.evidence)
 
@@ -178,8 +179,8 @@ def test_an_error_of_a_sensor_is_not_told_from_heat_that_looks_the_same():
     space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
     named = {}
     for rivals in ([], [unnamed(covariance, effects[:, 3], "local")]):
-        both = Explanations(physical=catalogue, sensor=[reads_wrong], anonymous=rivals, data=[])
-        named[len(rivals)] = evaluate(space, both, Thresholds()).decision
+        both = Explanations(physical=catalogue, sensor=[reads_wrong], unmodelled=rivals, data=[])
+        named[len(rivals)] = evaluate(space, both, USUAL).decision
     assert named[0].named == ("sensor_offset:T",)
     assert named[1].verdict == "unknown_located"
 
@@ -187,9 +188,9 @@ def test_an_error_of_a_sensor_is_not_told_from_heat_that_looks_the_same():
 def test_two_without_a_name_are_weighed_together():
     rng, effects, covariance = toy(7)
     found = explanations(covariance, effects, rng)
-    both = [one.columns[:, 0] / np.linalg.norm(one.columns) for one in found.anonymous[:2]]
+    both = [one.columns[:, 0] / np.linalg.norm(one.columns) for one in found.unmodelled[:2]]
     hidden = covariance.lower @ (14.0 * both[0] + 11.0 * both[1])
-    result = evaluate(Whitened.of(covariance, draw(rng, covariance) + hidden), found, Thresholds())
+    result = evaluate(Whitened.of(covariance, draw(rng, covariance) + hidden), found, USUAL)
     assert result.evidence[0].hypothesis.parts == ("unknown: 0", "unknown: 1")
     assert result.decision.verdict == "unknown_located"
 
@@ -198,22 +199,32 @@ def test_a_further_effect_must_explain_a_share_of_what_the_first_did():
     rng, effects, covariance = toy(8)
     found = explanations(covariance, effects, rng)
     space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
-    points = [f"P{row % 6}" for row in range(N)]
-    alone = evaluate(space, found, Thresholds(), points=points)
+    by_point = replace(USUAL, points=[f"P{row % 6}" for row in range(N)])
+    alone = evaluate(space, found, by_point)
     assert alone.decision.named == ("effect 3",)
-    beside = evaluate(space, found, Thresholds(), points=points, explained=25.0 * alone.evidence[0].gain)
+    beside = evaluate(
+        space,
+        found,
+        by_point,
+        explained=25.0 * alone.evidence[0].gain,
+    )
     assert (beside.decision.verdict, beside.decision.named) == ("too_small", ())
-    assert "beside" in beside.decision.reason
+    assert "in addition" in beside.decision.reason
 
 
 def test_in_orders_a_further_effect_must_explain_more():
     rng, effects, covariance = toy(8)
     found = explanations(covariance, effects, rng)
     space = Whitened.of(covariance, draw(rng, covariance) + 1.2 * effects[:, 3])
-    points = [f"P{row % 6}" for row in range(N)]
-    before = 8.0 * evaluate(space, found, Thresholds()).evidence[0].gain
+    by_point = replace(USUAL, points=[f"P{row % 6}" for row in range(N)])
+    before = 8.0 * evaluate(space, found, USUAL).evidence[0].gain
     heat, orders = (
-        evaluate(space, found, Thresholds(), points=points, explained=before, loop=loop).decision
+        evaluate(
+            space,
+            found,
+            replace(by_point, orders=loop),
+            explained=before,
+        ).decision
         for loop in (frozenset[str](), frozenset({"effect 3"}))
     )
     assert heat.named == ("effect 3",)
@@ -227,15 +238,15 @@ def test_a_later_look_does_not_decide_what_the_first_left_divided(twin, named):
         effects[:, 6] = effects[:, 4] + 1e-4 * rng.normal(size=N)
     found = explanations(covariance, effects, rng)
     residual = draw(rng, covariance) + 2.0 * effects[:, 3] + 1.2 * effects[:, 4]
-    first = evaluate(Whitened.of(covariance, residual), found, Thresholds())
+    first = evaluate(Whitened.of(covariance, residual), found, USUAL)
     assert first.decision.verdict == "named" and "effect 3" in first.decision.named
     left = replace(
         found, physical=[one for one in found.physical if one.name not in ("effect 3", "effect 6")]
     )
     after = Whitened.of(covariance, residual - 2.0 * effects[:, 3])
-    assert evaluate(after, left, Thresholds()).decision.named == ("effect 4",)
+    assert evaluate(after, left, USUAL).decision.named == ("effect 4",)
     earlier = Earlier(look=first, named=frozenset({"effect 3"}))
-    later = evaluate(after, left, Thresholds(), earlier=earlier).decision
+    later = evaluate(after, left, USUAL, earlier=earlier).decision
     assert later.named == named
     assert twin is ("effect 4 or another one" in later.reason)
 

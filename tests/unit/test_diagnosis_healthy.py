@@ -1,4 +1,4 @@
-"""The residual of a healthy rig: films and their conductances, errors of answers; and its widening."""
+"""The residual of a healthy rig: films and their conductances, errors of answers; and its inflation."""
 
 from dataclasses import replace
 
@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
+from rigdesign.diagnosis.catalogue.families import FILM
 from rigdesign.diagnosis.library.library import Library, Response
-from rigdesign.diagnosis.residual import residual_problem as subjects
-from rigdesign.diagnosis.residual.covariance_inflation import LARGEST, WIDEN_ABOVE, widen
+from rigdesign.diagnosis.residual import residual_problem as problems
+from rigdesign.diagnosis.residual.covariance_inflation import INFLATE_ABOVE, LARGEST, inflate
 from rigdesign.diagnosis.residual.healthy import TREND, answer_error, healthy_columns, relative_speed
 from rigdesign.diagnosis.residual.residual_problem import plain
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
@@ -34,7 +35,7 @@ def film(healthy=0.25):
     return Effect(
         name="film:test.wall_oil",
         title="oil on the walls",
-        family="film",
+        family=FILM,
         signature="",
         parameters=(Parameter(name="factor", unit="", low=0.3, high=3.0, source="", factor=True),),
         change=lambda case, values: {},
@@ -140,54 +141,54 @@ def test_parts_of_two_joined_explanations_add_up():
 
 
 def test_an_effect_is_widened_by_what_is_missing_and_no_more(monkeypatch):
-    monkeypatch.setattr(subjects, "BENDING_STEPS", 0)
-    subject = story("healthy").problem.subject
-    slope = subject.library.responses["mesh_loss:test"].slope()[:, 0]
-    plain_space = plain(subject, DESIGN.amplitudes)
+    monkeypatch.setattr(problems, "BENDING_STEPS", 0)
+    residuals = story("healthy").problem.residuals
+    slope = residuals.library.responses["mesh_loss:test"].sensitivity()[:, 0]
+    plain_space = plain(residuals, DESIGN.amplitudes)
     white = plain_space.covariance.whiten(slope)
     size = 6.0 / float(np.linalg.norm(white))
-    sets = [replace(subject, values=subject.values + sign * size * slope) for sign in (1.0, -1.0)]
-    found = widen(sets, DESIGN.amplitudes)
+    sets = [replace(residuals, values=residuals.values + sign * size * slope) for sign in (1.0, -1.0)]
+    found = inflate(sets, DESIGN.amplitudes)
     assert set(found) == {"mesh_loss"}
     squares = []
     for one in sets:
         space = plain(one, DESIGN.amplitudes, found)
         along = space.covariance.whiten(slope)
         squares.append(float(along @ space.residual) ** 2 / float(along @ along))
-    assert np.mean(squares) == pytest.approx(WIDEN_ABOVE, rel=0.01)
+    assert np.mean(squares) == pytest.approx(INFLATE_ABOVE, rel=0.01)
 
 
 def test_the_healthy_rig_that_goes_furthest_counts_beside_the_mean(monkeypatch):
-    monkeypatch.setattr(subjects, "BENDING_STEPS", 0)
-    subject = story("healthy").problem.subject
-    still = replace(subject, values=subject.library.base)
-    slope = subject.library.responses["mesh_loss:test"].slope()[:, 0]
-    white = plain(subject, DESIGN.amplitudes).covariance.whiten(slope)
+    monkeypatch.setattr(problems, "BENDING_STEPS", 0)
+    residuals = story("healthy").problem.residuals
+    still = replace(residuals, values=residuals.library.base)
+    slope = residuals.library.responses["mesh_loss:test"].sensitivity()[:, 0]
+    white = plain(residuals, DESIGN.amplitudes).covariance.whiten(slope)
     far = replace(still, values=still.values + 8.0 / float(np.linalg.norm(white)) * slope)
     sets = [far] + 99 * [still]
-    assert 64.0 / len(sets) < WIDEN_ABOVE
-    found = widen(sets, DESIGN.amplitudes)
+    assert 64.0 / len(sets) < INFLATE_ABOVE
+    found = inflate(sets, DESIGN.amplitudes)
     space = plain(far, DESIGN.amplitudes, found)
     along = space.covariance.whiten(slope)
     assert float(along @ space.residual) ** 2 / float(along @ along) <= LARGEST * 1.01
 
 
 def test_heat_without_a_name_is_widened_by_its_share_of_the_losses(monkeypatch):
-    monkeypatch.setattr(subjects, "BENDING_STEPS", 0)
-    subject = story("healthy").problem.subject
-    unpaid = next(one for one in subject.directions() if one.likeness == "heat unpaid at gear oil ~n2")
-    losses = np.mean(list(subject.library.powers.values()))
-    watts = subject.library.dry_sources["gear oil"]
-    at_mean = np.exp(relative_speed(subject.features, subject.library.settings)) ** 2
+    monkeypatch.setattr(problems, "BENDING_STEPS", 0)
+    residuals = story("healthy").problem.residuals
+    unpaid = next(one for one in residuals.directions() if one.likeness == "heat unpaid at gear oil ~n2")
+    losses = np.mean(list(residuals.library.powers.values()))
+    watts = residuals.library.dry_sources["gear oil"]
+    at_mean = np.exp(relative_speed(residuals.features, residuals.library.settings)) ** 2
     assert unpaid.values[:, 0] == pytest.approx(losses * watts * at_mean)
-    only = subject.widened({unpaid.likeness: 0.1})
+    only = residuals.inflated({unpaid.likeness: 0.1})
     assert only == pytest.approx(0.01 * np.outer(unpaid.values, unpaid.values))
 
 
 def test_a_course_that_bends_is_widened_along_its_ends_too():
-    subject = story("mesh loss").problem.subject
-    response = subject.library.responses["mesh_loss:test"]
-    own = next(one for one in subject.directions() if one.likeness == "mesh_loss")
+    residuals = story("mesh loss").problem.residuals
+    response = residuals.library.responses["mesh_loss:test"]
+    own = next(one for one in residuals.directions() if one.likeness == "mesh_loss")
     runs = [run for run, place in enumerate(response.coordinates[:, 0]) if place]
     assert own.values.shape[1] == 1 + len(runs)
     for column, run in enumerate(runs, start=1):

@@ -58,11 +58,11 @@ def test_the_page_says_what_the_document_says() -> None:
 
 def test_a_refusal_says_why() -> None:
     text = words(page("alias"))
-    assert "The case is not patched: these data do not tell the members of the group apart" in text
+    assert "The case is not patched: the data do not separate the members of the group" in text
     assert "Nothing was named: the gap there" in text
     assert "run-out of test.wheel" in text and "--name" in text
     assert "The user picked run-out of test.wheel" in words(page("alias", pick="run_out:test.wheel"))
-    assert "No operating point was kept aside" in words(page("one point"))
+    assert "No operating point was held out" in words(page("one point"))
 
 
 def test_a_users_words_stay_words(tmp_path: Path) -> None:
@@ -88,7 +88,7 @@ def test_readings_left_out_are_listed(tmp_path: Path) -> None:
     found = diagnosis_document(told)
     (row,) = found["data"]["rejected_readings"]
     assert (row["channel"], row["point"], row["unit"]) == ("P", "P04", "W") and row["deviation"] > 5.5
-    assert found["data"]["numbers"] == len(result.problem.subject.features) - 1
+    assert found["data"]["numbers"] == len(result.problem.residuals.features) - 1
     assert "the others contradict them" in words(diagnosis_page(told, found))
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
+from rigdesign.diagnosis.catalogue.families import LOSS
 from rigdesign.diagnosis.decision.constants import constants
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.residual.calibration import Group, _misfit, fit_amplitudes
@@ -259,7 +260,7 @@ def test_constants_of_a_healthy_set_are_the_posterior():
         Effect(
             name=f"mesh_loss:{name}",
             title=name,
-            family="loss",
+            family=LOSS,
             signature="",
             parameters=(Parameter(name="factor", unit="", low=0.1, high=10.0, source="", factor=True),),
             change=lambda case, values: {},

@@ -7,7 +7,7 @@ from rigdesign.diagnosis.residual.signature import Contest, Signature
 from rigdesign.diagnosis.statistics.columns import Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.evidence import Hypothesis, evaluate_hypothesis, evaluate_pair
-from rigdesign.diagnosis.statistics.model_error import OwnError
+from rigdesign.diagnosis.statistics.model_error import ModelError
 from rigdesign.prediction.model import Feature
 
 POINTS = 8
@@ -22,7 +22,7 @@ SHARE = 0.2
 
 
 def signature(alone: float = 0.0) -> Signature:
-    own = OwnError.of(FEATURES, alone * STEEP, np.zeros(len(FEATURES), dtype=bool), np.zeros(len(FEATURES)))
+    own = ModelError.of(FEATURES, alone * STEEP, np.zeros(len(FEATURES), dtype=bool), np.zeros(len(FEATURES)))
     return Signature.of(FEATURES, TREND, {"": SHARE, "known": 0.0}, own)
 
 

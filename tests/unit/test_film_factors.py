@@ -5,7 +5,8 @@ from typing import get_args
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.case import housing as laws
+from rigdesign.case import surface_conditions as laws
+from rigdesign.case.films import NiemannWinter
 from rigdesign.coupling.boundary import AIR, BEARING_FILM, boundary_conditions
 from rigdesign.rig.model import build_rig
 from tests.warm_prototype import base, case_with, heat_by_kind, open_share, outlet, settled
@@ -75,7 +76,7 @@ def test_one_factor_for_all_room_air_and_one_for_all_bearing_films() -> None:
 def test_factors_multiply_and_show_as_one() -> None:
     rig, result = base()
     boundary = rig.case.gearboxes["test"].housing.boundary
-    entry = next(name for name, e in boundary.items() if isinstance(e, laws.NiemannWinter))
+    entry = next(name for name, e in boundary.items() if isinstance(e, NiemannWinter))
     changes = (
         (f"gearboxes.test.housing.boundary.{entry}.film_factor", 2.0),
         ("gearboxes.test.housing.ambient_film_factor", 0.75),

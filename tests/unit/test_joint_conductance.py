@@ -3,16 +3,19 @@
 import pytest
 
 from thermal.films.inputs import FilmError
-from thermal.films.joint_conductance import pressed_joint
+from thermal.films.joint_conductance import GapFilling, RoughContact, pressed_joint
 from thermal.films.law import ExchangeLaw
 
 
 def foot(pressure: float = 5e6, **changes: float) -> ExchangeLaw:
     """Ground steel on cast iron, 2 um rms together."""
-    inputs: dict[str, float] = {
-        "hardness": 2.5e9, "conductivity_a": 45.0, "conductivity_b": 50.0, "roughness": 2e-6, "slope": 0.15,
-    }  # fmt: skip
-    return pressed_joint(pressure=pressure, **(inputs | changes))
+    given: dict[str, float] = {
+        "pressure": pressure, "hardness": 2.5e9, "roughness": 2e-6, "slope": 0.15, "conductivity_a": 45.0,
+        "gap_conductivity": 0.0, "gas_parameter": 0.0,
+    } | changes  # fmt: skip
+    faces = {name: given[name] for name in ("pressure", "hardness", "roughness", "slope")}
+    filling = GapFilling(conductivity=given["gap_conductivity"], gas_parameter=given["gas_parameter"])
+    return pressed_joint(RoughContact(**faces), (given["conductivity_a"], 50.0), filling)
 
 
 def test_hand_value_dry() -> None:

@@ -153,7 +153,7 @@ def test_the_page_shows_measured_and_simulated_first(pair: Path, tmp_path: Path,
     page = (tmp_path / "out" / "compare.html").read_text(encoding="utf-8")
     first = page[page.index("<svg") : page.index("</svg>")]
     assert 'aria-label="Measured and simulated over the operating points"' in first
-    for words in ("measured", "simulated", "simulated, with what the healthy set leaves", "TC1", "P06"):
+    for words in ("measured", "simulated", "simulated, with the residual of the healthy set", "TC1", "P06"):
         assert f">{words}</text>" in first
     document = json.loads((tmp_path / "out" / "compare.json").read_text(encoding="utf-8"))
     assert document["baseline"]["title"] == "trial" and document["baseline"]["points"]["P01"] == "P01"

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from rigdesign.base.errors import CaseError
-from rigdesign.case.housing import FlankFilm
+from rigdesign.case.surface_conditions import FlankFilm
 from rigdesign.coupling.flank_heat import gear_flanks
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.oil import OilStream, oil_streams

@@ -80,13 +80,13 @@ def test_page_needs_nothing_from_elsewhere(page):
 def test_sections_stand_in_the_order_of_reading(page):
     order = [
         "Verdict and margins",
-        "What drives it",
+        "Governing checks",
         "Ramp and loads",
         "Losses and oil",
         "Temperatures",
         "Clearances cold and hot",
-        "Assumptions behind verdicts",
-        "Numbers to redo by hand",
+        "Assumptions behind the verdicts",
+        "Hand checks",
         "What is not modelled",
         "Warnings",
         "Provenance",
@@ -259,7 +259,7 @@ def test_mesh_errors_stand_by_their_share_of_the_margin():
     assert [row["check"] for row in rows] == ["temperature.housing", "clearance.seal gap"]
     assert [row["error_over_margin"] for row in rows] == pytest.approx([0.5, 0.1])
     assert rows[0]["shift_on_fine_mesh"] == 0.2
-    assert "What the discretisation leaves open" in report_html(result)
+    assert "Discretisation errors" in report_html(result)
 
 
 def test_drivers_name_the_assumptions_a_check_rests_on():

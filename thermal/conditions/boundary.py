@@ -8,7 +8,7 @@ All temperatures in kelvin, all powers in watt, positive into the solid.
 from dataclasses import dataclass
 
 from thermal.errors import ThermalInputError
-from thermal.films.law import ExchangeLaw, FilmLaw
+from thermal.films.law import ExchangeLaw, FilmCoefficient, FilmLaw
 
 
 class ConditionError(ThermalInputError):
@@ -24,6 +24,10 @@ class Film:
     """Row name in the heat balance: ``air``, ``oil``, ``bearing_film`` ..."""
     fluid_temperature: float
     law: FilmLaw
+
+    def coefficient_at(self, wall_excess: float) -> FilmCoefficient:
+        """Coefficient with the wall ``wall_excess`` [K] above the fluid."""
+        return self.law(self.fluid_temperature + wall_excess, self.fluid_temperature)
 
 
 @dataclass(frozen=True, kw_only=True)

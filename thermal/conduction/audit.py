@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from thermal.conditions.boundary import Film, Radiation
 from thermal.conduction.condition_checks import Condition
 from thermal.films.inputs import not_negative, positive
-from thermal.films.law import RADIATION_INCLUDED, STEFAN_BOLTZMANN, FilmLaw
+from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient, FilmLaw
 
 
 def least_radiation(emissivity: float, ambient: float, film: float, convection: float) -> float:
@@ -86,12 +86,12 @@ def assumed_difference(
     )
 
 
-def radiation_counted_twice(surface: str, formula: str, radiating: bool) -> str | None:
-    """Whether a surface radiates explicitly beside a film whose formula contains radiation already."""
-    if not radiating or not formula.startswith(RADIATION_INCLUDED):
+def radiation_counted_twice(surface: str, film: FilmCoefficient, radiating: bool) -> str | None:
+    """Whether a surface radiates explicitly although its film contains radiation already."""
+    if not radiating or not film.radiation_included:
         return None
     return (
-        f"{surface}: film {formula} is of the size of convection and radiation together, and the surface "
+        f"{surface}: film {film.formula} is of the size of convection and radiation together, and the surface "
         "radiates as well; verdicts should depend on one of them (radiation_included = true drops the explicit "
         "radiation)"
     )
@@ -100,15 +100,16 @@ def radiation_counted_twice(surface: str, formula: str, radiating: bool) -> str 
 def audit_conditions(conditions: Iterable[Condition], wall_excess: float = 50.0) -> tuple[str, ...]:
     """Double counting in a list of boundary conditions, one sentence a surface, in order of the films.
 
-    wall_excess : wall above fluid [K] at which the film laws are asked for the name of their formula
+    wall_excess : wall above fluid [K] at which the film laws are evaluated
     """
     listed = list(conditions)
     radiating = {c.surface for c in listed if isinstance(c, Radiation) and c.emissivity > 0.0}
     found = []
     for film in listed:
         if isinstance(film, Film):
-            formula = film.law(film.fluid_temperature + wall_excess, film.fluid_temperature).formula
-            text = radiation_counted_twice(film.surface, formula, film.surface in radiating)
+            text = radiation_counted_twice(
+                film.surface, film.coefficient_at(wall_excess), film.surface in radiating
+            )
             if text is not None:
                 found.append(text)
     return tuple(found)

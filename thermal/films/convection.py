@@ -2,8 +2,8 @@
 
 A law is called with the area-mean wall temperature and the fluid temperature [K] (for an exchange: the means
 of the two surfaces) and returns a coefficient with its formula, inputs, range, source and warnings.
-This module holds the laws that are a number or a sum of others; correlations live in `convection_still` and
-`convection_rotating` and are re-exported here.
+This module holds the laws that are a number or a sum of others; correlations live in `thermal.films.still` and
+`thermal.films.rotating` and are re-exported here.
 """
 
 from dataclasses import replace
@@ -67,13 +67,18 @@ OIL_RANGE = (100.0, 600.0)
 
 
 def constant(
-    value: float, source: str, formula: str = "constant", usual: tuple[float, float] | None = None
+    value: float,
+    source: str,
+    formula: str = "constant",
+    usual: tuple[float, float] | None = None,
+    *,
+    radiation_included: bool = False,
 ) -> FilmLaw:
     """A given coefficient [W/(m2 K)], measured or published, with its source.
 
-    formula : how the source got it; a name that starts with ``niemann_winter`` tells the audits that it
-        includes radiation.
+    formula : how the source got it
     usual : range of such films; a value outside warns
+    radiation_included : the coefficient was read from a law for convection and radiation together
     """
     not_negative("film coefficient", value, "W/(m2 K)")
     if not source.strip():
@@ -86,6 +91,7 @@ def constant(
             valid_range="as given" if usual is None else f"as given; usually {usual[0]:g} to {usual[1]:g}",
             source=source,
             warnings=() if usual is None else outside("film", value, *usual, "check the unit", "W/(m2 K)"),
+            radiation_included=radiation_included,
         )
     )
 
@@ -137,6 +143,7 @@ def series(first: FilmLaw, second: FilmLaw) -> FilmLaw:
             valid_range=f"{one.valid_range}; {two.valid_range}",
             source=f"P2 Formula 3; {one.source}; {two.source}",
             warnings=one.warnings + two.warnings,
+            radiation_included=one.radiation_included or two.radiation_included,
         )
 
     return law

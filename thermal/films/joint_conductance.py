@@ -3,6 +3,8 @@
 Laws of the convection modules serve as well: `constant` for a measured joint, `bearing_film` for an oil film.
 """
 
+from dataclasses import dataclass
+
 from thermal.films.inputs import not_negative, outside, positive
 from thermal.films.law import ExchangeLaw, FilmCoefficient
 
@@ -10,26 +12,43 @@ LEAST_RELATIVE_PRESSURE, GREATEST_RELATIVE_PRESSURE = 1e-5, 2e-2
 """Range of pressure over hardness of the correlation of the gap thickness."""
 
 
-def pressed_joint(
-    *,
-    pressure: float,
-    hardness: float,
-    conductivity_a: float,
-    conductivity_b: float,
-    roughness: float,
-    slope: float,
-    gap_conductivity: float = 0.0,
-    gas_parameter: float = 0.0,
-) -> ExchangeLaw:
-    """Spots of contact that yield plastically, and what fills the gaps between them, side by side.
+@dataclass(frozen=True, kw_only=True)
+class RoughContact:
+    """Two rough faces under pressure.
 
     pressure : of the joint [Pa]
     hardness : micro-hardness of the softer side [Pa]
-    conductivity_a, conductivity_b : of the two solids [W/(m K)]
     roughness : root of the sum of both squared rms roughnesses [m]
     slope : root of the sum of both squared mean absolute asperity slopes [-], 0.05 to 0.3 for machined faces
-    gap_conductivity : of oil, grease or air in the gaps [W/(m K)]; 0 for vacuum
+    """
+
+    pressure: float
+    hardness: float
+    roughness: float
+    slope: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class GapFilling:
+    """What fills the gaps between the spots of contact.
+
+    conductivity : of oil, grease or air [W/(m K)]; 0 for vacuum
     gas_parameter : temperature jump length of a gas, 0 for a liquid [m]; air at 1 bar about 0.37e-6
+    """
+
+    conductivity: float = 0.0
+    gas_parameter: float = 0.0
+
+
+VACUUM = GapFilling()
+
+
+def pressed_joint(
+    contact: RoughContact, conductivities: tuple[float, float], filling: GapFilling = VACUUM
+) -> ExchangeLaw:
+    """Spots of contact that yield plastically, and what fills the gaps between them, side by side.
+
+    conductivities : of the two solids [W/(m K)]
 
     h = 1.25 k m / s (p / H)^0.95 + k_g / (Y + M), k = 2 k_a k_b / (k_a + k_b), Y = 1.53 s (p / H)^-0.097.
     Raises FilmError for impossible inputs; warns for p / H outside of 1e-5 to 2e-2.
@@ -37,20 +56,20 @@ def pressed_joint(
     Components Packag. Technol. 28 (2005) 182.
     """
     inputs = {
-        "pressure": positive("pressure", pressure, "Pa"),
-        "hardness": positive("hardness", hardness, "Pa"),
-        "conductivity_a": positive("conductivity_a", conductivity_a, "W/(m K)"),
-        "conductivity_b": positive("conductivity_b", conductivity_b, "W/(m K)"),
-        "roughness": positive("roughness", roughness, "m"),
-        "slope": positive("slope", slope, ""),
-        "gap_conductivity": not_negative("gap_conductivity", gap_conductivity, "W/(m K)"),
-        "gas_parameter": not_negative("gas_parameter", gas_parameter, "m"),
+        "pressure": positive("pressure", contact.pressure, "Pa"),
+        "hardness": positive("hardness", contact.hardness, "Pa"),
+        "conductivity_a": positive("conductivity_a", conductivities[0], "W/(m K)"),
+        "conductivity_b": positive("conductivity_b", conductivities[1], "W/(m K)"),
+        "roughness": positive("roughness", contact.roughness, "m"),
+        "slope": positive("slope", contact.slope, ""),
+        "gap_conductivity": not_negative("gap_conductivity", filling.conductivity, "W/(m K)"),
+        "gas_parameter": not_negative("gas_parameter", filling.gas_parameter, "m"),
     }
-    relative = pressure / hardness
-    mean = 2.0 * conductivity_a * conductivity_b / (conductivity_a + conductivity_b)
-    spots = 1.25 * mean * slope / roughness * relative**0.95
-    thickness = 1.53 * roughness * relative**-0.097
-    gaps = gap_conductivity / (thickness + gas_parameter)
+    relative = contact.pressure / contact.hardness
+    mean = 2.0 * conductivities[0] * conductivities[1] / (conductivities[0] + conductivities[1])
+    spots = 1.25 * mean * contact.slope / contact.roughness * relative**0.95
+    thickness = 1.53 * contact.roughness * relative**-0.097
+    gaps = filling.conductivity / (thickness + filling.gas_parameter)
     coefficient = FilmCoefficient(
         value=spots + gaps,
         formula="cooper_mikic_yovanovich",

@@ -7,10 +7,6 @@ STEFAN_BOLTZMANN = 5.670374419e-8
 """Stefan-Boltzmann constant [W/(m2 K4)], CODATA 2018."""
 
 
-RADIATION_INCLUDED = ("niemann_winter",)
-"""Beginnings of the names of film formulas whose coefficient contains radiation already."""
-
-
 @dataclass(frozen=True, kw_only=True)
 class FilmCoefficient:
     """A heat transfer coefficient with its provenance; what the report prints beside every film."""
@@ -27,6 +23,20 @@ class FilmCoefficient:
     """Document and equation."""
     warnings: tuple[str, ...] = ()
     """One sentence per input outside the range: name, value, limit, remedy."""
+    radiation_included: bool = False
+    """The coefficient is of the size of convection and radiation together."""
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """A published correlation of a dimensionless number.
+
+    formula : its name; limits : of the number it depends on; source : document and equation
+    """
+
+    formula: str
+    limits: tuple[float, float]
+    source: str
 
 
 FilmLaw = Callable[[float, float], FilmCoefficient]

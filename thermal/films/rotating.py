@@ -1,7 +1,7 @@
 """Films of rotating shafts, discs and narrow gaps in air. Speeds in rad/s, fixed when the law is made.
 
 The Jungnickel/Grossmann laws (P2 Ref. 18) carry constants for air near room temperature, do not depend on the
-temperatures they are given and warn at others; the rest take air at the film temperature. At standstill the
+temperatures they are given and warn at others; the rest take air at the film temperature. At rest the
 rotating films vanish: use a free-convection law there.
 
 The laws with a Reynolds number also serve in a mist of oil drops: ``density`` [kg/m3] replaces that of dry air in
@@ -16,7 +16,7 @@ from dataclasses import replace
 
 from thermal.films.air import Air, air
 from thermal.films.inputs import not_negative, outside, positive
-from thermal.films.law import FilmCoefficient, FilmLaw
+from thermal.films.law import Correlation, FilmCoefficient, FilmLaw
 from thermal.films.still import GRAVITY
 
 JUNGNICKEL = "Jungnickel/Grossmann 2010 (P2 Ref. 18)"
@@ -73,8 +73,8 @@ def rotating_cylinder_becker(speed: float, diameter: float, density: float | Non
     density : of a mist [kg/m3]; that of air when left out
     """
     return _cylinder(
-        speed, diameter, "rotating_cylinder_becker", (800.0, 4e5),
-        "Becker, Int. J. Heat Mass Transfer 6 (1963) 1053",
+        speed, diameter,
+        Correlation("rotating_cylinder_becker", (800.0, 4e5), "Becker, Int. J. Heat Mass Transfer 6 (1963) 1053"),
         lambda reynolds, _, gas: 0.133 * reynolds ** (2.0 / 3.0) * gas.prandtl ** (1.0 / 3.0),
         density,
     )  # fmt: skip
@@ -88,8 +88,8 @@ def rotating_cylinder_kays_bjorklund(speed: float, diameter: float, density: flo
     density : of a mist [kg/m3]; that of air when left out
     """
     return _cylinder(
-        speed, diameter, "rotating_cylinder_kays_bjorklund", (0.0, 1e5),
-        "Kays and Bjorklund, Trans. ASME 80 (1958) 70",
+        speed, diameter,
+        Correlation("rotating_cylinder_kays_bjorklund", (0.0, 1e5), "Kays and Bjorklund, Trans. ASME 80 (1958) 70"),
         lambda reynolds, grashof, gas: 0.11 * ((0.5 * reynolds**2 + grashof) * gas.prandtl) ** 0.35,
         density,
     )  # fmt: skip
@@ -103,7 +103,8 @@ def rotating_cylinder_etemad(speed: float, diameter: float, density: float | Non
     density : of a mist [kg/m3]; that of air when left out
     """
     return _cylinder(
-        speed, diameter, "rotating_cylinder_etemad", (8000.0, 6.5e4), "Etemad, Trans. ASME 77 (1955) 1283",
+        speed, diameter,
+        Correlation("rotating_cylinder_etemad", (8000.0, 6.5e4), "Etemad, Trans. ASME 77 (1955) 1283"),
         lambda reynolds, _grashof, _gas: 0.076 * reynolds**0.7,
         density,
     )  # fmt: skip
@@ -118,8 +119,8 @@ def rotating_cylinder_dropkin_carmi(speed: float, diameter: float, density: floa
     density : of a mist [kg/m3]; that of air when left out
     """
     return _cylinder(
-        speed, diameter, "rotating_cylinder_dropkin_carmi", (1.5e4, 4.3e5),
-        "Dropkin and Carmi, Trans. ASME 79 (1957) 741",
+        speed, diameter,
+        Correlation("rotating_cylinder_dropkin_carmi", (1.5e4, 4.3e5), "Dropkin and Carmi, Trans. ASME 79 (1957) 741"),
         lambda reynolds, _grashof, _gas: 0.073 * reynolds**0.7,
         density,
     )  # fmt: skip
@@ -209,9 +210,7 @@ def narrow_gap_taylor(speed: float, radius: float, gap: float, density: float | 
 def _cylinder(
     speed: float,
     diameter: float,
-    formula: str,
-    limits: tuple[float, float],
-    source: str,
+    correlation: Correlation,
     nusselt: Callable[[float, float, Air], float],
     density: float | None = None,
 ) -> FilmLaw:
@@ -219,23 +218,24 @@ def _cylinder(
     positive("cylinder diameter", diameter, "m")
     not_negative("speed", speed, "rad/s")
     _check_density(density)
+    low, high = correlation.limits
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
         gas = _medium(0.5 * (wall + fluid), density)
         nu = gas.kinematic_viscosity
         reynolds = speed * diameter**2 / (2.0 * nu)
-        slow = reynolds < limits[0]
+        slow = reynolds < low
         grashof = GRAVITY * gas.expansion * abs(wall - fluid) * diameter**3 / nu**2
         return FilmCoefficient(
             value=nusselt(reynolds, grashof, gas) * gas.conductivity / diameter,
-            formula=formula,
+            formula=correlation.formula,
             inputs={
                 "speed": speed, "diameter": diameter, "reynolds": reynolds, "grashof": grashof,
                 "film_temperature": gas.temperature, "density": gas.density,
             },
-            valid_range=f"{limits[0]:g} < Re < {limits[1]:g}",
-            source=source,
-            warnings=outside("Reynolds number", reynolds, *limits, _STANDSTILL if slow else _FAST),
+            valid_range=f"{low:g} < Re < {high:g}",
+            source=correlation.source,
+            warnings=outside("Reynolds number", reynolds, low, high, _STANDSTILL if slow else _FAST),
         )  # fmt: skip
 
     return law

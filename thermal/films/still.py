@@ -10,12 +10,28 @@ from typing import Literal, Protocol
 
 from thermal.films.air import Air, air
 from thermal.films.inputs import FilmError, not_negative, outside, positive
-from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient, FilmLaw
+from thermal.films.law import STEFAN_BOLTZMANN, Correlation, FilmCoefficient, FilmLaw
 
 GRAVITY = 9.80665
 """[m/s2]"""
 Facing = Literal["up", "down"]
 _OTHER_LAW = "use a law made for it or a measured coefficient"
+
+_VERTICAL_PLATE = Correlation(
+    "vertical_plate_churchill", (0.0, 1e12), "Churchill and Chu, Int. J. Heat Mass Transfer 18 (1975) 1323"
+)
+_HORIZONTAL_CYLINDER = Correlation(
+    "horizontal_cylinder_churchill_chu", (0.0, 1e12),
+    "Churchill and Chu, Int. J. Heat Mass Transfer 18 (1975) 1049",
+)  # fmt: skip
+_MCADAMS = Correlation("horizontal_plate_mcadams", (1e4, 1e11), "McAdams, Heat Transmission, 3rd ed.")
+_ROHSENOW = Correlation(
+    "horizontal_plate_rohsenow", (1.0, 1e12), "Rohsenow, Hartnett, Cho, Handbook of Heat Transfer, 3rd ed."
+)
+_VDI = Correlation(
+    "horizontal_plate_vdi", (1e3, 1e10), "VDI Heat Atlas, free convection on horizontal surfaces"
+)
+"""Correlations Nu(Ra, Pr) with their range of Ra."""
 
 
 def niemann_winter(height: float, place_factor: float = 1.0) -> FilmLaw:
@@ -50,6 +66,7 @@ def niemann_winter(height: float, place_factor: float = 1.0) -> FilmLaw:
             valid_range="still room air, 0 <= dT <= 150 K, 0.1 <= h <= 3 m (limits assumed)",
             source="Niemann/Winter, Maschinenelemente II; P2 Formula 2",
             warnings=warnings,
+            radiation_included=True,
         )
 
     return law
@@ -117,10 +134,7 @@ def vertical_plate_churchill(height: float) -> FilmLaw:
         gas, cubed = _buoyancy(wall, fluid)
         rayleigh = cubed * height**3
         nusselt = float(Nu_vertical_plate_Churchill(gas.prandtl, rayleigh / gas.prandtl))
-        return _from_nusselt(
-            nusselt, height, gas, rayleigh, "vertical_plate_churchill", (0.0, 1e12),
-            "Churchill and Chu, Int. J. Heat Mass Transfer 18 (1975) 1323",
-        )  # fmt: skip
+        return _from_nusselt(nusselt, height, gas, rayleigh, _VERTICAL_PLATE)
 
     return law
 
@@ -133,10 +147,7 @@ def horizontal_plate_mcadams(length: float, facing: Facing = "up") -> FilmLaw:
     """
     from ht.conv_free_immersed import Nu_horizontal_plate_McAdams
 
-    return _horizontal_plate(
-        Nu_horizontal_plate_McAdams, length, facing, "horizontal_plate_mcadams", ((1e4, 1e11), (1e5, 1e10)),
-        "McAdams, Heat Transmission, 3rd ed.",
-    )  # fmt: skip
+    return _horizontal_plate(Nu_horizontal_plate_McAdams, length, facing, _MCADAMS, calm=(1e5, 1e10))
 
 
 def horizontal_plate_rohsenow(length: float, facing: Facing = "up") -> FilmLaw:
@@ -147,10 +158,7 @@ def horizontal_plate_rohsenow(length: float, facing: Facing = "up") -> FilmLaw:
     """
     from ht.conv_free_immersed import Nu_horizontal_plate_Rohsenow
 
-    return _horizontal_plate(
-        Nu_horizontal_plate_Rohsenow, length, facing, "horizontal_plate_rohsenow", ((1.0, 1e12), (1e3, 1e10)),
-        "Rohsenow, Hartnett, Cho, Handbook of Heat Transfer, 3rd ed.",
-    )  # fmt: skip
+    return _horizontal_plate(Nu_horizontal_plate_Rohsenow, length, facing, _ROHSENOW, calm=(1e3, 1e10))
 
 
 def horizontal_plate_vdi(length: float, facing: Facing = "up") -> FilmLaw:
@@ -178,8 +186,7 @@ def horizontal_plate_vdi(length: float, facing: Facing = "up") -> FilmLaw:
             reduced = rayleigh * (1.0 + (0.492 / gas.prandtl) ** (9.0 / 16.0)) ** (-16.0 / 9.0)
             nusselt = 0.6 * reduced**0.2
             limits = (1e3, 1e10)
-        source = "VDI Heat Atlas, free convection on horizontal surfaces"
-        return _from_nusselt(nusselt, length, gas, rayleigh, "horizontal_plate_vdi", limits, source)
+        return _from_nusselt(nusselt, length, gas, rayleigh, replace(_VDI, limits=limits))
 
     return law
 
@@ -198,10 +205,7 @@ def horizontal_cylinder_churchill_chu(diameter: float, speed: float = 0.0) -> Fi
         gas, cubed = _buoyancy(wall, fluid)
         rayleigh = cubed * diameter**3
         nusselt = float(Nu_horizontal_cylinder_Churchill_Chu(gas.prandtl, rayleigh / gas.prandtl))
-        film = _from_nusselt(
-            nusselt, diameter, gas, rayleigh, "horizontal_cylinder_churchill_chu", (0.0, 1e12),
-            "Churchill and Chu, Int. J. Heat Mass Transfer 18 (1975) 1049",
-        )  # fmt: skip
+        film = _from_nusselt(nusselt, diameter, gas, rayleigh, _HORIZONTAL_CYLINDER)
         return replace(film, warnings=film.warnings + turning)
 
     return law
@@ -259,22 +263,17 @@ def _buoyancy(wall: float, fluid: float) -> tuple[Air, float]:
 
 
 def _from_nusselt(
-    nusselt: float,
-    length: float,
-    gas: Air,
-    rayleigh: float,
-    formula: str,
-    limits: tuple[float, float],
-    source: str,
+    nusselt: float, length: float, gas: Air, rayleigh: float, correlation: Correlation
 ) -> FilmCoefficient:
+    low, high = correlation.limits
     still = rayleigh == 0.0
     return FilmCoefficient(
         value=nusselt * gas.conductivity / length,
-        formula=formula,
+        formula=correlation.formula,
         inputs={"length": length, "rayleigh": rayleigh, "film_temperature": gas.temperature},
-        valid_range=f"{limits[0]:g} < Ra < {limits[1]:g}",
-        source=source,
-        warnings=() if still else outside("Rayleigh number", rayleigh, *limits, _OTHER_LAW),
+        valid_range=f"{low:g} < Ra < {high:g}",
+        source=correlation.source,
+        warnings=() if still else outside("Rayleigh number", rayleigh, low, high, _OTHER_LAW),
     )
 
 
@@ -286,20 +285,20 @@ def _horizontal_plate(
     number: _PlateNusselt,
     length: float,
     facing: Facing,
-    formula: str,
-    limits: tuple[tuple[float, float], tuple[float, float]],
-    source: str,
+    stirred: Correlation,
+    calm: tuple[float, float],
 ) -> FilmLaw:
-    """A plate law Nu(Pr, Gr, stirred); limits of Ra on the stirred and on the calm side."""
+    """A plate law Nu(Pr, Gr, buoyancy); ``calm``: limits of Ra on the side that buoyancy does not stir."""
     positive("plate length", length, "m")
     _check_facing(facing)
 
     def law(wall: float, fluid: float) -> FilmCoefficient:
         gas, cubed = _buoyancy(wall, fluid)
         rayleigh = cubed * length**3
-        stirred = (wall >= fluid) == (facing == "up")
-        nusselt = float(number(gas.prandtl, rayleigh / gas.prandtl, buoyancy=stirred)) if rayleigh else 0.0
-        return _from_nusselt(nusselt, length, gas, rayleigh, formula, limits[0 if stirred else 1], source)
+        buoyant = (wall >= fluid) == (facing == "up")
+        nusselt = float(number(gas.prandtl, rayleigh / gas.prandtl, buoyancy=buoyant)) if rayleigh else 0.0
+        side = stirred if buoyant else replace(stirred, limits=calm)
+        return _from_nusselt(nusselt, length, gas, rayleigh, side)
 
     return law
 

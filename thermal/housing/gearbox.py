@@ -26,14 +26,14 @@ not meshed, nor is the air in the chambers.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Literal
 
 from thermal.fe.mesh import MeshError, disjoint_union
 from thermal.housing.geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
-from thermal.housing.meshing import gmsh_session, mesh_component
+from thermal.housing.meshing import Component, gmsh_session, mesh_component
 from thermal.housing.parametric_stations import (
     bearing_stations,
     foot_joint,
@@ -129,30 +129,38 @@ def build_gearbox(geometry: HousingGeometry, fidelity: Fidelity | MeshSizes = "q
     return _build(geometry, fidelity if isinstance(fidelity, MeshSizes) else mesh_sizes(geometry, fidelity))
 
 
+def _components(geometry: HousingGeometry, sizes: MeshSizes) -> Iterator[Component]:
+    """Housing, field where it is a body of its own, shafts with their gears."""
+    yield Component(
+        name="housing",
+        draw=partial(draw_housing, geometry),
+        faces=housing_faces(geometry),
+        size=housing_size(geometry, sizes),
+        axes=bend_axes(geometry),
+    )
+    if geometry.foot_joint:
+        yield Component(
+            name="field",
+            draw=partial(draw_field, geometry),
+            faces=field_faces(geometry),
+            size=housing_size(geometry, sizes),
+        )
+    for shaft in geometry.shafts:
+        yield Component(
+            name=f"shaft {shaft.name}",
+            draw=partial(draw_shaft, geometry, shaft),
+            faces=shaft_faces(geometry, shaft),
+            size=shaft_size(geometry, shaft, sizes),
+            axes=[(shaft.y, geometry.shaft_height, math.inf)],
+        )
+
+
 @lru_cache(maxsize=32)
 def _build(geometry: HousingGeometry, sizes: MeshSizes) -> GearboxModel:
     with gmsh_session() as gmsh:
         components = [
-            mesh_component(
-                gmsh, "housing", partial(draw_housing, geometry), housing_faces(geometry),
-                housing_size(geometry, sizes), sizes.circle, bend_axes(geometry),
-            ),
-            *(
-                mesh_component(
-                    gmsh, "field", partial(draw_field, geometry), field_faces(geometry),
-                    housing_size(geometry, sizes), sizes.circle, [],
-                )
-                for _ in range(geometry.foot_joint)
-            ),
-            *(
-                mesh_component(
-                    gmsh, f"shaft {shaft.name}", partial(draw_shaft, geometry, shaft),
-                    shaft_faces(geometry, shaft), shaft_size(geometry, shaft, sizes), sizes.circle,
-                    [(shaft.y, geometry.shaft_height, math.inf)],
-                )
-                for shaft in geometry.shafts
-            ),
-        ]  # fmt: skip
+            mesh_component(gmsh, component, sizes.circle) for component in _components(geometry, sizes)
+        ]
     return GearboxModel(
         mesh=disjoint_union(*components),
         shafts=shaft_stations(geometry),

@@ -8,6 +8,7 @@ loader's own OSError.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
@@ -67,34 +68,41 @@ def gmsh_session() -> Iterator[ModuleType]:
         gmsh.finalize()
 
 
-def mesh_component(
-    gmsh: ModuleType,
-    name: str,
-    draw: Drawing,
-    faces: Sequence[NamedFace],
-    size: SizeLaw,
-    circle: int,
-    axes: Sequence[BendAxis],
-) -> NamedMesh:
-    """Draw, mesh and name one component.
+@dataclass(frozen=True, kw_only=True)
+class Component:
+    """One component to be meshed by itself.
 
+    draw : makes its bodies in a CAD kernel
     faces : every surface of the component; each face of the geometry must lie in exactly one of them
     size : element size at the corners of the geometry; between them gmsh interpolates
-    circle : least number of elements round a full circle
     axes : round which the elements follow the circles of the boundary
+    """
+
+    name: str
+    draw: Drawing
+    faces: Sequence[NamedFace]
+    size: SizeLaw
+    axes: Sequence[BendAxis] = ()
+
+
+def mesh_component(gmsh: ModuleType, component: Component, circle: int) -> NamedMesh:
+    """Draw, mesh and name one component.
+
+    circle : least number of elements round a full circle
 
     Raises MeshError if gmsh fails, a face has no name or two, or an element stays inverted.
     """
+    name, size = component.name, component.size
     gmsh.model.add(name)
     try:
-        bodies = draw(gmsh.model.occ)
+        bodies = component.draw(gmsh.model.occ)
         gmsh.model.occ.synchronize()
         for point in gmsh.model.getEntities(0):
             gmsh.model.mesh.setSize([point], size(*gmsh.model.getValue(*point, [])))
         _divide_circles(gmsh, size, circle)
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(2)
-        return _collect(gmsh, name, bodies, faces, axes)
+        return _collect(gmsh, name, bodies, component.faces, component.axes)
     except MeshError:
         raise
     except Exception as error:  # gmsh raises bare Exception

@@ -1,26 +1,18 @@
 """Rules of a housing: its parts fit together and every surface has a boundary condition."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from fnmatch import fnmatchcase
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.faults import written
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry, matched, partner_of
-from rigdesign.case.housing import (
-    ConstantFilm,
-    GapExchange,
-    Housing,
-    IsoTr14179,
-    NiemannWinter,
-    SeriesExchange,
-    ShaftFilm,
-    ThermalRadiation,
-    VerticalPlate,
-)
+from rigdesign.case.geometry import bearing_on, conditions_of, housing_geometry, matched
+from rigdesign.case.housing import Housing
 from rigdesign.case.paths import nearest
 from rigdesign.case.rules.flanks import GEAR_RIMS, flank_faults
+from rigdesign.case.surface_place import SurfaceSite
 from thermal.errors import ThermalInputError
 from thermal.housing.surfaces import surface_names
 
@@ -60,9 +52,7 @@ def boundary_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> list
     at = f"gearboxes.{name}.housing.boundary"
     return [
         *_boundary(at, housing, names),
-        *_printed_films(at, housing),
-        *_off_shafts(at, housing, names),
-        *_said_twice(at, gearbox, housing, names),
+        *_on_their_surfaces(at, gearbox, housing, names),
         *flank_faults(name, gearbox, housing, names),
     ]
 
@@ -141,19 +131,16 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
                 )
     for name, surface, stood_for in conditions_of(housing, names):
         condition = housing.boundary[name]
-        if isinstance(condition, GapExchange | SeriesExchange):
-            partner = partner_of(condition, stood_for)
-            covered[surface].append("")
-            if partner in covered:
-                covered[partner].append("")
-            else:
-                meant = nearest(partner, names)
-                hint = "did you mean " + " or ".join(meant) + "?" if meant else "write a surface name"
-                yield Fault(
-                    f"{at}.{name}.partner", written(partner), f"no such surface, partner of {surface}", hint
-                )
-        else:
-            covered[surface].append("" if isinstance(condition, ThermalRadiation) else name)
+        covered[surface].append("" if condition.may_join_a_film else name)
+        partner = condition.partner_of(stood_for)
+        if partner in covered:
+            covered[partner].append("")
+        elif partner is not None:
+            meant = nearest(partner, names)
+            hint = "did you mean " + " or ".join(meant) + "?" if meant else "write a surface name"
+            yield Fault(
+                f"{at}.{name}.partner", written(partner), f"no such surface, partner of {surface}", hint
+            )
     for surface, conditions in covered.items():
         films = [name for name in conditions if name]
         if not conditions:
@@ -169,57 +156,26 @@ def _boundary(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fau
             )
 
 
-def _said_twice(at: str, gearbox: Gearbox, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
-    """Heights and gaps that a film repeats must be those of the housing and its seals."""
-    for name, film in housing.boundary.items():
-        if isinstance(film, NiemannWinter | IsoTr14179 | VerticalPlate) and film.height not in (
-            None,
-            housing.height,
-        ):
-            yield Fault(
-                f"{at}.{name}.height", show(film.height or 0.0, "length"),
-                f"is not the height of the housing, {show(housing.height, 'length')}",
-                "leave it out: the film takes the height of the housing",
-            )  # fmt: skip
-    for name, surface, _ in conditions_of(housing, names):
-        film = housing.boundary[name]
-        if not isinstance(film, GapExchange):
-            continue
-        own = next((s for s in gearbox.seals.values() if f"shaft_{s.shaft}_seal_" in surface), None)
-        if own is None and film.gap is None:
-            yield Fault(f"{at}.{name}.gap", "", f"{surface} is no seal, its gap is not known", "add the gap")
-        elif own is not None and film.gap not in (None, own.radial_gap):
-            yield Fault(
-                f"{at}.{name}.gap", show(film.gap or 0.0, "length"),
-                f"is not the radial gap of the seals of {own.shaft}, {show(own.radial_gap, 'length')}",
-                "leave it out: the film takes the gap of the seals",
-            )  # fmt: skip
+def _on_their_surfaces(
+    at: str, gearbox: Gearbox, housing: Housing, names: tuple[str, ...]
+) -> Iterator[Fault]:
+    """What each condition needs of its surfaces and does not find there; a fault of the entry is said once."""
+    found = dict.fromkeys(
+        (name, fault)
+        for name, surface, _ in conditions_of(housing, names)
+        for fault in housing.boundary[name].faults_on(_site(gearbox, housing, surface))
+    )
+    for name, fault in found:
+        yield replace(fault, path=f"{at}.{name}.{fault.path}")
 
 
-def _off_shafts(at: str, housing: Housing, names: tuple[str, ...]) -> Iterator[Fault]:
-    """Films that take diameter and speed from a shaft need a surface of one."""
-    for name, surface, _ in conditions_of(housing, names):
-        film = housing.boundary[name]
-        if isinstance(film, ShaftFilm) and not any(f"_{shaft}_" in f"{surface}_" for shaft in housing.shafts):
-            yield Fault(
-                f"{at}.{name}.surfaces", written(surface),
-                f"is no surface of a shaft or gear: {film.law} takes its diameter from there",
-                "take it out, or choose a film for still walls",
-            )  # fmt: skip
-
-
-def _printed_films(at: str, housing: Housing) -> Iterator[Fault]:
-    for name, film in housing.boundary.items():
-        if not isinstance(film, ConstantFilm) or film.taken_from is None:
-            continue
-        taken = film.taken_from
-        if film.fluid != "ambient":
-            yield Fault(
-                f"{at}.{name}.taken_from", "", f"stands for films to room air, the fluid is {film.fluid}",
-                'remove it or write fluid = "ambient"',
-            )  # fmt: skip
-        if taken.law in ("niemann_winter", "iso_tr_14179_2") and taken.height is None:
-            yield Fault(
-                f"{at}.{name}.taken_from.height", "", f"{taken.law} needs the height of the housing",
-                'add it, e.g. height = "400 mm"',
-            )  # fmt: skip
+def _site(gearbox: Gearbox, housing: Housing, surface: str) -> SurfaceSite:
+    seals = next((s for s in gearbox.seals.values() if f"shaft_{s.shaft}_seal_" in surface), None)
+    return SurfaceSite(
+        surface=surface,
+        housing_height=housing.height,
+        on_shaft=any(f"_{shaft}_" in f"{surface}_" for shaft in housing.shafts),
+        has_teeth=fnmatchcase(surface, GEAR_RIMS),
+        seal="" if seals is None else seals.shaft,
+        seal_gap=None if seals is None else seals.radial_gap,
+    )

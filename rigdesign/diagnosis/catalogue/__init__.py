@@ -1,9 +1,12 @@
-"""Effects that the model can express: each changes the case and is simulated by it, never by a formula here."""
+"""Effects that the model can express: each changes the case and is simulated by it, never by a formula here.
+
+The modules imported here register their effects, in this order.
+"""
 
 from rigdesign.case.model import Case
+from rigdesign.diagnosis.catalogue import circuit, heat  # noqa: F401 - register their effects
 from rigdesign.diagnosis.catalogue.effects import Effect
-from rigdesign.diagnosis.catalogue.heat import heat_effects
-from rigdesign.diagnosis.catalogue.loop import loop_effects
+from rigdesign.diagnosis.catalogue.registry import registered_effects
 
 
 def effects_of(case: Case) -> tuple[Effect, ...]:
@@ -11,7 +14,7 @@ def effects_of(case: Case) -> tuple[Effect, ...]:
 
     Each has a healthy spread or a smallest size that matters.
     """
-    found = (*loop_effects(case), *heat_effects(case))
+    found = tuple(registered_effects(case))
     names = [effect.name for effect in found]
     assert len(set(names)) == len(names)
     assert all(effect.healthy > 0.0 or effect.matters > 0.0 for effect in found)

@@ -4,32 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from math import exp, log
-from typing import Literal
 
 from rigdesign.case.model import Case
-
-Family = Literal[
-    "excitation",
-    "tooth",
-    "stiffness",
-    "inertia",
-    "damping",
-    "loss",
-    "split",
-    "film",
-    "contact",
-    "flow",
-    "oil",
-    "state",
-]
-"""Kind of thing that is off: it names the amplitude of what cannot be distinguished from it."""
-
-
-DYNAMIC: frozenset[Family] = frozenset({"excitation", "tooth", "stiffness", "inertia", "damping"})
-"""Families that leave temperatures and losses nearly as they are: they show in orders and natural frequencies."""
-
-CIRCUIT: frozenset[Family] = frozenset({"stiffness", "inertia", "damping"})
-"""Those of them that change how the circuit passes on what the teeth excite."""
+from rigdesign.diagnosis.catalogue.families import EXCITATION, Family
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,6 +69,13 @@ class Effect:
     """Local conductances that its first parameter, a factor, scales all at once (``film:gearbox.surface``); ``*``
     stands for any run of characters."""
 
+    exponents: tuple[str, ...] = ()
+    """Settings over which the exponent of its law is uncertain: ``speed``, ``torque``."""
+    doubled: str = ""
+    """Name of twice its amplitude, where drawings give that."""
+    likeness_of_place: bool = False
+    """Entries of other gearboxes are alike only where they are of the same place in it."""
+
     def scales(self, link: str) -> bool:
         """Whether a local conductance is one of those it scales."""
         return any(fnmatchcase(link, pattern) for pattern in self.links)
@@ -117,7 +101,16 @@ class Effect:
         return self.claim.split(":")[0]
 
     @property
+    def place(self) -> str:
+        """The part of the name after its kind; empty for the rig as a whole."""
+        return self.claim.partition(":")[2]
+
+    @property
     def likeness(self) -> str:
         """What it shares with entries of other gearboxes and rigs: its kind, of a film also the entry."""
-        place = self.claim.partition(":")[2]
-        return f"{self.kind}.{place.partition('.')[2]}" if self.kind == "film" else self.kind
+        return f"{self.kind}.{self.place.partition('.')[2]}" if self.likeness_of_place else self.kind
+
+    @property
+    def swings(self) -> bool:
+        """It only swings, with no mean over a turn: waves over the teeth, harmonic torques."""
+        return self.family == EXCITATION and self.linear and not self.any_tooth

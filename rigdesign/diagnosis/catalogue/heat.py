@@ -7,67 +7,91 @@ pressed metal joint with oil in its gap (5e4 W/m2K), friction of seals 10 W at 1
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
-from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.housing import (
-    BearingFilm,
-    Condition,
-    ConstantFilm,
-    FixedTemperature,
-    FlankFilm,
-    GapExchange,
-    Housing,
-    Insulated,
-    SeriesExchange,
-    ThermalRadiation,
-)
+from rigdesign.case.films import SurfaceFilm
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Family, Parameter
+from rigdesign.case.surface_conditions import ThermalRadiation
+from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Parameter
 from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, Scaled, factor, share
-
-LOSSES: Mapping[str, tuple[str, str, float, float, float]] = {
-    "mesh_loss": ("mesh", "friction of the teeth", 0.6, 1.6, 0.12),
-    "bearing_loss": ("bearing", "friction of the bearing films", 0.5, 2.0, 0.12),
-    "windage_loss": ("windage", "windage of the gears", 0.3, 3.0, 0.25),
-    "jet_loss": ("jet", "oil brought up to speed by the gears", 0.3, 3.0, 0.20),
-    "squeeze_loss": ("squeeze", "oil squeezed out of the mesh", 0.2, 5.0, 0.25),
-}
-"""Kind of effect -> key of the case, words, bounds, healthy spread of its logarithm."""
-
-LOSS_SIGNATURES = {
-    "mesh_loss": "grows with torque and speed: oil rise, gears and drive torque together",
-    "bearing_loss": "grows with n^1.6 to n^2 at any torque: bearing oil, shells and drive torque",
-    "windage_loss": "grows with n^2.5 to n^3 at any torque: gear oil and drive torque",
-    "jet_loss": "grows with flow and n^2: gear oil and drive torque",
-    "squeeze_loss": "grows with torque and speed, straight into the oil",
-}
+from rigdesign.diagnosis.catalogue.families import CONTACT, FILM, FLOW, LOSS, OIL, SPLIT, STATE
+from rigdesign.diagnosis.catalogue.registry import GearboxPart, of_gearbox, of_rig
 
 
-def heat_effects(case: Case) -> Iterator[Effect]:
-    """Entries for every gearbox of the case."""
-    yield _not_steady(case)
-    for name, box in case.gearboxes.items():
-        yield from _losses(name, box)
-        yield from _seals(name, box)
-        yield from _flows(name, box)
-        yield from _oil(name, box)
-        if box.housing is not None:
-            yield from _split(name, box)
-            yield from _films(name, box.housing)
-            yield from _contacts(name, box, box.housing)
+@dataclass(frozen=True, kw_only=True)
+class _Loss:
+    """A loss of a gearbox that the case scales.
+
+    key : of ``loss_factors``; bounds : of the factor; healthy : spread of its logarithm
+    exponents : settings over which the exponent of its law is uncertain
+    """
+
+    key: str
+    words: str
+    bounds: tuple[float, float]
+    healthy: float
+    signature: str
+    exponents: tuple[str, ...] = ()
 
 
-def _losses(name: str, box: Gearbox) -> Iterator[Effect]:
-    for kind, (key, words, low, high, healthy) in LOSSES.items():
-        now: float = getattr(box.loss_factors, key)
+LOSSES = (
+    _Loss(
+        key="mesh", words="friction of the teeth", bounds=(0.6, 1.6), healthy=0.12,
+        signature="grows with torque and speed: oil rise, gears and drive torque together",
+        exponents=("speed", "torque"),
+    ),
+    _Loss(
+        key="bearing", words="friction of the bearing films", bounds=(0.5, 2.0), healthy=0.12,
+        signature="grows with n^1.6 to n^2 at any torque: bearing oil, shells and drive torque",
+        exponents=("speed",),
+    ),
+    _Loss(
+        key="windage", words="windage of the gears", bounds=(0.3, 3.0), healthy=0.25,
+        signature="grows with n^2.5 to n^3 at any torque: gear oil and drive torque",
+        exponents=("speed",),
+    ),
+    _Loss(
+        key="jet", words="acceleration of the jet oil", bounds=(0.3, 3.0), healthy=0.20,
+        signature="grows with flow and n^2: gear oil and drive torque",
+    ),
+    _Loss(
+        key="squeeze", words="squeezing of oil out of the mesh", bounds=(0.2, 5.0), healthy=0.25,
+        signature="grows with torque and speed, straight into the oil",
+    ),
+)  # fmt: skip
+
+
+@of_rig()
+def not_steady(case: Case) -> Iterator[Effect]:
+    """A rig whose points were read too early."""
+    yield Effect(
+        name="not_steady",
+        title="readings before steady temperatures",
+        family=STATE,
+        signature="heavy parts too cold at every point, oil and drive torque unchanged; reported is the time of one "
+        "implicit step, about twice the true one",
+        parameters=(
+            Parameter(name="rate", unit="1/s", low=0.0, high=2.0 / 3600.0, source="two runs within an hour"),
+        ),
+        change=_Warming(),
+        matters=1.0 / (24.0 * 3600.0),
+    )
+
+
+@of_gearbox()
+def losses(part: GearboxPart) -> Iterator[Effect]:
+    """Every loss that the case scales."""
+    for loss in LOSSES:
+        now: float = getattr(part.box.loss_factors, loss.key)
         yield Effect(
-            name=f"{kind}:{name}",
-            title=f"{words} in the {box.title}",
-            family="loss",
-            signature=LOSS_SIGNATURES[kind],
-            parameters=(factor("factor", low, high),),
-            change=Scaled(((f"gearboxes.{name}.loss_factors.{key}", now),)),
-            healthy=healthy,
+            name=f"{loss.key}_loss:{part.name}",
+            title=f"{loss.words} in the {part.box.title}",
+            family=LOSS,
+            signature=loss.signature,
+            parameters=(factor("factor", *loss.bounds),),
+            change=Scaled(((f"{part.path}.loss_factors.{loss.key}", now),)),
+            healthy=loss.healthy,
+            exponents=loss.exponents,
         )
 
 
@@ -82,7 +106,10 @@ class _Rubbing:
         return {path: now + more for path, now in self._paths.items()}
 
 
-def _seals(name: str, box: Gearbox) -> Iterator[Effect]:
+@of_gearbox()
+def seals(part: GearboxPart) -> Iterator[Effect]:
+    """Seals that rub."""
+    name, box = part.name, part.box
     paths = {
         f"gearboxes.{name}.seals.{seal}.rubbing_torque": entry.rubbing_torque
         for seal, entry in box.seals.items()
@@ -90,8 +117,8 @@ def _seals(name: str, box: Gearbox) -> Iterator[Effect]:
     if paths:
         yield Effect(
             name=f"seal_loss:{name}",
-            title=f"seals of {name} that rub",
-            family="loss",
+            title=f"seal friction of {name}",
+            family=LOSS,
             signature="grows with n at any torque: shafts, seal bores and drive torque",
             parameters=(Parameter(name="friction torque", unit="N m", low=0.0, high=2.0, source=PRACTICE),),
             change=_Rubbing(paths),
@@ -106,41 +133,26 @@ class _Warming:
         return {"ambient.warming_time": 1.0 / values[0]} if values[0] > 0.0 else {}
 
 
-def _not_steady(case: Case) -> Effect:
-    return Effect(
-        name="not_steady",
-        title="points read before the housing was warm",
-        family="state",
-        signature="heavy parts too cold at every point, oil and drive torque kept; reported is the time of one "
-        "implicit step, about twice the true one",
-        parameters=(
-            Parameter(name="rate", unit="1/s", low=0.0, high=2.0 / 3600.0, source="two runs within an hour"),
-        ),
-        change=_Warming(),
-        matters=1.0 / (24.0 * 3600.0),
-    )
-
-
 FLOW_METER = 0.01
 """Share of a flow that no meter on a rig sees."""
 
 FLOWS = {
     "leak_warm_cold": (
-        "gear oil that leaks into the bearing oil",
+        "leakage of gear oil into the bearing oil",
         0.15,
-        "warm outlet falls, cold rises, sum kept",
+        "warm outlet falls, cold rises, sum unchanged",
         0.0,
     ),
     "bypass": (
-        "gear oil that goes round the meshes",
+        "gear oil bypassing the meshes",
         0.30,
         "gears and walls warmer, outlet mixed, less jet loss",
         0.0,
     ),
     "short_circuit": (
-        "gear oil that leaves past the walls",
+        "gear oil leaving without wall contact",
         0.30,
-        "walls answer less to the oil, outlet nearly kept",
+        "walls respond less to the oil, outlet nearly unchanged",
         0.2,
     ),
 }
@@ -150,12 +162,15 @@ How much oil falls from the jets straight to the floor is not known of any rig: 
 """
 
 
-def _flows(name: str, box: Gearbox) -> Iterator[Effect]:
+@of_gearbox()
+def flows(part: GearboxPart) -> Iterator[Effect]:
+    """Oil that takes another way, blocked jets."""
+    name, box = part.name, part.box
     for key, (words, most, signature, healthy) in FLOWS.items():
         yield Effect(
             name=f"{key}:{name}",
             title=f"{words} of {name}",
-            family="flow",
+            family=FLOW,
             signature=signature,
             parameters=(share("share", most),),
             change=Added(f"gearboxes.{name}.oil_paths.{key}", getattr(box.oil_paths, key)),
@@ -165,7 +180,7 @@ def _flows(name: str, box: Gearbox) -> Iterator[Effect]:
     yield Effect(
         name=f"blocked_jet:{name}",
         title=f"blocked jets of {name}",
-        family="flow",
+        family=FLOW,
         signature="gears warmer with dry flanks, jet loss lower as the oil is faster at the same flow",
         parameters=(share("share", 0.6),),
         change=Added(f"gearboxes.{name}.oil.blocked_jets", box.oil.blocked_jets),
@@ -173,13 +188,16 @@ def _flows(name: str, box: Gearbox) -> Iterator[Effect]:
     )
 
 
-def _oil(name: str, box: Gearbox) -> Iterator[Effect]:
+@of_gearbox()
+def oil(part: GearboxPart) -> Iterator[Effect]:
+    """Properties of the oil and air in it."""
+    name, box = part.name, part.box
     at, state = f"gearboxes.{name}.oil_state", box.oil_state
     yield Effect(
         name=f"aeration:{name}",
         title=f"air in the oil of {name}",
-        family="oil",
-        signature="every oil rise of the gearbox larger, losses nearly kept",
+        family=OIL,
+        signature="every oil rise of the gearbox larger, losses nearly unchanged",
         parameters=(share("air content", 0.2),),
         change=Added(f"{at}.air_content", state.air_content),
         matters=0.01,
@@ -187,7 +205,7 @@ def _oil(name: str, box: Gearbox) -> Iterator[Effect]:
     yield Effect(
         name=f"oil_viscosity:{name}",
         title=f"viscosity of the oil of {name}",
-        family="oil",
+        family=OIL,
         signature="bearing losses and tooth friction together, more when cold",
         parameters=(factor("factor", 0.7, 1.4),),
         change=Scaled(((f"{at}.viscosity_factor", state.viscosity_factor),)),
@@ -196,22 +214,25 @@ def _oil(name: str, box: Gearbox) -> Iterator[Effect]:
     yield Effect(
         name=f"oil_heat_capacity:{name}",
         title=f"heat capacity of the oil of {name}",
-        family="oil",
-        signature="every oil rise of the gearbox by one factor, drive torque kept",
+        family=OIL,
+        signature="every oil rise of the gearbox by one factor, drive torque unchanged",
         parameters=(factor("factor", 0.8, 1.25),),
         change=Scaled(((f"{at}.heat_capacity_factor", state.heat_capacity_factor),)),
         healthy=0.03,
     )
 
 
-def _split(name: str, box: Gearbox) -> Iterator[Effect]:
+@of_gearbox(housing=True)
+def split(part: GearboxPart) -> Iterator[Effect]:
+    """How the friction heat of the teeth divides."""
+    name, box = part.name, part.box
     into = box.heat_split.mesh_into_gears
     if into is None:
         return
     yield Effect(
         name=f"loss_split:{name}",
         title=f"share of the mesh heat that enters the gears of the {box.title}",
-        family="split",
+        family=SPLIT,
         signature="moves the gears, leaves oil rise and drive torque",
         parameters=(factor("factor", 0.3, min(2.0, 1.0 / into) if into else 2.0),),
         change=Scaled(((f"gearboxes.{name}.heat_split.mesh_into_gears", into),), 1.0),
@@ -229,30 +250,38 @@ IN_BEARING = 0.5
 factor of three (`thermal.films.convection.bearing_film`)."""
 
 
-def _films(name: str, housing: Housing) -> Iterator[Effect]:
+@of_gearbox(housing=True)
+def films(part: GearboxPart) -> Iterator[Effect]:
+    """Films to oil, room air and bearings, emissivity of the walls."""
+    name, housing = part.name, part.housing
     at = f"gearboxes.{name}.housing"
     for entry, condition in housing.boundary.items():
-        fluid = getattr(condition, "fluid", None)
-        if isinstance(condition, ThermalRadiation) or fluid is None or fluid == "ambient":
+        if not isinstance(condition, SurfaceFilm) or condition.wetted_by == "ambient":
             continue
-        given = isinstance(condition, ConstantFilm)
+        given = condition.coefficient_given
         low, high = (0.3, 3.0) if given else (0.2, 5.0)
         yield Effect(
             name=f"film:{name}.{entry}",
             title=f"oil film {entry.replace('_', ' ')} of {name}",
-            family="film",
+            family=FILM,
             signature="moves the bodies it wets against the oil, leaves drive torque",
             parameters=(factor("factor", low, high),),
-            change=Scaled(((f"{at}.boundary.{entry}.film_factor", getattr(condition, "film_factor", 1.0)),)),
+            change=Scaled(((f"{at}.boundary.{entry}.film_factor", condition.film_factor),)),
             healthy=0.25 if given else IN_MIST,
             links=_wetted(name, condition.surfaces),
+            likeness_of_place=True,
         )
     yield _film(
         f"ambient_film:{name}",
         "film to room air",
         f"{at}.ambient_film_factor",
         housing.ambient_film_factor,
-        tuple(link for c in housing.boundary.values() if _in_air(c) for link in _wetted(name, c.surfaces)),
+        tuple(
+            link
+            for c in housing.boundary.values()
+            if c.wetted_by == "ambient"
+            for link in _wetted(name, c.surfaces)
+        ),
     )
     yield _film(
         f"bearing_film:{name}",
@@ -276,7 +305,7 @@ def _films(name: str, housing: Housing) -> Iterator[Effect]:
         yield Effect(
             name=f"emissivity:{name}",
             title=f"emissivity of the walls of {name}",
-            family="film",
+            family=FILM,
             signature="moves the housing as dT^4 does, the field little",
             parameters=(
                 Parameter(
@@ -291,17 +320,6 @@ def _films(name: str, housing: Housing) -> Iterator[Effect]:
 def _wetted(name: str, surfaces: Sequence[str]) -> tuple[str, ...]:
     """Local conductances of the films on surfaces."""
     return tuple(f"film:{name}.{surface}" for surface in surfaces)
-
-
-NOT_IN_AIR = (
-    BearingFilm, FixedTemperature, FlankFilm, GapExchange, Insulated, SeriesExchange, ThermalRadiation,
-)  # fmt: skip
-"""Conditions that are no film to the room's air whatever they say of a fluid."""
-
-
-def _in_air(condition: Condition) -> bool:
-    """Whether a film is one to room air, as `rigdesign.coupling.boundary` takes it."""
-    return not isinstance(condition, NOT_IN_AIR) and getattr(condition, "fluid", "ambient") == "ambient"
 
 
 class _Shifted:
@@ -319,7 +337,7 @@ def _film(name: str, title: str, path: str, now: float, links: tuple[str, ...]) 
     return Effect(
         name=name,
         title=f"{title} of {name.split(':')[1]}",
-        family="film",
+        family=FILM,
         signature="moves the whole housing as dT does" if outside else "moves shells and journals",
         parameters=(factor("factor", 0.5, 3.0) if outside else factor("factor", 0.2, 3.0),),
         change=Scaled(((path, now),)),
@@ -350,7 +368,10 @@ class _Resistance:
         }
 
 
-def _contacts(name: str, box: Gearbox, housing: Housing) -> Iterator[Effect]:
+@of_gearbox(housing=True)
+def contacts(part: GearboxPart) -> Iterator[Effect]:
+    """Resistance in the joints of bearing shells and foot."""
+    name, box, housing = part.name, part.box, part.housing
     shells = {
         f"gearboxes.{name}.bearings.{bearing}.shell_conductance": entry.shell_conductance
         for bearing, entry in box.bearings.items()
@@ -365,11 +386,10 @@ def _contacts(name: str, box: Gearbox, housing: Housing) -> Iterator[Effect]:
 
 
 def _contact(name: str, title: str, most: float, paths: Mapping[str, float | None]) -> Effect:
-    family: Family = "contact"
     return Effect(
         name=name,
         title=f"{title} of {name.split(':')[1]}",
-        family=family,
+        family=CONTACT,
         signature="a step of temperature at one joint",
         parameters=(Parameter(name="resistance", unit="m2 K/W", low=0.0, high=most, source=PRACTICE),),
         change=_Resistance(paths),

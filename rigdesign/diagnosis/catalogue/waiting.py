@@ -180,4 +180,4 @@ WAITING = (
         f"{FACE}; thermal expansion of the housing at every point",
     ),
 )
-"""In the order of the page."""
+"""In the order of the page, which leaves out what the catalogue holds by now."""

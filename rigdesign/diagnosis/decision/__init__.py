@@ -1,1 +1,1 @@
-"""From evidence to a verdict that holds on points kept aside."""
+"""From evidence to a verdict that holds on points held out."""

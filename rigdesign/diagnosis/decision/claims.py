@@ -1,6 +1,6 @@
 """What may be claimed of the effects that a search has found.
 
-A name is given if its size matters, if it shrinks the gap on the points kept aside by more than the scatter of that
+A name is given if its size matters, if it shrinks the gap on the points held out by more than the scatter of that
 (`rigdesign.diagnosis.statistics.heldout`), and if no other effect leaves the same trace; the case with all names in
 it, run in full, has to shrink the gap as well. What does not hold is reported with its reason.
 """
@@ -36,7 +36,7 @@ class Refusal:
     """A name that the search gave and that is not claimed.
 
     name : of the entry; explanation : with tooth or order; coordinates : its fitted size; verdict : where it was the
-        only name; gap : without and with it on the points kept aside, None where none were or where its size was enough
+        only name; gap : without and with it on the points held out, None where none were or where its size was enough
         to refuse it
     """
 
@@ -54,7 +54,7 @@ class Claim:
 
     found : of names, with the leader of a group apart from which they hold; fit : of these together; fits : member of
         such a group -> the fit with it in the place of the leader; answer : (n,) of what was fitted, at all kept
-        numbers, zero without any; gap : with it, None without points kept aside
+        numbers, zero without any; gap : with it, None without points held out
     """
 
     decision: Decision
@@ -73,7 +73,7 @@ def claim(
     proof: Proof,
     fitted: Callable[[Sequence[Evidence]], JointFit],
 ) -> Claim:
-    """Hold the names of a decision against their sizes, the points kept aside and all other effects.
+    """Hold the names of a decision against their sizes, the points held out and all other effects.
 
     found : the explanation of every name; traces : of all in the first look; fitted : the joint fit of some
     """
@@ -122,7 +122,7 @@ def claim(
 
 def _without(decision: Decision, proof: Proof, refused: Sequence[Refusal]) -> Claim:
     """No names."""
-    nothing = np.zeros(len(proof.subject.features))
+    nothing = np.zeros(len(proof.residuals.features))
     return Claim(
         decision=decision,
         found=(),
@@ -163,11 +163,11 @@ def _weakest(found: Sequence[Evidence], fit: JointFit, proof: Proof) -> Refusal 
     """
     sizes = _sizes(found, fit)
     for one in found:
-        if text := too_little(proof.subject.effects, one.hypothesis.name, sizes[one.hypothesis.name]):
+        if text := too_little(proof.residuals.effects, one.hypothesis.name, sizes[one.hypothesis.name]):
             return _refusal(one, sizes, "too_small", text)
     if not proof.points:
-        running = len(proof.subject.library.settings)
-        text = f"none of {running} operating points could be kept aside to prove it; at least {LEAST_POINTS} are needed"
+        running = len(proof.residuals.library.settings)
+        text = f"none of {running} operating points could be held out to verify it; at least {LEAST_POINTS} are needed"
         reason = f"{found[0].hypothesis.name} fits best, but {text}"
         return _refusal(found[0], sizes, "data_insufficient", reason)
     gaps = []
@@ -189,20 +189,20 @@ def too_little(effects: Sequence[Effect], explanation: str, coordinates: Sequenc
     effect = known[0]
     scale, unit = display_scale(effect.parameters[0].unit, effect.parameters[0].factor)
     size, least = (f"{scale * value:.3g} {unit}".rstrip() for value in (hypot(*coordinates), effect.matters))
-    return f"{explanation} fits best with {size}; less than {least} does not matter"
+    return f"{explanation} fits best with {size}; below {least} it is not significant"
 
 
 def _unclaimed(decision: Decision, refused: Sequence[Refusal]) -> Decision:
     """The verdict where no name is left: that of one that was contradicted, else of the last one."""
     if not refused:
-        reason = f"{decision.named[0]} is in every explanation that counts, but none of them is it alone"
+        reason = f"{decision.named[0]} is part of every probable explanation, but of none alone"
         return Decision(verdict="unknown_located", named=(), reason=reason)
     worst = next((one for one in refused if one.verdict == "unknown_located"), refused[-1])
     return Decision(verdict=worst.verdict, named=(), reason=worst.reason)
 
 
 def _group(found: Sequence[Evidence], sizes: Sizes, traces: "Traces") -> Decision | None:
-    """The verdict where another effect leaves the trace of a name; None where every name stands alone.
+    """The verdict where another effect has the signature of a name; None where every name stands alone.
 
     The group is that of the first such name; the reason names those of further ones.
     """
@@ -213,7 +213,7 @@ def _group(found: Sequence[Evidence], sizes: Sizes, traces: "Traces") -> Decisio
     if not unclear:
         return None
     reasons = [
-        f"{rivals[name][0][0]} leaves the trace of {name}, correlation {rivals[name][0][1]:.3f}"
+        f"{rivals[name][0][0]} has the signature of {name}, correlation {rivals[name][0][1]:.3f}"
         for name in unclear
     ]
     group = (unclear[0], *(other for other, _ in rivals[unclear[0]]))

@@ -24,14 +24,14 @@ Verdict = Literal[
 ]
 
 PRIOR = {
-    "none": 0.50, "physical": 0.22, "sensor": 0.08, "local": 0.08, "anonymous": 0.10, "pair": 0.10, "input": 0.03,
+    "none": 0.50, "physical": 0.22, "sensor": 0.08, "local": 0.08, "unmodelled": 0.10, "pair": 0.10, "input": 0.03,
 }  # fmt: skip
 """Prior weight of each family of explanations, split evenly among its members.
 
 Heat that one thermometer alone feels is as likely as an error of that thermometer.
 """
 
-UNNAMED = frozenset({"anonymous", "local"})
+UNNAMED = frozenset({"unmodelled", "local"})
 """Families of what is outside the catalogue."""
 
 
@@ -117,51 +117,71 @@ def posterior(
     return Posterior(masses=masses, inclusion=inclusion, families=families, best=best)
 
 
+@dataclass(frozen=True, kw_only=True)
+class WhitenedSquare:
+    """Whitened square of a residual and the number of readings in it."""
+
+    value: float
+    count: int
+
+    @property
+    def deviation(self) -> float:
+        """Of the whitened square of a healthy rig."""
+        return float((2.0 * self.count) ** 0.5)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Candidates:
+    """What a decision may name.
+
+    effects : of catalogue and sensors, not the unmodelled causes
+    detectable : effect -> whether these sensors could see it within its bounds at all
+    orders : those of the effects that show in orders and natural frequencies
+    sensors : those that are errors of sensors and settings
+    """
+
+    effects: frozenset[str]
+    detectable: Mapping[str, bool]
+    orders: frozenset[str] = frozenset()
+    sensors: frozenset[str] = frozenset()
+
+
 def decide(
     evidence: Sequence[Evidence],
     weights: Posterior,
-    *,
-    chi_square: float,
-    count: int,
-    effects: frozenset[str],
-    detectable: Mapping[str, bool],
+    square: WhitenedSquare,
+    candidates: Candidates,
     thresholds: Thresholds,
-    loop: frozenset[str] = frozenset(),
-    sensors: frozenset[str] = frozenset(),
 ) -> Decision:
-    """The verdict.
-
-    Parameters
-    ----------
-    chi_square, count : whitened square of the residual and number of readings
-    effects : names that may be named: catalogue and sensors, not the anonymous ones
-    detectable : effect -> whether these sensors could see it within its bounds at all
-    loop : those of the names that show in orders and natural frequencies
-    sensors : those that are errors of sensors and settings
-    """
+    """The verdict."""
     if weights.families.get("input", 0.0) > thresholds.input:
         named = _parts_of_family(evidence, weights, "input")
         return Decision(
             verdict="input_error_suspected",
             named=named,
-            reason=f"the data fit the rig once {named[0]} is undone",
+            reason=f"the data agree with the model once {named[0]} is corrected",
         )
     best = weights.best
     if best is None:
-        return _silent(weights, evidence, chi_square, count, thresholds, detectable)
-    floor = thresholds.evidence if loop.isdisjoint(best.hypothesis.parts) else thresholds.evidence_loop
+        return _silent(weights, square, candidates, thresholds)
+    floor = (
+        thresholds.evidence
+        if candidates.orders.isdisjoint(best.hypothesis.parts)
+        else thresholds.evidence_loop
+    )
     if best.log_bayes < floor * len(set(best.hypothesis.parts)) and weights.masses["none"] < 0.5:
         reason = "an effect may be present; healthy rigs have given as much evidence"
         return Decision(verdict="too_small", named=(), reason=reason)
-    left = chi_square - best.gain - count
-    if left > max(thresholds.misfit * (2.0 * count) ** 0.5, thresholds.share * best.gain):
-        excess = left / (2.0 * count) ** 0.5
+    left = square.value - best.gain - square.count
+    if left > max(thresholds.misfit * square.deviation, thresholds.share * best.gain):
+        excess = left / square.deviation
         return Decision(
             verdict="unknown_located",
             named=(),
-            reason=f"the best explanation leaves {excess:.1f} standard deviations more than a healthy rig does",
+            reason=f"after the best explanation the residual is {excess:.1f} standard deviations above that of a "
+            "healthy rig",
         )
-    known = [one for one in evidence if _credible(one, effects, sensors)]
+    known = [one for one in evidence if _credible(one, candidates)]
     leads = best.log_bayes - max((one.log_bayes for one in known), default=0.0)
     if weights.masses["none"] < 0.5 and leads > thresholds.catalogue:
         return Decision(
@@ -172,32 +192,32 @@ def decide(
     named = tuple(
         part
         for part, mass in sorted(weights.inclusion.items(), key=lambda item: -item[1])
-        if part in effects and mass >= thresholds.named
+        if part in candidates.effects and mass >= thresholds.named
     )
     if named:
         return Decision(
-            verdict="named", named=named, reason=f"{named[0]} is in every explanation that counts"
+            verdict="named", named=named, reason=f"{named[0]} is part of every probable explanation"
         )
     if weights.masses["none"] < 1.0 - thresholds.named:
-        group = _smallest_group(evidence, weights, effects, thresholds)
+        group = _smallest_group(evidence, weights, candidates.effects, thresholds)
         if group:
             return Decision(
                 verdict="alias_group",
                 named=group,
-                reason="one of them is present; these data cannot tell which",
+                reason="one of them is present; the data do not identify which",
             )
         return Decision(
             verdict="unknown_located",
             named=(),
-            reason="an effect is present that no few of the catalogue account for",
+            reason="an effect is present; no small group of the catalogue accounts for it",
         )
-    return _silent(weights, evidence, chi_square, count, thresholds, detectable)
+    return _silent(weights, square, candidates, thresholds)
 
 
-def _credible(one: Evidence, effects: frozenset[str], sensors: frozenset[str]) -> bool:
+def _credible(one: Evidence, candidates: Candidates) -> bool:
     """Of the catalogue alone; an error of a sensor by itself, not to mend what something else leaves."""
     parts = frozenset(one.hypothesis.parts)
-    return parts <= effects and (len(parts) == 1 or parts.isdisjoint(sensors))
+    return parts <= candidates.effects and (len(parts) == 1 or parts.isdisjoint(candidates.sensors))
 
 
 def _smallest_group(
@@ -221,27 +241,25 @@ def _smallest_group(
 
 
 def _silent(
-    weights: Posterior,
-    evidence: Sequence[Evidence],
-    chi_square: float,
-    count: int,
-    thresholds: Thresholds,
-    detectable: Mapping[str, bool],
+    weights: Posterior, square: WhitenedSquare, candidates: Candidates, thresholds: Thresholds
 ) -> Decision:
-    if not any(detectable.values()):
+    """Why nothing is named."""
+    if not any(candidates.detectable.values()):
         return Decision(
             verdict="data_insufficient",
             named=(),
-            reason="no effect of the catalogue could be seen with these sensors and points",
+            reason="no effect of the catalogue is detectable with these sensors and operating points",
         )
-    if (chi_square - count) / (2.0 * count) ** 0.5 > thresholds.misfit:
+    if (square.value - square.count) / square.deviation > thresholds.misfit:
         return Decision(
             verdict="unknown_located",
             named=(),
-            reason="the residual is larger than a healthy rig's, nothing explains it",
+            reason="the residual exceeds that of a healthy rig; no explanation fits",
         )
     if weights.masses["none"] >= 0.5:
-        return Decision(verdict="within_noise", named=(), reason="the residual of a healthy rig is as large")
+        return Decision(
+            verdict="within_noise", named=(), reason="the residual is within that of a healthy rig"
+        )
     return Decision(
         verdict="too_small",
         named=(),

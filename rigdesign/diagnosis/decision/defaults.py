@@ -1,8 +1,8 @@
-"""What calibration froze: amplitudes, widening, thresholds and signature errors, with their origin.
+"""What calibration froze: amplitudes, inflation, thresholds and signature errors, with their origin.
 
 Fitted by `rigdesign.diagnosis.residual.calibration` to 108 healthy sets of the virtual rig, 36 of each of three rigs;
 the amplitudes to those 76 with up to 700 numbers (36 of the prototype, 24 of the 1:1 loop, 16 of the loop with a
-hunting ratio), the widening to all. Dimensionless, so that they serve rigs that nobody has simulated. Thresholds come
+hunting ratio), the inflation to all. Dimensionless, so that they serve rigs that nobody has simulated. Thresholds come
 from the development split and from what healthy sets reach.
 """
 
@@ -37,7 +37,7 @@ AMPLITUDES = Amplitudes(
     input=1.0,
 )
 
-WIDENING = {
+INFLATION = {
     "single_pitch": 1.03e-06,
     "weak_tooth": 0.0454,
     "motor_ripple": 0.00502,
@@ -98,7 +98,7 @@ DRIFT = Drift(
     shaft=0.982,
     mesh=1.33,
     amplitude=0.0216,
-    widening={
+    inflation={
         "film.chamber_oil": 0.000609,
         "coupling_stiffness": 0.0168,
         "bearing_film": 0.00605,
@@ -111,7 +111,7 @@ DRIFT = Drift(
     },
 )
 """Fitted to 80 pairs of healthy sets, those with up to 900 numbers: 36 of the prototype, 28 of the 1:1 loop, 16 of the
-loop with a hunting ratio; the widening to 108 pairs, 36 of each rig."""
+loop with a hunting ratio; the inflation to 108 pairs, 36 of each rig."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,7 +119,7 @@ class Calibration:
     """Everything a diagnosis takes from calibration."""
 
     amplitudes: Amplitudes = AMPLITUDES
-    widening: Mapping[str, float] = field(default_factory=lambda: dict(WIDENING))
+    inflation: Mapping[str, float] = field(default_factory=lambda: dict(INFLATION))
     """Likeness of an effect -> spread of its coordinate that healthy sets asked for beyond the columns."""
     plain: Thresholds = PLAIN
     """Without a baseline."""

@@ -1,16 +1,18 @@
 """One look at a residual: every explanation evaluated, the best of them joined in pairs, a verdict."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from rigdesign.diagnosis.decision.decision import (
     PRIOR,
     UNNAMED,
+    Candidates,
     Decision,
     Posterior,
     Thresholds,
+    WhitenedSquare,
     decide,
     posterior,
 )
@@ -24,7 +26,7 @@ LEADERS = 12
 """Explanations of the catalogue that are joined with every other one."""
 
 UNNAMED_LEADERS = 4
-"""Anonymous ones that are."""
+"""Unmodelled causes that are."""
 
 COPY = 0.99
 """Cosine of two answers above which they are one explanation: what bears a name keeps it."""
@@ -36,18 +38,18 @@ class Explanations:
 
     physical: Sequence[Hypothesis]
     sensor: Sequence[Hypothesis]
-    anonymous: Sequence[Hypothesis]
+    unmodelled: Sequence[Hypothesis]
     data: Sequence[Hypothesis]
 
     @property
     def members(self) -> dict[str, int]:
         """Number of explanations by family; a pair joins any two."""
-        known, unnamed = len(self.physical) + len(self.sensor), len(self.anonymous)
-        local = sum(1 for one in self.anonymous if one.family == "local")
+        known, unnamed = len(self.physical) + len(self.sensor), len(self.unmodelled)
+        local = sum(1 for one in self.unmodelled if one.family == "local")
         return {
             "physical": len(self.physical),
             "sensor": len(self.sensor),
-            "anonymous": unnamed - local,
+            "unmodelled": unnamed - local,
             "local": local,
             "input": len(self.data),
             "pair": (known + unnamed) * (known + unnamed - 1) // 2,
@@ -55,7 +57,7 @@ class Explanations:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Examination:
+class Evaluation:
     """What was found.
 
     evidence : of every hypothesis, best first; detectability : by effect, known before any name
@@ -69,57 +71,59 @@ class Examination:
     count: int
 
 
+@dataclass(frozen=True, kw_only=True)
+class Criteria:
+    """What every evaluation of one set of data has in common.
+
+    points : (n,) operating point of each number; left out, a name may depend on one
+    orders : names of effects that show in orders and natural frequencies
+    signature : how wrong the model may answer to a right cause; left out, not at all
+    """
+
+    thresholds: Thresholds
+    priors: Mapping[str, float] = field(default_factory=lambda: dict(PRIOR))
+    points: Sequence[str] = ()
+    orders: frozenset[str] = frozenset()
+    signature: Signature | None = None
+
+
 def evaluate(
     space: Whitened,
     explanations: Explanations,
-    thresholds: Thresholds,
-    priors: Mapping[str, float] = PRIOR,
+    criteria: Criteria,
     *,
-    points: Sequence[str] = (),
-    loop: frozenset[str] = frozenset(),
-    signature: Signature | None = None,
-    table: Sequence[Detectability] | None = None,
     explained: float = 0.0,
     earlier: "Earlier | None" = None,
-) -> Examination:
+) -> Evaluation:
     """Evaluate every hypothesis and decide.
 
-    points : (n,) operating point of each number; left out, a name may depend on one
-    loop : names of effects that show in orders and natural frequencies
-    signature : how wrong the model may answer to a right cause; left out, not at all
-    table : detectability where it is known already; it depends on covariance and explanations alone
     explained : largest fall of the whitened square by what was named before
-    earlier : the look that named it
+    earlier : the evaluation that named it
     """
     known = (*explanations.physical, *explanations.sensor)
-    if table is None:
-        table = detectabilities(space, known, explanations.anonymous)
-    contest = None if signature is None else Contest(space, signature)
-    singles = _judged(contest, [evaluate_hypothesis(space, one) for one in (*known, *explanations.anonymous)])
+    table = detectabilities(space, known, explanations.unmodelled)
+    contest = None if criteria.signature is None else Contest(space, criteria.signature)
+    singles = _judged(
+        contest, [evaluate_hypothesis(space, one) for one in (*known, *explanations.unmodelled)]
+    )
     singles = _without_copies(singles)
     data = [evaluate_hypothesis(space, one) for one in explanations.data]
     pairs = _judged(contest, _pairs(space, singles))
     evidence = sorted((*singles, *data, *pairs), key=lambda one: -one.log_bayes)
-    weights = posterior(evidence, explanations.members, priors)
-    decision = decide(
-        evidence,
-        weights,
-        chi_square=space.chi_square,
-        count=len(space.residual),
+    weights = posterior(evidence, explanations.members, criteria.priors)
+    candidates = Candidates(
         effects=frozenset(part for one in known for part in one.parts),
         detectable={row.effect: row.detectable <= row.bound for row in table},
-        thresholds=thresholds,
-        loop=loop,
+        orders=criteria.orders,
         sensors=frozenset(part for one in explanations.sensor for part in one.parts),
     )
-    return Examination(
+    square = WhitenedSquare(value=space.chi_square, count=len(space.residual))
+    decision = decide(evidence, weights, square, candidates, criteria.thresholds)
+    decision = _supported(space, decision, evidence, weights, criteria, explained)
+    return Evaluation(
         evidence=tuple(evidence),
         weights=weights,
-        decision=_undivided(
-            _supported(space, points, decision, evidence, weights, thresholds, explained, loop),
-            earlier,
-            thresholds,
-        ),
+        decision=_undivided(decision, earlier, criteria.thresholds),
         detectability=tuple(table),
         chi_square=space.chi_square,
         count=len(space.residual),
@@ -130,7 +134,7 @@ def evaluate(
 class Earlier:
     """The first look, and what was named since."""
 
-    look: Examination
+    look: Evaluation
     named: frozenset[str]
 
     def rivals(self, part: str) -> tuple[float, float]:
@@ -156,39 +160,38 @@ def _undivided(decision: Decision, earlier: Earlier | None, thresholds: Threshol
             kept.append(part)
     if kept:
         return replace(decision, named=tuple(kept))
-    reason = f"{decision.named[0]} or another one explains what is left, the names before it taken at once"
+    reason = f"{decision.named[0]} or another one explains the remaining residual, all named effects evaluated at once"
     return Decision(verdict="too_small", named=(), reason=reason)
 
 
 def _supported(
     space: Whitened,
-    points: Sequence[str],
     decision: Decision,
     evidence: Sequence[Evidence],
     weights: Posterior,
-    thresholds: Thresholds,
+    criteria: Criteria,
     explained: float,
-    loop: frozenset[str],
 ) -> Decision:
-    """The decision without the names that depend on one operating point or explain too little beside the others.
+    """The decision without the names that depend on one operating point or add too little to the others.
 
     Of an alias group its leader is asked.
     """
-    if not points or decision.verdict not in ("named", "alias_group"):
+    if not criteria.points or decision.verdict not in ("named", "alias_group"):
         return decision
+    thresholds = criteria.thresholds
     ordered = sorted(evidence, key=lambda one: -weights.masses[one.hypothesis.name])
     refused: dict[str, str] = {}
     for part in decision.named if decision.verdict == "named" else decision.named[:1]:
         best = next(one for one in ordered if part in one.hypothesis.parts)
-        least, where = support(space, points, best, part)
+        least, where = support(space, criteria.points, best, part)
         whole = max(explained, best.gain)
         if least < thresholds.support:
             alone = f"operating point {where}" if where else "chance"
-            refused[part] = f"what speaks for {part} comes from {alone} alone"
+            refused[part] = f"the evidence for {part} comes from {alone} alone"
         elif least < thresholds.share * whole or (
-            part in loop and _added(best, part, evidence) < thresholds.share_loop * whole
+            part in criteria.orders and _added(best, part, evidence) < thresholds.share_loop * whole
         ):
-            refused[part] = f"{part} explains too little beside what is known already"
+            refused[part] = f"{part} explains too little in addition to the effects named before"
     kept = tuple(part for part in decision.named if part not in refused)
     if not refused or (decision.verdict == "named" and kept):
         return replace(decision, named=kept)
@@ -207,9 +210,9 @@ def _judged(contest: Contest | None, evidence: list[Evidence]) -> list[Evidence]
 
 
 def _without_copies(singles: Sequence[Evidence]) -> list[Evidence]:
-    """Explanations less the anonymous ones that answer as one of the catalogue does.
+    """Explanations less the unmodelled causes that answer as one of the catalogue does.
 
-    An error of a sensor has no claim to what is heat just as well: it keeps its anonymous rivals.
+    An error of a sensor has no claim to what is heat just as well: it keeps its unmodelled rivals.
     """
     known = [one.answer for one in singles if one.hypothesis.family == "physical" and np.any(one.answer)]
     if not known:

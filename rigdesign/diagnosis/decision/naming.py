@@ -222,10 +222,9 @@ def _shown(
     along, across = values
     halves = [max(high - value, value - low) for value, (low, high) in zip(values, ends)]
     amplitude, phase = _polar(_amplitude_name(parameters[0].name), parameters[0].unit, along, across, halves)
-    shown = (amplitude, phase)
-    if isinstance(entry, Effect) and entry.kind == "run_out":
-        shown = (amplitude, phase, _twice(amplitude))  # type: ignore[assignment]
-    return (*shown, *plain)
+    if isinstance(entry, Effect) and entry.doubled:
+        return (amplitude, phase, _twice(entry.doubled, amplitude), *plain)
+    return (amplitude, phase, *plain)
 
 
 def _meets(end: float, limit: float) -> bool:
@@ -256,11 +255,11 @@ def _polar(name: str, unit: str, along: float, across: float, halves: Sequence[f
     )  # fmt: skip
 
 
-def _twice(amplitude: Value) -> Value:
-    """F_r, the run-out as a drawing and the case have it."""
+def _twice(name: str, amplitude: Value) -> Value:
+    """Peak to valley, as a drawing and the case have it."""
     low, high = amplitude.interval
     return Value(
-        name="run-out F_r", value=rounded(2.0 * amplitude.value), unit=amplitude.unit,
+        name=name, value=rounded(2.0 * amplitude.value), unit=amplitude.unit,
         interval=(rounded(2.0 * low), rounded(2.0 * high)),
     )  # fmt: skip
 
@@ -273,7 +272,7 @@ def _without_entry(explanation: str) -> str:
     """Words for what has no entry."""
     kind, _, rest = explanation.partition(":")
     if kind == "unknown":
-        return f"not in the catalogue:{rest}"
+        return f"not in the catalogue:{rest}".replace("heat unpaid", "heat not from the motor")
     first, _, second = rest.partition(",")
     if kind == "swapped_channels":
         return f"channels {first} and {second} exchanged"

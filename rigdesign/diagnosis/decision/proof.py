@@ -1,4 +1,4 @@
-"""What effects at given sizes do on the points kept aside: by the stored runs, and by the full model run again.
+"""What effects at given sizes do on the points held out: by the stored runs, and by the full model run again.
 
 The stored runs of a library answer to first order and by a reduced thermal model. What is reported is the answer of the
 full model: the case as it is and the case with the effects in it, both solved as a check solves them, at the points and
@@ -69,8 +69,8 @@ class FullRun:
         self.say(
             f"full model at {', '.join(one.name for one in settings)}, without and with {' and '.join(sizes)}"
         )
-        with BackgroundTasks([partial(predict, case, settings, channels) for case in cases]) as beside:
-            before, after = beside.results()
+        with BackgroundTasks([partial(predict, case, settings, channels) for case in cases]) as tasks:
+            before, after = tasks.results()
         place = {feature: row for row, feature in enumerate(before.features)}
         rows = np.array([place[feature] for feature in features], dtype=np.intp)
         return np.asarray((after.values - before.values)[rows])
@@ -80,32 +80,32 @@ class FullRun:
 class Proof:
     """What effects are held against: numbers of points that no fit has seen.
 
-    subject, whole : all numbers that were kept, and their residual where a healthy rig is white noise; points : kept
+    residuals, whole : all numbers that were kept, and their residual where a healthy rig is white noise; points : kept
         aside; rerun : None leaves it at the stored runs
     """
 
-    subject: ResidualProblem
+    residuals: ResidualProblem
     whole: Whitened
     points: tuple[str, ...]
     rerun: Rerun | None = None
 
     @cached_property
     def rows(self) -> Array:
-        """Places of the numbers at the points kept aside."""
+        """Places of the numbers at the points held out."""
         aside = set(self.points)
-        found = [row for row, one in enumerate(self.subject.features) if one.setting in aside]
+        found = [row for row, one in enumerate(self.residuals.features) if one.setting in aside]
         return np.array(found, dtype=np.intp)
 
     def stored(self, sizes: Sizes) -> Array:
         """(n,) what effects and sensors at these sizes add to all kept numbers, by the stored runs."""
-        subject = self.subject
-        entries = {Names(subject.effects, subject.errors).plain(name) for name in sizes}
-        known = [effect for effect in subject.effects if effect.name in entries]
-        errors = [error for error in subject.errors if error.name in entries]
+        residuals = self.residuals
+        entries = {Names(residuals.effects, residuals.errors).plain(name) for name in sizes}
+        known = [effect for effect in residuals.effects if effect.name in entries]
+        errors = [error for error in residuals.errors if error.name in entries]
         effects = physical(
-            None, subject.features, known, subject.library.responses, subject.teeth_a_turn, 0.0
+            None, residuals.features, known, residuals.library.responses, residuals.teeth_a_turn, 0.0
         )
-        answer = np.zeros(len(subject.features))
+        answer = np.zeros(len(residuals.features))
         for one in (*effects, *sensor(None, errors)):
             if one.name not in sizes:
                 continue
@@ -117,17 +117,17 @@ class Proof:
         return answer
 
     def again(self, sizes: Sizes) -> Array:
-        """(n,) the same with the full model run again at the points kept aside; sensors have no other answer.
+        """(n,) the same with the full model run again at the points held out; sensors have no other answer.
 
         Raises RigdesignError as `Rerun`.
         """
         answer = self.stored(sizes)
-        effects = {effect.name for effect in self.subject.effects}
-        names = Names(self.subject.effects, ())
+        effects = {effect.name for effect in self.residuals.effects}
+        names = Names(self.residuals.effects, ())
         of_case = {name: size for name, size in sizes.items() if names.plain(name) in effects}
         if of_case and self.rerun is not None:
             of_sensors = {name: size for name, size in sizes.items() if name not in of_case}
-            features = [self.subject.features[row] for row in self.rows]
+            features = [self.residuals.features[row] for row in self.rows]
             answer[self.rows] = self.rerun(features, of_case) + self.stored(of_sensors)[self.rows]
         return answer
 
@@ -135,13 +135,13 @@ class Proof:
         """The gap without and with an answer (n,); ``given`` (n,) is in the model both times."""
         residual = self.whole.raw if given is None else self.whole.raw - given
         rows = self.rows
-        quantities = [self.subject.channels[self.subject.features[row].channel].quantity for row in rows]
+        quantities = [self.residuals.channels[self.residuals.features[row].channel].quantity for row in rows]
         return gap(
-            self.covariance, residual[rows], answer[rows], self.subject.noise[rows], quantities, self.points
+            self.covariance, residual[rows], answer[rows], self.residuals.noise[rows], quantities, self.points
         )
 
     @cached_property
     def covariance(self) -> Covariance:
-        """Of the numbers at the points kept aside."""
+        """Of the numbers at the points held out."""
         matrix = self.whole.covariance.matrix[np.ix_(self.rows, self.rows)]
         return Covariance(base=matrix, columns=(), amplitudes={})

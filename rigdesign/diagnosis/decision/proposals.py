@@ -19,11 +19,11 @@ from rigdesign.measurement.places import Places
 from rigdesign.prediction.model import Channel, Feature, OperatingCondition
 
 RIVALS = 3
-"""Explanations that are to be told apart."""
+"""Explanations that are to be separated."""
 
 
 def extras_of(case: Case, settings: Sequence[OperatingCondition]) -> tuple[Extra, ...]:
-    """Points beside the plan of a set."""
+    """Points in addition to the plan of a set."""
     return extra_points(settings, Places(case).meshes if case.drivetrain is not None else ())
 
 
@@ -32,7 +32,7 @@ def proposals(
 ) -> tuple[Ranked, ...]:
     """Measurements that tell the leading rivals apart, best first; none where something is named.
 
-    With too few data to name anything: those that tell the leading explanation from nothing at all.
+    With too few data to name anything: those that tell the leading explanation from a healthy rig.
 
     library : with the candidates, points and channels under the names of the set
     """
@@ -42,26 +42,26 @@ def proposals(
     alone = found.decision.verdict == "data_insufficient"
     if len(rivals) < (1 if alone else 2):
         return ()
-    whole, measured = _with_candidates(problem.subject.rows(found.kept), library)
+    whole, measured = _with_candidates(problem.residuals.rows(found.kept), library)
     answers = _answers(problem, whole, rivals)
-    told = [_rival(one, answers[one.hypothesis.name]) for one in rivals]
+    compared = [_rival(one, answers[one.hypothesis.name]) for one in rivals]
     if alone:
-        told = [told[0], _nothing(len(whole.features))]
+        compared = [compared[0], _nothing(len(whole.features))]
     return ranked(
         whole.covariance(amplitudes),
         measured,
         found.residual,
-        told,
+        compared,
         _offers(whole.features[measured:], whole.channels, extras),
     )
 
 
 def _rivals(found: Diagnosis) -> list[Evidence]:
     """The likeliest single explanations of different things, the members of a group first."""
-    masses, group = found.examinations[0].weights.inclusion, found.decision.named
+    masses, group = found.evaluations[0].weights.inclusion, found.decision.named
     singles = [
         one
-        for one in found.examinations[0].evidence
+        for one in found.evaluations[0].evidence
         if one.hypothesis.family in ("physical", "sensor") and len(one.hypothesis.parts) == 1
     ]
     best = {one.hypothesis.parts[0]: one for one in reversed(singles)}
@@ -69,34 +69,34 @@ def _rivals(found: Diagnosis) -> list[Evidence]:
     return [one for _, one in ordered][:RIVALS]
 
 
-def _with_candidates(subject: ResidualProblem, library: Library) -> tuple[ResidualProblem, int]:
+def _with_candidates(residuals: ResidualProblem, library: Library) -> tuple[ResidualProblem, int]:
     """The numbers of the set followed by those that could be read."""
-    have = set(subject.features)
+    have = set(residuals.features)
     spare = tuple(feature for feature in library.features if feature not in have and _offered(feature))
-    features = (*subject.features, *spare)
+    features = (*residuals.features, *spare)
     channels = {channel.name: channel for channel in library.channels}
     noise = np.array([NOISE[channels[feature.channel].quantity] for feature in spare])
     count = len(spare)
     errors = tuple(
-        replace(error, values=np.concatenate([error.values, np.zeros(count)])) for error in subject.errors
+        replace(error, values=np.concatenate([error.values, np.zeros(count)])) for error in residuals.errors
     )
     scatter = np.zeros((len(features), len(features)))
-    measured = len(subject.features)
+    measured = len(residuals.features)
     cut = library.rows(features)
-    scatter[:measured, :measured] = subject.scatter
+    scatter[:measured, :measured] = residuals.scatter
     return (
         ResidualProblem(
             features=features,
-            values=np.concatenate([subject.values, np.zeros(count)]),
-            noise=np.concatenate([subject.noise, noise]),
+            values=np.concatenate([residuals.values, np.zeros(count)]),
+            noise=np.concatenate([residuals.noise, noise]),
             library=cut,
             channels=channels,
-            effects=subject.effects,
+            effects=residuals.effects,
             errors=errors,
             scatter=scatter,
-            mesh_orders=subject.mesh_orders,
-            teeth_a_turn=subject.teeth_a_turn,
-            level=reference_scale(features, cut.base, channels, cut.settings, subject.mesh_orders),
+            mesh_orders=residuals.mesh_orders,
+            teeth_a_turn=residuals.teeth_a_turn,
+            level=reference_scale(features, cut.base, channels, cut.settings, residuals.mesh_orders),
         ),
         measured,
     )
@@ -121,7 +121,7 @@ def _answers(problem: Problem, whole: ResidualProblem, rivals: Sequence[Evidence
 def _rival(one: Evidence, hypothesis: Hypothesis) -> Rival:
     sizes = np.array(one.coordinates)
     if hypothesis.curve is not None:
-        answer, slopes = hypothesis.curve.at(sizes)[0], hypothesis.curve.slope(float(sizes[0]))[:, None]
+        answer, slopes = hypothesis.curve.at(sizes)[0], hypothesis.curve.sensitivity(float(sizes[0]))[:, None]
     else:
         assert hypothesis.columns is not None
         slopes = hypothesis.columns

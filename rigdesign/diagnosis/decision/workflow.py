@@ -6,16 +6,14 @@ readings -> single outliers out -> points held out -> evidence -> verdict, again
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Literal
 
 import numpy as np
 
-from rigdesign.diagnosis.catalogue.effects import CIRCUIT, DYNAMIC
 from rigdesign.diagnosis.decision.claims import Refusal, Traces, claim
 from rigdesign.diagnosis.decision.decision import Decision, posterior
 from rigdesign.diagnosis.decision.defaults import DEFAULT, Calibration
-from rigdesign.diagnosis.decision.evaluate import Earlier, Examination, Explanations, evaluate
+from rigdesign.diagnosis.decision.evaluate import Criteria, Earlier, Evaluation, Explanations, evaluate
 from rigdesign.diagnosis.decision.proof import Proof, Rerun
 from rigdesign.diagnosis.residual.baseline import differenced
 from rigdesign.diagnosis.residual.data_error import data_error
@@ -23,14 +21,14 @@ from rigdesign.diagnosis.residual.healthy import relative_speed
 from rigdesign.diagnosis.residual.hypotheses import physical, sensor, without_a_name
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.residual.signature import Contest, Signature
-from rigdesign.diagnosis.residual.unmodelled_cause import anonymous
+from rigdesign.diagnosis.residual.unmodelled_cause import unmodelled_causes
 from rigdesign.diagnosis.statistics.columns import Array, Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.detectability import Detectability, aliases
-from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import Gap, held_out
 from rigdesign.diagnosis.statistics.intervals import JointFit, fit_together
-from rigdesign.diagnosis.statistics.model_error import OwnError
+from rigdesign.diagnosis.statistics.model_error import ModelError
 from rigdesign.diagnosis.statistics.outliers import reject
 
 MOST_EFFECTS = 4
@@ -48,7 +46,7 @@ class Problem:
     repeated : the noise is known from repeats
     """
 
-    subject: ResidualProblem
+    residuals: ResidualProblem
     baseline: ResidualProblem | None
     seed: str
     repeated: bool
@@ -71,7 +69,7 @@ class Diagnosis:
 
     strength : proven where the gap shrinks by more than its scatter with the named effects in the model, run in full,
         and the noise is known from repeats; named : names, or members of an alias group; fit : of named effects;
-        fits : member of a group -> the fit of it with the names apart from the group; gap : on the points kept aside;
+        fits : member of a group -> the fit of it with the names apart from the group; gap : on the points held out;
         refused : names that the search gave and that are not claimed; rejected : outliers with their feature
     """
 
@@ -88,18 +86,18 @@ class Diagnosis:
     aliases: tuple[tuple[str, str, float], ...]
     rejected: tuple[tuple[int, float], ...]
     held_out_points: tuple[str, ...]
-    deciding: Examination = field(repr=False)
+    deciding: Evaluation = field(repr=False)
     """The look that the verdict depends on: the first one, or that at all points at once where the data are wrong."""
-    examinations: tuple[Examination, ...] = field(repr=False)
+    evaluations: tuple[Evaluation, ...] = field(repr=False)
     covariance: Covariance = field(repr=False)
     """Of all numbers that were kept, held-out ones included."""
     proof: Proof = field(repr=False)
     """What names were held against."""
     answer: Array = field(repr=False)
-    """(n,) what the named effects add to the prediction, in the units of the features; at points kept aside by the full
+    """(n,) what the named effects add to the prediction, in the units of the features; at points held out by the full
     model."""
     kept: tuple[int, ...] = field(repr=False)
-    """Rows of the subject that were kept."""
+    """Rows of the residuals that were kept."""
     residual: Array = field(repr=False)
     """(n,) what was to be explained at the kept rows: against the model, or given the baseline."""
 
@@ -109,30 +107,30 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun 
 
     rerun : the full model with named effects in it; without one the proof is left at the stored runs, and indicative
     """
-    everything = _space(problem, problem.subject, calibration)
-    series = [(one.channel, one.order) for one in problem.subject.features]
+    everything = _space(problem, problem.residuals, calibration)
+    series = [(one.channel, one.order) for one in problem.residuals.features]
     outliers = reject(everything.covariance.matrix, everything.raw, series)
     gone = {outlier.place for outlier in outliers}
-    kept = [row for row in range(len(problem.subject.features)) if row not in gone]
-    subject = problem.subject.rows(kept)
-    whole = _cut(problem, everything, subject, kept, calibration) if gone else everything
-    points = held_out([setting.name for setting in subject.library.settings], problem.seed)
-    open_rows = [row for row, one in enumerate(subject.features) if one.setting not in points]
-    seen = subject.rows(open_rows)
+    kept = [row for row in range(len(problem.residuals.features)) if row not in gone]
+    residuals = problem.residuals.rows(kept)
+    whole = _cut(problem, everything, residuals, kept, calibration) if gone else everything
+    points = held_out([setting.name for setting in residuals.library.settings], problem.seed)
+    open_rows = [row for row, one in enumerate(residuals.features) if one.setting not in points]
+    seen = residuals.rows(open_rows)
     space = _cut(problem, whole, seen, open_rows, calibration)
     explanations = _explanations(problem, seen, space)
-    examinations, found = _search(problem, seen, space, explanations, calibration)
-    refused = _refused(subject)
-    looked_at = (subject, whole) if problem.baseline is None else (problem.subject, everything)
+    evaluations, found = _search(problem, seen, space, explanations, calibration)
+    refused = _refused(residuals)
+    looked_at = (residuals, whole) if problem.baseline is None else (problem.residuals, everything)
     wrong = None if refused else _wrong_data(problem, *looked_at, calibration)
-    deciding = wrong or examinations[0]
-    proof = Proof(subject=subject, whole=whole, points=points, rerun=rerun)
+    deciding = wrong or evaluations[0]
+    proof = Proof(residuals=residuals, whole=whole, points=points, rerun=rerun)
     claimed = claim(
         refused or deciding.decision,
         found,
         Traces(
             space=space,
-            explanations=examinations[0].evidence,
+            explanations=evaluations[0].evidence,
             assembly=_assemblies(seen),
         ),
         proof,
@@ -150,11 +148,11 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun 
         gap=claimed.gap,
         refused=claimed.refused,
         alternatives=_alternatives(deciding),
-        detectability=examinations[0].detectability,
+        detectability=evaluations[0].detectability,
         aliases=tuple(aliases(space, explanations.physical)),
         rejected=tuple((outlier.place, outlier.deviation) for outlier in outliers),
         held_out_points=points,
-        examinations=tuple(examinations),
+        evaluations=tuple(evaluations),
         deciding=deciding,
         covariance=whole.covariance,
         proof=proof,
@@ -164,11 +162,11 @@ def diagnose(problem: Problem, calibration: Calibration = DEFAULT, rerun: Rerun 
     )
 
 
-def _space(problem: Problem, subject: ResidualProblem, calibration: Calibration) -> Whitened:
+def _space(problem: Problem, residuals: ResidualProblem, calibration: Calibration) -> Whitened:
     if problem.baseline is None:
-        return plain(subject, calibration.amplitudes, calibration.widening)
+        return plain(residuals, calibration.amplitudes, calibration.inflation)
     return differenced(
-        subject,
+        residuals,
         problem.baseline,
         calibration.amplitudes,
         calibration.drift,
@@ -176,7 +174,11 @@ def _space(problem: Problem, subject: ResidualProblem, calibration: Calibration)
 
 
 def _cut(
-    problem: Problem, space: Whitened, subject: ResidualProblem, rows: Sequence[int], calibration: Calibration
+    problem: Problem,
+    space: Whitened,
+    residuals: ResidualProblem,
+    rows: Sequence[int],
+    calibration: Calibration,
 ) -> Whitened:
     """The space of some of its numbers.
 
@@ -184,36 +186,42 @@ def _cut(
     it does.
     """
     return (
-        plain(subject, calibration.amplitudes, calibration.widening)
+        plain(residuals, calibration.amplitudes, calibration.inflation)
         if problem.baseline is None
         else space.rows(rows)
     )
 
 
-def _assemblies(subject: ResidualProblem) -> list[tuple[tuple[str, int], ...]]:
+def _assemblies(residuals: ResidualProblem) -> list[tuple[tuple[str, int], ...]]:
     """(n,) teeth by which meshes were put on further at the point of each number."""
-    found = {one.name: tuple(sorted(one.tooth_offset.items())) for one in subject.library.settings}
-    return [found.get(feature.setting, ()) for feature in subject.features]
+    found = {one.name: tuple(sorted(one.tooth_offset.items())) for one in residuals.library.settings}
+    return [found.get(feature.setting, ()) for feature in residuals.features]
 
 
 def _explanations(
-    problem: Problem, subject: ResidualProblem, space: Whitened, *, rivals: bool = True, data: bool = True
+    problem: Problem, residuals: ResidualProblem, space: Whitened, *, rivals: bool = True, data: bool = True
 ) -> Explanations:
-    """All explanations; without the anonymous ``rivals`` where only data and catalogue are evaluated, and without wrong
-    ``data`` where those were looked at before."""
+    """All explanations; without the unmodelled ``rivals`` where only data and catalogue are evaluated, and without
+    errors of the ``data`` where those were evaluated before."""
     covariance = space.covariance
-    expected = subject.values - space.raw
+    expected = residuals.values - space.raw
     return Explanations(
         physical=physical(
-            covariance, subject.features, subject.effects, subject.library.responses, subject.teeth_a_turn
+            covariance,
+            residuals.features,
+            residuals.effects,
+            residuals.library.responses,
+            residuals.teeth_a_turn,
         ),
-        sensor=sensor(covariance, subject.errors),
-        anonymous=without_a_name(covariance, anonymous(subject.library, subject.channels)) if rivals else [],
+        sensor=sensor(covariance, residuals.errors),
+        unmodelled=without_a_name(covariance, unmodelled_causes(residuals.library, residuals.channels))
+        if rivals
+        else [],
         data=data_error(
             covariance,
-            subject.features,
-            subject.channels,
-            subject.values,
+            residuals.features,
+            residuals.channels,
+            residuals.values,
             expected,
             met_before=problem.baseline is not None,
         )
@@ -222,65 +230,69 @@ def _explanations(
     )
 
 
+def _unmodelled(covariance: Covariance, residuals: ResidualProblem) -> list[Hypothesis]:
+    return without_a_name(covariance, unmodelled_causes(residuals.library, residuals.channels))
+
+
 def _search(
     problem: Problem,
-    subject: ResidualProblem,
+    residuals: ResidualProblem,
     space: Whitened,
     explanations: Explanations,
     calibration: Calibration,
-) -> tuple[list[Examination], tuple[Evidence, ...]]:
-    """Examine, take what is named into the model, evaluate what is left."""
-    signature = _signature(problem, subject, calibration)
-    look = partial(
-        evaluate,
+) -> tuple[list[Evaluation], tuple[Evidence, ...]]:
+    """Evaluate, take what is named into the model, evaluate what is left."""
+    signature = _signature(problem, residuals, calibration)
+    criteria = Criteria(
         thresholds=calibration.thresholds(problem.baseline is not None),
-        points=[feature.setting for feature in subject.features],
-        loop=frozenset(effect.claim for effect in subject.effects if effect.family in DYNAMIC),
+        points=[feature.setting for feature in residuals.features],
+        orders=frozenset(effect.claim for effect in residuals.effects if effect.family.dynamic),
         signature=signature,
     )
-    examinations = [look(space, explanations)]
+    evaluations = [evaluate(space, explanations, criteria)]
     found: list[Evidence] = []
-    while examinations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
-        new = _best_of(examinations[-1])
+    while evaluations[-1].decision.verdict == "named" and len(found) < MOST_EFFECTS:
+        new = _best_of(evaluations[-1])
         if not new:
             break
         found += new
         after = _with_named(space, found, signature)
         claimed = {part for one in found for part in one.hypothesis.parts}
-        rest = _explanations(problem, subject, after, data=False)
+        rest = _explanations(problem, residuals, after, data=False)
         left = Explanations(
             physical=[one for one in rest.physical if claimed.isdisjoint(one.parts)],
             sensor=[one for one in rest.sensor if claimed.isdisjoint(one.parts)],
-            anonymous=rest.anonymous,
+            unmodelled=rest.unmodelled,
             data=rest.data,
         )
-        earlier = Earlier(look=examinations[0], named=frozenset(claimed))
-        examinations.append(look(after, left, explained=max(one.gain for one in found), earlier=earlier))
-    return examinations, tuple(found)
+        earlier = Earlier(look=evaluations[0], named=frozenset(claimed))
+        explained = max(one.gain for one in found)
+        evaluations.append(evaluate(after, left, criteria, explained=explained, earlier=earlier))
+    return evaluations, tuple(found)
 
 
-def _signature(problem: Problem, subject: ResidualProblem, calibration: Calibration) -> Signature:
+def _signature(problem: Problem, residuals: ResidualProblem, calibration: Calibration) -> Signature:
     """An order is answered as badly as the model knows it: the frequencies near it, and of a mesh its own size.
 
     Without a baseline the residual of a healthy rig is as wide as that by itself.
     """
-    placed = calibration.amplitudes.frequency * subject.steepness
-    share = np.hypot(placed, np.where(subject.of_mesh, calibration.amplitudes.series_mesh_point, 0.0))
-    own = OwnError.of(subject.features, share, subject.of_mesh, subject.values)
+    placed = calibration.amplitudes.frequency * residuals.steepness
+    share = np.hypot(placed, np.where(residuals.of_mesh, calibration.amplitudes.series_mesh_point, 0.0))
+    own = ModelError.of(residuals.features, share, residuals.of_mesh, residuals.values)
     return Signature.of(
-        subject.features,
-        relative_speed(subject.features, subject.library.settings),
+        residuals.features,
+        relative_speed(residuals.features, residuals.library.settings),
         calibration.signature_error,
         None if problem.baseline is None else own,
-        circuit=frozenset(effect.claim for effect in subject.effects if effect.family in CIRCUIT),
+        circuit=frozenset(effect.claim for effect in residuals.effects if effect.family.circuit),
     )
 
 
-def _best_of(examination: Examination) -> list[Evidence]:
+def _best_of(evaluation: Evaluation) -> list[Evidence]:
     """For every named effect its best explanation by itself."""
     found = []
-    for name in examination.decision.named:
-        own = [one for one in examination.evidence if one.hypothesis.parts == (name,)]
+    for name in evaluation.decision.named:
+        own = [one for one in evaluation.evidence if one.hypothesis.parts == (name,)]
         if own:
             found.append(own[0])
     return found
@@ -313,43 +325,43 @@ def _half(one: Evidence) -> float:
     return one.hypothesis.half if curve is None else curve.half
 
 
-def _refused(subject: ResidualProblem) -> Decision | None:
+def _refused(residuals: ResidualProblem) -> Decision | None:
     """Too little to name anything from, whatever the numbers say."""
-    points = {feature.setting for feature in subject.features if feature.setting}
+    points = {feature.setting for feature in residuals.features if feature.setting}
     if len(points) >= LEAST_RUNNING_POINTS:
         return None
     return Decision(
         verdict="data_insufficient",
         named=(),
-        reason=f"operating points: {len(points)}, at least {LEAST_RUNNING_POINTS} are needed to tell effects apart",
+        reason=f"operating points: {len(points)}, at least {LEAST_RUNNING_POINTS} are needed to separate effects",
     )
 
 
 def _wrong_data(
-    problem: Problem, subject: ResidualProblem, whole: Whitened, calibration: Calibration
-) -> Examination | None:
+    problem: Problem, residuals: ResidualProblem, whole: Whitened, calibration: Calibration
+) -> Evaluation | None:
     """A look at all data together, if they fit once something in them is undone; no effect is looked for.
 
     Held-out points are included, as an exchange with one of them would not show in the others. With a baseline so is
     what stands out: of exchanged readings that are the only ones of their channels nothing else is left. Without one
     it may be the model that is out.
     """
-    everything = _explanations(problem, subject, whole, rivals=False)
+    everything = _explanations(problem, residuals, whole, rivals=False)
     singles = (*everything.physical, *everything.sensor, *everything.data)
-    contest = Contest(whole, _signature(problem, subject, calibration))
+    contest = Contest(whole, _signature(problem, residuals, calibration))
     judged = contest.judged([evaluate_hypothesis(whole, one) for one in singles])
     evidence = sorted(judged, key=lambda one: -one.log_bayes)
     weights = posterior(evidence, everything.members)
     if weights.families.get("input", 0.0) <= calibration.thresholds(problem.baseline is not None).input:
         return None
     best = max(evidence, key=lambda one: weights.masses[one.hypothesis.name])
-    return Examination(
+    return Evaluation(
         evidence=tuple(evidence),
         weights=weights,
         decision=Decision(
             verdict="input_error_suspected",
             named=best.hypothesis.parts,
-            reason=f"the data fit the rig once {best.hypothesis.parts[0]} is undone",
+            reason=f"the data agree with the model once {best.hypothesis.parts[0]} is corrected",
         ),
         detectability=(),
         chi_square=whole.chi_square,
@@ -368,9 +380,9 @@ def _bounds(one: Evidence) -> list[tuple[float, float]]:
     return [(-one.hypothesis.half, one.hypothesis.half)] * one.columns.shape[1]
 
 
-def _alternatives(examination: Examination, count: int = 12) -> tuple[Alternative, ...]:
-    masses: Mapping[str, float] = examination.weights.masses
-    ordered = sorted(examination.evidence, key=lambda one: -masses[one.hypothesis.name])
+def _alternatives(evaluation: Evaluation, count: int = 12) -> tuple[Alternative, ...]:
+    masses: Mapping[str, float] = evaluation.weights.masses
+    ordered = sorted(evaluation.evidence, key=lambda one: -masses[one.hypothesis.name])
     return tuple(
         Alternative(
             name=one.hypothesis.name,

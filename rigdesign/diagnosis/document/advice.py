@@ -12,11 +12,11 @@ from rigdesign.measurement.comparison.compare import sentence, significant
 
 VERDICTS = {
     "named": "effect named",
-    "alias_group": "one of a few",
+    "alias_group": "one of an alias group",
     "unknown_located": "unknown, located",
-    "within_noise": "nothing missing",
-    "too_small": "too small to tell",
-    "input_error_suspected": "data suspected",
+    "within_noise": "no effect missing",
+    "too_small": "too small to identify",
+    "input_error_suspected": "data error suspected",
     "data_insufficient": "data insufficient",
 }
 """Verdict -> as a heading."""
@@ -59,23 +59,25 @@ def headline(outcome: Outcome) -> str:
             group = f"One of these effects is present; the data do not identify which: {_titles(outcome)}."
             return " ".join([group, *_named(outcome)])
         case "input_error_suspected":
-            return f"The data look wrong rather than the model: {_titles(outcome)}."
+            return f"A data error is more probable than a model error: {_titles(outcome)}."
         case "unknown_located":
             reason = found.decision.reason
             lead = "An effect is present; the data do not identify it"
             return f"{lead}: {reason}. {_where(outcome)}".rstrip()
         case "within_noise":
-            return "Nothing is missing that these data could show: the residual of a healthy rig is as large."
+            return (
+                "No missing effect is detectable in these data: the residual is within that of a healthy rig."
+            )
         case "too_small":
             first = _titles(outcome)
-            return f"An effect may be present, too small to be distinguished from its rivals; first of them: {first}."
-    return f"These data cannot name anything: {found.decision.reason}. {_foremost(outcome)}".rstrip()
+            return f"An effect may be present, too small to be distinguished from its rivals; most probable: {first}."
+    return f"These data cannot identify an effect: {found.decision.reason}. {_foremost(outcome)}".rstrip()
 
 
 def _named(outcome: Outcome) -> list[str]:
     """What is named, of the case and of the measurement apart."""
     texts = []
-    for lead, of_case in (("What the model lacks", True), ("What is off in the measurement", False)):
+    for lead, of_case in (("Missing in the model", True), ("Wrong in the measurement", False)):
         own = [one for one in outcome.named if isinstance(one.entry, Effect) == of_case]
         if own:
             texts.append(f"{lead}: {'; '.join(f'{one.title}, {formatted(one.shown[0])}' for one in own)}.")
@@ -89,15 +91,13 @@ def _where(outcome: Outcome) -> str:
 
 
 def _foremost(outcome: Outcome) -> str:
-    """Where model and data part most, and what fits best there, as far as too few data tell."""
+    """The largest residual and the best explanation of it, as far as few data allow."""
     first = outcome.before[0] if outcome.before else None
     if first is None or first.rms < NOTABLE:
         return ""
-    text = (
-        f"Model and data part most at the {first.group}: {first.rms:.2g} standard deviations of a healthy rig"
-    )
+    text = f"Largest residual at the {first.group}: {first.rms:.2g} standard deviations of a healthy rig"
     leading = outcome.suspects[0].title if outcome.suspects else ""
-    return f"{text}; first among what could be behind it: {leading}." if leading else f"{text}."
+    return f"{text}; most probable cause: {leading}." if leading else f"{text}."
 
 
 def certainty(outcome: Outcome) -> str:
@@ -105,20 +105,20 @@ def certainty(outcome: Outcome) -> str:
     found = outcome.result.diagnosis
     if found.strength == "proven" and found.gap is not None:
         return (
-            "Proven: the noise is known from repeats, and with what is named in the model, run in full, the gap "
+            "Proven: the noise is known from repeats, and with the named effects in the model, run in full, the gap "
             f"{gap_in_words(found.gap)}."
         )
     missing = []
     if outcome.verdict == "alias_group":
-        missing.append("a group is no name")
+        missing.append("an alias group identifies no single effect")
     elif not found.found:
-        missing.append("nothing is named that could be proven")
+        missing.append("no effect is named")
     elif found.proof.rerun is None:
-        missing.append("the case with what is named was not run in full")
+        missing.append("the case with the named effects was not run in full")
     if not outcome.result.problem.repeated:
-        missing.append("most numbers have a single reading, so the noise is what the set declares")
+        missing.append("most numbers have a single reading, so the declared noise is used")
     if not found.held_out_points:
-        missing.append(f"no operating point was kept aside (that takes at least {LEAST_POINTS})")
+        missing.append(f"no operating point was held out (that takes at least {LEAST_POINTS})")
     return f"Indicative: {', and '.join(missing)}."
 
 
@@ -137,11 +137,11 @@ def steps(outcome: Outcome) -> tuple[NextStep, ...]:
 def _why(outcome: Outcome, proposal: Ranked) -> str:
     """What a proposal is good for."""
     apart = (
-        "the leading explanation from nothing at all"
+        "the leading explanation from a healthy rig"
         if outcome.verdict == "data_insufficient"
-        else "the leading explanations apart"
+        else "the leading explanations"
     )
-    return f"tells {apart}" if proposal.decides else f"goes some way to tell {apart}"
+    return f"separates {apart}" if proposal.decides else f"partly separates {apart}"
 
 
 def _first(outcome: Outcome) -> list[NextStep]:
@@ -152,13 +152,13 @@ def _first(outcome: Outcome) -> list[NextStep]:
             if outcome.picked is None:
                 return [
                     NextStep(
-                        text="look for what one of the group would show elsewhere on the rig, or pick one with --name",
-                        why="these data fit all of them alike",
+                        text="inspect the rig for other signs of one member of the group, or choose one with --name",
+                        why="these data fit all of them equally well",
                     )
                 ]
         case "unknown_located":
             place = outcome.before[0].group if outcome.before else "the rig"
-            return [NextStep(text=f"look at {place}", why="there the residual stands out most")]
+            return [NextStep(text=f"look at {place}", why="the residual is largest there")]
     return corrections
 
 
@@ -170,14 +170,14 @@ def _better_data(outcome: Outcome) -> list[NextStep]:
         steps.append(
             NextStep(
                 text="measure 9 to 15 operating points that mix low and high speed, torque, oil temperature and flow",
-                why=f"{running} operating point{'s' if running != 1 else ''} cannot tell effects apart",
+                why=f"{running} operating point{'s' if running != 1 else ''} cannot separate effects",
             )
         )
     elif not found.held_out_points:
         steps.append(
             NextStep(
                 text=f"measure at least {LEAST_POINTS} operating points: corners of speed, torque and oil temperature",
-                why="some can then be kept aside to prove a name",
+                why="some can then be held out to verify a named effect",
             )
         )
     if not result.problem.repeated:

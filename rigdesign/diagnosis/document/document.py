@@ -1,4 +1,4 @@
-"""diagnosis.json: what was found, how sure it is, what it depends on and what it leaves."""
+"""diagnosis.json: what was found, how sure it is, what it depends on and what remains."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -11,6 +11,7 @@ from rigdesign.base import units
 from rigdesign.base.json_text import to_plain
 from rigdesign.base.version import __version__
 from rigdesign.diagnosis.catalogue.effects import Effect
+from rigdesign.diagnosis.decision.defaults import Calibration
 from rigdesign.diagnosis.decision.naming import Names, Sized, Value, from_evidence, parameter_of, size_value
 from rigdesign.diagnosis.document.advice import certainty, headline, steps
 from rigdesign.diagnosis.document.gap import gap_document, refused_rows
@@ -88,7 +89,7 @@ def diagnosis_document(outcome: Outcome) -> dict[str, Any]:
             ],
         },
         "patch": _patch(outcome),
-        "calibration": asdict(result.calibration),
+        "calibration": _calibration(result.calibration),
         "seed": result.problem.seed,
     }
     plain = to_plain(document)
@@ -115,9 +116,17 @@ def _measurement(measurement: MeasurementSet) -> dict[str, Any]:
     }
 
 
+def _calibration(calibration: Calibration) -> dict[str, Any]:
+    """Everything calibrated, by the keys of the contract."""
+    document = asdict(calibration)
+    for part in (document, document["drift"]):
+        part["widening"] = part.pop("inflation")
+    return document
+
+
 def _inclusion(outcome: Outcome, one: Sized) -> float:
     """Posterior mass of all explanations that hold the effect, in the look at the data that named it."""
-    masses = [look.weights.inclusion.get(one.name, 0.0) for look in outcome.result.diagnosis.examinations]
+    masses = [look.weights.inclusion.get(one.name, 0.0) for look in outcome.result.diagnosis.evaluations]
     return max(masses)
 
 
@@ -265,7 +274,7 @@ def _located(item: Located, measurement: MeasurementSet) -> dict[str, Any]:
 def _unexplained(outcome: Outcome) -> dict[str, Any]:
     """What is left once the named effects are in the model."""
     found = outcome.result.diagnosis
-    last = found.examinations[-1]
+    last = found.evaluations[-1]
     return {
         "verdict": last.decision.verdict,
         "reason": last.decision.reason,
@@ -277,10 +286,10 @@ def _rejected(outcome: Outcome) -> list[dict[str, Any]]:
     result = outcome.result
     rows = []
     for row, deviation in result.diagnosis.rejected:
-        feature = result.problem.subject.features[row]
+        feature = result.problem.residuals.features[row]
         entry = result.data.channels[feature.channel]
         kind = CHANNELS[entry.channel.quantity].kind
-        value = float(result.problem.subject.values[row])
+        value = float(result.problem.residuals.values[row])
         rows.append(
             {
                 "channel": feature.channel, "point": feature.setting or None, "order": feature.order,
@@ -342,8 +351,8 @@ def leading_sentences(outcome: Outcome) -> list[str]:
     whole = float(shares.sum())
     weights = [(float(shares[list(item.features)].sum()), item) for item in outcome.before]
     ordered = sorted(weights, key=lambda pair: -pair[0])
-    told = [item for weight, item in ordered if weight > 0.15 * whole]
+    reported = [item for weight, item in ordered if weight > 0.15 * whole]
     return [
         f"{sentence(item, outcome.result.measurement)} {item.rms:.2g} standard deviations of a healthy rig."
-        for item in told
+        for item in reported
     ]

@@ -1,4 +1,4 @@
-"""The gap on points kept aside in diagnosis.json, with what is named or picked and with what is refused."""
+"""The gap on points held out in diagnosis.json, with what is named or picked and with what is refused."""
 
 from typing import Any
 
@@ -54,7 +54,7 @@ def gap_rows(outcome: Outcome) -> list[dict[str, Any]]:
     """
     result, found = outcome.result, outcome.result.diagnosis
     features = kept_features(outcome)
-    noise = result.problem.subject.noise[list(found.kept)]
+    noise = result.problem.residuals.noise[list(found.kept)]
     spread = np.sqrt(np.diagonal(found.covariance.matrix))
     rows = []
     for name, entry in result.data.channels.items():
@@ -78,7 +78,7 @@ def gap_rows(outcome: Outcome) -> list[dict[str, Any]]:
 
 def kept_features(outcome: Outcome) -> tuple[Feature, ...]:
     """The numbers that were kept, in the order of residual and answer."""
-    return tuple(outcome.result.problem.subject.features[row] for row in outcome.result.diagnosis.kept)
+    return tuple(outcome.result.problem.residuals.features[row] for row in outcome.result.diagnosis.kept)
 
 
 def _rms(values: Array) -> float:

@@ -21,7 +21,7 @@ def located(result: Result, residual: Array) -> tuple[Located, ...]:
     the residual of a healthy rig is as large.
     """
     found = result.diagnosis
-    features = [result.problem.subject.features[row] for row in found.kept]
+    features = [result.problem.residuals.features[row] for row in found.kept]
     bands = Bands(result.measurement)
     matrix = found.covariance.matrix
     items = locate(

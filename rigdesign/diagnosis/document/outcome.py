@@ -50,7 +50,7 @@ class Outcome:
     named : of verdict ``named``, and what stands apart from an alias group; suspects : members of an alias group,
         suspected data, or the leading explanations
     picked : what the user chose among those not named; case_patch : None where refused, with the reason in ``refused``
-    answer : (n,) what named or picked effects add to the kept numbers; gap : with them on the points kept aside
+    answer : (n,) what named or picked effects add to the kept numbers; gap : with them on the points held out
     before, after : where the residual sits without and with the named effects
     """
 
@@ -105,7 +105,7 @@ def outcome(result: Result, *, pick: str | None = None, proposals: Sequence[Rank
         An effect picked that these data do not evaluate, or that is not among the named ones.
     """
     found = result.diagnosis
-    names = Names(result.effects, result.problem.subject.errors)
+    names = Names(result.effects, result.problem.residuals.errors)
     fit = found.fit if pick is None else found.fits.get(pick, found.fit)
     fitted = () if fit is None else from_fit(names, fit.sizes)
     group = found.decision.verdict == "alias_group"
@@ -193,7 +193,7 @@ def _single(one: Evidence) -> bool:
 
 def _best(result: Result, names: Names, name: str) -> Evidence | None:
     """The best explanation by this effect alone, of those with an entry."""
-    for one in result.diagnosis.examinations[0].evidence:
+    for one in result.diagnosis.evaluations[0].evidence:
         alone = one.hypothesis.parts == (name,) or one.hypothesis.name == name
         if alone and names.entry(one.hypothesis.name) is not None:
             return one
@@ -211,7 +211,7 @@ def _picked(result: Result, names: Names, fitted: Sequence[Sized], pick: str) ->
     if best is None:
         evaluated = [
             one.hypothesis.name
-            for one in result.diagnosis.examinations[0].evidence
+            for one in result.diagnosis.evaluations[0].evidence
             if names.entry(one.hypothesis.name) is not None
         ]
         raise UsageError(
@@ -221,7 +221,7 @@ def _picked(result: Result, names: Names, fitted: Sequence[Sized], pick: str) ->
 
 
 def _put_to_the_proof(result: Result, applied: Sequence[Sized]) -> tuple[Array, Gap | None, str]:
-    """What picked effects add, the gap with them on the points kept aside, and why they are not patched or nothing."""
+    """What picked effects add, the gap with them on the points held out, and why they are not patched or nothing."""
     proof = result.diagnosis.proof
     sizes = {one.explanation: one.coordinates for one in applied}
     together = " and ".join(sizes)
@@ -262,7 +262,10 @@ def _why_not(result: Result, sensors: bool) -> str:
         return "only sensors or settings are off; the case stays as it is"
     match result.diagnosis.decision.verdict:
         case "alias_group":
-            return "these data do not tell the members of the group apart; pick one with --name, or measure what would"
+            return (
+                "the data do not separate the members of the group; choose one with --name, or make a measurement "
+                "that separates them"
+            )
         case "unknown_located":
             return "an effect is present, the data do not identify it; pick one with --name, or measure more"
         case "input_error_suspected":

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from rigdesign.base.errors import RigdesignError
 from rigdesign.base.parallel import BackgroundTasks, cores
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue.effects import DYNAMIC, Effect
+from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.cache import Parts
 from rigdesign.diagnosis.library.library import Library, Response
 from rigdesign.diagnosis.statistics.columns import Array
@@ -18,15 +18,6 @@ from rigdesign.prediction.predictor import Predictor
 
 Progress = Callable[[str], None]
 
-SHARES = (-1.0, -0.4, -0.12, 0.12, 0.4, 1.0)
-"""Runs of a nonlinear effect, as shares of its bounds."""
-
-FEWER_SHARES = (-1.0, -0.3, 0.3, 1.0)
-"""The same of the flanks of a gear, whose runs take longest, and of inertias, which move little."""
-
-GIVING_WAY = (0.12, 0.4, 0.7, 1.0)
-"""The same of a tooth that gives way: the model may refuse the largest sizes."""
-
 BATCH = 4
 """Works a core between two notes of what is done."""
 
@@ -34,10 +25,10 @@ LINEAR_SHARE = 0.1
 """Run of an effect that the numbers answer to in proportion."""
 
 SWING_SHARE = 0.01
-"""The same of an excitation: what grows with its square stays small beside."""
+"""The same of an excitation: what grows with its square stays small."""
 
 POWER = Channel(name="losses of the rig", quantity="motor_power", place="motor")
-"""Read beside the channels of the measurement: all losses together; without a drivetrain they are given."""
+"""Read in addition to the channels of the measurement: all losses together; without a drivetrain they are given."""
 
 
 def build_library(
@@ -82,7 +73,7 @@ def build_library(
             name: Response(coordinates=one.coordinates, answers=one.answers[:, own])
             for name, one in responses.items()
         },
-        exponents={name: values[own] for name, values in _exponents(predictor, case, responses)},
+        exponents={name: values[own] for name, values in _exponents(predictor, effects, responses)},
         links={name: values[own] for name, values in predictor.links().items()},
         sources={name: (values + watt)[own] for name, values in unpaid.items()},
         dry_sources={name: values[own] for name, values in unpaid.items()},
@@ -97,7 +88,7 @@ def build_library(
 def _reaches(effect: Effect, channels: Sequence[Channel]) -> bool:
     """Whether an effect can show at all: teeth and swinging torques only where orders or modes are read."""
     dynamic = any(channel.quantity in (*ORDER_QUANTITIES, "natural_frequency") for channel in channels)
-    return dynamic or effect.family not in DYNAMIC
+    return dynamic or not effect.family.dynamic
 
 
 def _by_point(predictor: Predictor, own: NDArray[np.bool_]) -> dict[tuple[str, str, str], Array]:
@@ -120,8 +111,8 @@ def _responses(
     size = BATCH * cores()
     for start in range(0, len(works), size):
         say(f"response {len(effects) - len(left) + 1} of {len(effects)}")
-        with BackgroundTasks(works[start : start + size]) as beside:
-            new = {name: one for made in beside.results() for name, one in made.items()}
+        with BackgroundTasks(works[start : start + size]) as tasks:
+            new = {name: one for made in tasks.results() for name, one in made.items()}
         parts.keep(new)
         found |= new
         left = [effect for effect in left if effect.name not in new]
@@ -132,10 +123,10 @@ def _responses(
 def _together(effects: Sequence[Effect]) -> list[list[Effect]]:
     """Effects that share what one process remembers: the same of both gears of a mesh may be one to its contacts."""
     groups: dict[object, list[Effect]] = {}
-    for effect in sorted(effects, key=_haste):
-        flanks = effect.family == "tooth" and not effect.any_tooth
-        place = effect.claim.partition(":")[2].partition(".")[0]
-        groups.setdefault((effect.kind, place) if flanks else effect.name, []).append(effect)
+    for effect in sorted(effects, key=_run_order):
+        flanks = effect.family.tooth_contact and not effect.any_tooth
+        gearbox = effect.place.partition(".")[0]
+        groups.setdefault((effect.kind, gearbox) if flanks else effect.name, []).append(effect)
     return list(groups.values())
 
 
@@ -158,7 +149,7 @@ class _Runs:
                 continue
             changes = effect.changes(self._case, tuple(float(value) for value in place))
             try:
-                run = self._predictor.swinging if swings(effect) else self._predictor.response
+                run = self._predictor.swinging if effect.swings else self._predictor.response
                 answers.append(run(changes) - base)
                 coordinates.append(place)
             except RigdesignError:
@@ -168,56 +159,41 @@ class _Runs:
         return Response(coordinates=np.array(coordinates), answers=np.array(answers))
 
 
-def swings(effect: Effect) -> bool:
-    """Whether an effect only swings, with no mean over a turn: waves over the teeth, harmonic torques."""
-    return effect.family == "excitation" and effect.linear and not effect.any_tooth
-
-
 def run_places(effect: Effect) -> list[Array]:
     """Coordinates at which an effect is run."""
     bounds = [parameter.bounds for parameter in effect.parameters]
     if effect.linear or len(bounds) > 1:
-        share = SWING_SHARE if swings(effect) else LINEAR_SHARE
+        share = SWING_SHARE if effect.swings else LINEAR_SHARE
         steps = [share * max(abs(low), abs(high)) for low, high in bounds]
         return list(np.diag(steps))
     low, high = bounds[0]
-    shares: tuple[float, ...] = SHARES
-    if effect.family in ("tooth", "inertia"):
-        shares = FEWER_SHARES if low < 0.0 else GIVING_WAY
+    shares = effect.family.sizes if low < 0.0 else effect.family.one_sided_sizes
     places = (share * (high if share > 0.0 else -low) for share in shares)
     return [np.array([place]) for place in places if place != 0.0]
 
 
-def _haste(effect: Effect) -> tuple[int, int]:
+def _run_order(effect: Effect) -> tuple[int, int]:
     """Order in which the works are dealt to the cores: what runs longest first, so that none ends alone."""
-    expensive = ("tooth", "stiffness", "inertia", "damping", "excitation", "state", "oil")
-    place = expensive.index(effect.family) if effect.family in expensive else len(expensive)
-    return place, -len(run_places(effect))
-
-
-_EXPONENT_LAWS = {"mesh": ("speed", "torque"), "bearing": ("speed",), "windage": ("speed",)}
+    return effect.family.run_rank, -len(run_places(effect))
 
 
 def _exponents(
-    predictor: Predictor, case: Case, responses: Mapping[str, Response]
+    predictor: Predictor, effects: Sequence[Effect], responses: Mapping[str, Response]
 ) -> Iterator[tuple[str, Array]]:
     """Derivatives by the exponents of the loss laws, about the mean point.
 
     An exponent scales the loss of each point by itself, and a number follows its own point only: the derivative is
     that by the logarithm of the loss times the logarithm of the point's ratio.
     """
-    for name in case.gearboxes:
-        for kind, laws in _EXPONENT_LAWS.items():
-            response = responses.get(f"{kind}_loss:{name}")
-            if response is None:
-                continue
-            slope = response.slope()[:, 0]
-            for law in laws:
-                turned = dict(
-                    zip((s.name for s in predictor.settings), np.log(_ratios(predictor.settings, law)))
-                )
-                share = np.array([turned.get(feature.setting, 0.0) for feature in predictor.features])
-                yield f"{kind} loss of {name} over {law}", slope * share
+    for effect in effects:
+        response = responses.get(effect.name)
+        if response is None:
+            continue
+        slope = response.sensitivity()[:, 0]
+        for law in effect.exponents:
+            logs = dict(zip((s.name for s in predictor.settings), np.log(_ratios(predictor.settings, law))))
+            share = np.array([logs.get(feature.setting, 0.0) for feature in predictor.features])
+            yield f"{effect.kind.replace('_', ' ')} of {effect.place} over {law}", slope * share
 
 
 def _ratios(settings: Sequence[OperatingCondition], law: str) -> Array:

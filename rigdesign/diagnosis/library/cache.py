@@ -85,7 +85,7 @@ def stored_library(
 
 @dataclass(frozen=True)
 class Parts:
-    """Finished responses of a library in the making, kept beside the libraries: an interrupted run goes on there."""
+    """Finished responses of a library in the making, kept with the libraries: an interrupted run goes on there."""
 
     folder: Path
 
@@ -171,11 +171,11 @@ def _name(content: bytes) -> str:
 def _store(folder: Path, what: object) -> None:
     """BackgroundTasks, then renamed; a folder that cannot be written to costs time, not the result."""
     content = pickle.dumps(what, protocol=5)
-    beside = folder / f".{os.getpid()}.part"
+    part = folder / f".{os.getpid()}.part"
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        beside.write_bytes(content)
-        beside.replace(folder / _name(content))
+        part.write_bytes(content)
+        part.replace(folder / _name(content))
     except OSError:
         with suppress(OSError):
-            beside.unlink(missing_ok=True)
+            part.unlink(missing_ok=True)

@@ -81,7 +81,7 @@ def _thermocouples(places: Places) -> list[str]:
 
 
 def extra_points(settings: Sequence[OperatingCondition], meshes: Sequence[str]) -> tuple[Extra, ...]:
-    """Points beside the plan: its corners if it has several, other oil, other flow, a wheel put on further."""
+    """Points in addition to the plan: its corners if it has several, other oil, other flow, a wheel put on further."""
     middle = sorted(settings, key=lambda one: one.speed * abs(one.torque))[len(settings) // 2]
     slow, fast = (pick(one.speed for one in settings) for pick in (min, max))
     light, heavy = (pick(abs(one.torque) for one in settings) for pick in (min, max))

@@ -37,7 +37,7 @@ class Response:
         """Several runs of one parameter: the answer is a curve over it."""
         return self._count == 1 and not self.linear
 
-    def slope(self) -> Array:
+    def sensitivity(self) -> Array:
         """(n, k) derivative at zero, from the smallest runs."""
         if self.linear:
             return np.stack(

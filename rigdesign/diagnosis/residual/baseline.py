@@ -28,7 +28,7 @@ class Drift:
     A point is met again at a speed a little off, and orders follow it, whatever excites them and whether the model
     knows of it or not.
 
-    widening : likeness of an effect -> spread of its coordinate from set to set that healthy pairs asked for
+    inflation : likeness of an effect -> spread of its coordinate from set to set that healthy pairs asked for
     """
 
     shared: float
@@ -42,7 +42,7 @@ class Drift:
     """The same of an order of the meshes."""
     amplitude: float
     """Of an order of the meshes that the healthy set reads, at the same speed: torque and oil differ as well."""
-    widening: Mapping[str, float] = field(default_factory=dict)
+    inflation: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -55,7 +55,7 @@ class Change:
         frequencies near it; amplitude : (n,) of the orders in the healthy set; all zero for all other numbers
     """
 
-    subject: ResidualProblem
+    residuals: ResidualProblem
     expected: Array
     known: Array
     shared: Array
@@ -64,14 +64,14 @@ class Change:
     amplitude: Array
 
     @classmethod
-    def of(cls, subject: ResidualProblem, baseline: ResidualProblem, amplitudes: Amplitudes) -> "Change":
+    def of(cls, residuals: ResidualProblem, baseline: ResidualProblem, amplitudes: Amplitudes) -> "Change":
         """By the columns both have: what they span is known from it, and errors number by number."""
-        subject = subject.on_the_scale_of(baseline)
-        here, there = subject.covariance(amplitudes), baseline.covariance(amplitudes)
+        residuals = residuals.on_the_scale_of(baseline)
+        here, there = residuals.covariance(amplitudes), baseline.covariance(amplitudes)
         after, before = here.deviations, _matched(there, here)
-        own, other = subject.own_spread(amplitudes), baseline.own_spread(amplitudes)
-        again = met_again(subject.library.settings, baseline.library.settings)
-        twins, step = _same_numbers(subject, baseline, again), _speed_steps(subject, baseline, again)
+        own, other = residuals.own_spread(amplitudes), baseline.own_spread(amplitudes)
+        again = met_again(residuals.library.settings, baseline.library.settings)
+        twins, step = _same_numbers(residuals, baseline, again), _speed_steps(residuals, baseline, again)
         amplitude = twins @ amplitudes_of(baseline.features, baseline.values)
         cross = after @ before.T + TWINS**2 * own[:, None] * twins * other[None, :]
         known = before @ before.T + TWINS**2 * np.diag(other**2)
@@ -80,41 +80,41 @@ class Change:
         expected, covariance = _given(
             known, cross, both + TWINS**2 * np.diag(own**2), noise_before, baseline.residual
         )
-        alone = np.diag(subject.noise**2) + subject.scatter
+        alone = np.diag(residuals.noise**2) + residuals.scatter
         return cls(
-            subject=subject,
+            residuals=residuals,
             expected=expected,
             known=covariance + alone,
             shared=both + np.diag(own**2),
-            slope=step * amplitudes_of(subject.features, _by_speed(subject)),
-            steep=step * subject.steepness * amplitude,
+            slope=step * amplitudes_of(residuals.features, _by_speed(residuals)),
+            steep=step * residuals.steepness * amplitude,
             amplitude=amplitude,
         )
 
     def covariance(self, drift: Drift) -> Array:
         """(n, n) of the change in a rig that stayed healthy."""
-        mesh = self.subject.of_mesh
+        mesh = self.residuals.of_mesh
         steep = np.where(mesh, drift.mesh, drift.shaft) * self.steep
         still = np.where(mesh, drift.amplitude, 0.0) * self.amplitude
         alone = np.diag((drift.slope * self.slope) ** 2 + steep**2 + still**2)
-        widened = self.subject.widened(drift.widening)
-        return np.asarray(self.known + drift.shared**2 * self.shared + alone + widened)
+        inflated = self.residuals.inflated(drift.inflation)
+        return np.asarray(self.known + drift.shared**2 * self.shared + alone + inflated)
 
     def whitened(self, drift: Drift) -> Whitened:
         """The change where a healthy rig is white noise."""
         total = Covariance(base=self.covariance(drift), columns=(), amplitudes={})
-        return Whitened.of(total, self.subject.residual - self.expected)
+        return Whitened.of(total, self.residuals.residual - self.expected)
 
 
 def differenced(
-    subject: ResidualProblem, baseline: ResidualProblem, amplitudes: Amplitudes, drift: Drift
+    residuals: ResidualProblem, baseline: ResidualProblem, amplitudes: Amplitudes, drift: Drift
 ) -> Whitened:
     """The residual of a set given a healthy set of the same rig.
 
     What both share is the covariance of the columns at either set's numbers; noise, the settings' scatter and a
     drift are each set's own.
     """
-    return Change.of(subject, baseline, amplitudes).whitened(drift)
+    return Change.of(residuals, baseline, amplitudes).whitened(drift)
 
 
 def _matched(there: Covariance, here: Covariance) -> Array:
@@ -128,33 +128,33 @@ def _matched(there: Covariance, here: Covariance) -> Array:
     return np.stack(rows, axis=1)
 
 
-def _same_numbers(subject: ResidualProblem, baseline: ResidualProblem, again: Mapping[str, str]) -> Array:
+def _same_numbers(residuals: ResidualProblem, baseline: ResidualProblem, again: Mapping[str, str]) -> Array:
     """(n, m) one where two numbers are the same channel and order at a point that was met again."""
     others = {(f.channel, f.setting, f.order, f.part): j for j, f in enumerate(baseline.features)}
-    found = np.zeros((len(subject.features), len(baseline.features)))
-    for row, f in enumerate(subject.features):
+    found = np.zeros((len(residuals.features), len(baseline.features)))
+    for row, f in enumerate(residuals.features):
         twin = others.get((f.channel, again[f.setting], f.order, f.part)) if f.setting in again else None
         if twin is not None:
             found[row, twin] = 1.0
     return found
 
 
-def _speed_steps(subject: ResidualProblem, baseline: ResidualProblem, again: Mapping[str, str]) -> Array:
+def _speed_steps(residuals: ResidualProblem, baseline: ResidualProblem, again: Mapping[str, str]) -> Array:
     """(n,) by how much each number's point was met at another speed: logarithm of the ratio, without sign."""
     before = {setting.name: setting.speed for setting in baseline.library.settings}
     steps = {
         setting.name: abs(float(np.log(setting.speed / before[again[setting.name]])))
-        for setting in subject.library.settings
+        for setting in residuals.library.settings
         if setting.name in again
     }
-    return np.array([steps.get(feature.setting, 0.0) for feature in subject.features])
+    return np.array([steps.get(feature.setting, 0.0) for feature in residuals.features])
 
 
-def _by_speed(subject: ResidualProblem) -> Array:
+def _by_speed(residuals: ResidualProblem) -> Array:
     """(n,) derivative of the prediction by the logarithm of the speed of its point."""
-    speeds = {setting.name: setting.speed for setting in subject.library.settings}
-    found = np.zeros(len(subject.features))
-    for (kind, _, point), values in subject.library.inputs.items():
+    speeds = {setting.name: setting.speed for setting in residuals.library.settings}
+    found = np.zeros(len(residuals.features))
+    for (kind, _, point), values in residuals.library.inputs.items():
         if kind == "speed":
             found += speeds[point] * values
     return found

@@ -15,7 +15,7 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import minimize
 
 from rigdesign.diagnosis.residual.baseline import Change, Drift
-from rigdesign.diagnosis.residual.covariance_inflation import widen
+from rigdesign.diagnosis.residual.covariance_inflation import inflate
 from rigdesign.diagnosis.residual.residual_problem import ResidualProblem, plain
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array
@@ -45,15 +45,15 @@ class Group:
 
     @classmethod
     def of(
-        cls, sets: Sequence[ResidualProblem], amplitudes: Amplitudes, widening: Mapping[str, float]
+        cls, sets: Sequence[ResidualProblem], amplitudes: Amplitudes, inflation: Mapping[str, float]
     ) -> "Group":
         """Sets with the same features in the same order.
 
-        amplitudes : at which the constants are bent to the data (`subject.plain`): columns are those of the first
+        amplitudes : at which the constants are bent to the data (`residuals.plain`): columns are those of the first
             set, residuals each set's own
         """
         first = sets[0]
-        spaces = [plain(one, amplitudes, widening) for one in sets]
+        spaces = [plain(one, amplitudes, inflation) for one in sets]
         parts: dict[str, Array] = {}
         for column in spaces[0].covariance.columns:
             values = column.spread * column.values
@@ -83,18 +83,18 @@ def calibrate(
     fixed: frozenset[str] = frozenset(),
     larger: Sequence[ResidualProblem] = (),
 ) -> tuple[Amplitudes, dict[str, float]]:
-    """Amplitudes and widening of healthy sets, in lists of the same features.
+    """Amplitudes and inflation of healthy sets, in lists of the same features.
 
-    The widening takes over what amplitudes had to stretch for, so both are found again beside each other.
+    The inflation takes over what amplitudes had to stretch for, so both are found again in turn.
 
-    larger : sets with too many numbers for the amplitudes; the widening counts them too
+    larger : sets with too many numbers for the amplitudes; the inflation counts them too
     """
-    found, widening = start, dict[str, float]()
+    found, inflation = start, dict[str, float]()
     for _ in range(ROUNDS):
-        groups = [Group.of(sets, found, widening) for sets in alike]
-        found = fit_amplitudes(groups, found, fixed | {"widening"}, start)
-        widening = widen((*(one for sets in alike for one in sets), *larger), found)
-    return found, widening
+        groups = [Group.of(sets, found, inflation) for sets in alike]
+        found = fit_amplitudes(groups, found, fixed | {"inflation"}, start)
+        inflation = inflate((*(one for sets in alike for one in sets), *larger), found)
+    return found, inflation
 
 
 def fit_amplitudes(
@@ -109,7 +109,7 @@ def fit_amplitudes(
     prior : centre of their wide prior; ``start`` when left out
     """
     names = sorted({kind for group in groups for kind in group.parts} - fixed)
-    first = start.as_dict() | {"widening": 1.0}
+    first = start.as_dict() | {"inflation": 1.0}
     centre = np.log([(prior or start).as_dict()[name] for name in names])
 
     def misfit(logs: Array) -> tuple[float, Array]:
@@ -164,15 +164,15 @@ def calibrate_drift(
     """What a healthy rig changes from set to set, from pairs of healthy sets (the second is the baseline).
 
     The shares maximise the likelihood of all changes; `rigdesign.diagnosis.residual.covariance_inflation` finds the
-    widening.
+    inflation.
     """
-    changes = [Change.of(subject, baseline, amplitudes) for subject, baseline in pairs]
-    residuals = [change.subject.residual - change.expected for change in changes]
+    changes = [Change.of(residuals, baseline, amplitudes) for residuals, baseline in pairs]
+    left = [change.residuals.residual - change.expected for change in changes]
 
     def misfit(logs: Array) -> float:
         drift = Drift(**dict(zip(SHARES, np.exp(logs).tolist(), strict=True)))
         value = 0.5 * float(np.sum(((logs - centre) / PRIOR) ** 2))
-        for change, residual in zip(changes, residuals, strict=True):
+        for change, residual in zip(changes, left, strict=True):
             lower = np.linalg.cholesky(change.covariance(drift))
             white = solve_triangular(lower, residual, lower=True, check_finite=False)
             value += float(np.log(np.diagonal(lower)).sum()) + 0.5 * float(white @ white)

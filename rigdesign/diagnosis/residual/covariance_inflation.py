@@ -1,4 +1,4 @@
-"""Widening of a covariance: how far healthy sets go along single causes beyond what the columns of constants span.
+"""Inflation of the covariance: how far healthy sets go along single causes beyond what the columns of constants span.
 
 One spread for each likeness of causes; what two models disagree on beyond constants is known by it, and a name has to
 be worth more.
@@ -18,15 +18,15 @@ from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Whitened
 
-WIDEN_ABOVE = 1.3
-"""Mean square of healthy sets along a direction [variances] above which the covariance is widened there."""
+INFLATE_ABOVE = 1.3
+"""Mean square of healthy sets along a direction [variances] above which the covariance is inflated there."""
 
 LARGEST = 25.0
 """The same of the single healthy set that goes furthest along it: rigs differ by more than their mean says, in the
 teeth above all, and a name is wrong once in any of them."""
 
 WIDEST = 60
-"""Times that a likeness is widened at most, one at a time."""
+"""Times that a likeness is inflated at most, one at a time."""
 
 ENOUGH = 0.01
 """Share by which a square may stay too large."""
@@ -36,28 +36,29 @@ UNSEEN = 2.0
 nothing of it."""
 
 
-def widen(subjects: Iterable[ResidualProblem], amplitudes: Amplitudes) -> dict[str, float]:
+def inflate(problems: Iterable[ResidualProblem], amplitudes: Amplitudes) -> dict[str, float]:
     """Spread [coordinate] that healthy sets show along causes beyond the columns, by `Direction.likeness`.
 
     z = a'r / |a| in the white space of a healthy rig has a mean square of one where the covariance is right. The
-    cause with the largest is widened until its mean is `WIDEN_ABOVE` and no set is above `LARGEST`, then the next: one
+    cause with the largest is inflated until its mean is `INFLATE_ABOVE` and no set above `LARGEST`, then the next: one
     direction two models disagree on shows in many causes and is mended once.
     """
-    return _widen([_Seen.of(subject, plain(subject, amplitudes)) for subject in subjects])
+    return _inflated([_Seen.of(residuals, plain(residuals, amplitudes)) for residuals in problems])
 
 
 def inflate_drift(
     pairs: Iterable[tuple[ResidualProblem, ResidualProblem]], amplitudes: Amplitudes, drift: Drift
 ) -> Drift:
-    """The drift with the spread that healthy pairs show along an effect from set to set; found as in `widen`."""
-    still = replace(drift, widening={})
+    """The drift with the spread that healthy pairs show along an effect from set to set; found as in `inflate`."""
+    still = replace(drift, inflation={})
     seen = [
-        _Seen.of(subject, differenced(subject, baseline, amplitudes, still)) for subject, baseline in pairs
+        _Seen.of(residuals, differenced(residuals, baseline, amplitudes, still))
+        for residuals, baseline in pairs
     ]
-    return replace(drift, widening=_widen(seen))
+    return replace(drift, inflation=_inflated(seen))
 
 
-def _widen(seen: Sequence["_Seen"]) -> dict[str, float]:
+def _inflated(seen: Sequence["_Seen"]) -> dict[str, float]:
     found: dict[str, float] = {}
     for _ in range(WIDEST):
         squares: dict[str, list[Array]] = {}
@@ -69,14 +70,14 @@ def _widen(seen: Sequence["_Seen"]) -> dict[str, float]:
         if not worst or excess[worst] <= 1.0 + ENOUGH:
             break
         more = _missing([one.along(worst) for one in seen if worst in one.likeness])
-        seen = [one.widened(worst, more) for one in seen]
+        seen = [one.inflated(worst, more) for one in seen]
         found[worst] = float(np.hypot(found.get(worst, 0.0), more))
     return found
 
 
 def _excess(squares: Array) -> float:
     """By how much squares (k,) of healthy residuals along directions are too large."""
-    return max(float(np.mean(squares)) / WIDEN_ABOVE, float(np.max(squares)) / LARGEST)
+    return max(float(np.mean(squares)) / INFLATE_ABOVE, float(np.max(squares)) / LARGEST)
 
 
 def _missing(along: Sequence["_Along"]) -> float:
@@ -106,7 +107,7 @@ class _Along:
         return np.maximum(values, 0.0), vectors
 
     def squares(self, spread: float) -> Array:
-        """Of the residual along those that count, with all of them widened by a spread."""
+        """Of the residual along those that count, with all of them inflated by a spread."""
         values, vectors = self.axes
         left = 1.0 / (1.0 + spread**2 * values)
         own = vectors[self.judged]
@@ -128,9 +129,9 @@ class _Seen:
     judged: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, subject: ResidualProblem, space: Whitened) -> "_Seen":
+    def of(cls, residuals: ResidualProblem, space: Whitened) -> "_Seen":
         """Of a set in the white space of a healthy rig."""
-        found = list(subject.directions())
+        found = list(residuals.directions())
         white = space.covariance.whiten(np.hstack([one.values for one in found]))
         counts = [one.values.shape[1] for one in found]
         lengths = np.linalg.norm(white, axis=0)
@@ -155,7 +156,7 @@ class _Seen:
         own = np.flatnonzero(self.likeness == likeness)
         return _Along(gram=self.gram[np.ix_(own, own)], load=self.load[own], judged=self.judged[own])
 
-    def widened(self, likeness: str, spread: float) -> "_Seen":
+    def inflated(self, likeness: str, spread: float) -> "_Seen":
         """The same with the covariance wider along a likeness."""
         own = np.flatnonzero(self.likeness == likeness)
         if not len(own):

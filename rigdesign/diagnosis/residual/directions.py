@@ -1,6 +1,6 @@
 """Directions in which the numbers of a set go with one cause each, of the catalogue or without a name.
 
-Along them calibration asks how far healthy rigs go beyond what the columns of their constants span, and widens the
+Along them calibration asks how far healthy rigs go beyond what the columns of their constants span, and inflates the
 covariance by that.
 """
 
@@ -32,7 +32,7 @@ class Direction:
 def directions(library: Library, effects: Sequence[Effect], teeth_a_turn: int) -> Iterator[Direction]:
     """Of all effects the sensors answer to, of every tooth that may be meant; and of heat at any place.
 
-    What bends has a direction at neutral and one to every run of its course. The coordinate of heat is its share of
+    A nonlinear response has a direction at neutral and one to every run. The coordinate of heat is its share of
     the mean losses of the points.
     """
     turning = Turning.of(library.features)
@@ -51,8 +51,8 @@ def directions(library: Library, effects: Sequence[Effect], teeth_a_turn: int) -
 
 
 def _courses(response: Response) -> Array:
-    """(k, n) slopes at neutral; of a course that bends the secants to its runs as well."""
-    slopes = response.slope().T
+    """(k, n) sensitivities at neutral; of a nonlinear response the secants to its runs as well."""
+    slopes = response.sensitivity().T
     if not response.bends:
         return slopes
     places = response.coordinates[:, 0]

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from rigdesign.diagnosis.catalogue.effects import Effect, Family
+from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import NEAR_SENSOR, Library
 from rigdesign.diagnosis.statistics.amplitudes import Amplitudes
 from rigdesign.diagnosis.statistics.columns import Array, Column, series_numbers
@@ -55,35 +55,18 @@ def _relative(features: Sequence[Feature], logs: Mapping[str, float]) -> Array:
     return np.array([logs.get(feature.setting, mean) - mean for feature in features])
 
 
-CONSTANTS: Mapping[Family, str] = {
-    "excitation": "tooth",
-    "tooth": "tooth",
-    "stiffness": "constant_loop",
-    "damping": "constant_loop",
-    "inertia": "constant_loop",
-    "state": "constant_loop",
-    "loss": "constant_loss",
-    "split": "constant_film",
-    "film": "constant_film",
-    "contact": "constant_film",
-    "flow": "constant_oil",
-    "oil": "constant_oil",
-}
-"""Family of an effect -> amplitude of its healthy spread."""
-
-
 def _constants(library: Library, effects: Sequence[Effect]) -> list[Column]:
     wanted = [effect for effect in effects if effect.healthy > 0.0 and effect.name in library.responses]
     return [
         Column(
             name=f"{effect.name}/{number}",
-            kind=CONSTANTS[effect.family],
+            kind=effect.family.amplitude,
             values=values,
             spread=effect.healthy,
             effect=effect.name,
         )
         for effect in wanted
-        for number, values in enumerate(library.responses[effect.name].slope().T)
+        for number, values in enumerate(library.responses[effect.name].sensitivity().T)
     ]
 
 
@@ -182,9 +165,6 @@ def series_kind(order: float, mesh_orders: frozenset[float]) -> str:
     return "series_mesh" if order in mesh_orders else "series_shaft"
 
 
-HEAT: frozenset[Family] = frozenset({"loss", "split", "film", "contact", "flow", "oil"})
-"""Families of constants that move the heat."""
-
 TREND = 0.5
 """Error of an answer along the speed (per factor e) over that at all points alike."""
 
@@ -196,9 +176,9 @@ def answer_error(library: Library, effects: Sequence[Effect]) -> Array:
     explanation (`rigdesign.diagnosis.residual.signature`) a healthy rig has as well.
     """
     answers = [
-        effect.healthy * library.responses[effect.name].slope()
+        effect.healthy * library.responses[effect.name].sensitivity()
         for effect in effects
-        if effect.healthy > 0.0 and effect.family in HEAT and effect.name in library.responses
+        if effect.healthy > 0.0 and effect.family.heat and effect.name in library.responses
     ]
     count = len(library.features)
     if not answers:

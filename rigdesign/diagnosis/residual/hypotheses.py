@@ -7,7 +7,7 @@ import numpy as np
 from rigdesign.diagnosis.catalogue.effects import Effect
 from rigdesign.diagnosis.library.library import Response
 from rigdesign.diagnosis.residual.sensors import SensorError
-from rigdesign.diagnosis.residual.unmodelled_cause import Anonymous
+from rigdesign.diagnosis.residual.unmodelled_cause import UnmodelledCause
 from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.covariance import Covariance
 from rigdesign.diagnosis.statistics.evidence import Curve, Hypothesis
@@ -15,7 +15,7 @@ from rigdesign.diagnosis.statistics.phase_shift import Turning
 from rigdesign.prediction.model import Feature
 
 SIGMAS = 12.0
-"""Bound of an anonymous cause in its own standard deviations: its prior reaches as far as that of an effect that is
+"""Bound of an unmodelled cause in its own standard deviations: its prior reaches as far as that of an effect that is
 seen well."""
 
 INVISIBLE = 1e-3
@@ -44,7 +44,7 @@ def physical(
     ]
     runs = []
     for _, response, _, tooth in copies:
-        rows = response.answers if response.bends else response.slope().T
+        rows = response.answers if response.bends else response.sensitivity().T
         runs.append(turning.turned(rows, tooth, teeth_a_turn) if tooth else rows)
     found = [
         _curve(effect, response, name, white) if response.bends else _plane(effect, name, white)
@@ -91,7 +91,7 @@ def _reach(hypothesis: Hypothesis) -> float:
 
 
 def sensor(covariance: Covariance | None, errors: Sequence[SensorError]) -> list[Hypothesis]:
-    """Sensors and settings that may read wrong; without a covariance in the units of the features."""
+    """Sensors and settings that may be in error; without a covariance in the units of the features."""
     columns = whitened(covariance, [error.values[None, :] for error in errors])
     return [
         Hypothesis(
@@ -106,8 +106,8 @@ def sensor(covariance: Covariance | None, errors: Sequence[SensorError]) -> list
     ]
 
 
-def without_a_name(covariance: Covariance, causes: Iterable[Anonymous]) -> list[Hypothesis]:
-    """Anonymous competitors; each may be as large as something that is seen at `SIGMAS`."""
+def without_a_name(covariance: Covariance, causes: Iterable[UnmodelledCause]) -> list[Hypothesis]:
+    """Unmodelled causes; each may be as large as something that is seen at `SIGMAS`."""
     causes = list(causes)
     found = []
     columns = whitened(covariance, [columns.T for _, _, columns in causes])

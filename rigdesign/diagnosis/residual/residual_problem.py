@@ -123,9 +123,9 @@ class ResidualProblem:
         model = healthy_columns(self.library, self.effects, self.channels, self.mesh_orders, self.level)
         return (*model, *(error.column() for error in self.errors))
 
-    def covariance(self, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None) -> Covariance:
-        """Of a healthy rig; ``widening``: likeness of cause -> spread [coordinate] that calibration found missing."""
-        base = self.base_noise(amplitudes) + self.widened(widening or {})
+    def covariance(self, amplitudes: Amplitudes, inflation: Mapping[str, float] | None = None) -> Covariance:
+        """Of a healthy rig; ``inflation``: likeness of cause -> spread [coordinate] that calibration found missing."""
+        base = self.base_noise(amplitudes) + self.inflated(inflation or {})
         return Covariance(base=base, columns=self.columns(), amplitudes=amplitudes.as_dict())
 
     def curves(self) -> dict[str, Curve]:
@@ -146,12 +146,12 @@ class ResidualProblem:
         """In which its numbers go with one cause each."""
         return directions(self.library, self.effects, self.teeth_a_turn)
 
-    def widened(self, widening: Mapping[str, float]) -> Array:
+    def inflated(self, inflation: Mapping[str, float]) -> Array:
         """(n, n) covariance from spreads [coordinate] by likeness of cause."""
         columns = [
-            widening[one.likeness] * one.values
-            for one in (self.directions() if widening else ())
-            if one.likeness in widening
+            inflation[one.likeness] * one.values
+            for one in (self.directions() if inflation else ())
+            if one.likeness in inflation
         ]
         both = np.hstack(columns) if columns else np.zeros((len(self.features), 0))
         return np.asarray(both @ both.T)
@@ -194,26 +194,26 @@ def compare(
 
 
 def plain(
-    subject: ResidualProblem, amplitudes: Amplitudes, widening: Mapping[str, float] | None = None
+    residuals: ResidualProblem, amplitudes: Amplitudes, inflation: Mapping[str, float] | None = None
 ) -> Whitened:
     """The residual of one set against the model.
 
     Constants are far enough off for their answer to bend: each column is the slope where the data put its constant,
     found by a few steps, and what the answer has beyond it is taken out of the residual.
     """
-    covariance = subject.covariance(amplitudes, widening)
-    curves = subject.curves()
+    covariance = residuals.covariance(amplitudes, inflation)
+    curves = residuals.curves()
     bends: dict[str, Array] = {}
     sizes = dict.fromkeys(curves, 0.0)
     for _ in range(BENDING_STEPS if curves else 0):
-        residual = subject.residual - sum(bends.values(), np.zeros(len(subject.features)))
+        residual = residuals.residual - sum(bends.values(), np.zeros(len(residuals.features)))
         found = _constants_at(covariance, residual, curves)
         sizes = {
             effect: size + BENDING_SHARE * (found[effect] - size)
             for effect, size in sizes.items()
             if effect in found
         }
-        slopes = {effect: curves[effect].slope(size) for effect, size in sizes.items()}
+        slopes = {effect: curves[effect].sensitivity(size) for effect, size in sizes.items()}
         bends = {
             effect: curves[effect].at(np.array([size]))[0] - size * slopes[effect]
             for effect, size in sizes.items()
@@ -223,14 +223,14 @@ def plain(
             for column in covariance.columns
         )
         covariance = Covariance(base=covariance.base, columns=columns, amplitudes=covariance.amplitudes)
-    residual = subject.residual - sum(bends.values(), np.zeros(len(subject.features)))
+    residual = residuals.residual - sum(bends.values(), np.zeros(len(residuals.features)))
     return Whitened.of(covariance, residual, bends)
 
 
 BENDING_STEPS = 5
 """Steps in which the slopes of the constants follow the data."""
 BENDING_SHARE = 0.6
-"""Of every step: a full one swings between two slopes where a course bends much."""
+"""Of every step: a full one oscillates between two sensitivities where a response is strongly nonlinear."""
 
 
 def _constants_at(covariance: Covariance, residual: Array, curves: Mapping[str, Curve]) -> dict[str, float]:

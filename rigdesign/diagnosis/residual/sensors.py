@@ -29,7 +29,7 @@ class Stated:
 
 @dataclass(frozen=True, kw_only=True)
 class SensorError:
-    """One sensor or setting that may read wrong.
+    """One sensor or setting that may be in error.
 
     values : (n,) change of what is read per unit of the error; unit : of the error; spread : healthy
     """
@@ -86,7 +86,7 @@ def sensor_errors(
             found.append(
                 SensorError(
                     name=f"torque_zero:{name}" if orders else f"sensor_offset:{name}",
-                    title=f"{name} reads a constant amount off",
+                    title=f"offset of {name}",
                     kind="sensor",
                     values=own * mean if orders else own,
                     unit=UNITS[channel.quantity],
@@ -97,7 +97,7 @@ def sensor_errors(
             found.append(
                 SensorError(
                     name=f"sensor_scale:{name}",
-                    title=f"{name} reads a constant share off",
+                    title=f"scale error of {name}",
                     kind="sensor",
                     values=own * (library.base if channel.quantity != "temperature" else above),
                     unit="",
@@ -164,7 +164,7 @@ def input_errors(
             found.append(
                 SensorError(
                     name=_input_name(kind, place, "offset"),
-                    title=f"{at} is read a constant amount off",
+                    title=f"offset of {at}",
                     kind="input",
                     values=offset,
                     unit="K" if "temperature" in kind else "SI",
@@ -175,7 +175,7 @@ def input_errors(
             found.append(
                 SensorError(
                     name=_input_name(kind, place, "scale"),
-                    title=f"{at} is read a constant share off",
+                    title=f"scale error of {at}",
                     kind="input",
                     values=scale,
                     unit="",

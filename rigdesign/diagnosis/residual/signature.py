@@ -4,7 +4,7 @@ A cause in the model never leaves exactly the trace it leaves on the rig. An exp
 therefore evaluated under C + E E': every series of numbers (one channel, one order) may be off by a share of its own
 answer, the same over all points and along the speed, and orders by themselves
 (`rigdesign.diagnosis.statistics.model_error`). With no cause there is no answer and no such error, so that a small
-effect is not hidden by it; rivals that differ by less than the model's own error are told apart by their priors
+effect is not hidden by it; rivals that differ by less than the model error are separated by their priors
 alone.
 
 C^-1 is known; E is of low rank, so that all products follow from block sums (Woodbury's identity).
@@ -29,7 +29,7 @@ from rigdesign.diagnosis.statistics.evidence import (
     mixed,
     release_of,
 )
-from rigdesign.diagnosis.statistics.model_error import OwnError
+from rigdesign.diagnosis.statistics.model_error import ModelError
 from rigdesign.prediction.model import Feature
 
 EXACT = ("sensor", "input")
@@ -60,7 +60,7 @@ class Signature:
     starts: NDArray[np.intp]
     trend: Array
     errors: Mapping[str, float]
-    own: OwnError | None
+    own: ModelError | None
     circuit: frozenset[str]
 
     @classmethod
@@ -69,7 +69,7 @@ class Signature:
         features: Sequence[Feature],
         trend: Array,
         errors: Mapping[str, float],
-        own: OwnError | None = None,
+        own: ModelError | None = None,
         circuit: frozenset[str] = frozenset(),
     ) -> "Signature":
         """Of the numbers of a comparison."""
@@ -102,7 +102,7 @@ class Signature:
     def _alone(
         self, hypothesis: Hypothesis, answer: Array, precision: Array
     ) -> tuple[NDArray[np.intp], Array]:
-        """Places (k,) of numbers whose own error counts beside the residual of a healthy rig, and the errors (k,)."""
+        """Places (k,) of numbers whose model error adds to the residual of a healthy rig, and the errors (k,)."""
         if self.own is None:
             return np.zeros(0, dtype=np.intp), np.zeros(0)
         errors = self.own.at(answer, circuit=not self.circuit.isdisjoint(hypothesis.parts))

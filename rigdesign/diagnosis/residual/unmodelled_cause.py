@@ -1,4 +1,4 @@
-"""Anonymous competitors: causes without a name that a named effect has to beat.
+"""Unmodelled causes: what a named effect has to beat.
 
 Heat at any place of the rig with the laws a loss may follow, paid by the motor or not; heat in the oil on its way in
 or out, where no thermometer but one feels it; a conductance between any neighbours; an order of torque or angle on any
@@ -18,18 +18,18 @@ from rigdesign.diagnosis.statistics.columns import Array
 from rigdesign.diagnosis.statistics.reference_scale import excess
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 
-Anonymous = tuple[Literal["anonymous", "local"], str, Array]
+UnmodelledCause = tuple[Literal["unmodelled", "local"], str, Array]
 """Family, name, (n, k) columns: k = 2 for an order with free phase. Local is what one thermometer alone may feel."""
 
 
-def anonymous(library: Library, channels: Mapping[str, Channel]) -> Iterator[Anonymous]:
+def unmodelled_causes(library: Library, channels: Mapping[str, Channel]) -> Iterator[UnmodelledCause]:
     """All of them, in a fixed order."""
     for heat in heats(library):
-        yield "anonymous", heat.name, heat.values[:, None]
+        yield "unmodelled", heat.name, heat.values[:, None]
     yield from _in_the_pipes(library, channels)
-    yield from _beside_sensors(library, channels)
+    yield from _at_sensors(library, channels)
     for name, values in library.links.items():
-        yield "anonymous", f"conductance {name}", values[:, None]
+        yield "unmodelled", f"conductance {name}", values[:, None]
     yield from _orders(library, channels)
 
 
@@ -58,7 +58,7 @@ class Heat:
 
 
 def heats(library: Library) -> Iterator[Heat]:
-    """Heat at every place by itself, those beside sensors left out."""
+    """Heat at every place by itself, those at sensors left out."""
     laws = _laws(library)
     for family, sources in (("heat", library.sources), ("heat unpaid", library.dry_sources)):
         for place, values in sources.items():
@@ -80,7 +80,7 @@ def _laws(library: Library) -> dict[str, Array]:
     }  # fmt: skip
 
 
-def _in_the_pipes(library: Library, channels: Mapping[str, Channel]) -> Iterator[Anonymous]:
+def _in_the_pipes(library: Library, channels: Mapping[str, Channel]) -> Iterator[UnmodelledCause]:
     """A heater or a pump between the thermometer of a stream and the gearbox: warmer by less the more oil flows."""
     streams = dict.fromkeys(place for kind, place, _ in library.inputs if kind == "inlet_temperature")
     flows = {stream: {one.name: one.flow.get(stream, 1.0) for one in library.settings} for stream in streams}
@@ -99,8 +99,8 @@ def _in_the_pipes(library: Library, channels: Mapping[str, Channel]) -> Iterator
         yield "local", f"heat in the drain of {channel.place} constant", np.array(share)[:, None]
 
 
-def _beside_sensors(library: Library, channels: Mapping[str, Channel]) -> Iterator[Anonymous]:
-    """Heat from outside beside one thermocouple: a neighbour, a lamp; or a draught, as the wall is above ambient."""
+def _at_sensors(library: Library, channels: Mapping[str, Channel]) -> Iterator[UnmodelledCause]:
+    """Heat from outside at one thermocouple: a neighbour, a lamp; or a draught, as the wall is above ambient."""
     warm = excess(library.features, library.base, channels, library.settings)
     for place, values in library.dry_sources.items():
         if not place.startswith(NEAR_SENSOR):
@@ -112,7 +112,7 @@ def _beside_sensors(library: Library, channels: Mapping[str, Channel]) -> Iterat
         yield "local", f"heat near {name} ~T above ambient", (values * share)[:, None]
 
 
-def _orders(library: Library, channels: Mapping[str, Channel]) -> Iterator[Anonymous]:
+def _orders(library: Library, channels: Mapping[str, Channel]) -> Iterator[UnmodelledCause]:
     """An order of one channel, or of all channels of its kind, free in phase but the same at all points."""
     laws = _laws(library)
     found = dict.fromkeys(
@@ -130,4 +130,4 @@ def _orders(library: Library, channels: Mapping[str, Channel]) -> Iterator[Anony
         ]
         for law in ORDER_LAWS:
             columns = np.stack([part * laws[law] for part in parts], axis=1)
-            yield "anonymous", f"order {order:g} of {name} {law}", columns
+            yield "unmodelled", f"order {order:g} of {name} {law}", columns

@@ -47,7 +47,7 @@ class Detectability:
 def slope_of(hypothesis: Hypothesis) -> Array:
     """(n, k) whitened columns of a hypothesis at its smallest size."""
     if hypothesis.curve is not None:
-        return hypothesis.curve.slope(0.0)[:, None]
+        return hypothesis.curve.sensitivity(0.0)[:, None]
     assert hypothesis.columns is not None
     return hypothesis.columns
 
@@ -55,7 +55,7 @@ def slope_of(hypothesis: Hypothesis) -> Array:
 def detectabilities(
     space: Whitened, effects: Sequence[Hypothesis], rivals: Sequence[Hypothesis]
 ) -> tuple[Detectability, ...]:
-    """The table of all effects against all rivals, anonymous ones included.
+    """The table of all effects against all rivals, unmodelled causes included.
 
     Nonlinear effects are judged by their slope at the detectable size, found by one repetition.
     """

@@ -62,7 +62,7 @@ class Curve:
         """(k, n) answers between the runs."""
         return np.asarray(self.shares(coordinates) @ self.answers)
 
-    def slope(self, coordinate: float) -> Array:
+    def sensitivity(self, coordinate: float) -> Array:
         """(n,) derivative by the coordinate."""
         return np.asarray(self.slope_shares(coordinate) @ self.answers)
 
@@ -99,7 +99,7 @@ class Hypothesis:
     name: str
     family: str
     parts: tuple[str, ...]
-    """What it claims, effects by the name of their entry; anonymous and input parts included."""
+    """What it claims, effects by the name of their entry; unmodelled and input parts included."""
     curve: Curve | None = None
     columns: Array | None = None
     half: float = 1.0
@@ -208,7 +208,7 @@ def _weigh_curve(space: Whitened, hypothesis: Hypothesis, curve: Curve) -> Evide
         coordinates=(best,),
         deviations=(stiffness**-0.5 if stiffness > 0.0 else float("inf"),),
         gain=space.chi_square - float(fit.squares(np.array([best]))[0]),
-        columns=curve.slope(best)[:, None],
+        columns=curve.sensitivity(best)[:, None],
         answer=curve.at(np.array([best]))[0],
         spreads=np.array(SPREADS)[:, None] * curve.half,
     )

@@ -1,4 +1,4 @@
-"""Operating points kept aside before anything is fitted, chosen by a hash and used once.
+"""Operating points held out before anything is fitted, chosen by a hash and used once.
 
 What an answer a (n,) of the model does to the residual r (n,) of the held-out numbers is the fall of the whitened
 square, with C the covariance of the residual of a healthy rig there:
@@ -29,7 +29,7 @@ SHARE = 0.2
 
 
 def held_out(points: Sequence[str], seed: str) -> tuple[str, ...]:
-    """Names of the points kept aside, in the order of the set; none of a small set.
+    """Names of the points held out, in the order of the set; none of a small set.
 
     seed : hash of the measurement: the choice is fixed before anyone looks and cannot be chosen to please
     """
@@ -102,9 +102,9 @@ def gap_in_words(gap: Gap) -> str:
     """``on P03, P08 falls from 4.18 to 1.28``, and whether that is enough."""
     numbers = f"from {gap.before:.3g} to {gap.after:.3g}"
     if gap.grown:
-        return f"on {', '.join(gap.points)}, kept aside, grows {numbers}"
+        return f"on {', '.join(gap.points)}, held out, grows {numbers}"
     enough = "" if gap.shrunk else ", no more than its scatter"
-    return f"on {', '.join(gap.points)}, kept aside, falls {numbers}{enough}"
+    return f"on {', '.join(gap.points)}, held out, falls {numbers}{enough}"
 
 
 OWN = 0.25

@@ -46,7 +46,7 @@ def fit_together(
 ) -> JointFit:
     """Gauss-Newton on the curves of all named effects, kept within bounds, and their intervals.
 
-    widths : family of an effect -> relative error of the model's answer to it, by which intervals widen
+    widths : family of an effect -> relative error of the model's answer to it, by which intervals become wider
     bounds : of every coordinate of every effect
     """
     owns = [own for one in found for own in one.hypothesis.own]
@@ -125,7 +125,7 @@ FINE = 401
 
 def _slope(one: Evidence, size: Array) -> Array:
     curve = one.hypothesis.curve
-    return one.columns if curve is None else curve.slope(float(size[0]))[:, None]
+    return one.columns if curve is None else curve.sensitivity(float(size[0]))[:, None]
 
 
 def _answer(one: Evidence, size: Array) -> Array:

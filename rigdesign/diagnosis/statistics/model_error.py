@@ -17,7 +17,7 @@ from rigdesign.prediction.model import Feature
 
 
 @dataclass(frozen=True, kw_only=True)
-class OwnError:
+class ModelError:
     """Error by itself of every number.
 
     share : (n,) of its answer, zero for what is of no order; mesh : (n,) whether it is of a mesh order
@@ -33,7 +33,7 @@ class OwnError:
     @classmethod
     def of(
         cls, features: Sequence[Feature], share: Array, mesh: NDArray[np.bool_], values: Array
-    ) -> "OwnError":
+    ) -> "ModelError":
         """Of the numbers of a comparison."""
         return cls(
             share=share,
@@ -44,7 +44,7 @@ class OwnError:
         )
 
     def at(self, answer: Array, circuit: bool) -> Array:
-        """(n,) standard deviations beside an answer (n,); ``circuit``: whether its cause changes the circuit."""
+        """(n,) standard deviations of an answer (n,); ``circuit``: whether its cause changes the circuit."""
         own = self.share * together(answer, self.orders)
         if not circuit:
             return np.asarray(own)

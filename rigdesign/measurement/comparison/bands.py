@@ -33,7 +33,7 @@ class Bands:
             case "torque" | "angle":
                 return f"{channel.quantity} {self._where(channel)}, {self.order_band(feature.order)}"
             case "natural_frequency":
-                return "natural frequencies at rest"
+                return "natural frequencies (static tests)"
             case "backlash":
                 return "backlash of the cold rig"
             case "seal_gap":

@@ -29,7 +29,7 @@ SHOWN = 3
 
 @dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """Measured beside simulated.
+    """Measured and simulated.
 
     simulated, expected, residual, spread : (n_features,) SI in the order of ``data.features``, NaN where nothing
         is measured; expected = simulated and, where a healthy set has the number, its residual there;
@@ -138,10 +138,10 @@ def headline(comparison: Comparison) -> str:
     count = int(np.count_nonzero(comparison.data.usable))
     given = "" if comparison.healthy is None else f"Given the healthy set {_title(comparison.healthy)}: "
     if not comparison.sentences:
-        subject = "Simulation and data" if not given else "simulation, healthy set and data"
+        compared = "Simulation and data" if not given else "simulation, healthy set and data"
         return (
-            f"{given}{subject} agree within the declared uncertainty at all {count} numbers "
-            f"(whitened residual {comparison.rms:.2g}, chance alone makes 1)."
+            f"{given}{compared} agree within the declared uncertainty at all {count} numbers "
+            f"(whitened residual {comparison.rms:.2g}, expected 1)."
         )
     more = len(comparison.sentences) - SHOWN
     tail = f" {more} more groups differ." if more > 0 else ""

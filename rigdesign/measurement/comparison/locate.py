@@ -15,7 +15,7 @@ from rigdesign.prediction.model import Feature, OperatingCondition
 
 Array = NDArray[np.float64]
 VARIABLES: Mapping[str, str] = {
-    "constant": "is much the same at all operating points",
+    "constant": "is nearly constant over the operating points",
     "speed": "grows with speed",
     "torque": "grows with torque",
     "oil_temperature": "grows with the oil temperature",
@@ -85,15 +85,24 @@ def locate(
 
     residual, spread : (n,) [SI], NaN where a feature is not usable; groups : (n,) name of the group of each feature
     """
-    variables = leading_variables(settings, ambient)
-    place = {setting.name: i for i, setting in enumerate(settings)}
+    variables = _Variables(
+        leading_variables(settings, ambient), {setting.name: i for i, setting in enumerate(settings)}
+    )
     usable = np.isfinite(residual)
     found = []
     for group in dict.fromkeys(groups):
         chosen = [i for i, name in enumerate(groups) if name == group and usable[i]]
         if chosen:
-            found.append(_located(group, chosen, features, residual, spread, variables, place))
+            found.append(_located(group, chosen, features, residual, spread, variables))
     return tuple(sorted(found, key=lambda item: -item.rms))
+
+
+@dataclass(frozen=True)
+class _Variables:
+    """Leading variables by name over the settings, and the row of each setting in them."""
+
+    values: Mapping[str, Array]
+    row: Mapping[str, int]
 
 
 def _located(
@@ -102,8 +111,7 @@ def _located(
     features: Sequence[Feature],
     residual: Array,
     spread: Array,
-    variables: Mapping[str, Array],
-    place: Mapping[str, int],
+    variables: _Variables,
 ) -> Located:
     from scipy.stats import chi2
 
@@ -111,7 +119,7 @@ def _located(
     squares = whitened**2
     off = dict.fromkeys(features[i].setting for i, z in zip(chosen, whitened) if abs(z) > 3.0)
     points = {features[i].setting for i in chosen}
-    variable, share = _leading(chosen, features, whitened, variables, place)
+    variable, share = _leading(chosen, features, whitened, variables)
     by_size = max(chosen, key=lambda i: abs(residual[i] / spread[i]))
     return Located(
         group=group,
@@ -130,16 +138,12 @@ def _located(
 
 
 def _leading(
-    chosen: Sequence[int],
-    features: Sequence[Feature],
-    whitened: Array,
-    variables: Mapping[str, Array],
-    place: Mapping[str, int],
+    chosen: Sequence[int], features: Sequence[Feature], whitened: Array, variables: _Variables
 ) -> tuple[str, float]:
     """The variable that explains the most; nothing is said of fewer than three operating points."""
-    if len({features[i].setting for i in chosen} & set(place)) < 3:
+    if len({features[i].setting for i in chosen} & set(variables.row)) < 3:
         return "", 0.0
-    at = np.array([place[features[i].setting] for i in chosen])
+    at = np.array([variables.row[features[i].setting] for i in chosen])
     series: dict[tuple[str, float, str], list[int]] = {}
     for row, i in enumerate(chosen):
         series.setdefault((features[i].channel, features[i].order, features[i].part), []).append(row)
@@ -147,7 +151,7 @@ def _leading(
     if whole == 0.0:
         return "", 0.0
     best, best_share = "", 0.0
-    for name, values in variables.items():
+    for name, values in variables.values.items():
         left = 0.0
         for rows in series.values():
             x, r = values[at[rows]], whitened[rows]

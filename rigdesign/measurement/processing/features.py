@@ -143,7 +143,7 @@ def _few_readings(
     if not _repeated(names, repeats, usable):
         yield DataFinding(
             id="no_repeats", weight="note",
-            text="fewer than half the numbers have a second reading: noise is what the set declares, verdicts are "
+            text="fewer than half the numbers have a second reading: the declared noise is used, verdicts are "
             "indicative; repeat every point",
         )  # fmt: skip
 

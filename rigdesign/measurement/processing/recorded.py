@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, MutableSequence, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -33,13 +34,23 @@ SHORTER = 0.1
 """Part of its length that a recording may lack of the longest one of its point."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class SetPlan:
+    """What a set says it holds: its channels and operating points, and the rows of its table.
+
+    folder : the recordings lie in; places : of the case
+    """
+
+    folder: Path
+    document: MeasurementFile
+    places: Places
+    channels: Mapping[str, MeasuredChannel]
+    points: Sequence[MeasuredPoint]
+    rows: Rows
+
+
 def read_recordings(
-    folder: Path,
-    document: MeasurementFile,
-    places: Places,
-    channels: Mapping[str, MeasuredChannel],
-    points: Sequence[MeasuredPoint],
-    rows: Rows,
+    plan: SetPlan,
     known: Mapping[Feature, NDArray[np.float64]],
     findings: MutableSequence[DataFinding],
 ) -> Readings:
@@ -50,22 +61,23 @@ def read_recordings(
     MeasurementError
         A file that cannot be read, an unknown point or repeat, a signal in another unit than its channel.
     """
+    document, rows = plan.document, plan.rows
     faults = list(_faults(document, rows))
     if faults:
         raise MeasurementError(faults)
     found: Readings = {}
     lasting: dict[str, dict[str, float]] = {}
-    by_name = {point.name: point for point in points}
+    by_name = {point.name: point for point in plan.points}
     for entry in document.data.recordings:
         if entry.point not in by_name:
             continue
         try:
-            signals = read_signals(folder, entry.file, document.data)
+            signals = read_signals(plan.folder, entry.file, document.data)
         except MeasurementError as error:
             faults += error.faults
             continue
         lasting.setdefault(entry.point, {})[entry.file] = max(float(np.ptp(s.time)) for s in signals.values())
-        here = {name: channel for name, channel in channels.items()
+        here = {name: channel for name, channel in plan.channels.items()
                 if channel.signal in signals and channel.channel.quantity not in STANDING_QUANTITIES}  # fmt: skip
         faults += _unit_faults(entry, here, signals)
         if faults:
@@ -73,7 +85,7 @@ def read_recordings(
         place = rows.place(entry.point, entry.repeat)
         assert place is not None
         count = len(rows.rows_of(entry.point))
-        read = _Recording(entry, document, places, by_name[entry.point], findings)
+        read = _Recording(entry, document, plan.places, by_name[entry.point], findings)
         for feature, value in read.numbers(here, signals):
             if feature not in known:
                 found.setdefault(feature, np.full(count, np.nan))[place] = value

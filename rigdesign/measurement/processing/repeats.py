@@ -1,4 +1,4 @@
-"""Noise from repeats: pooled over the operating points of a series, beside what the set declares."""
+"""Noise from repeats: pooled over the operating points of a series, and the declared uncertainty."""
 
 from collections.abc import Mapping
 
@@ -11,7 +11,7 @@ from rigdesign.prediction.model import Feature
 Readings = Mapping[Feature, NDArray[np.float64]]
 
 DECLARED_WEIGHT = 4.0
-"""Degrees of freedom the declared uncertainty counts for beside repeats."""
+"""Degrees of freedom the declared uncertainty counts for in addition to repeats."""
 OUTLIER = 8.0
 """Distance from the median of its repeats, in standard deviations, from which a reading is thrown out."""
 LEAST_PAIRS = 3
@@ -70,7 +70,7 @@ def without_outliers(
         if not (scale > 0.0 and far.any()):
             continue
         order = f", order {feature.order:g}" if feature.part != "value" else ""
-        where = f"{feature.channel} at {feature.setting or 'standstill'}{order}"
+        where = f"{feature.channel} at {feature.setting or 'static tests'}{order}"
         points = (feature.setting,) if feature.setting else ()
         numbers = ", ".join(str(i + 1) for i in np.flatnonzero(far))
         if known:

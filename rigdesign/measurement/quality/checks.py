@@ -54,7 +54,7 @@ def _without_uncertainty(measurement: MeasurementSet) -> Iterator[DataFinding]:
             yield DataFinding(id="zero_uncertainty", weight="note", channels=(name,), text=text)
         else:
             text = (
-                f"{name}: the declared uncertainty is zero and no repeats say otherwise, so it cannot be weighed and "
+                f"{name}: the declared uncertainty is zero and no repeats say otherwise, so it has no weight and "
                 "is left out; state the uncertainty of one reading"
             )
             yield DataFinding(id="zero_uncertainty", weight="dropped", channels=(name,), text=text)

@@ -114,7 +114,7 @@ def clipped(signal: Signal) -> bool:
 def lines_off_the_mesh(
     signal: Signal, turn: TurnAngle, mesh_orders: Mapping[str, Fraction]
 ) -> Iterator[tuple[str, float]]:
-    """Meshes beside whose order, within 5 %, a line stands that is far above the order itself.
+    """Meshes near whose order, within 5 %, there is a line far above the order itself.
 
     Tooth numbers, pulses per turn or speed are wrong then. Sidebands of few teeth lie further away.
     """

@@ -79,7 +79,7 @@ class DataSection(Part):
 
 
 class Point(Part):
-    """What is known of one operating point besides its row."""
+    """What is known of one operating point in addition to its row."""
 
     steady: bool = True
     """Whether temperatures had settled."""
@@ -153,7 +153,7 @@ class MeasurementFile(Part):
     schema_version: Literal[1]
     title: Text
     baseline: Text | None = None
-    """Healthy set of the same rig, a folder beside this one."""
+    """Healthy set of the same rig, a folder next to this one."""
     case: Name | None = None
     """Name of the case the set belongs to; a set of another one is suspected."""
     data: DataSection = DataSection()

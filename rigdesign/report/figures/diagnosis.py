@@ -36,12 +36,12 @@ FARTHEST = 10.0
 MOST_EFFECTS = 30
 """Effects of the detectability picture."""
 FAMILY_COLOURS = {
-    "none": MUTED, "physical": SERIES[0], "sensor": SERIES[2], "input": SERIES[4], "anonymous": SERIES[1],
+    "none": MUTED, "physical": SERIES[0], "sensor": SERIES[2], "input": SERIES[4], "unmodelled": SERIES[1],
     "local": SERIES[1], "pair": SERIES[3], "rest": GRID,
 }  # fmt: skip
 FAMILY_WORDS = {
     "none": "nothing", "physical": "catalogue", "sensor": "sensor or setting", "input": "wrong data",
-    "anonymous": "not in the catalogue", "local": "not in the catalogue", "pair": "two at once", "rest": "the rest",
+    "unmodelled": "not in the catalogue", "local": "not in the catalogue", "pair": "two at once", "rest": "the rest",
 }  # fmt: skip
 
 
@@ -56,7 +56,7 @@ def residual_maps(outcome: Outcome) -> "Figure":
     titles = ["model as it is"]
     if outcome.named:
         tables.append(_by_series(outcome, features, (found.residual - found.answer) / spread))
-        titles = ["before: model as it is", "after: with what was named"]
+        titles = ["before: model as it is", "after: with the named effects"]
     kept = sorted(tables[0], key=lambda label: -float(np.nanmax(np.abs(tables[0][label]))))[:MOST_ROWS]
     shown = [label for label in tables[0] if label in kept]
     height = 1.25 + 0.17 * len(shown)
@@ -91,7 +91,7 @@ def _points(outcome: Outcome, features: Sequence[Feature]) -> list[str]:
 def _labels(outcome: Outcome, points: Sequence[str]) -> list[str]:
     """Names of the points, held-out ones with a star."""
     aside = outcome.result.diagnosis.held_out_points
-    return [(plain(name) + (" *" if name in aside else "")) if name else "at rest" for name in points]
+    return [(plain(name) + (" *" if name in aside else "")) if name else "static tests" for name in points]
 
 
 def _by_series(outcome: Outcome, features: Sequence[Feature], whitened: Array) -> dict[str, Array]:
@@ -143,9 +143,9 @@ def _draw_series(
     axes: "Axes", outcome: Outcome, features: Sequence[Feature], label: str, rows: Sequence[int]
 ) -> None:
     result, found = outcome.result, outcome.result.diagnosis
-    subject = result.problem.subject
+    residuals = result.problem.residuals
     kept = list(found.kept)
-    values, noise = subject.values[kept], subject.noise[kept]
+    values, noise = residuals.values[kept], residuals.noise[kept]
     entry = result.data.channels[features[rows[0]].channel]
     kind, unit = CHANNELS[entry.channel.quantity].kind, entry.unit
     points = [setting.name for setting in result.data.settings]
@@ -162,7 +162,13 @@ def _draw_series(
             axes.axvspan(place - 0.5, place + 0.5, color="#eef1f4", zorder=0, linewidth=0)
     axes.plot(at, before, "o", markersize=5, markerfacecolor="none", color=SERIES[0], label="model as it is")
     axes.plot(
-        at, after, "_", markersize=13, markeredgewidth=2.0, color=SERIES[1], label="model with what was named"
+        at,
+        after,
+        "_",
+        markersize=13,
+        markeredgewidth=2.0,
+        color=SERIES[1],
+        label="model with the named effects",
     )
     axes.errorbar(
         at, measured, yerr=bars, fmt="o", markersize=2.8, linewidth=0.8, color=INK, label="measured", zorder=4
@@ -248,14 +254,19 @@ def detectability_figure(rows: Sequence[Mapping[str, Any]]) -> "Figure | None":
     low, high = min(0.1, 0.6 * min(row["detectable_share_of_bound"] for row in drawn)), FARTHEST
     axes.axvspan(1.0, high, color="#f1f3f5", zorder=0, linewidth=0)
     for place, row in enumerate(drawn):
-        seen, told = row["detectable_share_of_bound"], row["isolable_share_of_bound"] or high
+        seen, separable = row["detectable_share_of_bound"], row["isolable_share_of_bound"] or high
         colour = SERIES[0] if row["verdict"] != "not testable here" else MUTED
-        axes.plot([seen, min(told, high)], [place, place], color=colour, linewidth=1.2)
+        axes.plot([seen, min(separable, high)], [place, place], color=colour, linewidth=1.2)
         axes.plot(seen, place, "o", markersize=4.5, markerfacecolor="white", color=colour,
-                  label="can be seen" if not place else None)  # fmt: skip
-        if told < high:
+                  label="detectable" if not place else None)  # fmt: skip
+        if separable < high:
             axes.plot(
-                told, place, "o", markersize=4.5, color=colour, label="can be named" if not place else None
+                separable,
+                place,
+                "o",
+                markersize=4.5,
+                color=colour,
+                label="identifiable" if not place else None,
             )
     axes.axvline(1.0, color=INK, linewidth=0.9)
     axes.set_xscale("log")

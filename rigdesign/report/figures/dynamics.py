@@ -248,7 +248,7 @@ def _stress_ratio(axes: "Axes", rows: list[dict[str, float]], points: list[Dynam
         axes,
         "pinion speed n [rpm]",
         f"max {SIGMA_F} dynamic / quasi-static [–]",
-        f"Stress ratio beside {KV}(n)",
+        f"Stress ratio and {KV}(n)",
     )
     axes.legend(loc="best")
 

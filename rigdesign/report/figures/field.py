@@ -32,7 +32,7 @@ MM, UM, KW = 1e3, 1e6, 1e-3
 DRAWN = 0.06
 """Largest displacement in a picture as a share of the gearbox's size."""
 DECADES = 3.0
-"""Of heat flux that the colours tell apart; what is less has the lowest colour."""
+"""Of heat flux that the colours resolve; what is less has the lowest colour."""
 ROOM = 0.12
 """Of the clamping field round the gearbox in the outer view, as a share of its size."""
 
@@ -101,14 +101,14 @@ def field_pictures(field: TemperatureField, views: MeshViews) -> Iterator[Pictur
         yield Picture(
             "Heat flux",
             _figure(views, _heat_flux(field.heat_flux)),
-            "Size of the heat flux in the solids, logarithmic; at a node the mean of the cells round it.",
+            "Size of the heat flux in the solids, logarithmic; at a node the mean of the adjacent elements.",
         )
     if np.abs(field.displacement).max() > 0.0:
         factor = magnification(field, views)
         yield Picture(
             "Displacement",
             _figure(views, _displacement(field), factor * field.displacement, factor),
-            f"Displacement by heat relative to the mean of the foot, shafts placed in their bearings, drawn "
+            f"Thermal displacement relative to the mean of the foot, shafts placed in their bearings, drawn "
             f"{number_text(factor)} times as large. Grey in the cut: the cold outlines.",
         )
 
@@ -158,7 +158,7 @@ def _heat_flux(flux: FloatArray) -> Shade:
 
 
 def _figure(views: MeshViews, shade: Shade, moved: FloatArray | None = None, factor: float = 0.0) -> "Figure":
-    """The outer view beside the cut; moved : (n_nodes, 3) displacement as drawn [m]."""
+    """The outer view next to the cut; moved : (n_nodes, 3) displacement as drawn [m]."""
     from matplotlib.cm import ScalarMappable
 
     figure = new_figure(3.8)

@@ -23,7 +23,7 @@ MOST_ROWS = 60
 COLOUR_END = 10.0
 """Whitened residual at which the colours of the map end."""
 PANELS = 3
-"""Plots beside each other."""
+"""Plots next to each other."""
 MOST_PANELS = 12
 """Channels and orders whose readings are drawn over the operating points."""
 MOST_NAMES = 24
@@ -115,7 +115,7 @@ def _readings(axes: "Axes", comparison: Comparison, label: str, rows: list[int])
               linewidth=1.0, label="simulated", zorder=2)  # fmt: skip
     if comparison.healthy is not None:
         axes.plot(x, sizes(comparison.expected), "--", color=SERIES[2], linewidth=1.0,
-                  label="simulated, with what the healthy set leaves", zorder=3)  # fmt: skip
+                  label="simulated, with the residual of the healthy set", zorder=3)  # fmt: skip
     axes.errorbar(x, sizes(data.values), yerr=bars, fmt="o", color=SERIES[1], markersize=3.2, linewidth=0.9,
                   label="measured", zorder=4)  # fmt: skip
     finish(axes, "", f"{quantity.replace('_', ' ')} [{unit_text(unit)}]", plain(label))
@@ -186,7 +186,7 @@ def residual_map(comparison: Comparison) -> "Figure":
         cmap=colours, vmin=-COLOUR_END, vmax=COLOUR_END, edgecolors="white", linewidth=0.5,
     )  # fmt: skip
     axes.set_yticks(np.arange(len(shown)) + 0.5, [plain(label) for label in shown])
-    names = [plain(name) if name else "at rest" for name in points]
+    names = [plain(name) if name else "static tests" for name in points]
     axes.set_xticks(np.arange(len(points)) + 0.5, names, rotation=90 if len(points) > 12 else 0)
     axes.invert_yaxis()
     axes.grid(visible=False)

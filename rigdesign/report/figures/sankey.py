@@ -83,28 +83,30 @@ def layout(
     boxes = {
         box.name: box
         for number, names in enumerate(shown)
-        for box in _column(names, sizes, scale, gap, x=number * step, number=number, low=number in low)
+        for box in _column(_Column(number, number * step, low=number in low), names, sizes, scale, gap)
     }
     return SankeyLayout(tuple(boxes.values()), tuple(_ribbons(kept, boxes, scale)), scale)
 
 
+@dataclass(frozen=True)
+class _Column:
+    """Place of a column: number, left edge, whether it stands at the bottom of the picture."""
+
+    number: int
+    x: float
+    low: bool
+
+
 def _column(
-    names: Sequence[str],
-    sizes: Mapping[str, float],
-    scale: float,
-    gap: float,
-    *,
-    x: float,
-    number: int,
-    low: bool,
+    place: _Column, names: Sequence[str], sizes: Mapping[str, float], scale: float, gap: float
 ) -> list[Box]:
     """Nodes of one column from the top."""
     height = scale * sum(sizes[name] for name in names) + gap * (len(names) - 1)
-    top = height if low else 0.5 + 0.5 * height
+    top = height if place.low else 0.5 + 0.5 * height
     found = []
     for name in names:
         bottom = top - scale * sizes[name]
-        found.append(Box(name, x, bottom, top, sizes[name], number))
+        found.append(Box(name, place.x, bottom, top, sizes[name], place.number))
         top = bottom - gap
     return found
 

@@ -37,7 +37,7 @@ LABEL_ROOM = 1.25
 
 
 class CurveOverTime(Protocol):
-    """What has phases over time: a course of temperatures, a course of oil power."""
+    """What has phases over time: a history of temperatures, a history of oil power."""
 
     @property
     def time_s(self) -> list[float]:
@@ -80,8 +80,8 @@ def columns_of(curve: CurveOverTime) -> list[FigureColumn]:
 
 
 def transient_figure(result: TransientResult, curve: TransientCurve) -> "Figure":
-    """One course: a column for each phase on a logarithmic time of its own, since a ramp takes seconds and a field
-    days; the worst moment of a quantity is a ring."""
+    """One thermal history: a column for each phase on a logarithmic time of its own, since a ramp takes seconds
+    and a field days; the worst moment of a quantity is a ring."""
     coupled = bool(curve.alignment.get("coupling_offset_mm"))
     rows = [*ROWS, OFFSET] if coupled else list(ROWS)
     columns = columns_of(curve)
@@ -105,7 +105,7 @@ def transient_figure(result: TransientResult, curve: TransientCurve) -> "Figure"
 
 
 def oil_power_figure(result: TransientResult, curve: OilPowerCurve) -> "Figure":
-    """Power of heaters and cooler over one course [kW] with their limits; the worst moment is a ring."""
+    """Power of heaters and cooler over one thermal history [kW] with their limits; the worst moment is a ring."""
     columns = columns_of(curve)
     height = 3.4
     figure = new_figure(height)
@@ -171,7 +171,7 @@ def _worst_of(
     columns: Sequence[FigureColumn],
     quantity: str,
 ) -> None:
-    """The worst place of a quantity at every time, its limit, a ring where a course has its worst moment."""
+    """The worst place of a quantity at every time, its limit, a ring where a history has its worst moment."""
     offset = quantity == OFFSET[0]
     places = curve.alignment["coupling_offset_mm"] if offset else curve.clearances_mm[quantity]
     values = (

@@ -1,28 +1,23 @@
 """The ranges of the assumed inputs in the report: two figures and the margins worth a line."""
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rigdesign.report.sections.section import Draw, Section, Values
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
-    from markupsafe import Markup
-    from matplotlib.figure import Figure
-
     from rigdesign.results.ranges import CheckRange, RangeMargin
 
 LEAST_MOVE = 0.01
 """Shift of the utilisation from which a pair of check and input has a line in the report; results.json has more."""
 
 
-def ranges_context(result: RunResult, draw: Callable[["Figure", str], "Markup"]) -> dict[str, Any]:
-    """What the section needs beside the result; nothing where no ranges were evaluated."""
-    shown: dict[str, Any] = {"range_margins": None, "range_temperature": None, "strong_margins": []}
-    ranges = result.ranges
-    if ranges is None:
-        return shown
+def _ranges(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures.ranges import margins_figure, temperature_figure
 
+    ranges = result.ranges
+    assert ranges is not None
+    shown: Values = {"range_margins": None, "range_temperature": None}
     titles = {check.id: check.title for check in result.checks}
     margins, temperatures = margins_figure(ranges, titles), temperature_figure(ranges)
     if margins is not None:
@@ -37,3 +32,12 @@ def ranges_context(result: RunResult, draw: Callable[["Figure", str], "Markup"])
 def _moves(row: "RangeMargin", stated: "CheckRange") -> bool:
     ends = (row.utilisation_low, row.utilisation_high)
     return any(end is not None and abs(end - (stated.utilisation or 0.0)) > LEAST_MOVE for end in ends)
+
+
+def _evaluated(result: RunResult) -> bool:
+    return result.ranges is not None
+
+
+RANGES = Section(
+    id="ranges", template="ranges.html.j2", values=_ranges, applies=_evaluated, within="assumptions"
+)

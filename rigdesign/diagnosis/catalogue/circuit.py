@@ -13,10 +13,11 @@ from math import atan2, cos, hypot, pi, sin
 from dynamics.standards.iso1328_1_2013 import tolerances
 from rigdesign.case.drivetrain import HarmonicTorqueInput
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.model import Case
-from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Family, Parameter
-from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, Scaled, factor
+from rigdesign.diagnosis.catalogue.effects import Changes, Effect, Parameter
+from rigdesign.diagnosis.catalogue.entries import PRACTICE, Added, UncertainValue
+from rigdesign.diagnosis.catalogue.families import DAMPING, EXCITATION, INERTIA, STATE, STIFFNESS, TOOTH
+from rigdesign.diagnosis.catalogue.registry import GearboxPart, of_gearbox, of_rig
 
 MICROMETRE = 1e-6
 
@@ -28,19 +29,11 @@ LEAST_SOFTENING = 0.02
 """Share of its stiffness that a tooth must have lost to matter: less than a crack through a tenth of the root takes."""
 
 
-def loop_effects(case: Case) -> Iterator[Effect]:
-    """Entries for every gear, mesh, coupling and the motor; none for a rig without a drivetrain."""
-    if case.drivetrain is None:
-        return
-    for box_name, box in case.gearboxes.items():
-        for name in box.gears:
-            yield from _teeth(box_name, box, name)
-        for name, mesh in box.meshes.items():
-            yield from _mesh(f"gearboxes.{box_name}.meshes.{name}", f"{box_name}.{name}", mesh)
-        for name, gear in box.gears.items():
-            yield from _body(f"gearboxes.{box_name}.gears.{name}", f"{box_name}.{name}", gear)
-    yield from _joints(case)
-    yield from _drive(case)
+@of_gearbox(drivetrain=True)
+def teeth(part: GearboxPart) -> Iterator[Effect]:
+    """Deviations and weak teeth of every gear."""
+    for name in part.box.gears:
+        yield from _teeth(part.name, part.box, name)
 
 
 def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
@@ -49,18 +42,19 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
     yield Effect(
         name=f"run_out:{label}",
         title=f"run-out of {label} (eccentricity)",
-        family="excitation",
+        family=EXCITATION,
         signature="order 1 of its shaft from low speed on, sidebands of the mesh orders",
         parameters=_amplitudes("eccentricity", 50.0 * MICROMETRE),
         change=_RunOut(at),
         healthy=spread["run_out"],
         linear=True,
+        doubled="run-out F_r",
     )
     for order in (2, 3, 4):
         yield Effect(
             name=f"cumulative_pitch:{label}/{order}",
-            title=f"pitch of {label} with {order} waves a turn",
-            family="excitation",
+            title=f"cumulative pitch deviation of {label}, {order} waves per revolution",
+            family=EXCITATION,
             signature=f"order {order} of its shaft, sidebands of the mesh orders at that distance",
             parameters=_amplitudes("amplitude", 40.0 * MICROMETRE),
             change=_PitchWave(at, order),
@@ -69,9 +63,9 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         )
     yield Effect(
         name=f"single_pitch:{label}",
-        title=f"pitch of one tooth of {label}",
-        family="excitation",
-        signature="all orders of its shaft alike, the more the less torque",
+        title=f"single pitch deviation of {label}",
+        family=EXCITATION,
+        signature="all orders of its shaft alike, larger at low torque",
         parameters=(_length("deviation", -60.0, 60.0),),
         change=_SinglePitch(at, gear.teeth),
         any_tooth=gear.teeth,
@@ -80,8 +74,8 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
     )
     yield Effect(
         name=f"weak_tooth:{label}",
-        title=f"one tooth of {label} that gives way",
-        family="tooth",
+        title=f"reduced stiffness of one tooth of {label}",
+        family=TOOTH,
         signature="all orders of its shaft, growing with torque",
         parameters=(Parameter(name="softening", unit="", low=0.0, high=0.8, source=PRACTICE),),
         change=_WeakTooth(at),
@@ -91,7 +85,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
     yield Effect(
         name=f"profile_slope:{label}",
         title=f"profile slope of {label}",
-        family="tooth",
+        family=TOOTH,
         signature="mesh orders only, changing with torque",
         parameters=(_length("slope", -25.0, 25.0),),
         change=Added(f"{at}.profile_slope", gear.flank.profile_slope),
@@ -101,7 +95,7 @@ def _teeth(box_name: str, box: Gearbox, name: str) -> Iterator[Effect]:
         yield Effect(
             name=f"tip_relief:{label}",
             title=f"tip relief of {label}",
-            family="tooth",
+            family=TOOTH,
             signature="mesh orders only, changing with torque",
             parameters=(_length("relief", -1e6 * gear.flank.tip_relief, 25.0),),
             change=Added(f"{at}.tip_relief", gear.flank.tip_relief),
@@ -209,69 +203,74 @@ class _WeakTooth:
         return {f"{self._at}.weak_tooth.tooth": tooth, f"{self._at}.weak_tooth.stiffness": 1.0 - values[0]}
 
 
-def _mesh(at: str, label: str, mesh: GearMesh) -> Iterator[Effect]:
-    yield _scaled(
-        f"mesh_stiffness:{label}", f"stiffness of the mesh {label}", "stiffness", f"{at}.stiffness_factor",
-        mesh.stiffness_factor, (0.6, 1.5), 0.07, "mesh orders, resonance speeds of the mesh",
-    )  # fmt: skip
-    yield _scaled(
-        f"mesh_damping:{label}", f"damping of the mesh {label}", "damping", f"{at}.damping", mesh.damping,
-        (0.2, 5.0), 0.25, "height of mesh orders near resonance",
-    )  # fmt: skip
-
-
-def _body(at: str, label: str, gear: Gear) -> Iterator[Effect]:
-    yield _scaled(
-        f"inertia:{label}", f"inertia of {label}", "inertia", f"{at}.inertia_factor",
-        gear.inertia_factor, (0.7, 1.4), 0.04, "torsional modes that move this gear",
-    )  # fmt: skip
-    if gear.spline is not None:
-        yield _scaled(
-            f"spline_stiffness:{label}", f"stiffness of the spline of {label}", "stiffness",
-            f"{at}.spline.torsional_stiffness", gear.spline.torsional_stiffness, (0.1, 5.0), 0.10,
-            "torsional modes that twist this spline",
+@of_gearbox(drivetrain=True)
+def mesh_compliance(part: GearboxPart) -> Iterator[Effect]:
+    """Stiffness and damping of every mesh."""
+    for name, mesh in part.box.meshes.items():
+        at, label = f"{part.path}.meshes.{name}", f"{part.name}.{name}"
+        stiffness = UncertainValue(
+            path=f"{at}.stiffness_factor", now=mesh.stiffness_factor, bounds=(0.6, 1.5), healthy=0.07
+        )
+        yield stiffness.effect(
+            f"mesh_stiffness:{label}", f"stiffness of the mesh {label}", STIFFNESS,
+            "mesh orders, resonance speeds of the mesh",
+        )  # fmt: skip
+        damping = UncertainValue(path=f"{at}.damping", now=mesh.damping, bounds=(0.2, 5.0), healthy=0.25)
+        yield damping.effect(
+            f"mesh_damping:{label}", f"damping of the mesh {label}", DAMPING,
+            "height of mesh orders near resonance",
         )  # fmt: skip
 
 
-def _scaled(
-    name: str,
-    title: str,
-    family: Family,
-    path: str,
-    now: float,
-    bounds: tuple[float, float],
-    healthy: float,
-    signature: str,
-) -> Effect:
-    return Effect(
-        name=name,
-        title=title,
-        family=family,
-        signature=signature,
-        parameters=(factor("factor", *bounds),),
-        change=Scaled(((path, now),)),
-        healthy=healthy,
-    )
+@of_gearbox(drivetrain=True)
+def gear_bodies(part: GearboxPart) -> Iterator[Effect]:
+    """Inertia of every gear, stiffness of its spline."""
+    for name, gear in part.box.gears.items():
+        at, label = f"{part.path}.gears.{name}", f"{part.name}.{name}"
+        inertia = UncertainValue(
+            path=f"{at}.inertia_factor", now=gear.inertia_factor, bounds=(0.7, 1.4), healthy=0.04
+        )
+        yield inertia.effect(
+            f"inertia:{label}", f"inertia of {label}", INERTIA, "torsional modes that move this gear"
+        )
+        if gear.spline is not None:
+            spline = UncertainValue(
+                path=f"{at}.spline.torsional_stiffness", now=gear.spline.torsional_stiffness,
+                bounds=(0.1, 5.0), healthy=0.10,
+            )  # fmt: skip
+            yield spline.effect(
+                f"spline_stiffness:{label}", f"stiffness of the spline of {label}", STIFFNESS,
+                "torsional modes that twist this spline",
+            )  # fmt: skip
 
 
-def _joints(case: Case) -> Iterator[Effect]:
+@of_rig(drivetrain=True)
+def couplings(case: Case) -> Iterator[Effect]:
+    """Stiffness, damping and misalignment of every coupling."""
     assert case.drivetrain is not None
     for name, coupling in case.drivetrain.couplings.items():
         at = f"drivetrain.couplings.{name}"
-        yield _scaled(
-            f"coupling_stiffness:{name}", f"stiffness of the coupling {name}", "stiffness",
-            f"{at}.torsional_stiffness", coupling.torsional_stiffness, (0.2, 5.0), 0.08,
-            "low torsional modes and the torque that run-out makes",
+        stiffness = UncertainValue(
+            path=f"{at}.torsional_stiffness",
+            now=coupling.torsional_stiffness,
+            bounds=(0.2, 5.0),
+            healthy=0.08,
+        )
+        yield stiffness.effect(
+            f"coupling_stiffness:{name}", f"stiffness of the coupling {name}", STIFFNESS,
+            "low torsional modes and the torque caused by run-out",
         )  # fmt: skip
-        yield _scaled(
-            f"coupling_damping:{name}", f"damping of the coupling {name}", "damping",
-            f"{at}.torsional_damping", coupling.torsional_damping, (0.2, 5.0), 0.25,
+        damping = UncertainValue(
+            path=f"{at}.torsional_damping", now=coupling.torsional_damping, bounds=(0.2, 5.0), healthy=0.25
+        )
+        yield damping.effect(
+            f"coupling_damping:{name}", f"damping of the coupling {name}", DAMPING,
             "height of the low torsional modes",
         )  # fmt: skip
         yield Effect(
             name=f"coupling_order_2:{name}",
-            title=f"axes out of line at the coupling {name}",
-            family="excitation",
+            title=f"misalignment at the coupling {name}",
+            family=EXCITATION,
             signature="order 2 of its shaft, the same at any torque",
             parameters=_amplitudes("torque", 20.0, "N m"),
             change=_Harmonic(f"{at}.excitation", coupling.excitation, 2.0),
@@ -297,14 +296,16 @@ class _Harmonic:
         }
 
 
-def _drive(case: Case) -> Iterator[Effect]:
+@of_rig(drivetrain=True)
+def drive(case: Case) -> Iterator[Effect]:
+    """Ripple and inertia of the motor, drift of the bracing."""
     assert case.drivetrain is not None
     motor, bracing = case.drivetrain.motor, case.drivetrain.bracing
     for order in (1, 2, 3, 4, 6):
         yield Effect(
             name=f"motor_ripple/{order}",
-            title=f"torque ripple of the motor, {order} a turn",
-            family="excitation",
+            title=f"torque ripple of the motor, order {order}",
+            family=EXCITATION,
             signature=f"order {order} of the motor, the same at any torque",
             parameters=_amplitudes("torque", 20.0, "N m"),
             change=_Harmonic("drivetrain.motor.ripple", motor.ripple, float(order)),
@@ -312,15 +313,15 @@ def _drive(case: Case) -> Iterator[Effect]:
             matters=LEAST_TORQUE,
         )
     if motor.inertia > 0.0:
-        yield _scaled(
-            "inertia:motor", "inertia of the motor", "inertia", "drivetrain.motor.inertia", motor.inertia,
-            (0.5, 2.0), 0.05, "the lowest torsional modes",
-        )  # fmt: skip
+        inertia = UncertainValue(
+            path="drivetrain.motor.inertia", now=motor.inertia, bounds=(0.5, 2.0), healthy=0.05
+        )
+        yield inertia.effect("inertia:motor", "inertia of the motor", INERTIA, "the lowest torsional modes")
     yield Effect(
         name="bracing_drift",
-        title="bracing torque that drifts with the oil temperature",
-        family="state",
-        signature="mean torque and all that follows it change with the oil temperature",
+        title="drift of the bracing torque with the oil temperature",
+        family=STATE,
+        signature="mean torque and what depends on it change with the oil temperature",
         parameters=(Parameter(name="drift", unit="1/K", low=-0.003, high=0.003, source=PRACTICE),),
         change=Added("drivetrain.bracing.temperature_drift", bracing.temperature_drift),
         linear=True,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rigdesign.diagnosis.statistics.model_error import OwnError
+from rigdesign.diagnosis.statistics.model_error import ModelError
 from rigdesign.prediction.model import Feature
 
 PARTS = [(order, part) for order in (27.0, 28.0) for part in ("real", "imaginary")]
@@ -11,9 +11,9 @@ FEATURES = (*(Feature("M", point, *part) for point in ("P1", "P2") for part in P
 MESH = np.array([one.order == 28.0 for one in FEATURES])
 
 
-def error(share: float, read: np.ndarray) -> OwnError:
+def error(share: float, read: np.ndarray) -> ModelError:
     shares = np.array([share if one.order else 0.0 for one in FEATURES])
-    return OwnError.of(FEATURES, shares, MESH, read)
+    return ModelError.of(FEATURES, shares, MESH, read)
 
 
 def test_an_order_is_off_by_a_share_of_its_amplitude_whatever_its_phase():

@@ -1,0 +1,385 @@
+"""Film laws of the case: each class states its keys, what it needs of its surface, and the law it stands for.
+
+A new law of a still wall or of a shaft is a formula in `thermal.films`, its class here, and its name in `PlateFilm`
+or `ShaftFilm`.
+"""
+
+from collections.abc import Iterator
+from typing import Annotated, Any, ClassVar, Literal, get_args
+
+from pydantic import Field, GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from rigdesign.base.errors import Fault
+from rigdesign.base.units import show
+from rigdesign.case.fields import (
+    HeatTransferCoefficient,
+    Part,
+    Size,
+    Temperature,
+    TemperatureDifference,
+    Text,
+)
+from rigdesign.case.surface_place import SurfacePlace, SurfaceSite
+from thermal.films import convection
+from thermal.films.law import FilmLaw
+
+Fluid = Literal[
+    "ambient",
+    "gear_oil_inlet",
+    "gear_oil_mean",
+    "gear_oil_outlet",
+    "bearing_oil_inlet",
+    "bearing_oil_mean",
+    "bearing_oil_outlet",
+]
+"""What wets a surface: room air, or the oil of the chamber at inlet, outlet or their mean."""
+Medium = Literal["air", "mist"]
+"""What a surface of the chamber turns in: dry air at the film temperature, or the mist whose density
+``losses.chamber_density`` gives for windage."""
+FilmFactor = Annotated[float, Field(gt=0.0, le=10.0)]
+"""Multiplies a film: what it really is, over what its law or the case says."""
+
+ROOM, WARM_WALL = 293.15, 343.15
+"""Temperatures of air and wall [K] at which a law is asked whether its coefficient contains radiation."""
+
+
+class SurfaceCondition(Part):
+    """What one entry of ``boundary`` says of its surfaces."""
+
+    surfaces: tuple[Text, ...] = Field(min_length=1)
+    """Surface names; ``*`` stands for any run of characters."""
+    law: str
+
+    may_join_a_film: ClassVar[bool] = False
+    """It may stand on a surface that has a film already."""
+
+    @property
+    def wetted_by(self) -> Fluid | None:
+        """Fluid of the case that its film exchanges heat with; None for anything else."""
+        return None
+
+    def partner_of(self, stood_for: tuple[str, ...]) -> str | None:
+        """Surface that an exchange leads to; ``stood_for``: what the stars stood for. None for anything else."""
+        return None
+
+    def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:
+        """What it needs of a surface and does not find there; paths are relative to the entry."""
+        yield from ()
+
+
+class SurfaceFilm(SurfaceCondition):
+    """A film between a surface and a fluid of the case."""
+
+    coefficient_given: ClassVar[bool] = False
+    """Its coefficient is a number of the case, not computed by a law."""
+
+    def film_law(self, place: SurfacePlace) -> FilmLaw:
+        """Its law with the numbers of a surface."""
+        raise NotImplementedError
+
+    def radiation_included(self, place: SurfacePlace) -> bool:
+        """Whether its coefficient is of the size of convection and radiation together."""
+        return self.film_law(place)(WARM_WALL, ROOM).radiation_included
+
+    def fluid_temperature_given(self, usual: float) -> float:
+        """Temperature of the fluid [K]; ``usual`` is that of the case."""
+        return usual
+
+
+class Correlation(SurfaceFilm):
+    """A film that follows a published law."""
+
+    film_factor: FilmFactor = 1.0
+    """Multiplies the film: with a range it stands for the scatter of the correlation."""
+
+    def film_law(self, place: SurfacePlace) -> FilmLaw:
+        """Its law with the numbers of a surface."""
+        return convection.scaled(self.correlation_at(place), self.film_factor)
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published."""
+        raise NotImplementedError
+
+
+class StillAirFilm(Correlation):
+    """A film between a still wall or plate and room air."""
+
+    @property
+    def wetted_by(self) -> Fluid:
+        """Room air."""
+        return "ambient"
+
+
+class HousingHeightFilm(StillAirFilm):
+    """A film that takes the height of the housing."""
+
+    height: Size | None = None
+    """The height of the housing when left out."""
+
+    def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:
+        """A height of its own has to be that of the housing."""
+        if self.height not in (None, site.housing_height):
+            yield Fault(
+                "height", show(self.height or 0.0, "length"),
+                f"is not the height of the housing, {show(site.housing_height, 'length')}",
+                "leave it out: the film takes the height of the housing",
+            )  # fmt: skip
+
+
+class NiemannWinter(HousingHeightFilm):
+    """Housing to room air, alpha = f_k (10 + 0.07 dT) h^-0.15 (Niemann/Winter; P2, Formula 2)."""
+
+    law: Literal["niemann_winter"]
+    draught_factor: float = Field(default=1.0, gt=0.0, le=5.0)
+    """f_k: 1 in still room air."""
+    height: Size | None = None
+    """h; the height of the housing when left out."""
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published."""
+        return convection.niemann_winter(self.height or place.height, self.draught_factor)
+
+
+class RecknagelPlate(StillAirFilm):
+    """Horizontal plate to still room air."""
+
+    law: Literal["recknagel_plate"]
+    correlation: Literal["dimensional", "turbulent"] = "dimensional"
+    """dimensional: 2.0 dT^(1/4); turbulent: Nu = 0.125 Ra^(1/3)."""
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published."""
+        return convection.recknagel_plate(self.correlation)
+
+
+class IsoTr14179(HousingHeightFilm):
+    """Housing to room air by ISO/TR 14179-2, free convection."""
+
+    law: Literal["iso_tr_14179_2"]
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published."""
+        return convection.iso_tr_14179_2_free(self.height or place.height)
+
+
+class VerticalPlate(HousingHeightFilm):
+    """Vertical wall to still room air (Churchill and Chu, as the VDI Heat Atlas has it); no radiation in it."""
+
+    law: Literal["vertical_plate"]
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published."""
+        return convection.vertical_plate_churchill(self.height or place.height)
+
+
+class HorizontalPlate(StillAirFilm):
+    """Horizontal plate to still room air; no radiation in it."""
+
+    law: Literal["horizontal_plate"]
+    correlation: Literal["mcadams", "vdi", "rohsenow"] = "mcadams"
+    length: Size
+    """Characteristic length: area over perimeter."""
+    facing: Literal["up", "down"] = "up"
+    """Side of the plate the air is on."""
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published."""
+        laws = {
+            "mcadams": convection.horizontal_plate_mcadams,
+            "vdi": convection.horizontal_plate_vdi,
+            "rohsenow": convection.horizontal_plate_rohsenow,
+        }
+        return laws[self.correlation](self.length, self.facing)
+
+
+PlateFilm = NiemannWinter | RecknagelPlate | IsoTr14179 | VerticalPlate | HorizontalPlate
+"""Film between a still wall or plate and room air."""
+
+
+def _law_name(film: type[StillAirFilm]) -> str:
+    (name,) = get_args(film.model_fields["law"].annotation)
+    return str(name)
+
+
+PRINTED_LAWS: dict[str, type[StillAirFilm]] = {
+    _law_name(film): film
+    for film in get_args(PlateFilm)
+    if not any(
+        field.is_required() for key, field in film.model_fields.items() if key not in ("surfaces", "law")
+    )
+}
+"""Laws a printed coefficient may have been read from: those that need no more than a height."""
+
+
+class _PrintedLaw:
+    """One of `PRINTED_LAWS`, as a choice of the case file."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.literal_schema(list(PRINTED_LAWS))
+
+
+class TakenFrom(Part):
+    """Where a printed coefficient to room air was read: at an assumed temperature difference, from a film law."""
+
+    temperature_difference: TemperatureDifference
+    """Wall above air that was assumed; the run warns when it comes out otherwise."""
+    law: Annotated[str, _PrintedLaw()] | None = None
+    """Film law it was read from: tells what the coefficient would have been, and whether it holds radiation."""
+    height: Size | None = None
+    """h: height of the housing, where the law needs one."""
+
+    @property
+    def needs_height(self) -> bool:
+        """The law depends on the height of the housing."""
+        return self.law is not None and issubclass(PRINTED_LAWS[self.law], HousingHeightFilm)
+
+    def film_law(self) -> FilmLaw | None:
+        """The law the coefficient was read from; None if the case does not say."""
+        if self.law is None:
+            return None
+        film = PRINTED_LAWS[self.law].model_validate({"surfaces": ("as printed",), "law": self.law})
+        return film.film_law(SurfacePlace(height=self.height or 0.0))
+
+    @property
+    def radiation_included(self) -> bool:
+        """The law it was read from is for convection and radiation together."""
+        law = self.film_law()
+        return law is not None and law(WARM_WALL, ROOM).radiation_included
+
+
+class ConstantFilm(SurfaceFilm):
+    """A given heat transfer coefficient to a fluid."""
+
+    coefficient_given: ClassVar[bool] = True
+
+    law: Literal["constant_film"]
+    heat_transfer_coefficient: HeatTransferCoefficient
+    fluid: Fluid
+    taken_from: TakenFrom | None = None
+    """For a printed coefficient to room air: what it was read from."""
+    fluid_temperature: Temperature | None = None
+    """Overrides the temperature of the fluid."""
+    film_factor: FilmFactor = 1.0
+    """Multiplies the coefficient."""
+
+    @property
+    def wetted_by(self) -> Fluid:
+        """The fluid it names."""
+        return self.fluid
+
+    def fluid_temperature_given(self, usual: float) -> float:
+        """Its own, or the ``usual`` one [K]."""
+        return self.fluid_temperature or usual
+
+    def film_law(self, place: SurfacePlace) -> FilmLaw:
+        """The coefficient, less what does not wet the surface."""
+        taken = self.taken_from
+        law = convection.constant(
+            self.heat_transfer_coefficient,
+            place.source,
+            "constant" if taken is None or taken.law is None else taken.law,
+            None if self.fluid == "ambient" else convection.OIL_RANGE,
+            radiation_included=taken is not None and taken.radiation_included,
+        )
+        return convection.scaled(law, self.film_factor * place.wetted_share)
+
+    def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:
+        """A printed coefficient is one to room air, with a height where its law needs one."""
+        taken = self.taken_from
+        if taken is None:
+            return
+        if self.fluid != "ambient":
+            yield Fault(
+                "taken_from", "", f"stands for films to room air, the fluid is {self.fluid}",
+                'remove it or write fluid = "ambient"',
+            )  # fmt: skip
+        if taken.needs_height and taken.height is None:
+            yield Fault(
+                "taken_from.height", "", f"{taken.law} needs the height of the housing",
+                'add it, e.g. height = "400 mm"',
+            )  # fmt: skip
+
+
+class TurningFilm(Correlation):
+    """A film that takes diameter and speed from a shaft or gear."""
+
+    def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:
+        """It needs a surface of a shaft or gear."""
+        if not site.on_shaft:
+            yield Fault(
+                "surfaces", f'"{site.surface}"',
+                f"is no surface of a shaft or gear: {self.law} takes its diameter from there",
+                "take it out, or choose a film for still walls",
+            )  # fmt: skip
+
+
+class HorizontalCylinder(TurningFilm):
+    """Shaft at rest in still room air (Churchill and Chu); diameter from the shaft."""
+
+    law: Literal["horizontal_cylinder"]
+
+    @property
+    def wetted_by(self) -> Fluid:
+        """Room air."""
+        return "ambient"
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published."""
+        return convection.horizontal_cylinder_churchill_chu(place.turning.diameter, place.turning.speed)
+
+
+class RotatingCylinder(TurningFilm):
+    """Rotating shaft in air or oil mist; diameter and speed from the shaft."""
+
+    law: Literal["rotating_cylinder"]
+    correlation: Literal["becker", "jungnickel", "kays_bjorklund", "etemad", "dropkin_carmi"] = "becker"
+    """becker, etemad, dropkin_carmi: air at the film temperature; kays_bjorklund: with buoyancy, down to standstill;
+    jungnickel: constants of air near room temperature."""
+    fluid: Fluid
+    medium: Medium = "air"
+
+    @property
+    def wetted_by(self) -> Fluid:
+        """The fluid it names."""
+        return self.fluid
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published, in the medium of the entry."""
+        shaft = place.turning
+        if self.correlation == "jungnickel":
+            return convection.rotating_cylinder_jungnickel(shaft.speed, shaft.diameter)
+        laws = {
+            "becker": convection.rotating_cylinder_becker,
+            "kays_bjorklund": convection.rotating_cylinder_kays_bjorklund,
+            "etemad": convection.rotating_cylinder_etemad,
+            "dropkin_carmi": convection.rotating_cylinder_dropkin_carmi,
+        }
+        density = place.mist_density if self.medium == "mist" else None
+        return laws[self.correlation](shaft.speed, shaft.diameter, density)
+
+
+class RotatingDisc(TurningFilm):
+    """Rotating end or gear face in air or oil mist; radius and speed from the shaft."""
+
+    law: Literal["rotating_disc"]
+    correlation: Literal["kreith", "jungnickel"] = "kreith"
+    """kreith: air at the film temperature; jungnickel: constants of air near room temperature."""
+    fluid: Fluid
+    medium: Medium = "air"
+
+    @property
+    def wetted_by(self) -> Fluid:
+        """The fluid it names."""
+        return self.fluid
+
+    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
+        """The law as published, in the medium of the entry."""
+        speed, radius = place.turning.speed, 0.5 * place.turning.diameter
+        if self.correlation == "jungnickel":
+            return convection.rotating_disc_jungnickel(speed, radius)
+        return convection.rotating_disc(speed, radius, place.mist_density if self.medium == "mist" else None)
+
+
+ShaftFilm = HorizontalCylinder | RotatingCylinder | RotatingDisc
+"""Film that takes its diameter from a shaft or gear."""

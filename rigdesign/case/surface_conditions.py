@@ -1,0 +1,176 @@
+"""What an entry of ``boundary`` may be besides a film to a fluid: flanks, bearings, radiation, exchange, fixed ends."""
+
+from collections.abc import Iterator
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from rigdesign.base.errors import Fault
+from rigdesign.base.units import show
+from rigdesign.case.fields import Clearance, HeatTransferCoefficient, Temperature, Text, fault
+from rigdesign.case.films import ConstantFilm, FilmFactor, PlateFilm, ShaftFilm, SurfaceCondition
+from rigdesign.case.surface_place import SurfacePlace, SurfaceSite
+from thermal.films import convection
+from thermal.films.law import ExchangeLaw
+
+
+class FlankFilm(SurfaceCondition):
+    """Rim of a gear that stands for its teeth: the oil the jets lay on the flanks, tooth as a fin."""
+
+    law: Literal["flank_film"]
+    correlation: Literal["fling_off", "jet_renewal", "constant"] = "fling_off"
+    """fling_off: laid by every jet and flung off; jet_renewal: stays until the next jet, an upper bound; constant:
+    ``heat_transfer_coefficient`` on the flanks."""
+    wetted_share: float = Field(default=1.0, gt=0.0, le=1.0)
+    """Outer share of the tooth height that the oil reaches."""
+    film_factor: FilmFactor = 1.0
+    """Multiplies the film."""
+    heat_transfer_coefficient: HeatTransferCoefficient | None = None
+    """Mean over all flanks, for ``constant``."""
+
+    def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:
+        """It needs teeth, and a coefficient for ``constant`` only."""
+        if not site.has_teeth:
+            yield Fault(
+                "surfaces", f'"{site.surface}"', "has no teeth",
+                'law = "flank_film" is for gear_*_rim; write another law',
+            )  # fmt: skip
+        given = self.heat_transfer_coefficient
+        if self.correlation == "constant" and given is None:
+            yield Fault(
+                "heat_transfer_coefficient", "", 'correlation = "constant" needs it',
+                'add it, e.g. heat_transfer_coefficient = "3000 W/(m2 K)"',
+            )  # fmt: skip
+        if self.correlation != "constant" and given is not None:
+            yield Fault(
+                "heat_transfer_coefficient", f"{given:g} W/(m2 K)",
+                f'is not used: correlation = "{self.correlation}" computes it',
+                'remove it, or write correlation = "constant"',
+            )  # fmt: skip
+
+
+class BearingFilm(SurfaceCondition):
+    """Bore or journal to the lubricant film: conductance of the film, sink at film temperature."""
+
+    law: Literal["bearing_film"]
+    film_factor: FilmFactor = 1.0
+    """Multiplies the conductance between film and wall, not what the film carries or heats."""
+
+
+class ThermalRadiation(SurfaceCondition):
+    """Grey radiation to large surroundings; a film may cover the same surface."""
+
+    may_join_a_film: ClassVar[bool] = True
+
+    law: Literal["radiation"]
+    emissivity: float = Field(gt=0.0, le=1.0)
+    emissivity_excess: float = Field(default=0.0, ge=-1.0, le=1.0)
+    """What the surface has beyond ``emissivity``: it counts even where a film to room air stands for the rest."""
+    surroundings_temperature: Temperature | None = None
+    """Walls of the room; ambient when left out."""
+
+    @model_validator(mode="after")
+    def _grey(self) -> "ThermalRadiation":
+        whole = self.emissivity + self.emissivity_excess
+        if not 0.0 <= whole <= 1.0:
+            raise fault(
+                f"emissivity and emissivity_excess add up to {whole:g}, outside of 0 to 1",
+                f"write an excess within {-self.emissivity:g} and {1.0 - self.emissivity:g}",
+            )
+        return self
+
+
+class SurfaceExchange(SurfaceCondition):
+    """Heat from a surface to its partner, by their area means."""
+
+    may_join_a_film: ClassVar[bool] = True
+
+    partner: Text
+    """Surface on the other side; ``*`` is filled with what it stood for in ``surfaces``."""
+
+    def exchange_law(self, place: SurfacePlace) -> ExchangeLaw:
+        """Its law with the numbers of the first surface."""
+        raise NotImplementedError
+
+    def partner_of(self, stood_for: tuple[str, ...]) -> str:
+        """Name of the partner surface, each ``*`` filled with what it stood for in the surface."""
+        name = self.partner
+        for text in stood_for:
+            name = name.replace("*", text, 1)
+        return name
+
+
+class GapExchange(SurfaceExchange):
+    """Heat across a narrow rotating gap from each surface to its partner (area means)."""
+
+    film_factor: FilmFactor = 1.0
+    """Multiplies the film: with a range it stands for the scatter of the correlation."""
+    law: Literal["narrow_gap"]
+    correlation: Literal["becker_kaye", "jungnickel"] = "becker_kaye"
+    """becker_kaye: air at the mean temperature, with the onset of vortices; jungnickel: constants of air near room
+    temperature."""
+    gap: Clearance | None = None
+    """The radial gap of the seals of the shaft when left out."""
+
+    def exchange_law(self, place: SurfacePlace) -> ExchangeLaw:
+        """Law of the gap, with its own width or that of the seals."""
+        shaft, gap = place.turning, self.gap or place.turning.seal_gap
+        jungnickel = self.correlation == "jungnickel"
+        across = convection.narrow_gap_jungnickel if jungnickel else convection.narrow_gap_taylor
+        return convection.scaled(across(shaft.speed, 0.5 * shaft.diameter, gap), self.film_factor)
+
+    def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:
+        """Its gap has to be known, and that of the seals where it is one."""
+        if site.seal_gap is None:
+            if self.gap is None:
+                yield Fault("gap", "", f"{site.surface} is no seal, its gap is not known", "add the gap")
+        elif self.gap not in (None, site.seal_gap):
+            yield Fault(
+                "gap", show(self.gap or 0.0, "length"),
+                f"is not the radial gap of the seals of {site.seal}, {show(site.seal_gap, 'length')}",
+                "leave it out: the film takes the gap of the seals",
+            )  # fmt: skip
+
+
+class SeriesExchange(SurfaceExchange):
+    """Heat from a rotating shaft through air to a wall: two films in series (P2, Formula 3)."""
+
+    law: Literal["series_films"]
+    coefficients: tuple[HeatTransferCoefficient, HeatTransferCoefficient]
+    """Film on the surface, film on the partner."""
+    film_factor: FilmFactor = 1.0
+    """Multiplies the conductance of both in series."""
+
+    def exchange_law(self, place: SurfacePlace) -> ExchangeLaw:
+        """Both coefficients in series."""
+        first, second = (convection.constant(value, "input of the case") for value in self.coefficients)
+        return convection.scaled(convection.series(first, second), self.film_factor)
+
+
+class FixedTemperature(SurfaceCondition):
+    """A surface held at one temperature."""
+
+    law: Literal["fixed_temperature"]
+    temperature: Temperature
+
+
+class Insulated(SurfaceCondition):
+    """A surface that passes no heat."""
+
+    law: Literal["insulated"]
+
+
+Condition = Annotated[
+    PlateFilm
+    | ConstantFilm
+    | FlankFilm
+    | ShaftFilm
+    | BearingFilm
+    | ThermalRadiation
+    | GapExchange
+    | SeriesExchange
+    | FixedTemperature
+    | Insulated,
+    Field(discriminator="law"),
+]
+"""One boundary condition; ``law`` says which."""

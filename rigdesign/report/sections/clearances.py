@@ -1,0 +1,38 @@
+"""Clearances cold and hot at the held stages."""
+
+from typing import TYPE_CHECKING
+
+from rigdesign.report.sections.section import Draw, Section, Values
+from rigdesign.results.result import RunResult
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+
+def _clearances(result: RunResult, draw: Draw) -> Values:
+    from rigdesign.report.figures.seals import seal_gap_figure
+
+    gaps = None
+    if any(seal.get("hot_mm") for expansion in result.expansion for seal in expansion.seal_gaps):
+        gaps = draw(seal_gap_figure(result.expansion), "Seal gap over the angle, hot and cold")
+    return {"seal_gaps": gaps, "seals_round": _seals_round(result, draw)}
+
+
+def _seals_round(result: RunResult, draw: Draw) -> dict[tuple[str, str], "Markup"]:
+    """Seal gaps round the shafts by gearbox and stage, with the limit of the case."""
+    from rigdesign.report.figures.seals import seal_round_figure
+
+    limit = next((check.limit for check in result.checks if check.id == "clearance.seal_gap"), None)
+    return {
+        (item.gearbox, item.stage): draw(
+            seal_round_figure(item, limit),
+            f"Seal gaps round the shafts of gearbox {item.gearbox} at stage {item.stage}",
+        )
+        for item in result.expansion
+        if any(seal.get("hot_mm") for seal in item.seal_gaps)
+    }
+
+
+CLEARANCES = Section(
+    id="clearances", title="Clearances cold and hot", template="clearances.html.j2", values=_clearances
+)

@@ -1,0 +1,42 @@
+"""What a section of the report is."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rigdesign.results.result import RunResult
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+    from matplotlib.figure import Figure
+
+Draw = Callable[["Figure", str], "Markup"]
+"""Figure and its description for those who cannot see it -> SVG for the page."""
+Values = dict[str, Any]
+"""Name in the template -> what stands there."""
+
+
+def _always(result: RunResult) -> bool:
+    return True
+
+
+def _nothing(result: RunResult, draw: Draw) -> Values:
+    return {}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Section:
+    """One section: its entry in the contents, its template, and what the template shows in addition to the result.
+
+    id : anchor on the page; title : heading and entry in the contents, empty for a part of another section
+    template : of ``templates``; it is given ``result``, ``tool_version``, ``number_of`` (id -> number) and ``values``
+    values : picks and draws; applies : whether the section is on the page at all
+    within : id of the section it closes; empty for a numbered section of its own
+    """
+
+    id: str
+    template: str
+    title: str = ""
+    values: Callable[[RunResult, Draw], Values] = _nothing
+    applies: Callable[[RunResult], bool] = _always
+    within: str = ""

@@ -1,0 +1,36 @@
+"""Thermal histories over the schedule and its events: figures by history, worst moments, settling times."""
+
+from rigdesign.report.sections.section import Draw, Section, Values
+from rigdesign.results.result import RunResult
+
+
+def _histories(result: RunResult, draw: Draw) -> Values:
+    from rigdesign.report.figures.transient import oil_power_figure, transient_figure
+
+    found = result.transient
+    assert found is not None
+    return {
+        "transient_figures": {
+            f"{curve.gearbox}, {curve.branch.replace('_', ' ')}": draw(
+                transient_figure(found, curve),
+                f"Temperatures and clearances of gearbox {curve.gearbox} over the thermal history {curve.branch}",
+            )
+            for curve in found.curves
+        },
+        "oil_power_figures": {
+            power.branch.replace("_", " "): draw(
+                oil_power_figure(found, power),
+                f"Power of heaters and cooler over the thermal history {power.branch}",
+            )
+            for power in found.oil_power
+        },
+    }
+
+
+def _computed(result: RunResult) -> bool:
+    return result.transient is not None
+
+
+TRANSIENT = Section(
+    id="transient", template="transient.html.j2", values=_histories, applies=_computed, within="clearances"
+)
