@@ -7,7 +7,7 @@ from rigdesign.case import Case, load_case
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
-from rigdesign.records.heat import cooler
+from rigdesign.records.housing import cooling_balance
 from rigdesign.rig.model import Rig, build_rig
 
 Changes = tuple[tuple[str, object], ...]
@@ -75,5 +75,5 @@ def heat_by_kind(last: IterationResult) -> dict[str, float]:
 
 def open_share(rig: Rig, last: IterationResult) -> float:
     """What losses and heaters put in beyond what cooler and room take out, over the losses."""
-    parts = cooler(rig, last)
-    return abs(float(parts["open_W"])) / float(parts["losses_W"])
+    balance = cooling_balance(rig, last)
+    return abs(balance.imbalance) / balance.losses

@@ -1,13 +1,17 @@
-"""Design checks: every rule of the case held against the solved rig."""
+"""Design checks: every registered rule held against the solved rig."""
 
-from rigdesign.checks import alignment, dynamics, ramp, strength, thermal
+from collections.abc import Iterable
+
 from rigdesign.checks.assumptions import with_assumptions
 from rigdesign.checks.omissions import omissions
+from rigdesign.checks.registry import REGISTRY, load_topics
 from rigdesign.checks.rules import with_error, with_omissions
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check
 
-__all__ = ["all_checks", "held_checks"]
+__all__ = ["all_checks", "held_checks", "mesh_checks"]
+
+load_topics(__name__, __path__)
 
 
 def all_checks(solved: SolvedRig) -> list[Check]:
@@ -20,11 +24,11 @@ def all_checks(solved: SolvedRig) -> list[Check]:
 
 def held_checks(solved: SolvedRig) -> list[Check]:
     """Every check in the order of the report with what its value leaves out, without its assumed inputs."""
-    held = (
-        *dynamics.checks(solved),
-        *strength.checks(solved),
-        *thermal.checks(solved),
-        *alignment.checks(solved),
-        *ramp.checks(solved),
-    )
+    held: Iterable[Check] = (check for topic in REGISTRY.topics() for check in topic.checks(solved))
     return [with_omissions(check, omissions(solved, check)) for check in held]
+
+
+def mesh_checks(solved: SolvedRig) -> list[Check]:
+    """The checks that apply and whose values depend on the mesh of the housings, as bare values against limits."""
+    topics = (topic for topic in REGISTRY.topics() if topic.of_housing_mesh)
+    return [check for topic in topics for check in topic.checks(solved) if check.value is not None]

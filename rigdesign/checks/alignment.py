@@ -1,103 +1,153 @@
-"""Checks of alignment: shafts in their bores, bores out of round, axes of the meshes, couplings cold and hot."""
+"""Checks of alignment: shafts in their bores, bores out of round, axes of the meshes, couplings as set and warm."""
 
 from collections.abc import Iterator
-from typing import NamedTuple
 
-from rigdesign.case.drivetrain import CouplingInput
-from rigdesign.checks.rules import Rule, hold, not_applicable
-from rigdesign.coupling.alignment import AlignmentQuantity
-from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig, worst
+from rigdesign.checks.clearances import NOT_EXPANDED
+from rigdesign.checks.omissions import HEAT, coupled_shafts
+from rigdesign.checks.registry import REGISTRY, RigRule, RuleFamily, Topic, Values
+from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check
+from rigdesign.results.units import MICROMETRE, MILLIMETRE, MILLIRADIAN, MM, NUMBER
+from rigdesign.results.warm_gearbox import CouplingAlignment, ShaftOffset
 
 GROUP = "alignment"
 NO_END = "neither of its shafts is in a housing: nothing is known of its alignment"
 
 
-class AlignmentKind(NamedTuple):
-    """A quantity of alignment as a result has it."""
-
-    title: str
-    unit: str
-    scale: float
-    """Unit per SI."""
-    rows: str
-    """Field of the record of thermal expansion."""
-    place: str
-    """Key of the place in a row."""
-    entry: str
-    """Key of the value in a row."""
+def _no_clearances(solved: SolvedRig) -> str:
+    return solved.no_clearances
 
 
-KINDS: dict[AlignmentQuantity, AlignmentKind] = {
-    "bearing_tilt": AlignmentKind(
-        "largest tilt of a shaft in a bearing bore", "mrad", 1e3, "bores", "bearing", "tilt_mrad"
+def _no_coupling(solved: SolvedRig) -> str:
+    return NO_END if solved.warm else solved.no_clearances
+
+
+def _tilts(solved: SolvedRig) -> Values:
+    return ((bore.tilt, f"{bore.bearing}, stage {warm.stage}") for warm in solved.warm for bore in warm.bores)
+
+
+def _out_of_round(solved: SolvedRig) -> Values:
+    return (
+        (bore.out_of_round_share, f"{bore.bearing}, stage {warm.stage}")
+        for warm in solved.warm
+        for bore in warm.bores
+    )
+
+
+def _inclinations(solved: SolvedRig) -> Values:
+    return (
+        (abs(axes.inclination), f"{axes.mesh}, stage {warm.stage}")
+        for warm in solved.warm
+        for axes in warm.axes
+    )
+
+
+def _skews(solved: SolvedRig) -> Values:
+    return (
+        (abs(axes.skew), f"{axes.mesh}, stage {warm.stage}") for warm in solved.warm for axes in warm.axes
+    )
+
+
+RULES = (
+    RigRule(
+        key="alignment.bearing_tilt",
+        title="largest tilt of a shaft in a bearing bore",
+        unit=MILLIRADIAN,
+        group=GROUP,
+        source="limits.alignment.bearing_tilt_maximum",
+        limit=lambda limits: limits.alignment.bearing_tilt_maximum,
+        values=_tilts,
+        absent=_no_clearances,
+        leaves_out=(NOT_EXPANDED, *HEAT),
+        moved_by=frozenset({"housing"}),
     ),
-    "bore_out_of_round": AlignmentKind(
-        "bearing bore out of round, share of the radial clearance", "-", 1.0, "bores", "bearing", "out_of_round_share"
+    RigRule(
+        key="alignment.bore_out_of_round",
+        title="bearing bore out of round, share of the radial clearance",
+        unit=NUMBER,
+        group=GROUP,
+        source="limits.alignment.bore_out_of_round_maximum",
+        limit=lambda limits: limits.alignment.bore_out_of_round_maximum,
+        values=_out_of_round,
+        absent=_no_clearances,
+        leaves_out=(NOT_EXPANDED, *HEAT),
+        moved_by=frozenset({"housing"}),
     ),
-    "axis_inclination": AlignmentKind(
-        "in-plane deviation of the axes of a mesh over the face", "um", 1e6, "axes", "gear_pair", "inclination_um"
+    RigRule(
+        key="alignment.axis_inclination",
+        title="in-plane deviation of the axes of a mesh over the face",
+        unit=MICROMETRE,
+        group=GROUP,
+        source="limits.alignment.axis_inclination_maximum",
+        limit=lambda limits: limits.alignment.axis_inclination_maximum,
+        values=_inclinations,
+        absent=_no_clearances,
+        leaves_out=(NOT_EXPANDED, *HEAT),
+        moved_by=frozenset({"housing"}),
     ),
-    "axis_skew": AlignmentKind(
-        "out-of-plane deviation of the axes of a mesh over the face", "um", 1e6, "axes", "gear_pair", "skew_um"
+    RigRule(
+        key="alignment.axis_skew",
+        title="out-of-plane deviation of the axes of a mesh over the face",
+        unit=MICROMETRE,
+        group=GROUP,
+        source="limits.alignment.axis_skew_maximum",
+        limit=lambda limits: limits.alignment.axis_skew_maximum,
+        values=_skews,
+        absent=_no_clearances,
+        leaves_out=(NOT_EXPANDED, *HEAT),
+        moved_by=frozenset({"housing"}),
     ),
-}  # fmt: skip
-"""Every quantity whose limit stands under ``limits.alignment``; its key is the quantity with ``_maximum``."""
+)
+OFFSET = RuleFamily(
+    key="alignment.coupling_offset",
+    title="radial offset between the shafts at coupling {place}",
+    unit=MILLIMETRE,
+    group=GROUP,
+    source="drivetrain.couplings.{place}.radial_offset_maximum",
+    absent=_no_coupling,
+    leaves_out=(coupled_shafts, *HEAT),
+    moved_by=frozenset({"housing", "cold coupling offset"}),
+)
+ANGLE = RuleFamily(
+    key="alignment.coupling_angle",
+    title="angle between the shafts at coupling {place}",
+    unit=MILLIRADIAN,
+    group=GROUP,
+    source="drivetrain.couplings.{place}.angle_maximum",
+    absent=_no_coupling,
+    leaves_out=(coupled_shafts, *HEAT),
+    moved_by=frozenset({"housing", "cold coupling offset"}),
+)
 
 
 def checks(solved: SolvedRig) -> Iterator[Check]:
-    """One check for every quantity, two for every coupling."""
-    for quantity, kind in KINDS.items():
-        values = (
-            (abs(row[kind.entry]), f"{row[kind.place]}, stage {expansion.stage}")
-            for expansion in solved.expansion
-            for row in getattr(expansion, kind.rows)
-        )
-        limit = getattr(solved.case.limits.alignment, f"{quantity}_maximum")
-        rule = Rule(
-            id=f"alignment.{quantity}", title=kind.title, unit=kind.unit, group=GROUP,
-            source=f"limits.alignment.{quantity}_maximum", limit=None if limit is None else kind.scale * limit,
-        )  # fmt: skip
-        yield _held(rule, list(values), solved.no_clearances)
+    """One check for every limit of alignment, two for every coupling."""
+    yield from (rule.check(solved) for rule in RULES)
     train = solved.case.drivetrain
     for name, coupling in () if train is None else train.couplings.items():
-        yield from _coupling(solved, name, coupling)
+        states = list(_states(solved, name))
+        offsets = ((state.radial_offset, where) for state, where in states)
+        angles = ((state.angle, where) for state, where in states)
+        yield OFFSET.worst(solved, OFFSET.rule(coupling.radial_offset_maximum, name), offsets)
+        yield ANGLE.worst(solved, ANGLE.rule(coupling.angle_maximum, name), angles)
 
 
-def _coupling(solved: SolvedRig, name: str, coupling: CouplingInput) -> Iterator[Check]:
-    """Offset and angle of a coupling, the larger of cold and hot."""
-    for key, words, unit, limit, attribute in (
-        ("offset", "radial offset", "mm", coupling.radial_offset_maximum, "radial_offset_maximum"),
-        ("angle", "angle", "mrad", coupling.angle_maximum, "angle_maximum"),
-    ):
-        rule = Rule(
-            id=f"alignment.coupling_{key}.{name}", title=f"{words} between the shafts at coupling {name}", unit=unit,
-            source=f"drivetrain.couplings.{name}.{attribute}", group=GROUP,
-            limit=None if limit is None else 1e3 * limit,
-        )  # fmt: skip
-        values = [
-            (float(row[f"{key}_{state}_{unit}"]), _where(row, state, expansion.stage))
-            for expansion in solved.expansion
-            for row in expansion.couplings
-            if row["coupling"] == name
-            for state in ("hot", "cold")
-        ]
-        yield _held(rule, values, solved.no_clearances if not solved.expansion else NO_END)
+def _states(solved: SolvedRig, name: str) -> Iterator[tuple[ShaftOffset, str]]:
+    """A coupling warm and as set at every held stage."""
+    for warm in solved.warm:
+        for coupling in warm.couplings:
+            if coupling.coupling == name:
+                yield coupling.warm, _where(coupling, f"stage {warm.stage}")
+                yield coupling.as_set, _where(coupling, "cold")
 
 
-def _where(row: dict[str, object], state: str, stage: str) -> str:
-    """Shafts and state, with the cold offset that brings the axes together when hot."""
-    advice = (
-        f"first shaft set {row['recommended_cold_lateral_mm']:+.3f} mm across and "
-        f"{row['recommended_cold_vertical_mm']:+.3f} mm up when cold makes the hot offset zero"
+def _where(coupling: CouplingAlignment, state: str) -> str:
+    """Shafts and state, with the offset to be set cold that brings the axes together when warm."""
+    lateral, vertical = coupling.moved
+    return (
+        f"{coupling.shown(0)} against {coupling.shown(1)}, {state}; first shaft set {-MM * lateral:+.3f} mm across "
+        f"and {-MM * vertical:+.3f} mm up when cold makes the hot offset zero"
     )
-    shafts = f"{row['first']} against {row['second']}"
-    return f"{shafts}, {state if state == 'cold' else f'stage {stage}'}; {advice}"
 
 
-def _held(rule: Rule, values: list[tuple[float, str]], absent: str) -> Check:
-    if rule.limit is None:
-        return not_applicable(rule, NO_LIMIT)
-    if not values:
-        return not_applicable(rule, absent)
-    return hold(rule, *worst(values))
+REGISTRY.register(Topic(order=40, families=(*RULES, OFFSET, ANGLE), checks=checks, of_housing_mesh=True))

@@ -1,18 +1,30 @@
 """Limits of bought parts: a result at the part itself, or a given value, against what its maker allows."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
 
 from rigdesign.base.quantity_kinds import KINDS
 from rigdesign.base.units import display
 from rigdesign.case.component_limits import shafts_of
 from rigdesign.case.limits import BoughtPart, ResultQuantity
-from rigdesign.checks.rules import Rule, exact, hold, not_applicable
+from rigdesign.checks.influences import SPEEDS
+from rigdesign.checks.oil import FLOWS
+from rigdesign.checks.omissions import Found as Omissions
+from rigdesign.checks.omissions import constant_drag, warming
+from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
+from rigdesign.checks.rules import Omission, Rule, exact, hold, not_applicable
+from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
 from rigdesign.results.result import Check
+from rigdesign.results.units import NUMBER
 from rigdesign.rig.shaft_seals import shaft_seals
 
 Found = tuple[float | None, str]
 """A result [SI] and where it occurs; None with the reason where there is none."""
+GROUP = "bought parts"
 EXACT = ("speed", "torque_mean", "oil_flow")
 """Inputs of the case: at the limit they are not near it but on it."""
 
@@ -26,7 +38,7 @@ def bought_parts(solved: SolvedRig) -> Iterator[Check]:
 def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
     rule = Rule(
         id=f"bought_part.{name}", title=f"{part.title} ({part.part})", unit=KINDS[part.kind].display_unit,
-        source=part.source, group="bought parts", limit=display(part.limit_si, part.kind),
+        source=part.source, group=GROUP, limit=display(part.limit_si, part.kind),
     )  # fmt: skip
     value: float | None
     value, reason = part.given_si, "given in the case"
@@ -58,12 +70,12 @@ def _torque_mean(solved: SolvedRig, part: str) -> Found:
 
 def _torque_peak(solved: SolvedRig, part: str) -> Found:
     """Highest dynamic torque of the meshes at the part, referred to the gear on its shaft."""
-    if solved.dynamics is None:
+    if solved.loads is None:
         return None, NO_LOADS
-    rig, found = solved.rig, solved.dynamics.gearboxes
+    rig, found = solved.rig, solved.loads.meshes
     return worst(
         (
-            found[rig.mesh_labels[mesh]].dynamic_torque_peak_Nm * radius / rig.pairs[mesh].base_radii[0],
+            found[rig.mesh_labels[mesh]].torque_peak * radius / rig.pairs[mesh].base_radii[0],
             f"tooth force at {gear}",
         )
         for mesh, gear, radius in _gears_at(solved, part)
@@ -117,13 +129,13 @@ def _drive_power(solved: SolvedRig, part: str) -> Found:
 
 def _actuator_force(solved: SolvedRig, part: str) -> Found:
     power = solved.case.drivetrain
-    if solved.dynamics is None or power is None:
+    if solved.loads is None or power is None:
         return None, NO_LOADS
     if power.bracing.mode == "twist_held" or power.bracing.shifted_gear is None:
         return None, "the loop is braced by a twist: no gear is shifted"
     return worst(
-        (row["actuator_force_N"] + row["spline_friction_N"], f"stage {row['stage']}")
-        for row in solved.dynamics.bracing
+        (bracing.drift.warm.actuator_force + bracing.drift.warm.friction_force, f"stage {bracing.stage}")
+        for bracing in solved.loads.bracing
     )
 
 
@@ -153,10 +165,10 @@ def _seal_velocity(solved: SolvedRig, part: str) -> Found:
 
 def _shaft_expansion(solved: SolvedRig, part: str) -> Found:
     box, shafts = part.split(".")[1], shafts_of(solved.case, part)
-    rows = [row for result in solved.expansion if result.gearbox == box for row in result.shafts]
-    if not rows:
+    found = [shaft for warm in solved.warm if warm.gearbox == box for shaft in warm.shafts]
+    if not found:
         return None, NO_HOUSING
-    return worst((1e-3 * row["growth_mm"], row["shaft"]) for row in rows if row["shaft"] in shafts)
+    return worst((shaft.total, shaft.name) for shaft in found if shaft.name in shafts)
 
 
 def _oil_flow(solved: SolvedRig, part: str) -> Found:
@@ -173,10 +185,26 @@ def _oil_flow(solved: SolvedRig, part: str) -> Found:
 
 def _temperature(solved: SolvedRig, part: str) -> Found:
     box = part.split(".")[1]
-    found = [result for result in solved.thermal if result.gearbox == box]
+    found = [housing for housing in solved.temperatures if housing.gearbox == box]
     if not found:
         return None, NO_HOUSING
-    return worst((result.max_temperature_degC + 273.15, result.max_temperature_body) for result in found)
+    return worst((housing.highest, housing.hottest_body) for housing in found)
+
+
+def _saturated(solved: SolvedRig, check: Check) -> Omissions:
+    """What the speed control asked of the motor beyond its limit: the torque of the run is less than that."""
+    run, power = solved.run, solved.case.drivetrain
+    if run is None or power is None:
+        return
+    controlled = np.array([stage.drive_torque is None for stage in solved.case.schedule.resolved()])
+    stage = schedule_of(solved.rig).at(run.ramp.time).stage
+    full = np.abs(run.ramp.drive_torque) >= (1.0 - 1e-9) * power.motor.torque_limit
+    share = float(np.mean(full & controlled[stage]))
+    if share:
+        yield Omission(
+            f"what the speed control asked for beyond drivetrain.motor.torque_limit, {100.0 * share:.1f} % of the run: "
+            "the motor stands at its limit; raise it to see how much"
+        )
 
 
 RESULTS: dict[ResultQuantity, Callable[[SolvedRig, str], Found]] = {
@@ -193,3 +221,51 @@ RESULTS: dict[ResultQuantity, Callable[[SolvedRig, str], Found]] = {
     "temperature_maximum": _temperature,
 }
 """How each quantity is found at a part."""
+
+
+def _family(quantity: ResultQuantity | Literal["given"], title: str) -> RuleFamily:
+    """Family of the limits on one quantity; unit, source and title are those that the case states."""
+    return RuleFamily(
+        key=f"bought_part.{quantity}", title=title, unit=NUMBER, group=GROUP, source="limits.bought_parts"
+    )
+
+
+FAMILIES = (
+    replace(_family("torque_peak", "highest dynamic torque"), moved_by=frozenset({"time run"})),
+    replace(_family("torque_mean", "largest mean torque"), only_inputs=SPEEDS),
+    replace(_family("speed", "highest speed"), only_inputs=SPEEDS),
+    replace(
+        _family("drive_torque", "highest torque of the motor"),
+        leaves_out=(constant_drag, _saturated),
+        moved_by=frozenset({"time run", "housing"}),
+    ),
+    replace(
+        _family("drive_power", "highest power of the motor"),
+        leaves_out=(constant_drag, _saturated),
+        moved_by=frozenset({"time run", "housing"}),
+    ),
+    replace(
+        _family("actuator_force", "largest force of the load unit"),
+        moved_by=frozenset({"spline friction", "housing"}),
+    ),
+    replace(_family("circulating_power", "largest power in the loop"), only_inputs=SPEEDS),
+    replace(
+        _family("seal_surface_velocity", "highest surface speed in a seal"),
+        only_inputs=(*SPEEDS, "gearboxes.*.housing.shafts", "gearboxes.*.bearings", "drivetrain.shafts"),
+    ),
+    replace(
+        _family("shaft_growth", "largest thermal expansion of a shaft"),
+        leaves_out=(warming, constant_drag),
+        moved_by=frozenset({"housing"}),
+    ),
+    replace(_family("oil_flow", "oil flow"), only_inputs=FLOWS),
+    replace(
+        _family("temperature_maximum", "highest temperature"),
+        leaves_out=(warming, constant_drag),
+        moved_by=frozenset({"housing"}),
+    ),
+    replace(_family("given", "value given in the case"), only_inputs=()),
+)
+"""By quantity: the id of a check ends with the name of its part."""
+
+REGISTRY.register(Topic(order=60, families=FAMILIES, checks=bought_parts))

@@ -1,169 +1,140 @@
 """Checks of the dynamic loads: K_V, resonances, tooth contact and peaks on the ramp, mesh by mesh."""
 
 import math
-from collections.abc import Iterator
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
-from rigdesign.checks.rules import Rule, hold, not_applicable
+import numpy as np
+
+from rigdesign.case.limits import DynamicsLimits
+from rigdesign.checks.omissions import Found, long_periods
+from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic, Values
+from rigdesign.checks.rules import Omission
 from rigdesign.coupling.loads import signed_torque
-from rigdesign.records.curves import speed_ranges
-from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
-from rigdesign.results.result import Check, GearboxDynamics
+from rigdesign.records.curves import resolved, speed_ranges
+from rigdesign.records.resonances import NEAR
+from rigdesign.records.solved_rig import SolvedRig, worst
+from rigdesign.results.loads import MeshLoads, ModeCrossing, StageLoad
+from rigdesign.results.result import Check
+from rigdesign.results.units import NUMBER, RPM
 
-RPM = 30.0 / math.pi
-Found = tuple[float, str]
-"""Value and how it came about."""
+GROUP = "dynamics"
 NOT_LOADED = "no stage turns under more than the start torque"
 
 
-def checks(solved: SolvedRig) -> list[Check]:
-    """All of them, mesh by mesh."""
-    return [check for mesh in range(len(solved.rig.mesh_names)) for check in _of_mesh(solved, mesh)]
+@dataclass(frozen=True, kw_only=True)
+class MeshRule(RuleFamily):
+    """One rule for every mesh, against one limit of the case."""
+
+    limit: Callable[[DynamicsLimits], float | None]
+    values: Callable[[SolvedRig, int], Values]
+    """Of a solved rig and the number of a mesh."""
+
+    def check(self, solved: SolvedRig, mesh: int) -> Check:
+        """The check of one mesh."""
+        rule = self.rule(self.limit(solved.case.limits.dynamics), solved.label(mesh))
+        return self.worst(solved, replace(rule, role=solved.role(mesh)), self.values(solved, mesh))
 
 
-def _of_mesh(solved: SolvedRig, mesh: int) -> Iterator[Check]:
-    limits = solved.case.limits.dynamics
-    rows = (
-        (
-            "dynamic_factor", "K_V at the held stages", limits.dynamic_factor_maximum, "<=",
-            "limits.dynamics.dynamic_factor_maximum; max/mean, P2 Formula 1", _dynamic_factor,
-        ),
-        (
-            "ramp_peak", "highest torque of the loaded ramp over the test torque", limits.dynamic_factor_maximum, "<=",
-            "limits.dynamics.dynamic_factor_maximum times the test torque; time run over the schedule", _ramp_peak,
-        ),
-        (
-            "resonance_distance", "distance of held speeds from dangerous resonances",
-            limits.resonance_distance_minimum, ">=",
-            "limits.dynamics.resonance_distance_minimum; resonances by strength", _resonance,
-        ),
-        (
-            "lift_off", "time without tooth contact in loaded stages", limits.lift_off_share_maximum, "<=",
-            "limits.dynamics.lift_off_share_maximum; time run over the schedule", _lift_off,
-        ),
-        (
-            "contact_margin", "least torque in loaded stages as a share of the mean",
-            limits.contact_margin_minimum, ">=",
-            "limits.dynamics.contact_margin_minimum; time run over the schedule", _contact_margin,
-        ),
-    )  # fmt: skip
-    label = solved.label(mesh)
-    for key, title, limit, comparison, source, value in rows:
-        rule = Rule(
-            id=f"dynamics.{key}.{label}", title=f"{title}, {label} gearbox", unit="-", source=source,
-            group="dynamics", role=solved.role(mesh), limit=limit, comparison=">=" if comparison == ">=" else "<=",
-        )  # fmt: skip
-        if solved.run is None or limit is None:
-            yield not_applicable(rule, NO_LOADS if solved.run is None else NO_LIMIT)
-        elif (found := value(solved, mesh)) is None:
-            yield not_applicable(rule, NOT_LOADED)
-        else:
-            yield hold(rule, *found)
+def _loads(solved: SolvedRig, mesh: int) -> MeshLoads:
+    assert solved.loads is not None
+    return solved.loads.meshes[solved.label(mesh)]
 
 
-def _result(solved: SolvedRig, mesh: int) -> GearboxDynamics:
-    assert solved.dynamics is not None
-    return solved.dynamics.gearboxes[solved.label(mesh)]
-
-
-def _dynamic_factor(solved: SolvedRig, mesh: int) -> Found:
-    return worst(
+def _dynamic_factors(solved: SolvedRig, mesh: int) -> Values:
+    return (
         (float(point.last.response.dynamic_factor[mesh]), f"stage {point.point.stage}")
         for point in solved.points
         if point.last.response is not None
     )
 
 
-def _ramp_peak(solved: SolvedRig, mesh: int) -> Found | None:
+def _ramp_peak(solved: SolvedRig, mesh: int) -> Values:
     """Peak of the time run over the mean torque of the governing held stage."""
     response = solved.test.last.response
     assert response is not None
-    row = max(loaded_stages(solved, mesh), key=lambda row: float(row["peak_Nm"]), default=None)
-    if row is None:
-        return None
-    return (
-        row["peak_Nm"] / float(response.mean[mesh]),
-        f"{row['peak_Nm']:.1f} N m in stage {row['stage']}; highest K_V there "
-        f"{row['dynamic_factor']:.2f}, at {row['speed_rpm']:.0f} rpm on {row['mean_Nm']:.0f} N m",
-    )
+    load = max(loaded_stages(solved, mesh), key=lambda load: load.peak, default=None)
+    if load is not None:
+        yield (
+            load.peak / float(response.mean[mesh]),
+            f"{load.peak:.1f} N m in stage {load.stage}; highest K_V there "
+            f"{load.dynamic_factor:.2f}, at {load.speed * RPM:.0f} rpm on {load.mean:.0f} N m",
+        )
 
 
-def _resonance(solved: SolvedRig, mesh: int) -> Found:
+def _resonance_distance(solved: SolvedRig, mesh: int) -> Values:
     """Distance of the nearest dangerous resonance, or of the end of the speeds looked at: the lesser."""
+    value, reason = worst(_distances(solved, mesh), smallest=True)
+    near = near_crossings(solved, mesh, math.inf)
+    if near:
+        share, crossing = near[0]
+        reason += (
+            f"; nearest mode of the closed loop that the mesh excites: mode {crossing.mode} ({crossing.shape}), "
+            f"{crossing.frequency:.0f} Hz, order {crossing.harmonic} at {crossing.speed * RPM:.0f} rpm, "
+            f"{100.0 * share:.1f} % away"
+        )
+    yield value, reason
+
+
+def _distances(solved: SolvedRig, mesh: int) -> Values:
+    """Distance of every dangerous resonance from every held speed, and of the end of the search, as its shares."""
     assert solved.run is not None
-    rig, rows = solved.rig, _result(solved, mesh).resonances
+    rig, resonances = solved.rig, _loads(solved, mesh).resonances
     named = {round(torque, 6): name for name, (torque, _) in solved.run.curves.named.items()}
     shaft = rig.mesh_gear(mesh, 0).shaft
-    found: list[Found] = []
     for point in solved.points:
         torque = round(signed_torque(rig, point.point), 6)
         held = point.point.speed
         low, high = speed_ranges(rig)[torque]
-        end = min(held - low, high - held) / held
         searched = f"{low * RPM:.0f} to {high * RPM:.0f} rpm"
-        found.append(
-            (end, f"none dangerous nearer in {searched}, held {held * RPM:.0f} rpm: at least this far")
+        yield (
+            min(held - low, high - held) / held,
+            f"none dangerous nearer in {searched}, held {held * RPM:.0f} rpm: at least this far",
         )
         own = rig.shaft_speed(shaft, held) * RPM
-        found += [
-            (
-                abs(row["speed_rpm"] - own) / own,
-                f"{row['speed_rpm']:.0f} rpm{' or above' if row['at_end'] else ''} ({row['mode']}), held {own:.0f} rpm",
-            )
-            for row in rows
-            if row["dangerous"] and row["torque"] == named[torque]
-        ]
-    value, reason = worst(found, smallest=True)
-    near = near_crossings(solved, mesh, math.inf)
-    if not near:
-        return value, reason
-    share, row = near[0]
-    mode = (
-        f"mode {row['mode']} ({row['shape']}), {row['frequency_Hz']:.0f} Hz, order {row['harmonic']} at "
-        f"{row['speed_rpm']:.0f} rpm, {100.0 * share:.1f} % away"
-    )
-    return value, f"{reason}; nearest mode of the closed loop that the mesh excites: {mode}"
+        for found in resonances:
+            if found.dangerous and found.torque == named[torque]:
+                rpm, beyond = found.speed * RPM, " or above" if found.at_end else ""
+                yield abs(rpm - own) / own, f"{rpm:.0f} rpm{beyond} ({found.mode}), held {own:.0f} rpm"
 
 
-def near_crossings(solved: SolvedRig, mesh: int, within: float) -> list[tuple[float, dict[str, Any]]]:
-    """Crossings of a mesh with modes of the closed loop that it excites, nearest first: share of a held speed, row.
+def near_crossings(solved: SolvedRig, mesh: int, within: float) -> list[tuple[float, ModeCrossing]]:
+    """Crossings of a mesh with modes of the closed loop that it excites, nearest first, with their distances.
 
     within : largest distance as a share of the held speed
     """
-    assert solved.dynamics is not None
+    assert solved.loads is not None
     rig, label = solved.rig, solved.label(mesh)
     shaft = rig.mesh_gear(mesh, 0).shaft
     speeds = [rig.shaft_speed(shaft, point.point.speed) * RPM for point in solved.points]
     found = [
-        (min(abs(row["speed_rpm"] - own) / own for own in speeds), row)
-        for row in solved.dynamics.loop_crossings
-        if row["kind"] == "mesh" and row["order_of"] == label and row["excited"]
+        (min(abs(crossing.speed * RPM - own) / own for own in speeds), crossing)
+        for crossing in solved.loads.loop_crossings
+        if crossing.kind == "mesh" and crossing.order_of == label and crossing.excited
     ]
     return sorted((item for item in found if item[0] <= within), key=lambda item: item[0])
 
 
-def _lift_off(solved: SolvedRig, mesh: int) -> Found | None:
-    loaded = {row["stage"] for row in loaded_stages(solved, mesh)}
+def _lift_off(solved: SolvedRig, mesh: int) -> Values:
+    loaded = {load.stage for load in loaded_stages(solved, mesh)}
     if not loaded:
-        return None
-    rows = [row for row in _result(solved, mesh).lift_off if row["stage"] in loaded]
-    if not rows:
-        return 0.0, "no gap longer than 5 % of a mesh period in a loaded stage"
-    return worst((float(row["share"]), f"stage {row['stage']}, {row['start_s']:.2f} s") for row in rows)
+        return
+    losses = [loss for loss in _loads(solved, mesh).contact_losses if loss.stage in loaded]
+    if not losses:
+        yield 0.0, "no gap longer than 5 % of a mesh period in a loaded stage"
+    for loss in losses:
+        yield loss.share, f"stage {loss.stage}, {loss.start:.2f} s"
 
 
-def _contact_margin(solved: SolvedRig, mesh: int) -> Found | None:
-    found = [
-        (
-            float(row["least_share"]),
-            f"{row['least_Nm']:.1f} N m at least in stage {row['stage']}, near {row['least_share_at_rpm']:.0f} rpm",
+def _contact_margin(solved: SolvedRig, mesh: int) -> Values:
+    for load in loaded_stages(solved, mesh):
+        yield (
+            load.least_share,
+            f"{load.least:.1f} N m at least in stage {load.stage}, near {load.least_share_speed * RPM:.0f} rpm",
         )
-        for row in loaded_stages(solved, mesh)
-    ]
-    return worst(found, smallest=True) if found else None
 
 
-def loaded_stages(solved: SolvedRig, mesh: int) -> list[dict[str, Any]]:
+def loaded_stages(solved: SolvedRig, mesh: int) -> list[StageLoad]:
     """Loads of the stages that carry more than the start torque while they turn."""
     light = solved.case.limits.bearing.start_torque_limit or 0.0
     loaded = {
@@ -172,4 +143,101 @@ def loaded_stages(solved: SolvedRig, mesh: int) -> list[dict[str, Any]]:
         if min(abs(stage.torque_start), abs(stage.torque_end)) > light
         and max(stage.speed_start, stage.speed_end) > 0.0
     }
-    return [row for row in _result(solved, mesh).stage_loads if row["stage"] in loaded]
+    return [load for load in _loads(solved, mesh).stage_loads if load.stage in loaded]
+
+
+def _gaps(solved: SolvedRig, check: Check) -> Found:
+    """Resonances at speeds without a solution, and modes of the closed loop between the speeds of a coarse curve.
+
+    A mode counts if the mesh excites it and an order meets it nearer to a held speed than the limit and what loaded
+    teeth may shift it.
+    """
+    if solved.run is None or solved.loads is None:
+        return
+    label = check.id.split(".", 2)[2]
+    if not resolved(solved.rig):
+        step = np.diff(solved.run.curves.response.speeds).max() * RPM
+        mesh = next(i for i in range(len(solved.rig.mesh_names)) if solved.label(i) == label)
+        near = near_crossings(solved, mesh, (check.limit or 0.0) + NEAR)
+        modes = ", ".join(dict.fromkeys(str(crossing.mode) for _, crossing in near))
+        if near:
+            yield Omission(
+                f"narrow resonances of the loop's modes {modes} between speeds {step:.0f} rpm apart"
+            )
+    holes = len(solved.loads.meshes[label].unsolved)
+    if holes:
+        yield Omission(f"resonances at speeds without solution ({holes})")
+
+
+RULES = (
+    MeshRule(
+        key="dynamics.dynamic_factor",
+        title="K_V at the held stages, {place} gearbox",
+        unit=NUMBER,
+        group=GROUP,
+        source="limits.dynamics.dynamic_factor_maximum; max/mean, P2 Formula 1",
+        needs=LOADS,
+        limit=lambda limits: limits.dynamic_factor_maximum,
+        values=_dynamic_factors,
+        leaves_out=(long_periods,),
+        moved_by=frozenset({"start torque"}),
+    ),
+    MeshRule(
+        key="dynamics.ramp_peak",
+        title="highest torque of the loaded ramp over the test torque, {place} gearbox",
+        unit=NUMBER,
+        group=GROUP,
+        source="limits.dynamics.dynamic_factor_maximum times the test torque; time run over the schedule",
+        needs=LOADS,
+        limit=lambda limits: limits.dynamic_factor_maximum,
+        values=_ramp_peak,
+        absent=NOT_LOADED,
+        moved_by=frozenset({"start torque", "time run"}),
+    ),
+    MeshRule(
+        key="dynamics.resonance_distance",
+        title="distance of held speeds from dangerous resonances, {place} gearbox",
+        unit=NUMBER,
+        group=GROUP,
+        source="limits.dynamics.resonance_distance_minimum; resonances by strength",
+        comparison=">=",
+        needs=LOADS,
+        limit=lambda limits: limits.resonance_distance_minimum,
+        values=_resonance_distance,
+        leaves_out=(long_periods, _gaps),
+        moved_by=frozenset({"start torque", "resonance limits"}),
+    ),
+    MeshRule(
+        key="dynamics.lift_off",
+        title="time without tooth contact in loaded stages, {place} gearbox",
+        unit=NUMBER,
+        group=GROUP,
+        source="limits.dynamics.lift_off_share_maximum; time run over the schedule",
+        needs=LOADS,
+        limit=lambda limits: limits.lift_off_share_maximum,
+        values=_lift_off,
+        absent=NOT_LOADED,
+        moved_by=frozenset({"start torque", "time run"}),
+    ),
+    MeshRule(
+        key="dynamics.contact_margin",
+        title="least torque in loaded stages as a share of the mean, {place} gearbox",
+        unit=NUMBER,
+        group=GROUP,
+        source="limits.dynamics.contact_margin_minimum; time run over the schedule",
+        comparison=">=",
+        needs=LOADS,
+        limit=lambda limits: limits.contact_margin_minimum,
+        values=_contact_margin,
+        absent=NOT_LOADED,
+        moved_by=frozenset({"start torque", "time run"}),
+    ),
+)
+
+
+def checks(solved: SolvedRig) -> list[Check]:
+    """All of them, mesh by mesh."""
+    return [rule.check(solved, mesh) for mesh in range(len(solved.rig.mesh_names)) for rule in RULES]
+
+
+REGISTRY.register(Topic(order=10, families=RULES, checks=checks))

@@ -1,35 +1,51 @@
-"""Checks of the schedule: ramp rules, start torque, limits of bought parts."""
+"""Checks of the schedule: rules of the ramp, and the transition speed on which they depend."""
 
-import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 from dynamics.response.schedule import RampLimits, ramp_rules
-from rigdesign.checks.component_limits import bought_parts
-from rigdesign.checks.rules import Rule, exact, hold, not_applicable
-from rigdesign.checks.thermal import transition_speeds_rpm
+from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT
+from rigdesign.checks.influences import SPEEDS
+from rigdesign.checks.omissions import warming
+from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
+from rigdesign.checks.rules import exact, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
-from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig, worst
+from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig
 from rigdesign.results.result import Check
+from rigdesign.results.units import NEWTON_METRE, REVOLUTION_PER_MINUTE
 
-RPM = 30.0 / math.pi
 SOURCES = {
     "ramp.standstill_torque": "limits.ramp.standstill_torque",
     "ramp.start_torque": "limits.bearing.start_torque_limit",
     "ramp.run_up_torque": "limits.ramp.run_up_torque_share_maximum",
     "ramp.test_torque": "schedule.test_torque",
 }
+RAMP = RuleFamily(
+    key="ramp",
+    title="rule of the ramp",
+    unit=NEWTON_METRE,
+    group="ramp",
+    source="P2, Figure 9",
+    only_inputs=("limits.ramp", "limits.bearing.start_torque_limit", *SPEEDS),
+)
+TRANSITION_SPEED = RuleFamily(
+    key="bearing.transition_speed",
+    title="transition speed of the bearings under the start torque",
+    unit=REVOLUTION_PER_MINUTE,
+    group="bearings",
+    source="Vogelpohl, against limits.ramp.transition_speed",
+    absent=NO_LIMIT,
+    leaves_out=(SHAFT_HEAT, THRUST_TILT, warming),
+    moved_by=frozenset({"start torque", "ramp limits", "housing"}),
+)
 
 
 def checks(solved: SolvedRig) -> list[Check]:
-    """Ramp rules of the paper, the transition speed they depend on, then the bought parts."""
-    return [
-        *_ramp(solved),
-        _transition(solved),
-        *bought_parts(solved),
-    ]
+    """Rules of the ramp, then the transition speed on which they depend."""
+    return [*ramp(solved), _transition(solved)]
 
 
-def _ramp(solved: SolvedRig) -> Iterator[Check]:
+def ramp(solved: SolvedRig) -> Iterator[Check]:
     """The rules of the paper, each where the case states what it needs."""
     case, limits = solved.case, solved.case.limits
     start, share = limits.bearing.start_torque_limit, limits.ramp.run_up_torque_share_maximum
@@ -53,10 +69,13 @@ def _ramp(solved: SolvedRig) -> Iterator[Check]:
         ),
     )
     for entry in rules:
-        rule = Rule(
-            id=entry.id, title=entry.text, unit="N m", source=SOURCES.get(entry.id, "P2, Figure 9"), group="ramp",
-            limit=entry.limit if stated[entry.id] else None, comparison=entry.comparison,
-        )  # fmt: skip
+        rule = replace(
+            RAMP.rule(entry.limit if stated[entry.id] else None),
+            id=entry.id,
+            title=entry.text,
+            source=SOURCES.get(entry.id, RAMP.source),
+            comparison=entry.comparison,
+        )
         if not stated[entry.id]:
             yield not_applicable(rule, NO_LIMIT)
         elif not entry.stage:
@@ -66,16 +85,28 @@ def _ramp(solved: SolvedRig) -> Iterator[Check]:
 
 
 def _transition(solved: SolvedRig) -> Check:
-    """The computed transition speed under the start torque against the one the ramp relies on."""
-    limit = solved.case.limits.ramp.transition_speed
-    rule = Rule(
-        id="bearing.transition_speed", title="transition speed of the bearings under the start torque", unit="rpm",
-        source="Vogelpohl, against limits.ramp.transition_speed", group="bearings",
-        limit=None if limit is None else limit * RPM,
-    )  # fmt: skip
+    """The computed transition speed under the start torque against the one the ramp depends on."""
     start = solved.case.limits.bearing.start_torque_limit
-    speeds = [] if start is None else transition_speeds_rpm(solved, start)
-    if limit is None or not speeds:
-        return not_applicable(rule, NO_LIMIT)
-    value, where = worst(speeds)
-    return hold(rule, value, f"{where}, load of the start torque")
+    rule = TRANSITION_SPEED.rule(solved.case.limits.ramp.transition_speed)
+    speeds = [] if start is None else transition_speeds(solved, start)
+    return TRANSITION_SPEED.worst(solved, rule, speeds)
+
+
+def transition_speeds(solved: SolvedRig, torque: float) -> Values:
+    """Vogelpohl transition speed [rad/s] of every bearing under the load of a stated torque [N m].
+
+    Taken from the films of each loaded held stage; the speed grows with the load.
+    """
+    return (
+        (
+            torque / abs(point.point.torque) * state.transition_speed,
+            f"{name} at the viscosity of stage {point.point.stage}, load of the start torque",
+        )
+        for point in solved.points
+        if point.point.torque
+        for name, state in point.last.bearings.items()
+        if state.transition_speed is not None
+    )
+
+
+REGISTRY.register(Topic(order=50, families=(RAMP, TRANSITION_SPEED), checks=checks))

@@ -15,6 +15,7 @@ from rigdesign.base.finite import finite
 from rigdesign.results.result import Check, Role
 from rigdesign.results.verdict import Verdict
 
+Comparison = Literal["<=", ">=", "within"]
 WARN_UTILISATION = 0.95
 """A rule that holds with more than this share of its limit used is a warning."""
 REFERENCE_TEMPERATURE = 20.0
@@ -33,7 +34,7 @@ class Rule:
     role: Role = "rig"
     limit: float | None = None
     upper_limit: float | None = None
-    comparison: Literal["<=", ">=", "within"] = "<="
+    comparison: Comparison = "<="
     warn_only: bool = False
     """A broken rule warns instead of failing (a rule of good practice, not a limit)."""
 
@@ -44,12 +45,15 @@ class Rule:
 
 
 def hold(rule: Rule, value: float, reason: str = "", *, doubt: str = "") -> Check:
-    """Hold ``value`` against ``rule``.
+    """Hold ``value``, in the unit of the rule, against ``rule``.
 
-    ``doubt`` names why a held rule is still only a warning (a formula outside its range, say).
+    reason : how the value came about
+    doubt : why a held rule is still only a warning (a formula outside its range, say)
 
     Raises
     ------
+    ValueError
+        The rule has no limit.
     NonFiniteResultError
         Value or limit is NaN or infinite.
     """

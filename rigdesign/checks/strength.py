@@ -2,22 +2,82 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 from dynamics.rating.iso_rating import permissible_factors, root_stress, transverse_load_factor
 from dynamics.standards.iso6336_3_2006 import LoadFactors
-from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.checks.influences import SPEEDS, Influence
+from rigdesign.checks.omissions import long_periods
+from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
+from rigdesign.checks.rules import hold, not_applicable
 from rigdesign.records.curves import iso_factor
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.result import Check
+from rigdesign.results.units import HOUR, MEGAPASCAL, MPA, NUMBER, RPM
 
-SOURCES = {
-    "iso": "ISO 6336-3:2006 method B with the simulated K_V",
-    "path": "sigma_F over the path from the dynamic tooth forces, local lever",
-}
-TITLES = {"iso": "ISO 6336-3", "path": "over the path"}
 REVERSED = 0.7
 """Strength of a tooth that is bent both ways over that of one bent one way (ISO 6336-5, full reversal)."""
-RPM = 30.0 / math.pi
+
+
+@dataclass(frozen=True)
+class StressMethod:
+    """A way to the root stress of a gear."""
+
+    name: str
+    """In ids."""
+    title: str
+    source: str
+    moved_by: frozenset[Influence] = frozenset()
+
+
+ISO = StressMethod(
+    "iso", "ISO 6336-3", "ISO 6336-3:2006 method B with the simulated K_V", frozenset({"gear rating"})
+)
+PATH = StressMethod(
+    "path", "over the path", "sigma_F over the path from the dynamic tooth forces, local lever"
+)
+METHODS = (ISO, PATH)
+OF_WINDOW: frozenset[Influence] = frozenset({"specimen limits"})
+OF_SAFETY: frozenset[Influence] = frozenset({"strength limits", "test time"})
+
+WINDOWS = {
+    method.name: RuleFamily(
+        key=f"specimen.root_stress_{method.name}",
+        title=f"root stress of specimen {{place}}, {method.title}",
+        unit=MEGAPASCAL,
+        group="specimen",
+        source=method.source,
+        comparison="within",
+        needs=LOADS,
+        leaves_out=(long_periods,),
+        moved_by=OF_WINDOW | method.moved_by,
+    )
+    for method in METHODS
+}
+SAFETIES = {
+    method.name: RuleFamily(
+        key=f"strength.root_safety_{method.name}",
+        title=f"root safety of {{place}}, {method.title}",
+        unit=NUMBER,
+        group="dynamics",
+        source=f"{method.source}; sigma_FE of the material, ISO 6336-3:2006 clauses 12, 13, 15",
+        comparison=">=",
+        needs=LOADS,
+        leaves_out=(long_periods,),
+        moved_by=OF_SAFETY | method.moved_by,
+    )
+    for method in METHODS
+}
+LOAD_CYCLES = RuleFamily(
+    key="specimen.load_cycles",
+    title="load cycles of a specimen tooth in the planned time",
+    unit=NUMBER,
+    group="specimen",
+    source="limits.specimen.load_cycles_minimum; test_plan.time at test speed",
+    comparison=">=",
+    absent="no gearbox is a specimen",
+    only_inputs=("test_plan", "limits.specimen", *SPEEDS),
+)
 
 
 def checks(solved: SolvedRig) -> list[Check]:
@@ -30,55 +90,51 @@ def _of_mesh(solved: SolvedRig, mesh: int) -> Iterator[Check]:
     """A window for specimens, a safety for the rig's own gears."""
     check = _window if solved.role(mesh) == "specimen" else _safety
     for index in (0, 1):
-        for kind in ("iso", "path"):
-            yield check(solved, mesh, index, kind)
+        for method in METHODS:
+            yield check(solved, mesh, index, method)
 
 
-def _window(solved: SolvedRig, mesh: int, index: int, kind: str) -> Check:
-    window = solved.case.limits.specimen
+def _window(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> Check:
+    window, family = solved.case.limits.specimen, WINDOWS[method.name]
     low, high = window.root_stress_minimum, window.root_stress_maximum
     label, gear = solved.label(mesh), solved.rig.mesh_gear_name(mesh, index)
-    rule = Rule(
-        id=f"specimen.root_stress_{kind}.{label}.{gear}",
-        title=f"root stress of specimen {label} {gear}, {TITLES[kind]}", unit="MPa", source=SOURCES[kind],
-        group="specimen", role="specimen", limit=None if low is None else 1e-6 * low,
-        upper_limit=None if high is None else 1e-6 * high, comparison="within",
-    )  # fmt: skip
-    if solved.run is None or low is None:
-        return not_applicable(rule, NO_LOADS if solved.run is None else NO_LIMIT)
-    return hold(rule, *_stress(solved, mesh, index, kind))
+    rule = replace(
+        family.rule(low, f"{label}.{gear}"),
+        title=family.title.format(place=f"{label} {gear}"),
+        role="specimen",
+        upper_limit=None if high is None else MPA * high,
+    )
+    if solved.loads is None or low is None:
+        return not_applicable(rule, NO_LOADS if solved.loads is None else NO_LIMIT)
+    return hold(rule, *_stress(solved, mesh, index, method))
 
 
-def _safety(solved: SolvedRig, mesh: int, index: int, kind: str) -> Check:
-    limit = solved.case.limits.strength.root_safety_minimum
+def _safety(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> Check:
+    family, limit = SAFETIES[method.name], solved.case.limits.strength.root_safety_minimum
     label, gear = solved.label(mesh), solved.rig.mesh_gear_name(mesh, index)
-    rule = Rule(
-        id=f"strength.root_safety_{kind}.{label}.{gear}", title=f"root safety of {label} {gear}, {TITLES[kind]}",
-        unit="-", source=f"{SOURCES[kind]}; sigma_FE of the material, ISO 6336-3:2006 clauses 12, 13, 15",
-        group="dynamics", limit=limit, comparison=">=",
-    )  # fmt: skip
+    rule = replace(family.rule(limit, f"{label}.{gear}"), title=family.title.format(place=f"{label} {gear}"))
     material = solved.rig.materials[solved.rig.mesh_gear(mesh, index).material]
-    if solved.run is None or limit is None:
-        return not_applicable(rule, NO_LOADS if solved.run is None else NO_LIMIT)
+    if solved.loads is None or limit is None:
+        return not_applicable(rule, NO_LOADS if solved.loads is None else NO_LIMIT)
     if material.root_strength is None:
         return not_applicable(rule, f"material {material.title} has no root strength")
-    stress, how = _stress(solved, mesh, index, kind)
+    stress, how = _stress(solved, mesh, index, method)
     share, factors = _strength_share(solved, mesh, index)
-    strength = 1e-6 * share * material.root_strength
+    strength = MPA * share * material.root_strength
     reason = f"{how}; sigma_F {stress:.0f} MPa of {strength:.0f} MPa = sigma_FE {factors}"
     return hold(rule, strength / stress, reason)
 
 
-def _stress(solved: SolvedRig, mesh: int, index: int, kind: str) -> tuple[float, str]:
+def _stress(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> tuple[float, str]:
     """Highest root stress [MPa] of one gear over the held stages and how it came about."""
-    if kind == "iso":
+    if method is ISO:
         return worst(_iso_stresses(solved, mesh, index))
-    assert solved.dynamics is not None
-    history = solved.dynamics.gearboxes[solved.label(mesh)].root_stress[index]
-    dynamic, static = max(history.dynamic_MPa), max(history.quasi_static_MPa)
+    assert solved.loads is not None
+    path = solved.loads.meshes[solved.label(mesh)].root_stress[index]
+    dynamic, static = max(path.dynamic), max(path.quasi_static)
     return (
-        dynamic,
-        f"peak of sigma_F over the path, {dynamic / static:.3f} times the quasi-static one, stage {history.stage}",
+        dynamic * MPA,
+        f"peak of sigma_F over the path, {dynamic / static:.3f} times the quasi-static one, stage {path.stage}",
     )
 
 
@@ -140,25 +196,24 @@ def _cycles(solved: SolvedRig, shaft: str) -> float:
 
 def _load_cycles(solved: SolvedRig) -> Check:
     """The slowest specimen gear has to get its cycles."""
-    limit = solved.case.limits.specimen.load_cycles_minimum
-    rule = Rule(
-        id="specimen.load_cycles", title="load cycles of a specimen tooth in the planned time", unit="-",
-        source="limits.specimen.load_cycles_minimum; test_plan.time at test speed", group="specimen", role="specimen",
-        limit=limit, comparison=">=",
-    )  # fmt: skip
-    if limit is None:
-        return not_applicable(rule, NO_LIMIT)
-    specimens = [
-        (_cycles(solved, gear.shaft), f"{name}.{key} at {_gear_rpm(solved, gear.shaft):.0f} rpm")
+    hours = solved.case.test_plan.time / HOUR
+    rule = LOAD_CYCLES.rule(solved.case.limits.specimen.load_cycles_minimum)
+    specimens = (
+        (
+            _cycles(solved, gear.shaft),
+            f"{hours:.0f} h of {name}.{key} at {_gear_rpm(solved, gear.shaft):.0f} rpm",
+        )
         for name, box in solved.case.gearboxes.items()
         if box.role == "specimen"
         for key, gear in box.gears.items()
-    ]
-    if not specimens:
-        return not_applicable(rule, "no gearbox is a specimen")
-    value, where = worst(specimens, smallest=True)
-    return hold(rule, value, f"{solved.case.test_plan.time / 3600.0:.0f} h of {where}")
+    )
+    return LOAD_CYCLES.worst(solved, replace(rule, role="specimen"), specimens)
 
 
 def _gear_rpm(solved: SolvedRig, shaft: str) -> float:
     return solved.rig.shaft_speed(shaft, solved.case.schedule.test_speed) * RPM
+
+
+REGISTRY.register(
+    Topic(order=20, families=(*WINDOWS.values(), *SAFETIES.values(), LOAD_CYCLES), checks=checks)
+)

@@ -1,71 +1,133 @@
-"""Checks of the thermal course: what is left or needed at the worst moment, and the soak."""
+"""Checks of the thermal history: what is left or needed at the worst moment, and the soak."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
-from rigdesign.case.model import Case
-from rigdesign.checks.rules import Rule, hold, not_applicable
+from rigdesign.checks.clearances import NOT_EXPANDED, PLAY_NOT_EXPANDED, SEALS_NOT_EXPANDED
+from rigdesign.checks.influences import Influence
+from rigdesign.checks.omissions import constant_drag, coupled_shafts, given_losses
+from rigdesign.checks.registry import REGISTRY, Finder, RuleFamily, Topic
+from rigdesign.checks.rules import Comparison, hold, not_applicable
+from rigdesign.checks.temperatures import WALLS
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.extremes import Extreme
 from rigdesign.results.result import Check
-from rigdesign.results.transient import TransientResult, WorstMoment
+from rigdesign.results.rows.history import UNITS
+from rigdesign.results.units import HOUR, DisplayUnit
 from rigdesign.transient.warm_up import Soak
 
-TITLES = {
-    "seal_gap": "smallest radial gap of a seal over time",
-    "axial_play": "smallest axial play of a shaft over time",
-    "bearing_clearance": "smallest diametral bearing clearance over time",
-    "backlash": "smallest backlash over time",
-    "tip_clearance": "smallest tip clearance over time",
-    "housing_temperature": "hottest place of the housing over time",
-    "bearing_tilt": "largest tilt of a shaft in a bearing bore over time",
-    "bore_out_of_round": "bearing bore out of round over time, share of the radial clearance",
-    "axis_inclination": "in-plane deviation of the axes of a mesh over time",
-    "axis_skew": "out-of-plane deviation of the axes of a mesh over time",
-    "coupling_offset": "radial offset between the shafts over time, coupling",
-    "coupling_angle": "angle between the shafts over time, coupling",
-    "heater_power": "power the heaters of the warm circuits give over time",
-    "cooler_power": "power the cooler carries over time",
-}
-SOURCES = {
-    **{key: f"limits.clearances.{key}_minimum; thermal course" for key in list(TITLES)[:5]},
-    "housing_temperature": "limits.temperatures.housing_maximum; thermal course",
-    **{key: f"limits.alignment.{key}_maximum; thermal course" for key in list(TITLES)[6:10]},
-    "coupling_offset": "drivetrain.couplings.{place}.radial_offset_maximum; thermal course",
-    "coupling_angle": "drivetrain.couplings.{place}.angle_maximum; thermal course",
-    "heater_power": "limits.oil.heater_power_maximum; thermal course, every oil fed at its inlet temperature",
-    "cooler_power": "limits.oil.cooler_power_maximum; thermal course, every oil fed at its inlet temperature",
-}
-LEAST = list(TITLES)[:5]
-"""Quantities whose smallest value is the worst."""
+GROUP = "transient"
+MOVED_BY: frozenset[Influence] = frozenset({"housing", "test time", "thermal history"})
+OIL_BASIS = "thermal history, every oil fed at its inlet temperature"
 
 
-def transient_checks(case: Case, record: TransientResult) -> Iterator[Check]:
-    """One check for every limited quantity, one for the warm-up of every gearbox."""
-    for moment in record.worst:
-        if moment.planned and moment.quantity in TITLES:
-            yield _worst(case, moment)
-    for soak in record.soak:
-        yield _soak(case, soak)
+def _family(
+    quantity: str,
+    title: str,
+    source: str,
+    *,
+    comparison: Comparison = "<=",
+    leaves_out: tuple[Finder, ...] = (),
+) -> RuleFamily:
+    return RuleFamily(
+        key=f"transient.{quantity}",
+        title=title,
+        unit=UNITS[quantity],
+        group=GROUP,
+        source=source,
+        comparison=comparison,
+        leaves_out=(*leaves_out, constant_drag, given_losses),
+        moved_by=MOVED_BY,
+    )
 
 
-def _worst(case: Case, moment: WorstMoment) -> Check:
-    own = f".{moment.place}" if moment.quantity.startswith("coupling_") else ""
-    rule = Rule(
-        id=f"transient.{moment.quantity}{own}", title=TITLES[moment.quantity] + own.replace(".", " "),
-        unit=moment.unit, source=SOURCES[moment.quantity].format(place=moment.place), group="transient",
-        limit=moment.limit, comparison=">=" if moment.quantity in LEAST else "<=",
-    )  # fmt: skip
-    if moment.limit is None:
-        return not_applicable(rule, "the case states no limit")
-    reason = f"{moment.place}, {moment.branch}, phase {moment.phase}, {moment.time_s / 3600.0:.2f} h after the start"
-    return hold(rule, moment.value, reason)
+def _clearance(quantity: str, title: str, *leaves_out: Finder) -> RuleFamily:
+    """Smallest clearance of a kind over time."""
+    source = f"limits.clearances.{quantity}_minimum; thermal history"
+    return _family(quantity, title, source, comparison=">=", leaves_out=leaves_out)
 
 
-def _soak(case: Case, soak: Soak) -> Check:
+def _alignment(quantity: str, title: str) -> RuleFamily:
+    """Largest misalignment of a kind over time."""
+    source = f"limits.alignment.{quantity}_maximum; thermal history"
+    return _family(quantity, title, source, leaves_out=(NOT_EXPANDED,))
+
+
+def _coupling(quantity: str, title: str, limit: str) -> RuleFamily:
+    """Largest misalignment of every coupling over time."""
+    source = f"drivetrain.couplings.{{place}}.{limit}; thermal history"
+    family = _family(quantity, title, source, leaves_out=(coupled_shafts,))
+    return replace(family, moved_by=MOVED_BY | {"cold coupling offset"})
+
+
+EXTREMES = (
+    _clearance("seal_gap", "smallest radial gap of a seal over time", SEALS_NOT_EXPANDED),
+    replace(
+        _clearance("axial_play", "smallest axial play of a shaft over time", PLAY_NOT_EXPANDED),
+        moved_by=MOVED_BY | {"axial play"},
+    ),
+    _clearance("bearing_clearance", "smallest diametral bearing clearance over time", NOT_EXPANDED),
+    _clearance("backlash", "smallest backlash over time", NOT_EXPANDED),
+    _clearance("tip_clearance", "smallest tip clearance over time", NOT_EXPANDED),
+    _family(
+        "housing_temperature",
+        "hottest place of the housing over time",
+        "limits.temperatures.housing_maximum; thermal history",
+        leaves_out=(WALLS,),
+    ),
+    _alignment("bearing_tilt", "largest tilt of a shaft in a bearing bore over time"),
+    _alignment("bore_out_of_round", "bearing bore out of round over time, share of the radial clearance"),
+    _alignment("axis_inclination", "in-plane deviation of the axes of a mesh over time"),
+    _alignment("axis_skew", "out-of-plane deviation of the axes of a mesh over time"),
+    _coupling(
+        "coupling_offset",
+        "radial offset between the shafts over time, coupling {place}",
+        "radial_offset_maximum",
+    ),
+    _coupling("coupling_angle", "angle between the shafts over time, coupling {place}", "angle_maximum"),
+    _family(
+        "heater_power",
+        "power the heaters of the warm circuits give over time",
+        f"limits.oil.heater_power_maximum; {OIL_BASIS}",
+    ),
+    _family("cooler_power", "power the cooler carries over time", f"limits.oil.cooler_power_maximum; {OIL_BASIS}"),
+)  # fmt: skip
+SOAK = RuleFamily(
+    key="transient.soak",
+    title="warm-up needed before full torque, {place} gearbox",
+    unit=DisplayUnit("h", 1.0 / HOUR),
+    group=GROUP,
+    source="transient.warm_up; shortest warm-up with which all clearance limits hold",
+    leaves_out=(constant_drag, given_losses),
+    moved_by=MOVED_BY,
+)
+BY_QUANTITY = {family.key.partition(".")[2]: family for family in EXTREMES}
+
+
+def checks(solved: SolvedRig) -> Iterator[Check]:
+    """One check for every limited quantity, one for the warm-up of every gearbox; none without a thermal history."""
+    if solved.history is None:
+        return
+    for extreme in solved.history.extremes:
+        if extreme.planned and extreme.quantity in BY_QUANTITY:
+            yield _held(solved, extreme)
+    for soak in solved.history.soak:
+        yield _soak(solved, soak)
+
+
+def _held(solved: SolvedRig, extreme: Extreme) -> Check:
+    family = BY_QUANTITY[extreme.quantity]
+    rule = family.rule(extreme.limit, extreme.place if extreme.quantity.startswith("coupling_") else "")
+    where = f"{extreme.place}, {extreme.branch}, phase {extreme.phase}, {extreme.time / HOUR:.2f} h after the start"
+    return family.worst(solved, rule, [(extreme.value, where)])
+
+
+def _soak(solved: SolvedRig, soak: Soak) -> Check:
     """The warm-up the case plans against the one it needs."""
-    rule = Rule(
-        id=f"transient.soak.{soak.gearbox}", title=f"warm-up needed before full torque, {soak.gearbox} gearbox",
-        unit="h", source="transient.warm_up; shortest warm-up with which all clearance limits hold",
-        group="transient", limit=case.transient.warm_up / 3600.0,
-    )  # fmt: skip
+    rule = replace(SOAK.rule(None, soak.gearbox), limit=solved.case.transient.warm_up / HOUR)
     if soak.soak_time_s is None:
         return not_applicable(rule, soak.reason)
-    return hold(rule, soak.soak_time_s / 3600.0, soak.reason)
+    return hold(rule, soak.soak_time_s / HOUR, soak.reason)
+
+
+REGISTRY.register(Topic(order=70, families=(*EXTREMES, SOAK), checks=checks))

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 from dynamics.bearing.protocol import BearingState
 from dynamics.gear.pair import GearPair
@@ -194,8 +195,24 @@ def _squeezing(rig: Rig, point: OperatingPoint, models: Sequence[MeshModel]) -> 
         yield PlacedLoss(gearbox=box_name, part=mesh, loss=loss, into_body=0.0)
 
 
-def bearing_ratings(state: BearingState) -> dict[str, float]:
-    """Entries of a record for what a bearing is rated by; those its kind knows nothing of are left out."""
+class Rated(Protocol):
+    """A bearing with what it may be rated by; None for what its kind does not have."""
+
+    @property
+    def specific_load(self) -> float | None:
+        """[Pa]"""
+
+    @property
+    def minimum_film(self) -> float | None:
+        """[m]"""
+
+    @property
+    def transition_speed(self) -> float | None:
+        """[rad/s]"""
+
+
+def bearing_ratings(state: Rated) -> dict[str, float]:
+    """Entries of a record for what a bearing is rated by; those its kind does not have are left out."""
     ratings = {}
     if state.specific_load is not None:
         ratings["specific_load_MPa"] = 1e-6 * state.specific_load

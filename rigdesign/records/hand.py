@@ -1,4 +1,4 @@
-"""Numbers an engineer can redo on paper beside the key results."""
+"""Numbers an engineer can redo on paper, next to the key results."""
 
 import math
 from collections.abc import Sequence
@@ -10,7 +10,8 @@ from rigdesign.coupling.expansion import centrifugal_expansion
 from rigdesign.coupling.loads import MeshModel
 from rigdesign.coupling.losses import ANDERSON_LOEWENTHAL
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import ExpansionResult
+from rigdesign.results.units import MM, UM
+from rigdesign.results.warm_gearbox import WarmGearbox
 from thermal.conduction.heat_rows import HeatFlow
 
 PLATE = (
@@ -68,7 +69,7 @@ def _loads(solved: SolvedRig) -> list[dict[str, Any]]:
                 approach -= model.law.backlash
             rows.append(
                 _row(
-                    f"mean tooth deflection, {model.name}", 1e6 * approach, 1e6 * deflection, "um",
+                    f"mean tooth deflection, {model.name}", UM * approach, UM * deflection, "um",
                     "T_1 / (r_b1 c_gamma b) + mean gap of the flanks, weighted with their stiffness; early contact and "
                     "the edges of crowned flanks that do not touch explain the difference",
                 )
@@ -107,13 +108,11 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
                     f"{WINDAGE}; at losses.chamber_density = {float(details['mist_density']):.3g} kg/m3 here",
                 )
             )  # fmt: skip
-    for row in solved.cooler:
-        given, taken = (
-            math.fsum(float(row[key]) for key in keys)
-            for keys in (("losses_W", "pump_W", "heater_W"), ("cooler_W", "room_W"))
-        )
+    for balance in solved.cooling:
+        given = math.fsum((balance.losses, balance.pump, balance.heater))
+        taken = math.fsum((balance.cooler, balance.room))
         rows.append(
-            _row(f"heat carried away, stage {row['stage']}", taken, given, "W",
+            _row(f"heat carried away, stage {balance.stage}", taken, given, "W",
                  "cooler + room = losses + jets of the pump + heaters")
         )  # fmt: skip
     return rows
@@ -121,45 +120,42 @@ def _losses(solved: SolvedRig) -> list[dict[str, Any]]:
 
 def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
     rows = []
-    for result in solved.expansion:
+    for warm in solved.warm:
         rows += [
             _row(
-                f"growth of {shaft['shaft']}", shaft["growth_mm"], shaft["free_expansion_mm"], "mm",
+                f"growth of {shaft.name}", MM * shaft.total, MM * shaft.free, "mm",
                 "alpha L (T_m - T_0)",
             )
-            for shaft in result.shafts
+            for shaft in warm.shafts
         ]  # fmt: skip
-        for seal in result.seal_gaps:
-            plate = partition_gap(solved, result, seal["seal"])
-            by_hand, formula = (1e3 * plate, PLATE) if plate is not None else (seal["by_hand_mm"], RING)
-            rows.append(_row(f"mean gap of seal {seal['seal']}", seal["hot_mean_mm"], by_hand, "mm", formula))
-        for bearing in result.bearings:
-            clearance = end_wall_clearance(solved, result, bearing["bearing"])
+        for seal in warm.seals:
+            plate = partition_gap(solved, warm, seal.name)
+            by_hand, formula = (plate, PLATE) if plate is not None else (seal.by_hand, RING)
+            rows.append(_row(f"mean gap of seal {seal.name}", MM * seal.mean, MM * by_hand, "mm", formula))
+        for bearing in warm.bearings:
+            clearance = end_wall_clearance(solved, warm, bearing.name)
             if clearance is not None:
                 rows.append(
                     _row(
-                        f"hot diametral clearance of {bearing['bearing']}", bearing["diametral_clearance_hot_um"],
-                        1e6 * clearance, "um", BORE,
+                        f"hot diametral clearance of {bearing.name}", UM * bearing.clearance, UM * clearance, "um",
+                        BORE,
                     )
                 )  # fmt: skip
-        for coupling in result.couplings:
-            ends = [coupling[end].endswith("(cold)") for end in ("first", "second")]
-            if any(ends):
-                rise = coupling["recommended_cold_vertical_mm"] * (1.0 if ends[0] else -1.0)
-                name, by_hand = (
-                    f"rise of the shaft at coupling {coupling['coupling']}",
-                    axis_rise(solved, result),
-                )
-                rows.append(_row(name, rise, by_hand, "mm", RISE))
+        for coupling in warm.couplings:
+            if not all(coupling.housed):
+                _, up = coupling.moved
+                rise = MM * (up if coupling.housed[0] else -up)
+                name = f"rise of the shaft at coupling {coupling.coupling}"
+                rows.append(_row(name, rise, MM * axis_rise(solved, warm), "mm", RISE))
     return rows
 
 
-def axis_rise(solved: SolvedRig, result: ExpansionResult) -> float:
-    """Free expansion of the housing and of the field under it up to the shaft axes [mm], by their mean temperatures."""
-    name = result.gearbox
+def axis_rise(solved: SolvedRig, warm: WarmGearbox) -> float:
+    """Free expansion of the housing and of the field under it up to the shaft axes [m], by their mean temperatures."""
+    name = warm.gearbox
     housing = solved.case.gearboxes[name].housing
     assert housing is not None
-    field = next(p for p in solved.points if p.point.stage == result.stage).last.fields[name].temperature
+    field = next(p for p in solved.points if p.point.stage == warm.stage).last.fields[name].temperature
     elements, bodies = solved.rig.conduction[name].elements, solved.rig.models[name].mesh.bodies
     box = elements.mesh.points[np.unique(elements.mesh.cells[bodies["housing"]]), :2]
     low, high = box.min(axis=0), box.max(axis=0)
@@ -173,21 +169,21 @@ def axis_rise(solved: SolvedRig, result: ExpansionResult) -> float:
         under = ((places >= low) & (places <= high)).all(axis=1)
         mean = float(np.average(values[under], weights=volumes[under]))
         rise += solved.rig.materials[material].expansion_coefficient * height * (mean - cold)
-    return 1e3 * rise
+    return rise
 
 
-def partition_gap(solved: SolvedRig, result: ExpansionResult, seal: str) -> float | None:
+def partition_gap(solved: SolvedRig, warm: WarmGearbox, seal: str) -> float | None:
     """Hot gap [m] of a seal in a partition: a free plate widens its bore by its mean strain, however its warmth lies.
 
     None for the seals at the ends, whose walls have no surfaces of their own. Source: disc with a free bore,
     Timoshenko and Goodier, Theory of Elasticity, section 150.
     """
     shaft, _, side = seal.rpartition("_")
-    housing = solved.case.gearboxes[result.gearbox].housing
+    housing = solved.case.gearboxes[warm.gearbox].housing
     if housing is None or shaft not in housing.shafts:
         return None
-    point = next(p for p in solved.points if p.point.stage == result.stage)
-    rows = point.last.fields[result.gearbox].solution.balance.rows
+    point = next(p for p in solved.points if p.point.stage == warm.stage)
+    rows = point.last.fields[warm.gearbox].solution.balance.rows
     plate, journal = (
         _mean_temperature(rows, names)
         for names in ((f"partition_warm_{side}", f"partition_cold_{side}"), (f"shaft_{shaft}_seal_{side}",))
@@ -196,11 +192,11 @@ def partition_gap(solved: SolvedRig, result: ExpansionResult, seal: str) -> floa
     cold = solved.case.ambient.reference_temperature
     wide = materials[housing.material].expansion_coefficient * (plate - cold)
     thick = materials[entry.material].expansion_coefficient * (journal - cold)
-    gap = next(s.radial_gap for s in solved.case.gearboxes[result.gearbox].seals.values() if s.shaft == shaft)
+    gap = next(s.radial_gap for s in solved.case.gearboxes[warm.gearbox].seals.values() if s.shaft == shaft)
     return gap + 0.5 * entry.seal_diameter * (wide - thick)
 
 
-def end_wall_clearance(solved: SolvedRig, result: ExpansionResult, full: str) -> float | None:
+def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: str) -> float | None:
     """Hot diametral clearance [m] of the bearing ``gearbox.bearing``: its end wall widens the bore by its mean strain.
 
     None for a user's mesh that has no material where the box has its end wall. Source: as `partition_gap`.
@@ -210,7 +206,7 @@ def end_wall_clearance(solved: SolvedRig, result: ExpansionResult, full: str) ->
     box = solved.case.gearboxes[name]
     assert box.housing is not None
     entry, geometry = box.bearings[part], rig.geometries[name]
-    point = next(p for p in solved.points if p.point.stage == result.stage)
+    point = next(p for p in solved.points if p.point.stage == warm.stage)
     field = point.last.fields[name]
     elements, cells = rig.conduction[name].elements, rig.models[name].mesh.bodies["housing"]
     values, volumes = elements.at_points(field.temperature, cells)

@@ -1,4 +1,4 @@
-"""The heat split as a result: share of the friction heat of each gear that goes into the oil, with its range."""
+"""The heat split: share of the friction heat of each gear that goes into the oil, with its range."""
 
 import math
 from collections.abc import Mapping
@@ -10,50 +10,47 @@ from rigdesign.coupling.boundary import GEAR_OIL
 from rigdesign.coupling.flank_heat import GearFlanks, flank_films, gear_flanks, rim_surfaces
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.temperatures import HousingField, body_mean
-from rigdesign.results.result import HeatSplitRow
+from rigdesign.results.housing import HeatSplit
 from rigdesign.rig.model import Rig
 from thermal.conditions.boundary import Film, SurfaceSource
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.steady import solve_steady
 from thermal.films.flank import fin_efficiency, tooth_excess
 
-ZERO = 273.15
 RANGED = ("wetted_share", "film_factor")
 """Inputs of a flank film whose ranges make the range of the split, both at their low and both at their high end."""
 
 COMPARED = 1e-7
-"""Heat left over, relative to the heat turned over, of fields that are only held beside the result: microkelvins."""
-
-SHOWN = ("share_into_oil", "bulk_degC", "tooth_degC", "flank_film_W_m2K")
-"""What a row shows at the ends of its range."""
+"""Heat left over, relative to the heat turned over, of fields that are solved only to compare: microkelvins."""
 
 
-def heat_split_rows(rig: Rig, result: PointResult, field: HousingField) -> list[HeatSplitRow]:
-    """One row for every gear of a housing at a held stage.
+def heat_splits(rig: Rig, result: PointResult, field: HousingField) -> tuple[HeatSplit, ...]:
+    """Heat split of every gear of a housing at a held stage, with its range.
 
-    The range holds losses, oil and warm gears of the settled state and solves the housing anew.
+    The range keeps losses, oil and warm gears of the converged state and solves the housing anew.
     """
     friction = friction_heat(rig, result, field.gearbox)
     films = _films(rig, field.gearbox)
-    rows = split_as_solved(rig, result, field)
-    found: list[dict[str, dict[str, float | None]]] = []
+    splits = split_as_solved(rig, result, field)
+    found: list[dict[str, HeatSplit]] = []
     for end in (0, 1):
         ends = _ends(rig, field.gearbox, films, end)
         if ends is None:
-            return list(rows.values())
+            return tuple(splits.values())
         other = _solved_again(rig, result, field, friction, ends)
-        at_end = {gear: _row(rig, result, other, gear, friction[gear], ends[gear]) for gear in rows}
-        found.append({gear: {key: getattr(row, key) for key in SHOWN} for gear, row in at_end.items()})
+        found.append({gear: _split(rig, result, other, gear, ends[gear]) for gear in splits})
     low, high = found
-    return [replace(row, weak_film=low[gear], strong_film=high[gear]) for gear, row in rows.items()]
+    return tuple(
+        replace(split, weak_film=low[gear], strong_film=high[gear]) for gear, split in splits.items()
+    )
 
 
-def split_as_solved(rig: Rig, result: PointResult, field: HousingField) -> dict[str, HeatSplitRow]:
-    """Row of every meshed gear that friction heats, without its range: nothing is solved again."""
+def split_as_solved(rig: Rig, result: PointResult, field: HousingField) -> dict[str, HeatSplit]:
+    """Split of every meshed gear that friction heats, without its range: nothing is solved again."""
     films, box = _films(rig, field.gearbox), rig.case.gearboxes[field.gearbox]
     bodies = rig.models[field.gearbox].mesh.bodies
     return {
-        gear: _row(rig, result, field, gear, heat, films.get(gear))
+        gear: _split(rig, result, field, gear, films.get(gear))
         for gear, heat in friction_heat(rig, result, field.gearbox).items()
         if heat and f"gear_{box.gears[gear].shaft}" in bodies
     }
@@ -123,16 +120,15 @@ def _solved_again(
     return HousingField(gearbox=name, conditions=tuple(conditions), solution=solution)
 
 
-def _row(
-    rig: Rig, result: PointResult, field: HousingField, gear: str, heat: float, condition: FlankFilm | None
-) -> HeatSplitRow:
+def _split(
+    rig: Rig, result: PointResult, field: HousingField, gear: str, condition: FlankFilm | None
+) -> HeatSplit:
     name = field.gearbox
     box = rig.case.gearboxes[name]
     rim = rim_surfaces(box)[gear]
+    heat = friction_heat(rig, result, name)[gear]
     rows = [row for row in field.solution.balance.rows if row.surface == rim]
     reached = math.fsum(row.power for row in rows if row.kind == "mesh_loss")
-    film = -math.fsum(row.power for row in rows if row.kind == GEAR_OIL)
-    bulk = body_mean(rig, field, f"gear_{box.gears[gear].shaft}")
     coefficient = efficiency = tooth = None
     if condition is not None:
         flanks = _flanks(rig, result, name, gear, condition)
@@ -140,18 +136,15 @@ def _row(
         coefficient = flanks.law(wall, flanks.oil_temperature).value
         efficiency = fin_efficiency(flanks.ring, coefficient)
         excess = tooth_excess(flanks.ring, coefficient, heat, wall - flanks.oil_temperature)
-        tooth = flanks.oil_temperature + excess - ZERO
-    share = (heat - reached + film) / heat
-    return HeatSplitRow(
+        tooth = flanks.oil_temperature + excess
+    return HeatSplit(
         gear=f"{name}.{gear}",
         rule=box.heat_split.rule,
-        friction_W=heat,
-        at_once_W=heat - reached,
-        film_W=film,
-        share_into_oil=share,
-        share_into_bodies=1.0 - share,
-        bulk_degC=bulk - ZERO,
-        tooth_degC=tooth,
-        flank_film_W_m2K=coefficient,
+        friction=heat,
+        at_once=heat - reached,
+        film=-math.fsum(row.power for row in rows if row.kind == GEAR_OIL),
+        bulk_temperature=body_mean(rig, field, f"gear_{box.gears[gear].shaft}"),
+        tooth_temperature=tooth,
+        coefficient=coefficient,
         fin_efficiency=efficiency,
     )

@@ -1,7 +1,7 @@
 """Peaks of the dynamic torque over speed, named by what vibrates."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from dynamics.rating.dynamic_factor import resonances as find_resonances
 from dynamics.response.speed_sweep import CurvePoint, ResponseCurve
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.curves import Curves, own_ratio
+from rigdesign.results.loads import MeshResonance
 from rigdesign.rig.model import Rig
 
 HARMONICS = 4
@@ -25,18 +26,15 @@ LEAST_GAIN = 0.1
 """Gain of a mode below which its mesh hardly excites it (`LoopMode.mesh_gain`)."""
 LEAST_ORDER = 0.1
 """Amplitude of an order, over that of the strongest one, from which it may name a resonance."""
-RPM = 30.0 / math.pi
 
 
-def resonance_rows(rig: Rig, curves: Curves, mesh: int, modes: Sequence[LoopMode]) -> list[dict[str, Any]]:
-    """Resonances of one mesh at every torque of the curves, over the speed of its own pinion.
-
-    amplification is the peak over the level it stands on; dangerous means above a limit of the case.
-    """
+def mesh_resonances(
+    rig: Rig, curves: Curves, mesh: int, modes: Sequence[LoopMode]
+) -> Iterator[MeshResonance]:
+    """Resonances of one mesh at every torque of the curves, over the speed of its own pinion."""
     limits = rig.case.limits.dynamics
     ratio = own_ratio(rig, mesh)
     teeth = ratio * rig.pairs[rig.mesh_names[mesh]].teeth[0]
-    rows = []
     fastest = rig.pinion_speed(max(point.speed for point in held_points(rig)))
     for name, (_, curve) in curves.named.items():
         if len(curve.points) < 3:
@@ -46,22 +44,19 @@ def resonance_rows(rig: Rig, curves: Curves, mesh: int, modes: Sequence[LoopMode
             if peak.at_end and not searched:
                 continue
             mode, frequency, harmonic = name_of(peak, curve, mesh, teeth, modes)
-            rows.append(
-                {
-                    "torque": name,
-                    "mode": mode,
-                    "frequency_Hz": frequency,
-                    "harmonic": harmonic,
-                    "speed_rpm": ratio * peak.speed * RPM,
-                    "dynamic_factor": peak.factor,
-                    "force_share": peak.force_share,
-                    "amplification": peak.amplification,
-                    "at_end": peak.at_end,
-                    "dangerous": peak.amplification > limits.dangerous_amplification
-                    or peak.force_share > limits.dangerous_force_share,
-                }
+            yield MeshResonance(
+                torque=name,
+                mode=mode,
+                frequency=frequency,
+                harmonic=harmonic,
+                speed=ratio * peak.speed,
+                dynamic_factor=peak.factor,
+                force_share=peak.force_share,
+                amplification=peak.amplification,
+                at_end=peak.at_end,
+                dangerous=peak.amplification > limits.dangerous_amplification
+                or peak.force_share > limits.dangerous_force_share,
             )
-    return rows
 
 
 def _of_mesh(curve: ResponseCurve, mesh: int) -> DynamicFactorCurve:

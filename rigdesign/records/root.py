@@ -1,6 +1,5 @@
 """Root stress of the teeth over the path of contact, dynamic and quasi-static."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,7 +10,7 @@ from dynamics.mesh.force import ToothForces, tooth_forces
 from dynamics.rating.root_stress import root_influence, root_stress_over_face
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.loads import MeshModel
-from rigdesign.results.result import RootStressHistory
+from rigdesign.results.loads import RootStressPath
 
 Array = NDArray[np.float64]
 Stress = tuple[Array, Array]
@@ -77,20 +76,22 @@ def peak(stress: Stress) -> float:
     return float(stress[1].max(initial=0.0))
 
 
-def history(gear: str, stage: str, base_radius: float, dynamic: Stress, static: Stress) -> RootStressHistory:
-    """Both curves on one grid of the rolling angle of the gear, zero at the pitch point."""
+def over_path(gear: str, stage: str, base_radius: float, dynamic: Stress, static: Stress) -> RootStressPath:
+    """Both curves on one grid of the rolling angle of the gear, zero at the pitch point.
+
+    base_radius : of the gear [m]
+    """
     low = min(dynamic[0].min(), static[0].min())
     high = max(dynamic[0].max(), static[0].max())
     path = np.linspace(low, high, PATH_POINTS)
 
-    def on_grid(stress: Stress) -> list[float]:
-        values = np.interp(path, *stress, left=0.0, right=0.0)
-        return [float(value) * 1e-6 for value in values]
+    def on_grid(stress: Stress) -> tuple[float, ...]:
+        return tuple(map(float, np.interp(path, *stress, left=0.0, right=0.0)))
 
-    return RootStressHistory(
+    return RootStressPath(
         gear=gear,
         stage=stage,
-        rolling_angle_deg=[math.degrees(float(s) / base_radius) for s in path],
-        dynamic_MPa=on_grid(dynamic),
-        quasi_static_MPa=on_grid(static),
+        rolling_angle=tuple(float(s) / base_radius for s in path),
+        dynamic=on_grid(dynamic),
+        quasi_static=on_grid(static),
     )

@@ -1,4 +1,4 @@
-"""What the checks look at: the case, the solved points, the assembled results."""
+"""The solved rig: the case, the solved points and their SI records. Checks and rows of the result read nothing else."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -6,31 +6,36 @@ from dataclasses import dataclass
 from rigdesign.base.finite import finite
 from rigdesign.case.model import Case
 from rigdesign.coupling.loop import PointResult, governing_point
+from rigdesign.coupling.temperatures import HousingField
 from rigdesign.records.dynamics import DynamicRun
-from rigdesign.results.result import (
-    DiscretisationRow,
-    DynamicsResult,
-    ExpansionResult,
-    MeshShift,
-    Role,
-    ThermalResult,
-)
+from rigdesign.records.housing import cooling_balance
+from rigdesign.records.warm_gearbox import warm_gearbox
+from rigdesign.results.extremes import HistoryExtremes
+from rigdesign.results.housing import CoolingBalance, HousingTemperatures
+from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.result import DiscretisationRow, MeshShift, Role
+from rigdesign.results.warm_gearbox import WarmGearbox
 from rigdesign.rig.model import Rig
 
 
 @dataclass(frozen=True, kw_only=True)
 class SolvedRig:
-    """A solved rig."""
+    """A solved rig in SI units; sequences of records run over the held stages, and over the gearboxes in each."""
 
     rig: Rig
     points: Sequence[PointResult]
-    run: DynamicRun | None
+    """One for each held stage."""
+    run: DynamicRun | None = None
     """None when the losses are given: no drivetrain, no loads."""
-    dynamics: DynamicsResult | None
-    thermal: Sequence[ThermalResult]
-    expansion: Sequence[ExpansionResult]
-    cooler: Sequence[Mapping[str, float | str]]
-    """Where the heat goes, one row for each held stage (`records.heat.cooler`)."""
+    loads: DynamicLoads | None = None
+    """Of ``run``."""
+    temperatures: Sequence[HousingTemperatures] = ()
+    """Of every gearbox with a housing."""
+    warm: Sequence[WarmGearbox] = ()
+    """Clearances and alignment of every gearbox whose housing is expanded."""
+    cooling: Sequence[CoolingBalance] = ()
+    history: HistoryExtremes | None = None
+    """None where no thermal history was asked for."""
     discretisation: Sequence[DiscretisationRow] = ()
     mesh_shifts: Sequence[MeshShift] = ()
 
@@ -81,6 +86,35 @@ class SolvedRig:
         return self.rig.mesh(self.rig.mesh_names[mesh])[0].role
 
 
+def solved_rig(
+    rig: Rig,
+    points: Sequence[PointResult],
+    temperatures: Sequence[HousingTemperatures],
+    *,
+    run: DynamicRun | None = None,
+    loads: DynamicLoads | None = None,
+) -> SolvedRig:
+    """The records of solved points.
+
+    temperatures : of every housing at every point (`housing_fields`), with or without what is solved to compare
+    run, loads : of the dynamic solvers; None where losses are given or nothing is asked of the loads
+    """
+    return SolvedRig(
+        rig=rig,
+        points=points,
+        run=run,
+        loads=loads,
+        temperatures=temperatures,
+        warm=[warm_gearbox(rig, point, name) for point in points for name in point.last.expansion],
+        cooling=[cooling_balance(rig, point.last) for point in points],
+    )
+
+
+def housing_fields(points: Iterable[PointResult]) -> list[tuple[PointResult, HousingField]]:
+    """Every field of every held point, with that point."""
+    return [(point, field) for point in points for field in point.last.fields.values()]
+
+
 NO_LOADS = "losses are given (losses.basis = input): there are no dynamic loads"
 NO_LIMIT = "the case states no limit"
 NO_HOUSING = "no gearbox has a housing: there are no temperatures and clearances"
@@ -89,7 +123,12 @@ NO_HOUSING = "no gearbox has a housing: there are no temperatures and clearances
 def worst(items: Iterable[tuple[float, str]], *, smallest: bool = False) -> tuple[float, str]:
     """The governing value and where it occurs; the first of equals.
 
-    Raises NonFiniteResultError for a value that is NaN or infinite: it has no place in an order.
+    items : (value, where)
+
+    Raises
+    ------
+    NonFiniteResultError
+        A value is NaN or infinite: it has no place in an order.
     """
     ordered = sorted(items, key=lambda item: finite(item[1], item[0]), reverse=not smallest)
     return ordered[0]

@@ -1,6 +1,6 @@
 """The time run over the schedule as records: envelopes, loads of every stage, loss of contact by stage."""
 
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,11 +9,12 @@ from dynamics.response.envelopes import EnvelopeWindows, split_lift_off
 from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.time_run import LEAST_TORQUE, schedule_of, stage_names
 from rigdesign.records.curves import own_ratio
+from rigdesign.results.loads import ContactLoss, StageLoad
 from rigdesign.results.result import RampHistory
+from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]
-RPM = 30.0 / np.pi
 
 
 def bounds(windows: EnvelopeWindows, mesh: int) -> tuple[Array, Array, Array]:
@@ -28,53 +29,43 @@ def torque_peak(windows: EnvelopeWindows, mesh: int) -> float:
     return float(max(np.abs(windows.least[mesh]).max(), np.abs(windows.greatest[mesh]).max()))
 
 
-def stage_loads(rig: Rig, ramp: TimeResponse, mesh: int) -> list[dict[str, Any]]:
-    """Load of one mesh in every stage that turns under torque, by the envelopes of the time run.
-
-    dynamic_factor : highest torque over the mean of its window, and the speed of the mesh's pinion where it
-        occurs; least_share : lowest torque over the mean of its window, below zero where the other flank is hit
-    """
+def stage_loads(rig: Rig, ramp: TimeResponse, mesh: int) -> Iterator[StageLoad]:
+    """Load of one mesh in every stage that turns under torque, by the envelopes of the time run."""
     low, mean, high = bounds(ramp.windows, mesh)
-    speed = own_ratio(rig, mesh) * ramp.windows.speed * RPM
+    speed = own_ratio(rig, mesh) * ramp.windows.speed
     stages = np.array(_window_stages(rig, ramp))
-    rows = []
     for stage in schedule_of(rig).stages:
         own = np.flatnonzero((stages == stage.name) & (mean > LEAST_TORQUE) & (speed > 0.0))
         if own.size == 0 or max(stage.speed) <= 0.0:
             continue
         worst, loosest = own[np.argmax(high[own] / mean[own])], own[np.argmin(low[own] / mean[own])]
-        rows.append(
-            {
-                "stage": stage.name,
-                "dynamic_factor": float(high[worst] / mean[worst]),
-                "speed_rpm": float(speed[worst]),
-                "mean_Nm": float(mean[worst]),
-                "peak_Nm": float(high[own].max()),
-                "least_Nm": float(low[own].min()),
-                "least_share": float(low[loosest] / mean[loosest]),
-                "least_share_at_rpm": float(speed[loosest]),
-                "least_share_mean_Nm": float(mean[loosest]),
-            }
+        yield StageLoad(
+            stage=stage.name,
+            dynamic_factor=float(high[worst] / mean[worst]),
+            speed=float(speed[worst]),
+            mean=float(mean[worst]),
+            peak=float(high[own].max()),
+            least=float(low[own].min()),
+            least_share=float(low[loosest] / mean[loosest]),
+            least_share_speed=float(speed[loosest]),
+            least_share_mean=float(mean[loosest]),
         )
-    return rows
 
 
-def lift_off(rig: Rig, ramp: TimeResponse, mesh: int) -> list[dict[str, Any]]:
+def contact_losses(rig: Rig, ramp: TimeResponse, mesh: int) -> Iterator[ContactLoss]:
     """Intervals of the run in which a mesh kept losing contact, cut at the ends of the stages."""
     schedule = schedule_of(rig)
     own = [interval for interval in ramp.lift_off if interval.mesh == mesh]
     pieces = split_lift_off(ramp.windows, own, schedule.starts[1:-1])
     middles = np.array([0.5 * (piece.start + piece.end) for piece in pieces])
-    return [
-        {
-            "stage": name,
-            "start_s": piece.start,
-            "end_s": piece.end,
-            "share": piece.out_of_contact,
-            "longest_gap_ms": 1e3 * piece.longest_gap,
-        }
-        for piece, name in zip(pieces, stage_names(schedule, middles) if pieces else [])
-    ]
+    for piece, name in zip(pieces, stage_names(schedule, middles) if pieces else []):
+        yield ContactLoss(
+            stage=name,
+            start=piece.start,
+            end=piece.end,
+            share=piece.out_of_contact,
+            longest_gap=piece.longest_gap,
+        )
 
 
 def ramp_history(rig: Rig, ramp: TimeResponse) -> RampHistory:

@@ -143,7 +143,7 @@ class RampHistory:
     target_torque_Nm: list[float]  # noqa: N815
     drive_torque_Nm: list[float]  # noqa: N815
     torque: dict[str, dict[str, list[float]]]
-    """gearbox -> {mean, maximum, minimum} of the dynamic torque [Nm] in each time slot."""
+    """gearbox -> {mean, maximum, minimum} of the dynamic torque [Nm] in each time window."""
 
 
 @dataclass(frozen=True, kw_only=True)

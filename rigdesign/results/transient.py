@@ -1,4 +1,4 @@
-"""The thermal course of a run, as it stands in results.json under ``transient``."""
+"""The thermal history of a run, as it stands in results.json under ``transient``."""
 
 from dataclasses import dataclass, field
 
@@ -7,7 +7,7 @@ from rigdesign.transient.warm_up import Soak
 
 @dataclass(frozen=True, kw_only=True)
 class TransientCurve:
-    """One course of one gearbox: lists of one length, one entry for every time step."""
+    """Thermal history of one gearbox over one branch: lists of one length, one entry for every time step."""
 
     gearbox: str
     branch: str
@@ -43,7 +43,7 @@ class OilPowerCurve:
 
 @dataclass(frozen=True, kw_only=True)
 class WorstMoment:
-    """The least clearance, highest temperature, largest misalignment or largest oil power of all courses."""
+    """The least clearance, highest temperature, largest misalignment or largest oil power of all branches."""
 
     quantity: str
     value: float
@@ -57,12 +57,12 @@ class WorstMoment:
     """The worst of the held stages in their steady state."""
     limit: float | None
     planned: bool = True
-    """False for the cold start, which the case does not plan: it tells what the warm-up is good for."""
+    """False for the cold start, which the case does not plan: it shows what the warm-up is good for."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Settling:
-    """When a quantity stays near its end value in the dwell."""
+    """After which time a quantity stays near its end value in the dwell."""
 
     gearbox: str
     stage: str
@@ -85,8 +85,8 @@ class TransientResult:
     inputs: dict[str, str]
     """Durations and assumptions behind it, as the case has them."""
     energy_closure: float
-    """Largest gap of the energy balance of a course, relative to the heat turned over."""
+    """Largest gap of the energy balance of a branch, relative to the heat turned over."""
     missed_temperature_K: float  # noqa: N815
-    """Largest temperature the shapes of the expansion leave out."""
+    """Largest temperature that the reduced basis of the expansion leaves out."""
     oil_power: list[OilPowerCurve] = field(default_factory=list)
     """One for every branch."""

@@ -101,16 +101,16 @@ def _held(solved: SolvedRig, rigs: Rigs) -> Iterator[DiscretisationRow]:
 
 def _run(solved: SolvedRig, rigs: Rigs, mesh: int) -> Iterator[DiscretisationRow]:
     """Highest peak and least share of the time run, in the stages that the checks look at."""
-    rows = loaded_stages(solved, mesh)
-    if not rows:
+    loads = loaded_stages(solved, mesh)
+    if not loads:
         return
-    peak = max(rows, key=lambda row: float(row["peak_Nm"]))
-    least = min(rows, key=lambda row: float(row["least_share"]))
-    for key, row, place, value in (
-        ("ramp_peak", peak, ("speed_rpm", "mean_Nm"), _factor),
-        ("contact_margin", least, ("least_share_at_rpm", "least_share_mean_Nm"), _least),
+    peak = max(loads, key=lambda load: load.peak)
+    least = min(loads, key=lambda load: load.least_share)
+    for key, stage, speed, mean, value in (
+        ("ramp_peak", peak.stage, peak.speed, peak.mean, _factor),
+        ("contact_margin", least.stage, least.least_share_speed, least.least_share_mean, _least),
     ):
-        loaded = _at(solved, mesh, str(row["stage"]), float(row[place[0]]) * RPM, float(row[place[1]]))
+        loaded = _at(solved, mesh, stage, speed, mean)
         yield from _row(solved, key, mesh, loaded.responses(rigs), value)
 
 

@@ -21,11 +21,14 @@ from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.time_run import held_points, schedule_of
-from rigdesign.records import heat
-from rigdesign.records.dynamics import dynamics_result
+from rigdesign.records.dynamics import dynamic_loads
+from rigdesign.records.dynamics_section import dynamics_section
 from rigdesign.records.hand import hand_checks
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.records.housing import compared_temperatures, coupling_history, fields_of
+from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.result import Check, Checks, Finding, RunResult
+from rigdesign.results.rows.housing import cooling_row, loss_rows, oil_rows, thermal_row
+from rigdesign.results.rows.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.dynamic_work import DynamicWork
 from rigdesign.run.load_convergence import load_errors
@@ -90,20 +93,13 @@ def solve_case(
         with dynamics.sharing():
             meshes = discretisation(rigs, rig, settled, points)
             lap("discretisation")
-            thermal = [
-                heat.thermal_result(wanted, p, field) for p in points for field in p.last.fields.values()
-            ]
+            temperatures = [compared_temperatures(wanted, *found) for found in housing_fields(points)]
             lap("alternatives")
         run = dynamics.result()
         lap("dynamics")
-    solved = SolvedRig(
-        rig=wanted,
-        points=points,
-        run=run,
-        dynamics=None if run is None else dynamics_result(wanted, run),
-        thermal=thermal,
-        expansion=[heat.expansion_result(wanted, p, name) for p in points for name in p.last.expansion],
-        cooler=[heat.cooler(wanted, point.last) for point in points],
+    loads = None if run is None else dynamic_loads(wanted, run)
+    solved = replace(
+        solved_rig(wanted, points, temperatures, run=run, loads=loads),
         discretisation=meshes.rows,
         mesh_shifts=meshes.shifts,
     )
@@ -135,13 +131,15 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         fidelity=rig.fidelity,
         verdict=overall(checks),
         checks=Checks(checks),
-        dynamics=solved.dynamics,
-        losses=[row for stage, found in losses.items() for row in heat.loss_rows(stage, found)],
-        oil=[row for p in points for row in heat.oil_rows(p.point.stage, p.last.streams)],
-        cooler=[dict(row) for row in solved.cooler],
-        thermal=list(solved.thermal),
-        expansion=list(solved.expansion),
-        coupling=[heat.coupling_history(p) for p in points],
+        dynamics=None
+        if solved.run is None or solved.loads is None
+        else dynamics_section(rig, solved.run, solved.loads),
+        losses=[row for stage, found in losses.items() for row in loss_rows(stage, found)],
+        oil=[row for p in points for row in oil_rows(p.point.stage, p.last.streams)],
+        cooler=[cooling_row(balance) for balance in solved.cooling],
+        thermal=[thermal_row(found) for found in solved.temperatures],
+        expansion=[expansion_row(warm) for warm in solved.warm],
+        coupling=[coupling_history(p) for p in points],
         discretisation=list(solved.discretisation),
         reference_shift=list(solved.mesh_shifts),
         hand_checks=hand_checks(solved),
@@ -150,7 +148,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         not_modelled=not_modelled(solved),
         warnings=[*_doubts(case), *warnings_of(solved, losses), *unanswered(checks)],
         timings_s=clock.laps,
-        fields=[field for p in points for field in heat.fields_of(rig, p)],
+        fields=[field for p in points for field in fields_of(rig, p)],
     )
 
 

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.parallel import BackgroundTasks
-from rigdesign.checks import alignment, thermal
+from rigdesign.checks import mesh_checks
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.expansion import expand_housing
 from rigdesign.coupling.iteration import IterationResult, next_state
@@ -23,10 +23,11 @@ from rigdesign.coupling.loop import PointResult, Residual
 from rigdesign.coupling.oil import oil_streams
 from rigdesign.coupling.state import CouplingState, length_change, temperature_change
 from rigdesign.coupling.temperatures import HousingField, heat_into_films, heat_into_oil, solve_housing
-from rigdesign.records import heat
 from rigdesign.records.heat_split import split_as_solved
-from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import Check, ThermalResult
+from rigdesign.records.housing import housing_temperatures
+from rigdesign.records.solved_rig import housing_fields, solved_rig
+from rigdesign.results.housing import HousingTemperatures
+from rigdesign.results.result import Check
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import MeshError, NamedMesh
 from thermal.housing.stations import GearboxModel
@@ -167,19 +168,10 @@ def _warmed(rig: Rig, done: IterationResult, after: CouplingState) -> IterationR
 def checked(rig: Rig, points: Sequence[PointResult]) -> dict[str, Check]:
     """The checks that depend on temperatures, thermal expansion and oil, by id, as ``points`` on the mesh of ``rig``
     have them."""
-    solved = SolvedRig(
-        rig=rig,
-        points=points,
-        run=None,
-        dynamics=None,
-        thermal=[_temperatures(rig, p, field) for p in points for field in p.last.fields.values()],
-        expansion=[heat.expansion_result(rig, p, name) for p in points for name in p.last.expansion],
-        cooler=[heat.cooler(rig, point.last) for point in points],
-    )
-    found = (*thermal.checks(solved), *alignment.checks(solved))
-    return {check.id: check for check in found if check.value is not None}
+    temperatures = [_temperatures(rig, *found) for found in housing_fields(points)]
+    return {check.id: check for check in mesh_checks(solved_rig(rig, points, temperatures))}
 
 
-def _temperatures(rig: Rig, point: PointResult, field: HousingField) -> ThermalResult:
+def _temperatures(rig: Rig, point: PointResult, field: HousingField) -> HousingTemperatures:
     split = split_as_solved(rig, point, field)
-    return replace(heat.solved_temperatures(rig, point, field), heat_split=list(split.values()))
+    return replace(housing_temperatures(rig, point, field), heat_split=tuple(split.values()))

@@ -1,33 +1,31 @@
-"""The thermal course as a section of the result: curves, worst moments, settling times, soak."""
+"""The thermal history as a section of the result: curves, worst moments, settling times, soak."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.checks.assumptions import with_assumptions
-from rigdesign.checks.omissions import omissions
-from rigdesign.checks.rules import overall, with_omissions
-from rigdesign.checks.transient import transient_checks
+from rigdesign.checks import all_checks
+from rigdesign.checks.rules import overall
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.extremes import Extreme, HistoryExtremes
 from rigdesign.results.result import Check, Checks, Finding, RunResult
-from rigdesign.results.transient import Settling, TransientCurve, TransientResult, WorstMoment
+from rigdesign.results.rows.history import UNITS, worst_moment_row
+from rigdesign.results.transient import Settling, TransientCurve, TransientResult
+from rigdesign.results.units import MM, RPM, ZERO
 from rigdesign.rig.model import Rig
-from rigdesign.run.transient_alignment import UNITS, misalignments, worst_misalignments
+from rigdesign.run.transient_alignment import misalignments, worst_misalignments
 from rigdesign.run.transient_oil import oil_power_curve, worst_powers
 from rigdesign.run.warnings import cold_oil
 from rigdesign.transient.branch import Branch
 from rigdesign.transient.clearances import QUANTITIES, Quantity, smallest
-from rigdesign.transient.course import TransientRun, run_transient
 from rigdesign.transient.limits import clearance_limits
 from rigdesign.transient.phases import SCHEDULE
 from rigdesign.transient.soak import hours
+from rigdesign.transient.thermal_history import TransientRun, run_transient
 from thermal.transient.history import settling_time
 
-ZERO = 273.15
-MM = 1e3
-RPM = 30.0 / np.pi
 SETTLING: tuple[Quantity, ...] = ("seal_gap", "bearing_clearance", "backlash")
 FloatArray = NDArray[np.float64]
 STEADY = "temperature over time: "
@@ -37,7 +35,7 @@ STEADY = "temperature over time: "
 def with_transient(
     solved: SolvedRig, result: RunResult, say: Callable[[str], None] = lambda message: None
 ) -> RunResult:
-    """The result of a steady run with the thermal course beside it, its checks and its warnings.
+    """The result of a steady run with the thermal history, its checks and its warnings added.
 
     A rig without a housing has no temperatures to follow; the result then says so.
 
@@ -50,15 +48,11 @@ def with_transient(
         text = "no gearbox has a housing: there are no temperatures over time"
         return replace(result, warnings=[*result.warnings, Finding(id="transient", text=text)])
     run = run_transient(solved.rig, solved.points, say)
-    record = transient_result(solved, run)
-    added = [
-        with_assumptions(solved.case, with_omissions(check, omissions(solved, check)))
-        for check in transient_checks(solved.case, record)
-    ]
-    checks: list[Check] = [*result.checks, *added]
+    history = history_extremes(solved, run)
+    checks: list[Check] = all_checks(replace(solved, history=history))
     return replace(
         result,
-        transient=record,
+        transient=transient_result(solved, run, history),
         checks=Checks(checks),
         verdict=overall(checks),
         assumptions=[
@@ -69,27 +63,33 @@ def with_transient(
             *(text for text in result.not_modelled if not text.startswith(STEADY)),
             *simplifications(solved.rig),
         ],
-        warnings=[*result.warnings, *_cold_oil(solved), *_warnings(run)],
+        warnings=[*result.warnings, *_oil_at_start(solved), *_warnings(run)],
     )
 
 
-def transient_result(solved: SolvedRig, run: TransientRun) -> TransientResult:
-    """All branches as records."""
+def history_extremes(solved: SolvedRig, run: TransientRun) -> HistoryExtremes:
+    """The worst moments of the planned branches, then those of the cold start, and the soak."""
+    extremes = [
+        extreme
+        for planned in (True, False)
+        for branches in ([b for b in run.branches if (b.name != "cold_start") is planned],)
+        if branches
+        for extreme in (
+            *_least(solved, branches, planned),
+            *_hottest(solved, branches, planned),
+            *worst_misalignments(solved, branches, run.branches, planned),
+            *worst_powers(solved, [p for p in run.power if (p.name != "cold_start") is planned], planned),
+        )
+    ]
+    return HistoryExtremes(extremes=tuple(extremes), soak=run.soak)
+
+
+def transient_result(solved: SolvedRig, run: TransientRun, history: HistoryExtremes) -> TransientResult:
+    """All branches as rows of the result."""
     plan = solved.case.transient
     return TransientResult(
         curves=[curve(solved.rig, branch, run.branches) for branch in run.branches],
-        worst=[
-            row
-            for planned in (True, False)
-            for branches in ([b for b in run.branches if (b.name != "cold_start") is planned],)
-            if branches
-            for row in (
-                *_least(solved, branches, planned),
-                *_hottest(solved, branches, planned),
-                *worst_misalignments(solved, branches, run.branches, planned),
-                *worst_powers(solved, [p for p in run.power if (p.name != "cold_start") is planned], planned),
-            )
-        ],
+        worst=[worst_moment_row(extreme) for extreme in history.extremes],
         settling=[row for branch in run.branches if branch.name == SCHEDULE for row in _settling(solved, branch)],
         soak=list(run.soak),
         inputs={
@@ -109,7 +109,7 @@ def transient_result(solved: SolvedRig, run: TransientRun) -> TransientResult:
 
 
 def curve(rig: Rig, branch: Branch, branches: Sequence[Branch]) -> TransientCurve:
-    """One branch in the units of the result, beside the ``branches`` of all gearboxes."""
+    """One branch in the units of the result; ``branches`` are those of all gearboxes."""
     begins = np.concatenate([[0.0], np.cumsum([phase.duration for phase in branch.phases])])
     speeds = [
         branch.phases[number].speed(float(time - branch.start - begins[number]))
@@ -121,9 +121,7 @@ def curve(rig: Rig, branch: Branch, branches: Sequence[Branch]) -> TransientCurv
         time_s=branch.times.tolist(),
         phase=[branch.phases[number].name for number in branch.phase],
         speed_rpm=[RPM * speed for speed in speeds],
-        temperatures_degC={
-            place: (values - ZERO).tolist() for place, values in branch.temperatures.items()
-        },
+        temperatures_degC={place: (values - ZERO).tolist() for place, values in branch.temperatures.items()},
         clearances_mm={
             quantity: {
                 place: [MM * found[quantity][place] for found in branch.clearances]
@@ -132,17 +130,24 @@ def curve(rig: Rig, branch: Branch, branches: Sequence[Branch]) -> TransientCurv
             for quantity in QUANTITIES
         },
         alignment={
-            quantity if UNITS[quantity][0] == "-" else f"{quantity}_{UNITS[quantity][0]}": {
-                place: values.tolist() for place, values in places.items()
+            _with_unit(quantity): {
+                place: (UNITS[quantity].per_si * values).tolist() for place, values in places.items()
             }
             for quantity, places in misalignments(rig, branch, branches).items()
         },
-    )  # fmt: skip
+    )
 
 
-def _least(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> Iterator[WorstMoment]:
+def _with_unit(quantity: str) -> str:
+    """Name of a curve of alignment."""
+    unit = UNITS[quantity].name
+    return quantity if unit == "-" else f"{quantity}_{unit}"
+
+
+def _least(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> Iterator[Extreme]:
     """Smallest clearance of every kind over some branches."""
     limits = clearance_limits(solved.case)
+    steady = _steady_clearances(solved)
     for quantity in QUANTITIES:
         value, place, branch, at = min(
             (
@@ -152,36 +157,31 @@ def _least(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> Iter
             ),
             key=lambda entry: entry[0],
         )
-        limit = limits.get(quantity)
-        yield WorstMoment(
+        yield Extreme(
             quantity=quantity,
-            value=MM * value,
-            unit="mm",
+            value=value,
             place=place,
-            steady=_steady(solved, quantity),
-            limit=None if limit is None else MM * limit,
+            steady=min(steady[quantity], default=None),
+            limit=limits.get(quantity),
             planned=planned,
-            time_s=float(branch.times[at]),
+            time=float(branch.times[at]),
             branch=branch.name,
             phase=branch.phases[branch.phase[at]].name,
         )
 
 
-def _steady(solved: SolvedRig, quantity: Quantity) -> float | None:
-    """Worst steady clearance of the held stages [mm]."""
-    rows = {
-        "seal_gap": [s["hot_min_mm"] for g in solved.expansion for s in g.seal_gaps],
-        "axial_play": [s["axial_play_hot_mm"] for g in solved.expansion for s in g.shafts],
-        "bearing_clearance": [
-            1e-3 * b["diametral_clearance_hot_um"] for g in solved.expansion for b in g.bearings
-        ],
-        "backlash": [gear["backlash_hot_mm"] for g in solved.expansion for gear in g.gears],
-        "tip_clearance": [gear["tip_clearance_hot_mm"] for g in solved.expansion for gear in g.gears],
+def _steady_clearances(solved: SolvedRig) -> Mapping[Quantity, Sequence[float]]:
+    """Clearances of the held stages in their steady state [m]."""
+    return {
+        "seal_gap": [seal.minimum for warm in solved.warm for seal in warm.seals],
+        "axial_play": [shaft.play for warm in solved.warm for shaft in warm.shafts],
+        "bearing_clearance": [bearing.clearance for warm in solved.warm for bearing in warm.bearings],
+        "backlash": [mesh.backlash for warm in solved.warm for mesh in warm.meshes],
+        "tip_clearance": [mesh.tip_clearance for warm in solved.warm for mesh in warm.meshes],
     }
-    return min(rows[quantity], default=None)
 
 
-def _hottest(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> Iterator[WorstMoment]:
+def _hottest(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> Iterator[Extreme]:
     """Highest temperature of housings and of gear bodies over some branches."""
     maximum = solved.case.limits.temperatures.housing_maximum
     gears = [
@@ -202,68 +202,85 @@ def _hottest(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> It
             ),
             key=lambda entry: entry[0],
         )
-        yield WorstMoment(
+        yield Extreme(
             quantity=quantity,
-            value=value - ZERO,
-            unit="degC",
+            value=value,
             place=f"{branch.gearbox}.{place}",
             steady=_steady_temperature(solved, quantity),
-            limit=None if limit is None else limit - ZERO,
+            limit=limit,
             planned=planned,
-            time_s=float(branch.times[at]),
+            time=float(branch.times[at]),
             branch=branch.name,
             phase=branch.phases[branch.phase[at]].name,
         )
 
 
 def _steady_temperature(solved: SolvedRig, quantity: str) -> float:
+    """Highest steady temperature of the housings, or of the means of the gear bodies [K]."""
     if quantity == "housing_temperature":
-        return max(row.bodies["housing"]["max_degC"] for row in solved.thermal)
+        return max(found.bodies["housing"].highest for found in solved.temperatures)
     return max(
-        entry["mean_degC"]
-        for row in solved.thermal
-        for body, entry in row.bodies.items()
+        temperature.mean
+        for found in solved.temperatures
+        for body, temperature in found.bodies.items()
         if body.startswith("gear_")
     )
 
 
+@dataclass(frozen=True)
+class DwellHistory:
+    """A quantity of one housing over one dwell, in the unit of the result."""
+
+    quantity: str
+    times: FloatArray
+    """(n,) [s]"""
+    values: FloatArray
+    """(n,)"""
+    unit: str
+
+    def settling(self, branch: Branch, stage: str, share: float) -> Settling:
+        """After which time it stays near its end value.
+
+        share : of its largest distance from that value, within which it is near
+        """
+        end = float(self.values[-1])
+        band = share * float(np.abs(self.values - end).max())
+        start = float(self.times[0])
+        found = settling_time(self.times, self.values, end, band) if band > 0.0 else start
+        return Settling(
+            gearbox=branch.gearbox,
+            stage=stage,
+            quantity=self.quantity,
+            settled_after_s=None if found is None else found - start,
+            start=float(self.values[0]),
+            end=end,
+            unit=self.unit,
+        )
+
+
 def _settling(solved: SolvedRig, branch: Branch) -> Iterator[Settling]:
     """Field, housing, bearings, seals and backlash: when each stays near its end value in every dwell."""
-    share = solved.case.transient.settled_share
-    bodies = [body for body in ("field", "housing") if body in branch.temperatures]
     for number, phase in enumerate(branch.phases):
         if not phase.held:
             continue
         inside = np.flatnonzero(branch.phase == number)
         at = np.arange(inside[0] - 1, inside[-1] + 1) if inside[0] else inside
-        courses: dict[str, tuple[FloatArray, str]] = {
-            body: (branch.temperatures[body][at] - ZERO, "degC") for body in bodies
-        }
-        for quantity in SETTLING:
-            least = [MM * smallest(branch.clearances[i], quantity)[0] for i in at]
-            courses[quantity] = (np.array(least), "mm")
-        for name, (values, unit) in courses.items():
-            yield _settled(branch, phase.name, name, branch.times[at], values, unit, share)
+        for history in _dwell_histories(branch, at):
+            yield history.settling(branch, phase.name, solved.case.transient.settled_share)
 
 
-def _settled(
-    branch: Branch, stage: str, quantity: str, times: FloatArray, values: FloatArray, unit: str, share: float
-) -> Settling:
-    end = float(values[-1])
-    band = share * float(np.abs(values - end).max())
-    found = settling_time(times, values, end, band) if band > 0.0 else float(times[0])
-    return Settling(
-        gearbox=branch.gearbox,
-        stage=stage,
-        quantity=quantity,
-        settled_after_s=None if found is None else found - float(times[0]),
-        start=float(values[0]),
-        end=end,
-        unit=unit,
-    )
+def _dwell_histories(branch: Branch, at: NDArray[np.intp]) -> Iterator[DwellHistory]:
+    """Quantities whose settling is reported at the numbers ``at`` of the times of a branch."""
+    times = branch.times[at]
+    for body in ("field", "housing"):
+        if body in branch.temperatures:
+            yield DwellHistory(body, times, branch.temperatures[body][at] - ZERO, "degC")
+    for quantity in SETTLING:
+        least = [MM * smallest(branch.clearances[i], quantity)[0] for i in at]
+        yield DwellHistory(quantity, times, np.array(least), "mm")
 
 
-def _cold_oil(solved: SolvedRig) -> Iterator[Finding]:
+def _oil_at_start(solved: SolvedRig) -> Iterator[Finding]:
     """What is too thick to be pumped when the rig is as cold as the room."""
     yield from (Finding(id="oil", text=text) for text in cold_oil(solved.rig))
 
@@ -284,7 +301,7 @@ def _warnings(run: TransientRun) -> Iterator[Finding]:
 
 
 def simplifications(rig: Rig) -> Sequence[str]:
-    """What the thermal course leaves out."""
+    """What the thermal history leaves out."""
     return (
         "over time: losses and films are those of the coupled steady run, interpolated over speed and torque; "
         "thicker oil and tighter bearings of a rig still cold are not fed back into them",

@@ -1,6 +1,6 @@
-"""Alignment over the thermal course: bearings, bores, axes and couplings at every time, and their worst moments."""
+"""Alignment over the thermal history: bearings, bores, axes and couplings at every time, and their worst moments."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from rigdesign.case.model import Case
 from rigdesign.coupling.alignment import ALIGNMENT, CouplingEnd, CouplingPlace, coupling_places
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.transient import WorstMoment
+from rigdesign.results.extremes import Extreme
 from rigdesign.rig.model import Rig
 from rigdesign.transient.branch import Branch
 
@@ -19,15 +19,6 @@ Misalignment = Literal[
     "bearing_tilt", "bore_out_of_round", "axis_inclination", "axis_skew", "coupling_offset", "coupling_angle"
 ]
 MISALIGNMENTS: tuple[Misalignment, ...] = get_args(Misalignment)
-UNITS: Mapping[Misalignment, tuple[str, float]] = {
-    "bearing_tilt": ("mrad", 1e3),
-    "bore_out_of_round": ("-", 1.0),
-    "axis_inclination": ("um", 1e6),
-    "axis_skew": ("um", 1e6),
-    "coupling_offset": ("mm", 1e3),
-    "coupling_angle": ("mrad", 1e3),
-}
-"""Unit in the result and its number per SI."""
 
 
 @dataclass(frozen=True)
@@ -43,25 +34,21 @@ class Peak:
 def misalignments(
     rig: Rig, branch: Branch, branches: Sequence[Branch]
 ) -> dict[Misalignment, dict[str, FloatArray]]:
-    """Quantity -> place -> (n,) values of a branch in the units of the result.
+    """Quantity -> place -> (n,) values of a branch: angles [rad], offsets and deviations [m], shares [-].
 
-    branches : of all gearboxes; one of the same name tells of the other shaft of a coupling
+    branches : of all gearboxes; one of the same name holds the other shaft of a coupling
     """
     found: dict[Misalignment, dict[str, FloatArray]] = {
         quantity: {
-            place: UNITS[quantity][1] * np.array([entry[quantity][place] for entry in branch.alignment])
+            place: np.array([entry[quantity][place] for entry in branch.alignment])
             for place in branch.alignment[0][quantity]
         }
         for quantity in ALIGNMENT
     }
     places = [place for place in coupling_places(rig) if place.gearbox == branch.gearbox]
     motions = {place.name: _coupling(place, branch, branches) for place in places}
-    found["coupling_offset"] = {
-        name: UNITS["coupling_offset"][1] * np.hypot(m[:, 0], m[:, 1]) for name, m in motions.items()
-    }
-    found["coupling_angle"] = {
-        name: UNITS["coupling_angle"][1] * np.hypot(m[:, 2], m[:, 3]) for name, m in motions.items()
-    }
+    found["coupling_offset"] = {name: np.hypot(m[:, 0], m[:, 1]) for name, m in motions.items()}
+    found["coupling_angle"] = {name: np.hypot(m[:, 2], m[:, 3]) for name, m in motions.items()}
     return found
 
 
@@ -86,7 +73,7 @@ def _end(end: CouplingEnd, branch: Branch, branches: Sequence[Branch]) -> FloatA
 
 def worst_misalignments(
     solved: SolvedRig, branches: Sequence[Branch], every: Sequence[Branch], planned: bool
-) -> Iterator[WorstMoment]:
+) -> Iterator[Extreme]:
     """Largest misalignment of every kind over some branches; of couplings one for each."""
     rig = solved.rig
     found = [(branch, misalignments(rig, branch, every)) for branch in branches]
@@ -102,16 +89,14 @@ def worst_misalignments(
         )
         for group in groups:
             peak = max((p for p in peaks if not coupled or p.place == group), key=lambda p: p.value)
-            limit = limit_of(solved.case, quantity, peak.place)
-            yield WorstMoment(
+            yield Extreme(
                 quantity=quantity,
                 value=peak.value,
-                unit=UNITS[quantity][0],
                 place=peak.place,
                 steady=_steady(solved, quantity, group),
-                limit=None if limit is None else UNITS[quantity][1] * limit,
+                limit=limit_of(solved.case, quantity, peak.place),
                 planned=planned,
-                time_s=float(peak.branch.times[peak.at]),
+                time=float(peak.branch.times[peak.at]),
                 branch=peak.branch.name,
                 phase=peak.branch.phases[peak.branch.phase[peak.at]].name,
             )
@@ -129,20 +114,13 @@ def limit_of(case: Case, quantity: Misalignment, place: str) -> float | None:
 
 def _steady(solved: SolvedRig, quantity: Misalignment, coupling: str) -> float | None:
     """Largest steady value of the held stages, of one coupling where it is one's."""
-    rows = {
-        "bearing_tilt": [row["tilt_mrad"] for expansion in solved.expansion for row in expansion.bores],
-        "bore_out_of_round": [
-            row["out_of_round_share"] for expansion in solved.expansion for row in expansion.bores
-        ],
-        "axis_inclination": [
-            abs(row["inclination_um"]) for expansion in solved.expansion for row in expansion.axes
-        ],
-        "axis_skew": [abs(row["skew_um"]) for expansion in solved.expansion for row in expansion.axes],
-    }
-    if quantity in rows:
-        return max(rows[quantity], default=None)
-    key = "offset_hot_mm" if quantity == "coupling_offset" else "angle_hot_mrad"
-    coupled = (
-        row for expansion in solved.expansion for row in expansion.couplings if row["coupling"] == coupling
-    )
-    return max((row[key] for row in coupled), default=None)
+    if quantity in ("coupling_offset", "coupling_angle"):
+        states = [one.warm for warm in solved.warm for one in warm.couplings if one.coupling == coupling]
+        found = [state.radial_offset if quantity == "coupling_offset" else state.angle for state in states]
+    elif quantity in ("bearing_tilt", "bore_out_of_round"):
+        bores = [bore for warm in solved.warm for bore in warm.bores]
+        found = [bore.tilt if quantity == "bearing_tilt" else bore.out_of_round_share for bore in bores]
+    else:
+        meshes = [axes for warm in solved.warm for axes in warm.axes]
+        found = [abs(axes.inclination if quantity == "axis_inclination" else axes.skew) for axes in meshes]
+    return max(found, default=None)

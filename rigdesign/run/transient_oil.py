@@ -3,10 +3,9 @@
 from collections.abc import Iterator, Sequence
 
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.transient import OilPowerCurve, WorstMoment
+from rigdesign.results.extremes import Extreme
+from rigdesign.results.transient import OilPowerCurve
 from rigdesign.transient.oil_power import OilPower
-
-KW = 1e-3
 
 
 def oil_power_curve(power: OilPower) -> OilPowerCurve:
@@ -27,12 +26,12 @@ def largest_stream(power: OilPower, quantity: str, at: int) -> str:
     return max(power.streams, key=lambda name: sign * float(power.streams[name][at]))
 
 
-def worst_powers(solved: SolvedRig, powers: Sequence[OilPower], planned: bool) -> Iterator[WorstMoment]:
-    """Largest power of heaters and of the cooler over some branches."""
+def worst_powers(solved: SolvedRig, powers: Sequence[OilPower], planned: bool) -> Iterator[Extreme]:
+    """Largest power of heaters and of the cooler over some branches [W]."""
     limits = solved.case.limits.oil
-    for quantity, key, limit in (
-        ("heater_power", "heater_W", limits.heater_power_maximum),
-        ("cooler_power", "cooler_W", limits.cooler_power_maximum),
+    for quantity, steady, limit in (
+        ("heater_power", [balance.heater for balance in solved.cooling], limits.heater_power_maximum),
+        ("cooler_power", [balance.cooler for balance in solved.cooling], limits.cooler_power_maximum),
     ):
         value, branch, at = max(
             (
@@ -42,15 +41,14 @@ def worst_powers(solved: SolvedRig, powers: Sequence[OilPower], planned: bool) -
             ),
             key=lambda entry: entry[0],
         )
-        yield WorstMoment(
+        yield Extreme(
             quantity=quantity,
-            value=KW * value,
-            unit="kW",
+            value=value,
             place=largest_stream(branch, quantity, at),
-            steady=max((KW * float(row[key]) for row in solved.cooler), default=None),
-            limit=None if limit is None else KW * limit,
+            steady=max(steady, default=None),
+            limit=limit,
             planned=planned,
-            time_s=float(branch.times[at]),
+            time=float(branch.times[at]),
             branch=branch.name,
             phase=branch.phases[branch.phase[at]].name,
         )

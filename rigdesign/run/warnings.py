@@ -1,6 +1,5 @@
 """Warnings of the run: what left its range, what an audit says, each once."""
 
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
@@ -20,17 +19,17 @@ from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.result import Check, Finding
+from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
 from rigdesign.run.load_convergence import missing_load_errors
 from thermal.conditions.boundary import Film, Radiation
 from thermal.conduction.audit import assumed_difference, audit_conditions, radiation_too_small
 
-SETTLED = 1e-4
+LOOSE_RESIDUAL = 1e-4
 """Relative residual of a harmonic balance from which the point is named."""
 FILM_FACTOR = 3.0
 """Between a given film on the rim of a gear and the one its jets make, from which it is named."""
-RPM = 30.0 / math.pi
 
 
 def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -> list[Finding]:
@@ -40,7 +39,7 @@ def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -
         *(Finding(id="iso_6336_1", text=text) for text in _iso(solved)),
         *(Finding(id="shaft", text=t.finding) for t in solved.rig.shaft_torsions if t.finding),
         *(Finding(id="response", text=text) for text in _response(solved)),
-        *(Finding(id="unlike_teeth", text=text) for text in _unlike(solved)),
+        *(Finding(id="unlike_teeth", text=text) for text in _deviating_teeth(solved)),
         *(Finding(id="time_run", text=text) for text in _time_run(solved)),
         *(Finding(id="loss", text=text) for text in loss_warnings(losses)),
         *(Finding(id="oil", text=text) for text in _oils(solved)),
@@ -93,21 +92,21 @@ def _iso(solved: SolvedRig) -> Iterator[str]:
 
 
 def _response(solved: SolvedRig) -> Iterator[str]:
-    """Speeds without a periodic response, states that settled loosely, curves too coarse for resonances."""
-    if solved.run is None or solved.dynamics is None:
+    """Speeds without a periodic response, states that converged loosely, curves too coarse for resonances."""
+    if solved.run is None or solved.loads is None:
         return
-    for row in next(iter(solved.dynamics.gearboxes.values())).unsolved:
+    for found in next(iter(solved.loads.meshes.values())).unsolved:
         yield (
-            f"curve {row['curve']}: no periodic response at {row['speed_rpm']:.0f} rpm ({row['reason']}): a "
+            f"curve {found.curve}: no periodic response at {found.speed * RPM:.0f} rpm ({found.reason}): a "
             "resonance or loss of contact there is not seen; look at the time run at this speed"
         )
     for where, points in _states(solved).items():
-        loose = [p for p in points if p.method == "harmonic_balance" and p.residual > SETTLED]
+        loose = [p for p in points if p.method == "harmonic_balance" and p.residual > LOOSE_RESIDUAL]
         if loose:
             worst = max(loose, key=lambda point: point.residual)
             yield (
-                f"{where}: {len(loose)} of {len(points)} periodic states settled to more than {SETTLED:.0e}, the "
-                f"worst to {worst.residual:.1e} at {worst.speed * RPM:.0f} rpm: compare with the time run there"
+                f"{where}: {len(loose)} of {len(points)} periodic states converged to more than {LOOSE_RESIDUAL:.0e}, "
+                f"the worst to {worst.residual:.1e} at {worst.speed * RPM:.0f} rpm: compare with the time run there"
             )
     if not resolved(solved.rig):
         speeds = solved.run.curves.response.speeds
@@ -117,7 +116,7 @@ def _response(solved: SolvedRig) -> Iterator[str]:
         )
 
 
-def _unlike(solved: SolvedRig) -> Iterator[str]:
+def _deviating_teeth(solved: SolvedRig) -> Iterator[str]:
     """What single teeth and swinging torques add beyond the period of the periodic response."""
     rig = solved.rig
     if rig.drivetrain is None or not solved.points:
@@ -192,8 +191,8 @@ def _warming(solved: SolvedRig) -> Iterator[str]:
 
 
 def _damping(solved: SolvedRig) -> Iterator[str]:
-    if solved.dynamics is not None:
-        yield from (row["warning"] for row in solved.dynamics.damping_audit if row["warning"])
+    if solved.loads is not None:
+        yield from (record.warning for record in solved.loads.damping if record.warning)
 
 
 def _load_errors(solved: SolvedRig) -> Iterator[str]:

@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Branch(Timeline):
-    """One course of one housing: that of the schedule, or what an event makes of it."""
+    """Thermal history of one housing: over the schedule, or over what an event makes of it."""
 
     temperatures: Mapping[str, FloatArray]
     """Probe -> (n,) [K]."""

@@ -71,7 +71,7 @@ class Timeline:
 
 
 def schedule_phases(case: Case) -> tuple[Phase, ...]:
-    """The planned course, from the cold rig to the rig that has soaked back."""
+    """The planned schedule, from the rig at the temperature of the room to the rig that has soaked back."""
     plan = case.transient
     running = running_phases(case)
     start = running[0].knots[0].point

@@ -14,11 +14,13 @@ from rigdesign.coupling.loads import BracingState
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points, run_ramp
-from rigdesign.records import heat
 from rigdesign.records.curves import Curves, solve_curves
-from rigdesign.records.dynamics import DynamicRun, bracing_record, dynamics_result
-from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import Check, DynamicsResult
+from rigdesign.records.dynamics import DynamicRun, dynamic_loads, stage_bracing
+from rigdesign.records.housing import housing_temperatures
+from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
+from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.result import Check
+from rigdesign.results.units import ZERO
 from rigdesign.results.verdict import Verdict
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.main import solve_case
@@ -72,7 +74,7 @@ class Reference:
     ramp: TimeResponse | None
     motor_losses: Array | None
     """Torque of all losses at the motor over ``ramp`` [N m], (n,)."""
-    dynamics: DynamicsResult | None
+    loads: DynamicLoads | None
     key: str
 
 
@@ -91,7 +93,7 @@ def settle(case: Case) -> tuple[Reference, EndResult]:
         curves=None if run is None else run.curves,
         ramp=ramp,
         motor_losses=losses,
-        dynamics=solved.dynamics,
+        loads=solved.loads,
         key=case.hash,
     )
     return reference, outcome
@@ -135,7 +137,7 @@ def _restored(reference: Reference) -> SolvedRig:
     run = None
     if reference.curves is not None and reference.ramp is not None:
         run = DynamicRun(points=tuple(points), curves=reference.curves, ramp=reference.ramp)
-    return _subject(rig, points, run, reference.dynamics)
+    return _solved_rig(rig, points, run, reference.loads)
 
 
 def _moved(
@@ -147,9 +149,9 @@ def _moved(
     if "coupling" in parts:
         points = list(_coupled(rig, stated))
         parts = PARTS if stated.run is not None and _loads_move(points, stated.points) else parts
-    run, dynamics = stated.run, stated.dynamics
+    run, loads = stated.run, stated.loads
     if run is None:
-        return _subject(rig, points, None, None), tuple(part for part in parts if part == "coupling")
+        return _solved_rig(rig, points, None, None), tuple(part for part in parts if part == "coupling")
     test = governing_point(points)
     ramp, solved = run.ramp, list(parts)
     if "time run" not in parts and "coupling" in parts and _asks_for(case, DRIVE):
@@ -163,10 +165,10 @@ def _moved(
     curves = solve_curves(rig, test.last) if "curves" in parts else run.curves
     run = DynamicRun(points=tuple(points), curves=curves, ramp=ramp)
     if "curves" in parts or "time run" in parts:
-        dynamics = dynamics_result(rig, run)
-    elif dynamics is not None and "coupling" in parts and _asks_for(case, ACTUATOR):
-        dynamics = replace(dynamics, bracing=[bracing_record(rig, point) for point in points])
-    return _subject(rig, points, run, dynamics), tuple(solved)
+        loads = dynamic_loads(rig, run)
+    elif loads is not None and "coupling" in parts and _asks_for(case, ACTUATOR):
+        loads = replace(loads, bracing=tuple(stage_bracing(rig, point) for point in points))
+    return _solved_rig(rig, points, run, loads), tuple(solved)
 
 
 def _loads_move(points: Sequence[PointResult], stated: Sequence[PointResult]) -> bool:
@@ -217,24 +219,18 @@ def _asks_for(case: Case, quantities: tuple[str, ...]) -> bool:
     )
 
 
-def _subject(
-    rig: Rig, points: Sequence[PointResult], run: DynamicRun | None, dynamics: DynamicsResult | None
+def _solved_rig(
+    rig: Rig, points: Sequence[PointResult], run: DynamicRun | None, loads: DynamicLoads | None
 ) -> SolvedRig:
-    return SolvedRig(
-        rig=rig,
-        points=points,
-        run=run,
-        dynamics=dynamics,
-        thermal=[heat.solved_temperatures(rig, p, field) for p in points for field in p.last.fields.values()],
-        expansion=[heat.expansion_result(rig, p, name) for p in points for name in p.last.expansion],
-        cooler=[heat.cooler(rig, point.last) for point in points],
-    )
+    """The records of solved points; nothing is solved to compare."""
+    temperatures = [housing_temperatures(rig, *found) for found in housing_fields(points)]
+    return solved_rig(rig, points, temperatures, run=run, loads=loads)
 
 
 def _outcome(solved: SolvedRig, parts: tuple[Part, ...]) -> EndResult:
     return EndResult(
         checks={check.id: _at_end(check) for check in held_checks(solved)},
-        max_temperature=max((row.max_temperature_degC for row in solved.thermal), default=None),
+        max_temperature=max((found.highest - ZERO for found in solved.temperatures), default=None),
         parts=parts,
     )
 

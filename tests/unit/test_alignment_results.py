@@ -1,4 +1,4 @@
-"""Alignment by the names of the case: a box heated evenly, couplings cold and hot, checks, the course over time."""
+"""Alignment by the names of the case: a box heated evenly, couplings as set and warm, checks, the history over time."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +12,7 @@ from rigdesign.case import load_case
 from rigdesign.case.limits import AlignmentLimits
 from rigdesign.case.model import Case
 from rigdesign.checks.alignment import checks
-from rigdesign.checks.transient import transient_checks
+from rigdesign.checks.transient import checks as transient_checks
 from rigdesign.coupling.alignment import (
     CouplingEnd,
     CouplingPlace,
@@ -22,9 +22,19 @@ from rigdesign.coupling.alignment import (
     coupled_ends,
     coupling_places,
 )
-from rigdesign.records.alignment import axis_rows, bore_rows, coupling_rows
 from rigdesign.records.hand import axis_rise
-from rigdesign.results.result import Check, ExpansionResult
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.records.warm_gearbox import axis_alignments, bore_alignments, coupling_alignments
+from rigdesign.results.extremes import HistoryExtremes
+from rigdesign.results.result import Check
+from rigdesign.results.rows.warm_gearbox import expansion_row
+from rigdesign.results.warm_gearbox import (
+    AxisAlignment,
+    BoreAlignment,
+    CouplingAlignment,
+    ShaftOffset,
+    WarmGearbox,
+)
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run import transient_alignment
 from rigdesign.run.transient_alignment import misalignments, worst_misalignments
@@ -72,34 +82,52 @@ def test_even_heat_offsets_a_coupling_by_its_height(rig: Rig, point: Any) -> Non
     steel = rig.materials["case_hardened_steel"].expansion_coefficient * RISE
     foot = model.mesh.points[np.unique(model.mesh.surfaces[model.foot_surface])]
     middle = 0.5 * (foot.min(axis=0) + foot.max(axis=0))
-    rows = {row["coupling"]: row for row in coupling_rows(rig, point, "test")}
-    assert set(rows) == {"pinion_side", "wheel_side"}
+    found = {one.coupling: one for one in coupling_alignments(rig, point, "test")}
+    assert set(found) == {"pinion_side", "wheel_side"}
     for name, shaft in (("pinion_side", "test_pinion"), ("wheel_side", "test_wheel")):
-        row, station = rows[name], next(s for s in model.shafts if s.name == shaft)
-        up = 1e3 * strain * (box.shaft_height + box.field.thickness)
-        across = 1e3 * strain * (box.shafts[shaft].lateral_position - middle[1])
-        assert row["vertical_hot_mm"] == pytest.approx(up, rel=1e-4)
-        assert row["lateral_hot_mm"] == pytest.approx(across, rel=1e-3)
-        assert row["offset_hot_mm"] == pytest.approx(np.hypot(up, across), rel=1e-4)
-        assert row["recommended_cold_vertical_mm"] == pytest.approx(-up, rel=1e-4)
-        assert (row["offset_cold_mm"], row["angle_cold_mrad"]) == (0.0, 0.0)
-        assert row["angle_hot_mrad"] < 1e-4
-        assert row["first"] == shaft and row["second"].endswith("(cold)")
+        one, station = found[name], next(s for s in model.shafts if s.name == shaft)
+        up = strain * (box.shaft_height + box.field.thickness)
+        across = strain * (box.shafts[shaft].lateral_position - middle[1])
+        assert one.warm.vertical == pytest.approx(up, rel=1e-4)
+        assert one.warm.lateral == pytest.approx(across, rel=1e-3)
+        assert one.warm.radial_offset == pytest.approx(np.hypot(up, across), rel=1e-4)
+        assert one.moved[1] == pytest.approx(up, rel=1e-4)
+        assert (one.as_set.radial_offset, one.as_set.angle) == (0.0, 0.0)
+        assert one.warm.angle < 1e-7
+        assert one.shown(0) == shaft and one.shown(1).endswith("(cold)")
         locating = next(b for b in model.bearings if b.shaft == shaft and b.locating).centre[0]
         travel = strain * (locating - middle[0]) + steel * (station.end - locating)
-        assert row["ends_nearer_mm"] == pytest.approx(1e3 * travel, rel=1e-3)
+        assert one.ends_nearer == pytest.approx(travel, rel=1e-3)
+
+
+def test_rows_of_a_coupling_show_both_states_and_the_offset_to_be_set() -> None:
+    (row,) = expansion_row(warm("test", 0.1, 0.1, (0.1, 0.2))).couplings
+    assert row == {
+        "coupling": "pinion_side",
+        "first": "test_pinion",
+        "second": "reference_pinion (cold)",
+        "offset_cold_mm": pytest.approx(0.1),
+        "offset_hot_mm": pytest.approx(0.2),
+        "lateral_hot_mm": pytest.approx(-0.02),
+        "vertical_hot_mm": pytest.approx(0.16),
+        "angle_cold_mrad": 0.0,
+        "angle_hot_mrad": pytest.approx(0.4),
+        "ends_nearer_mm": 0.0,
+        "recommended_cold_lateral_mm": pytest.approx(0.02),
+        "recommended_cold_vertical_mm": pytest.approx(-0.16),
+    }
 
 
 def test_the_rise_of_a_shaft_is_that_by_hand_where_all_is_evenly_warm(rig: Rig, point: Any) -> None:
     model = rig.models["test"]
     field = np.full(len(model.mesh.points), rig.case.ambient.reference_temperature + RISE)
     last = SimpleNamespace(fields={"test": SimpleNamespace(temperature=field)})
-    subject: Any = SimpleNamespace(
+    solved: Any = SimpleNamespace(
         case=rig.case, rig=rig, points=[SimpleNamespace(point=SimpleNamespace(stage="test"), last=last)]
     )
-    by_hand = axis_rise(subject, expansion("test", 0.0, 0.0, (0.0, 0.0)))
-    for row in coupling_rows(rig, point, "test"):
-        assert row["vertical_hot_mm"] == pytest.approx(by_hand, rel=1e-4)
+    by_hand = axis_rise(solved, warm("test", 0.0, 0.0, (0.0, 0.0)))
+    for one in coupling_alignments(rig, point, "test"):
+        assert one.warm.vertical == pytest.approx(by_hand, rel=1e-4)
 
 
 def test_the_recommended_cold_offset_makes_the_hot_one_zero(rig: Rig, shape: Expansion) -> None:
@@ -111,17 +139,17 @@ def test_the_recommended_cold_offset_makes_the_hot_one_zero(rig: Rig, shape: Exp
 
 
 def test_even_heat_tilts_nothing_and_leaves_bores_round(rig: Rig, point: Any, shape: Expansion) -> None:
-    bores = bore_rows(rig, point, "test", shape)
-    assert [row["bearing"] for row in bores] == [f"test.{b}" for b in rig.case.gearboxes["test"].bearings]
-    for row in bores:
-        assert row["tilt_mrad"] < 1e-4
-        assert row["out_of_round_um"] < 0.01
-        assert row["out_of_round_share"] == pytest.approx(row["out_of_round_um"] / 30.0)
-    (axes,) = axis_rows(rig, "test", shape)
+    bores = list(bore_alignments(rig, point, "test", shape))
+    assert [bore.bearing for bore in bores] == [f"test.{b}" for b in rig.case.gearboxes["test"].bearings]
+    for bore in bores:
+        assert bore.tilt < 1e-7
+        assert bore.out_of_round < 1e-8
+        assert bore.out_of_round_share == pytest.approx(bore.out_of_round / 30e-6)
+    (axes,) = axis_alignments(rig, "test", shape)
     strain = rig.materials["structural_steel"].expansion_coefficient * RISE
-    assert axes["centre_distance_change_um"] == pytest.approx(1e6 * strain * 0.0995, rel=1e-4)
-    assert abs(axes["inclination_um"]) < 1e-3 and abs(axes["skew_um"]) < 1e-3
-    assert axes["face_width_mm"] == pytest.approx(7.0)
+    assert axes.centre_distance_change == pytest.approx(strain * 0.0995, rel=1e-4)
+    assert abs(axes.inclination) < 1e-9 and abs(axes.skew) < 1e-9
+    assert axes.face_width == pytest.approx(7e-3)
 
 
 def test_recommended_deviation_follows_the_quality_grade(rig: Rig, shape: Expansion) -> None:
@@ -144,52 +172,58 @@ def test_share_of_the_clearance_is_finite_where_none_is_left() -> None:
     assert clearance_share(3e-6, 0.0) == clearance_share(3e-6, -1e-6) == clearance_share(3e-6, 1e-9) == 10.0
 
 
-def expansion(stage: str, tilt: float, share: float, offset: tuple[float, float]) -> ExpansionResult:
-    """Records of one stage; offset : of the coupling, cold and hot [mm]."""
-    return ExpansionResult(
-        gearbox="test", stage=stage, seal_gaps=[], shafts=[], gears=[], bearings=[],
-        bores=[{"bearing": "test.front", "tilt_mrad": tilt, "out_of_round_share": share}],
-        axes=[{"gear_pair": "test.main", "inclination_um": -6.0, "skew_um": 1.0}],
-        couplings=[
-            {
-                "coupling": "pinion_side", "first": "test_pinion", "second": "reference_pinion (cold)",
-                "offset_cold_mm": offset[0], "offset_hot_mm": offset[1], "angle_cold_mrad": 0.0,
-                "angle_hot_mrad": 0.4, "recommended_cold_lateral_mm": 0.02, "recommended_cold_vertical_mm": -0.16,
-            }
-        ],
+def warm(stage: str, tilt: float, share: float, offset: tuple[float, float]) -> WarmGearbox:
+    """Records of one stage; tilt [mrad]; offset : of the coupling, as set and warm [mm]."""
+    bore = BoreAlignment(
+        bearing="test.front", tilt=1e-3 * tilt, tilt_lateral=0.0, tilt_vertical=0.0, width=0.03, out_of_round=0.0,
+        second_harmonic=0.0, long_axis=0.0, out_of_round_share=share,
     )  # fmt: skip
+    axes = AxisAlignment(
+        mesh="test.main", centre_distance_change=0.0, face_width=7e-3, inclination=-6e-6,
+        recommended_inclination=8e-6, skew=1e-6, recommended_skew=4e-6,
+    )  # fmt: skip
+    coupling = CouplingAlignment(
+        coupling="pinion_side",
+        first="test_pinion",
+        second="reference_pinion",
+        housed=(True, False),
+        as_set=ShaftOffset(lateral=0.0, vertical=0.0, radial_offset=1e-3 * offset[0], angle=0.0),
+        warm=ShaftOffset(lateral=-2e-5, vertical=16e-5, radial_offset=1e-3 * offset[1], angle=4e-4),
+        ends_nearer=0.0,
+    )
+    return WarmGearbox(gearbox="test", stage=stage, bores=(bore,), axes=(axes,), couplings=(coupling,))
 
 
-def held(case: Case, *rows: ExpansionResult) -> dict[str, Check]:
-    subject: Any = SimpleNamespace(case=case, expansion=list(rows), no_clearances="no gearbox has a housing")
-    return {check.id: check for check in checks(subject)}
+def held(case: Case, *found: WarmGearbox) -> dict[str, Check]:
+    solved: Any = SimpleNamespace(case=case, warm=list(found), no_clearances="no gearbox has a housing")
+    return {check.id: check for check in checks(solved)}
 
 
 def test_the_worst_stage_is_held_against_each_limit(case: Case) -> None:
-    found = held(case, expansion("low", 0.1, 0.3, (0.0, 0.1)), expansion("test", 0.2, 0.1, (0.0, 0.2)))
+    found = held(case, warm("low", 0.1, 0.3, (0.0, 0.1)), warm("test", 0.2, 0.1, (0.0, 0.2)))
     tilt, bores, axes = (
         found[f"alignment.{key}"] for key in ("bearing_tilt", "bore_out_of_round", "axis_inclination")
     )
-    assert (tilt.value, tilt.limit, tilt.verdict) == (0.2, pytest.approx(0.3), "pass")
+    assert (tilt.value, tilt.limit, tilt.verdict) == (pytest.approx(0.2), pytest.approx(0.3), "pass")
     assert tilt.reason.endswith("stage test")
     assert (bores.value, bores.limit, bores.verdict) == (0.3, 0.25, "fail")
-    assert (axes.value, axes.unit) == (6.0, "um")
+    assert (axes.value, axes.unit) == (pytest.approx(6.0), "um")
     assert axes.utilisation == pytest.approx(6.0 / 8.0)
 
 
-def test_a_coupling_is_held_cold_and_hot_and_told_its_cold_offset(case: Case) -> None:
-    hot = held(case, expansion("test", 0.1, 0.1, (0.1, 0.2)))["alignment.coupling_offset.pinion_side"]
-    cold = held(case, expansion("test", 0.1, 0.1, (0.4, 0.2)))["alignment.coupling_offset.pinion_side"]
-    assert (hot.value, hot.verdict) == (0.2, "pass")
+def test_a_coupling_is_held_as_set_and_warm_with_the_offset_to_be_set(case: Case) -> None:
+    hot = held(case, warm("test", 0.1, 0.1, (0.1, 0.2)))["alignment.coupling_offset.pinion_side"]
+    cold = held(case, warm("test", 0.1, 0.1, (0.4, 0.2)))["alignment.coupling_offset.pinion_side"]
+    assert (hot.value, hot.verdict) == (pytest.approx(0.2), "pass")
     assert "stage test" in hot.reason and "-0.160 mm up" in hot.reason
-    assert (cold.value, cold.verdict) == (0.4, "fail")
+    assert (cold.value, cold.verdict) == (pytest.approx(0.4), "fail")
     assert "(cold), cold;" in cold.reason
     assert hot.source == "drivetrain.couplings.pinion_side.radial_offset_maximum"
 
 
 def test_limits_and_housings_that_are_not_there_leave_checks_out(case: Case) -> None:
     bare = case.model_copy(update={"limits": case.limits.model_copy(update={"alignment": AlignmentLimits()})})
-    found = held(bare, expansion("test", 0.1, 0.1, (0.0, 0.2)))
+    found = held(bare, warm("test", 0.1, 0.1, (0.0, 0.2)))
     assert found["alignment.bearing_tilt"].verdict == "not applicable"
     assert found["alignment.bearing_tilt"].reason == "the case states no limit"
     nothing = held(case)
@@ -197,12 +231,12 @@ def test_limits_and_housings_that_are_not_there_leave_checks_out(case: Case) -> 
     assert nothing["alignment.coupling_angle.wheel_side"].reason == "no gearbox has a housing"
     assert (
         "neither of its shafts"
-        in held(case, expansion("test", 0.1, 0.1, (0.0, 0.2)))["alignment.coupling_angle.wheel_side"].reason
+        in held(case, warm("test", 0.1, 0.1, (0.0, 0.2)))["alignment.coupling_angle.wheel_side"].reason
     )
 
 
 def branch(gearbox: str, times: list[float], lift: list[float]) -> Any:
-    """A course in which the shaft of a gearbox rises by ``lift`` [m] and tilts by a thousandth of its figure."""
+    """A history in which the shaft of a gearbox rises by ``lift`` [m] and tilts by a thousandth of its figure."""
     sizes = [1e-4 * (1.0 + i) for i in range(len(times))]
     return SimpleNamespace(
         gearbox=gearbox, name="schedule", times=np.array(times), phase=np.zeros(len(times), dtype=int),
@@ -228,31 +262,38 @@ def between(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("between")
 def test_two_hot_machines_move_against_each_other_in_time() -> None:
-    """The partner's course has times of its own and is read between them."""
+    """The partner's history has times of its own and is read between them."""
     first, second = branch("a", [0.0, 10.0, 20.0], [0.0, 2e-4, 2e-4]), branch("b", [0.0, 20.0], [0.0, 1e-4])
     rig: Any = None
     found = misalignments(rig, first, [first, second])
-    assert found["coupling_offset"]["pinion_side"] == pytest.approx([0.05, 0.1, 0.05])
-    assert found["coupling_angle"]["pinion_side"] == pytest.approx([0.0, 1.5e-4, 1e-4])
-    assert found["bearing_tilt"]["a.front"] == pytest.approx([0.1, 0.2, 0.3])
+    assert found["coupling_offset"]["pinion_side"] == pytest.approx([5e-5, 1e-4, 5e-5])
+    assert found["coupling_angle"]["pinion_side"] == pytest.approx([0.0, 1.5e-7, 1e-7])
+    assert found["bearing_tilt"]["a.front"] == pytest.approx([1e-4, 2e-4, 3e-4])
     alone = misalignments(rig, first, [first])
-    assert alone["coupling_offset"]["pinion_side"] == pytest.approx([0.05, 0.15, 0.15])
+    assert alone["coupling_offset"]["pinion_side"] == pytest.approx([5e-5, 1.5e-4, 1.5e-4])
     assert misalignments(rig, second, [first, second])["coupling_offset"] == {}
 
 
 @pytest.mark.usefixtures("between")
-def test_worst_moments_carry_limit_and_steady_value_into_the_checks(case: Case) -> None:
-    course = branch("a", [0.0, 10.0, 20.0], [0.0, 4e-4, 2e-4])
-    subject: Any = SimpleNamespace(case=case, rig=None, expansion=[expansion("test", 0.25, 0.1, (0.0, 0.15))])
-    found = {m.quantity: m for m in worst_misalignments(subject, [course], [course], planned=True)}
+def test_worst_moments_carry_limit_and_steady_value_into_the_checks(case: Case, rig: Rig) -> None:
+    history = branch("a", [0.0, 10.0, 20.0], [0.0, 4e-4, 2e-4])
+    solved: Any = SimpleNamespace(case=case, rig=None, warm=[warm("test", 0.25, 0.1, (0.0, 0.15))])
+    found = {m.quantity: m for m in worst_misalignments(solved, [history], [history], planned=True)}
     assert set(found) == {"bearing_tilt", "coupling_offset", "coupling_angle"}
     offset = found["coupling_offset"]
-    assert (offset.value, offset.unit, offset.time_s) == (pytest.approx(0.35), "mm", 10.0)
-    assert (offset.limit, offset.steady, offset.place) == (pytest.approx(0.3), 0.15, "pinion_side")
-    assert found["bearing_tilt"].time_s == 20.0
-    record: Any = SimpleNamespace(worst=list(found.values()), soak=[])
-    held_over_time = {check.id: check for check in transient_checks(case, record)}
+    assert (offset.value, offset.time) == (pytest.approx(3.5e-4), 10.0)
+    assert (offset.limit, offset.steady, offset.place) == (
+        pytest.approx(3e-4),
+        pytest.approx(1.5e-4),
+        "pinion_side",
+    )
+    assert found["bearing_tilt"].time == 20.0
+    extremes = HistoryExtremes(extremes=tuple(found.values()), soak=())
+    held_over_time = {
+        check.id: check for check in transient_checks(SolvedRig(rig=rig, points=(), history=extremes))
+    }
     check = held_over_time["transient.coupling_offset.pinion_side"]
     assert (check.verdict, check.comparison) == ("fail", "<=")
+    assert (check.value, check.unit) == (pytest.approx(0.35), "mm")
     assert check.source.startswith("drivetrain.couplings.pinion_side.radial_offset_maximum")
     assert held_over_time["transient.bearing_tilt"].utilisation == pytest.approx(1.0)

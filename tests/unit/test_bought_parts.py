@@ -14,6 +14,7 @@ from rigdesign.case import Case
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.component_limits import bought_parts
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.loads import DynamicLoads, MeshLoads, StageBracing
 from rigdesign.results.result import Check
 from rigdesign.rig.model import build_rig
 from tests.idler_case import idler_case
@@ -24,21 +25,21 @@ PEAKS = {"test": 212.0, "reference": 218.7}
 """Highest dynamic torque of each mesh at its pinion [N m]."""
 
 
-def subject_of(case: Case) -> SolvedRig:
+def solved_rig_of(case: Case) -> SolvedRig:
     """A rig whose run is made up: 15 N m at the motor at 12,000 rpm of the first pinion."""
     rig = build_rig(case, "quick")
-    boxes: dict[str, Any] = {
-        label: SimpleNamespace(dynamic_torque_peak_Nm=PEAKS[label.split(".")[0]])
+    meshes = {
+        label: MeshLoads(role="rig", torque_peak=PEAKS[label.split(".")[0]])
         for label in rig.mesh_labels.values()
     }
-    bracing = [{"stage": "test", "actuator_force_N": 600.0, "spline_friction_N": 300.0}]
+    drift: Any = SimpleNamespace(hot=SimpleNamespace(actuator_force=600.0, friction_force=300.0))
     ramp = SimpleNamespace(
         drive_torque=np.array([15.0]), speed=np.array([12000.0 * RPM]), time=np.array([10.0])
     )
     return SolvedRig(
-        rig=rig, points=(), run=SimpleNamespace(ramp=ramp), thermal=(), expansion=(), cooler=(),
-        dynamics=SimpleNamespace(gearboxes=boxes, bracing=bracing),
-    )  # type: ignore[arg-type]  # fmt: skip
+        rig=rig, points=(), run=SimpleNamespace(ramp=ramp),  # type: ignore[arg-type]
+        loads=DynamicLoads(meshes=meshes, bracing=(StageBracing(stage="test", drift=drift),)),
+    )  # fmt: skip
 
 
 def held(part: str, quantity: str, base: Case | None = None) -> Check:
@@ -49,7 +50,7 @@ def held(part: str, quantity: str, base: Case | None = None) -> Check:
                   "seal_surface_velocity": "90 m/s", "shaft_growth": "1 mm"}.get(quantity, "400 N m"),
     }  # fmt: skip
     changed = case.with_value("limits.bought_parts", {"x": entry})
-    (check,) = bought_parts(subject_of(changed))
+    (check,) = bought_parts(solved_rig_of(changed))
     return check
 
 

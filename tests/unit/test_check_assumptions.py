@@ -92,11 +92,11 @@ def test_the_limit_in_the_source_belongs_to_the_check(case: Case) -> None:
     source = "limits.bearing.film_thickness_minimum; film after ISO 7902-1"
     assert (
         "limits.bearing.film_thickness_minimum"
-        in with_assumptions(case, check("bearing.x", source)).assumptions
+        in with_assumptions(case, check("bearing.specific_load", source)).assumptions
     )
 
 
-def test_a_rule_that_does_not_apply_rests_on_nothing(case: Case) -> None:
+def test_a_rule_that_does_not_apply_depends_on_nothing(case: Case) -> None:
     assert with_assumptions(case, check("clearance.backlash", verdict="not applicable")).assumptions == ()
 
 

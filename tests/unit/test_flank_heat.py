@@ -18,7 +18,8 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import mesh_losses
 from rigdesign.coupling.time_run import held_points
 from rigdesign.properties.materials import ALUMINIUM, CASE_HARDENED_STEEL
-from rigdesign.records.heat_split import friction_heat, heat_split_rows
+from rigdesign.records.heat_split import friction_heat, heat_splits
+from rigdesign.results.rows.housing import heat_split_row
 from rigdesign.rig.model import Rig, build_rig
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -158,19 +159,20 @@ def test_kept_share_follows_the_temperature_of_the_flank(rig: Rig, done: Iterati
 
 def test_split_is_a_result_with_a_range(rig: Rig, done: IterationResult) -> None:
     result = PointResult(point=done.point, last=done, setting=None, residuals=())
-    rows = {row.gear: row for row in heat_split_rows(rig, result, done.fields["test"])}
-    assert set(rows) == {"test.pinion", "test.wheel"}
+    splits = {split.gear: split for split in heat_splits(rig, result, done.fields["test"])}
+    assert set(splits) == {"test.pinion", "test.wheel"}
     assert math.fsum(friction_heat(rig, result, "test").values()) == pytest.approx(
         next(p.loss.power for p in done.losses if p.name == "test.main" and p.loss.kind == "mesh")
     )
-    for row in rows.values():
+    for split in splits.values():
+        row, weak, strong = heat_split_row(split), split.weak_film, split.strong_film
         assert row.share_into_oil + row.share_into_bodies == pytest.approx(1.0)
         assert row.share_into_oil == pytest.approx((row.at_once_W + row.film_W) / row.friction_W)
-        assert row.weak_film is not None and row.strong_film is not None and row.tooth_degC is not None
-        assert row.weak_film["flank_film_W_m2K"] < row.flank_film_W_m2K < row.strong_film["flank_film_W_m2K"]  # type: ignore[operator]
-        assert row.weak_film["share_into_oil"] < row.share_into_oil < row.strong_film["share_into_oil"]  # type: ignore[operator]
-        assert row.weak_film["bulk_degC"] > row.bulk_degC > row.strong_film["bulk_degC"]  # type: ignore[operator]
-        assert row.tooth_degC > row.bulk_degC
+        assert weak is not None and strong is not None and split.tooth_temperature is not None
+        assert weak.coefficient < split.coefficient < strong.coefficient  # type: ignore[operator]
+        assert weak.share_into_oil < split.share_into_oil < strong.share_into_oil
+        assert weak.bulk_temperature > split.bulk_temperature > strong.bulk_temperature
+        assert split.tooth_temperature > split.bulk_temperature
 
 
 def test_without_ranges_the_split_has_none(rig: Rig, done: IterationResult) -> None:
@@ -179,7 +181,7 @@ def test_without_ranges_the_split_has_none(rig: Rig, done: IterationResult) -> N
     )
     plain.__dict__.update({key: rig.__dict__[key] for key in ("geometries", "models", "conduction")})
     result = PointResult(point=done.point, last=done, setting=None, residuals=())
-    assert all(row.weak_film is None for row in heat_split_rows(plain, result, done.fields["test"]))
+    assert all(split.weak_film is None for split in heat_splits(plain, result, done.fields["test"]))
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from rigdesign.coupling.loop import governing_point
-from rigdesign.records.heat import cooler
+from rigdesign.records.housing import cooling_balance
 
 
 def held(stage: str, speed: float, torque: float) -> Any:
@@ -46,7 +46,7 @@ def test_oil_that_must_be_heated_cools_nothing() -> None:
         ],
         fields={},
     )
-    row = cooler(rig, last)
-    assert row["heater_W"] == pytest.approx(1400.0)
-    assert row["cooler_W"] == pytest.approx(6200.0 - 200.0 + 4700.0)
-    assert row["open_W"] == pytest.approx(0.0)
+    balance = cooling_balance(rig, last)
+    assert balance.heater == pytest.approx(1400.0)
+    assert balance.cooler == pytest.approx(6200.0 - 200.0 + 4700.0)
+    assert balance.imbalance == pytest.approx(0.0)

@@ -11,7 +11,8 @@ from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import PlacedLoss, oil_jets
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.records.heat import cooler, loss_rows
+from rigdesign.records.housing import cooling_balance
+from rigdesign.results.rows.housing import loss_rows
 from rigdesign.rig.model import Rig
 from rigdesign.run.warnings import loss_warnings
 from tests.warm_prototype import base, drive_power, lost_in_all, settled
@@ -55,12 +56,12 @@ def test_the_pump_brakes_no_shaft() -> None:
 def test_heat_and_motor_power_close_with_the_pump_beside_the_motor() -> None:
     """Motor = losses of the shafts and joints; cooler + room = those losses + pump + heaters."""
     rig, last = settled()
-    row = cooler(rig, last)
-    assert row["pump_W"] == pytest.approx(2 * jet_at(12000.0).pumped, rel=0.05)
-    assert abs(float(row["open_W"])) < 2e-3 * float(row["losses_W"])
+    balance = cooling_balance(rig, last)
+    assert balance.pump == pytest.approx(2 * jet_at(12000.0).pumped, rel=0.05)
+    assert abs(balance.imbalance) < 2e-3 * balance.losses
     assert drive_power(rig, last) == pytest.approx(lost_in_all(last), rel=2e-3)
     taken = sum(r.into_oil_W + r.into_body_W + r.not_heat_W for r in loss_rows("test", last.losses))
-    assert taken == pytest.approx(lost_in_all(last) + float(row["pump_W"]), rel=1e-12)
+    assert taken == pytest.approx(lost_in_all(last) + balance.pump, rel=1e-12)
 
 
 def test_at_standstill_only_the_pump_heats() -> None:

@@ -10,7 +10,8 @@ from rigdesign.case.shipped import case_folder
 from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.prediction.memoisation import Memoisation
-from rigdesign.records.heat import cooler, loss_rows
+from rigdesign.records.housing import cooling_balance
+from rigdesign.results.rows.housing import loss_rows
 from rigdesign.run.main import losses_by_stage
 from rigdesign.validation.prototype import Prototype
 from rigdesign.validation.speed_sweeps import closing, course, simulation_laws
@@ -61,11 +62,11 @@ def test_motor_pays_the_damper_and_no_part_is_warmed_by_it() -> None:
     assert damper(last).into_oil == damper(last).into_body == 0.0
     row = next(row for row in loss_rows("test", last.losses) if row.kind == "mesh_damping")
     assert row.not_heat_W == row.power_W == damper(last).loss.power
-    parts = cooler(rig, last)
-    assert parts["not_heat_W"] == pytest.approx(
+    parts = cooling_balance(rig, last)
+    assert parts.not_heat == pytest.approx(
         lost(last, "mesh_damping") + lost(last, "mesh_damping", "reference")
     )
-    assert parts["losses_W"] == pytest.approx(lost_in_all(last) - float(parts["not_heat_W"]))
+    assert parts.losses == pytest.approx(lost_in_all(last) - parts.not_heat)
     assert open_share(rig, last) < 2e-3
 
 
@@ -73,7 +74,7 @@ def test_case_may_give_the_work_of_the_damper_to_the_oil() -> None:
     _, without = settled(*CLOSING)
     rig, last = settled(*CLOSING, HEATS)
     assert damper(last).into_oil == pytest.approx(damper(last).loss.power)
-    assert cooler(rig, last)["not_heat_W"] == 0.0
+    assert cooling_balance(rig, last).not_heat == 0.0
     assert open_share(rig, last) < 2e-3
     box = rig.case.gearboxes["test"].oil
     oil = rig.oils[box.oil]

@@ -12,12 +12,15 @@ import numpy as np
 import pytest
 
 from rigdesign import load_case, run_case
-from rigdesign.checks import SolvedRig, held_checks
-from rigdesign.checks.omissions import OMISSIONS, omissions
+from rigdesign.checks import held_checks
+from rigdesign.checks.component_limits import RESULTS
+from rigdesign.checks.omissions import omissions
+from rigdesign.checks.registry import REGISTRY, RuleFamily
 from rigdesign.checks.rules import Omission, Rule, hold, with_omissions
-from rigdesign.checks.transient import TITLES
+from rigdesign.checks.transient import EXTREMES
 from rigdesign.coupling.loop import PointResult
-from rigdesign.records import heat
+from rigdesign.records.housing import housing_temperatures
+from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.result import Check, RunResult
 from rigdesign.rig.model import Rig
 from tests.warm_prototype import base, settled
@@ -40,7 +43,7 @@ COMPLETE = (
     "bought_part.given",
 )
 """Checks whose value leaves out nothing that the case or the run knows of."""
-TIMES = {f"transient.{key}" for key in TITLES}
+TIMES = {family.key for family in EXTREMES}
 
 
 def held(value: float, comparison: Any = "<=", **more: Any) -> Check:
@@ -86,37 +89,31 @@ def test_what_is_known_to_be_less_than_the_margin_decides_nothing(
 
 
 @pytest.mark.parametrize("identity", sorted(known_ids()))
-def test_every_check_is_in_the_table_or_known_to_be_complete(identity: str) -> None:
-    listed = any(fnmatchcase(identity, pattern) for patterns, _ in OMISSIONS for pattern in patterns)
+def test_every_check_names_what_it_leaves_out_or_is_known_to_be_complete(identity: str) -> None:
+    listed = bool(family_of(identity).leaves_out)
     assert listed != any(fnmatchcase(identity, pattern) for pattern in COMPLETE)
 
 
-def test_every_pattern_of_the_table_means_a_check() -> None:
-    known = known_ids() | {
-        "bought_part.drive_power",
-        "bought_part.temperature_maximum",
-        "bought_part.shaft_growth",
-    }
-    idle = [
-        pattern
-        for patterns, _ in OMISSIONS
-        for pattern in patterns
-        if not any(fnmatchcase(identity, pattern) for identity in known)
-    ]
-    assert idle == []
+def family_of(identity: str) -> RuleFamily:
+    """The family of a check by the key of its family or by its id."""
+    keys = [f for f in REGISTRY.families() if f"{identity}.".startswith(f"{f.key}.")]
+    return max(keys, key=lambda family: len(family.key))
+
+
+def test_every_family_of_rules_means_a_check() -> None:
+    known = (
+        known_ids()
+        | {f"bought_part.{quantity}" for quantity in (*RESULTS, "given")}
+        | {"transient.soak.test"}
+    )
+    meant = {family_of(identity).key for identity in known}
+    assert [family.key for family in REGISTRY.families() if family.key not in meant] == []
 
 
 def as_solved_rig(rig: Rig, point: PointResult) -> SolvedRig:
     """A settled point without its dynamic results."""
-    return SolvedRig(
-        rig=rig,
-        points=[point],
-        run=None,
-        dynamics=None,
-        thermal=[heat.solved_temperatures(rig, point, field) for field in point.last.fields.values()],
-        expansion=[heat.expansion_result(rig, point, name) for name in point.last.expansion],
-        cooler=[heat.cooler(rig, point.last)],
-    )
+    temperatures = [housing_temperatures(rig, *found) for found in housing_fields([point])]
+    return solved_rig(rig, [point], temperatures)
 
 
 @cache

@@ -13,8 +13,9 @@ from rigdesign.case import load_case
 from rigdesign.checks import strength
 from rigdesign.records.curves import iso_factor
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.loads import DynamicLoads
 from rigdesign.rig.model import Rig, build_rig
-from tests.report_example import gearbox
+from tests.loads_example import mesh_loads
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -69,10 +70,9 @@ def rated(rig: Rig, meshes: int) -> SolvedRig:
         point=SimpleNamespace(stage="test", speed=1256.6, torque=180.0),
         last=SimpleNamespace(response=response),
     )
-    box = gearbox("specimen", 0.1, [])
-    results: Any = SimpleNamespace(gearboxes={rig.mesh_labels[name]: box for name in rig.mesh_names})
+    loads = DynamicLoads(meshes=dict.fromkeys(rig.mesh_labels.values(), mesh_loads()))
     run: Any = SimpleNamespace()
-    return SolvedRig(rig=rig, points=[point], run=run, dynamics=results, thermal=[], expansion=[], cooler=[])
+    return SolvedRig(rig=rig, points=[point], run=run, loads=loads)
 
 
 def test_safety_of_a_rig_gear_takes_sharing_and_cycles(prototype: Rig) -> None:

@@ -56,26 +56,22 @@ def test_the_peak_of_a_mesh_on_its_back_flank_is_its_highest_torque() -> None:
 
 
 def test_loads_of_a_stage_are_those_of_its_worst_slot() -> None:
-    rows = {row["stage"]: row for row in time_run.stage_loads(rig(), run(), 1)}
-    row = rows["run_up"]
-    assert row["dynamic_factor"] == pytest.approx(1.6)
-    assert row["least_share"] == pytest.approx(0.4)
-    assert row["mean_Nm"] == pytest.approx(1.04 * 90.0)
-    assert (
-        row["speed_rpm"]
-        == row["least_share_at_rpm"]
-        == pytest.approx(run().windows.speed[500] * 30.0 / np.pi)
-    )
-    assert rows["test"]["peak_Nm"] == pytest.approx(1.04 * 180.0 * 1.12)
-    assert "bracing" not in rows
+    loads = {load.stage: load for load in time_run.stage_loads(rig(), run(), 1)}
+    load = loads["run_up"]
+    assert load.dynamic_factor == pytest.approx(1.6)
+    assert load.least_share == pytest.approx(0.4)
+    assert load.mean == pytest.approx(1.04 * 90.0)
+    assert load.speed == load.least_share_speed == pytest.approx(run().windows.speed[500])
+    assert loads["test"].peak == pytest.approx(1.04 * 180.0 * 1.12)
+    assert "bracing" not in loads
 
 
 def test_a_loss_of_contact_over_two_stages_is_counted_in_both() -> None:
     """From 1.2 to 1.8 s: the stage at the start torque ends at 1.5 s, the next one begins there."""
     lost = LiftOff(mesh=0, start=1.2, end=1.8, out_of_contact=0.4, longest_gap=1e-3)
     other = LiftOff(mesh=1, start=3.0, end=3.1, out_of_contact=0.4, longest_gap=1e-3)
-    first, second = time_run.lift_off(rig(), run((lost, other)), 0)
-    assert (first["stage"], second["stage"]) == ("to_transition_speed", "half_torque")
-    assert (first["end_s"], second["start_s"]) == pytest.approx((1.5, 1.5))
-    assert first["share"] == pytest.approx(0.6)
-    assert second["share"] == pytest.approx((0.6 + 29 * 0.2) / 30.0)
+    first, second = time_run.contact_losses(rig(), run((lost, other)), 0)
+    assert (first.stage, second.stage) == ("to_transition_speed", "half_torque")
+    assert (first.end, second.start) == pytest.approx((1.5, 1.5))
+    assert first.share == pytest.approx(0.6)
+    assert second.share == pytest.approx((0.6 + 29 * 0.2) / 30.0)

@@ -1,4 +1,4 @@
-"""Parts of the thermal course: phases, conditions between two points, oil as unknown, soak, checks."""
+"""Parts of the thermal history: phases, conditions between two points, oil as unknown, soak, checks."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -11,9 +11,12 @@ import pytest
 from rigdesign.base.errors import CaseError
 from rigdesign.case import load_case
 from rigdesign.case.model import Case
-from rigdesign.checks.transient import transient_checks
+from rigdesign.checks.transient import checks as transient_checks
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.results.transient import TransientResult, WorstMoment
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.extremes import Extreme, HistoryExtremes
+from rigdesign.results.result import Check
+from rigdesign.rig.model import build_rig
 from rigdesign.transient.blend import blended
 from rigdesign.transient.phases import Phase, event_phases, running_phases, schedule_phases
 from rigdesign.transient.soak import first_broken, shortest, soak_of
@@ -38,7 +41,7 @@ def case(tmp_path_factory: pytest.TempPathFactory) -> Case:
     return case_with(tmp_path_factory.mktemp("case"), '[transient]\nwarm_up = "2 h"\nstop_time = "20 s"\n')
 
 
-def test_the_planned_course_is_the_schedule_with_warm_up_and_soak_back(case: Case) -> None:
+def test_the_planned_history_is_the_schedule_with_warm_up_and_soak_back(case: Case) -> None:
     phases = schedule_phases(case)
     names = [phase.name for phase in phases]
     assert names == [
@@ -140,16 +143,16 @@ def test_still_air_is_a_floor_without_the_warnings_of_the_law_below_it() -> None
 
 
 def branch(case: Case, name: str, backlash: list[float], phases: tuple[Phase, ...]) -> Any:
-    """A course whose backlash [m] is given: one time in the warm-up for each but the last three."""
+    """A history whose backlash [m] is given: one time in the warm-up for each but the last three."""
     others = {key: {"x": 1.0} for key in ("seal_gap", "axial_play", "bearing_clearance", "tip_clearance")}
     held = [phase.name for phase in phases].index("test")
     numbers = [0] * (len(backlash) - 3) + [held - 1, held, held]
-    course = SimpleNamespace(
+    history = SimpleNamespace(
         gearbox="test", name=name, phases=phases, times=np.arange(len(backlash)) * 600.0,
         phase=np.array(numbers), clearances=[{**others, "backlash": {"test.main": value}} for value in backlash],
     )  # fmt: skip
-    course.ends = lambda phase: len(backlash) - 1
-    return course
+    history.ends = lambda phase: len(backlash) - 1
+    return history
 
 
 def test_soak_is_the_shortest_warm_up_that_holds(case: Case) -> None:
@@ -189,29 +192,31 @@ def test_shortest_finds_the_first_that_holds() -> None:
         assert found == first
 
 
-def moment(
-    quantity: str, value: float, limit: float | None, unit: str = "mm", planned: bool = True
-) -> WorstMoment:
-    return WorstMoment(
-        quantity=quantity, value=value, unit=unit, time_s=7200.0, place="x", branch="schedule", phase="test",
+def extreme(quantity: str, value: float, limit: float | None, planned: bool = True) -> Extreme:
+    return Extreme(
+        quantity=quantity, value=value, time=7200.0, place="x", branch="schedule", phase="test",
         steady=None, limit=limit, planned=planned,
     )  # fmt: skip
 
 
+def checks_over_time(case: Case, history: HistoryExtremes) -> dict[str, Check]:
+    solved = SolvedRig(rig=build_rig(case, "quick"), points=(), history=history)
+    return {check.id: check for check in transient_checks(solved)}
+
+
 def test_checks_hold_the_worst_planned_moment(case: Case) -> None:
-    record = TransientResult(
-        curves=[], settling=[], inputs={}, energy_closure=0.0, missed_temperature_K=0.0,
-        worst=[
-            moment("backlash", 0.03, 0.02), moment("seal_gap", 0.2, 0.3), moment("axial_play", 0.2, None),
-            moment("housing_temperature", 100.0, 180.0, "degC"), moment("gear_temperature", 160.0, None, "degC"),
-            moment("backlash", 0.01, 0.02, planned=False),
-        ],
-        soak=[
+    history = HistoryExtremes(
+        extremes=(
+            extreme("backlash", 3e-5, 2e-5), extreme("seal_gap", 2e-4, 3e-4), extreme("axial_play", 2e-4, None),
+            extreme("housing_temperature", 373.15, 453.15), extreme("gear_temperature", 433.15, None),
+            extreme("backlash", 1e-5, 2e-5, planned=False),
+        ),
+        soak=(
             Soak(gearbox="test", stage="test", soak_time_s=3600.0, reason="r"),
             Soak(gearbox="other", stage="test", soak_time_s=None, reason="none"),
-        ],
+        ),
     )  # fmt: skip
-    checks = {check.id: check for check in transient_checks(case, record)}
+    checks = checks_over_time(case, history)
     assert {key: check.verdict for key, check in checks.items()} == {
         "transient.backlash": "pass",
         "transient.seal_gap": "fail",
@@ -221,12 +226,10 @@ def test_checks_hold_the_worst_planned_moment(case: Case) -> None:
         "transient.soak.other": "not applicable",
     }
     assert checks["transient.housing_temperature"].utilisation == pytest.approx(80.0 / 160.0)
-    warm = {
-        check.id: check
-        for check in transient_checks(case.with_value("ambient.temperature", "40 degC"), record)
-    }
+    warm = checks_over_time(case.with_value("ambient.temperature", "40 degC"), history)
     assert warm["transient.housing_temperature"].utilisation == pytest.approx(80.0 / 160.0)
     assert checks["transient.soak.test"].utilisation == pytest.approx(0.5)
+    assert checks["transient.soak.test"].unit == "h"
 
 
 @pytest.mark.parametrize(

@@ -9,8 +9,8 @@ import pytest
 
 from rigdesign.case import load_case
 from rigdesign.rig.model import build_rig
-from rigdesign.transient.course import _read
 from rigdesign.transient.phases import schedule_phases
+from rigdesign.transient.thermal_history import _read
 
 BASE = (Path(__file__).parents[2] / "cases" / "uhcf_prototype" / "given_losses.toml").as_posix()
 WARM_ROOM = (
@@ -29,14 +29,14 @@ def test_in_a_warm_room_a_rig_at_20_degrees_has_the_clearances_of_its_drawing(tm
         times=np.array([0.0, 1.0]), stages=np.zeros(2, dtype=np.int32), probes={}, warnings=(),
         energy=SimpleNamespace(closure=0.0),
     )  # fmt: skip
-    course: Any = SimpleNamespace(
+    history: Any = SimpleNamespace(
         name="schedule",
         phases=schedule_phases(rig.case),
         start=0.0,
         solution=solution,
         fields=[drawing, room],
     )
-    (branch,), _ = _read(rig, "test", [course])
+    (branch,), _ = _read(rig, "test", [history])
     cold, warm = branch.clearances
     assert cold["backlash"]["test.main"] == pytest.approx(
         rig.pairs["test.main"].transverse_backlash, abs=1e-8

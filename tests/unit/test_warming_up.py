@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.base.errors import CaseError
 from rigdesign.coupling.boundary import STORED
-from rigdesign.records.heat import cooler
+from rigdesign.records.housing import cooling_balance
 from rigdesign.run.warnings import _warming
 from tests.two_blocks import CONDUCTIVITY, conditions, two_blocks
 from tests.warm_prototype import Settled, case_with, heat_by_kind, open_share, outlet, settled
@@ -93,7 +93,7 @@ def test_a_point_taken_too_early_lies_between_room_and_steady() -> None:
     assert STORED not in heat_by_kind(steady)
     for rig, last in ((early, young), (later, old)):
         assert last.fields["test"].solution.balance.closure <= CLOSURE
-        assert cooler(rig, last)["stored_W"] == pytest.approx(-heat_by_kind(last)[STORED])
+        assert cooling_balance(rig, last).stored == pytest.approx(-heat_by_kind(last)[STORED])
         assert open_share(rig, last) < 2e-3
     assert heat_by_kind(young)[STORED] < 3.0 * heat_by_kind(old)[STORED] < 0.0
 

@@ -24,7 +24,7 @@ from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.state import CouplingState
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.dynamics import bracing_drift
-from rigdesign.records.heat import cooler
+from rigdesign.records.housing import cooling_balance
 from rigdesign.rig.model import Rig, build_rig
 
 CASE = "cases/uhcf_prototype"
@@ -461,12 +461,12 @@ def test_all_heat_goes_to_cooler_or_room() -> None:
     at most rho c Q times the temperature residual for a stream, twice that for a film (T = T_in + H / 2 rho c Q).
     """
     rig, base = controlled()
-    sums = cooler(rig, base.last)
+    balance = cooling_balance(rig, base.last)
     streams = math.fsum(heat_capacity_flow(s.name.split(".")[1], s.flow) for s in base.last.streams[:2])
     films = 4.0 * heat_capacity_flow("bearing_oil", rig.case.gearboxes["test"].bearing_oil.flow)
     bound = base.residuals[-1].temperature * (streams + 2.0 * films)
-    assert abs(float(sums["open_W"])) <= bound
-    assert bound < 3e-3 * float(sums["losses_W"])
+    assert abs(balance.imbalance) <= bound
+    assert bound < 3e-3 * balance.losses
 
 
 def test_motor_pays_all_losses() -> None:

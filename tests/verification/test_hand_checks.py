@@ -50,8 +50,8 @@ def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
     the line by hand says.
     """
     rig, result = base()
-    subject: Any = SimpleNamespace(case=rig.case, rig=rig, points=(result,))
-    expansion: Any = SimpleNamespace(gearbox="test", stage=result.point.stage)
+    solved: Any = SimpleNamespace(case=rig.case, rig=rig, points=(result,))
+    warm: Any = SimpleNamespace(gearbox="test", stage=result.point.stage)
     field, bores = result.last.fields["test"], result.last.expansion["test"].deformed.bearings
     rows = {row.surface: row.mean_temperature for row in field.solution.balance.rows}
     mesh, setup, geometry = rig.models["test"].mesh, rig.expansion["test"], rig.geometries["test"]
@@ -65,7 +65,7 @@ def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
         bore, journal = rows[f"bearing_bore_{station}"], rows[f"shaft_{entry.shaft}_journal_{entry.side}"]
         own = strain * entry.diameter * (bore - journal)
         computed = bores[station].clearance_change
-        by_hand = end_wall_clearance(subject, expansion, f"test.{name}")
+        by_hand = end_wall_clearance(solved, warm, f"test.{name}")
         assert by_hand is not None
         by_hand += centrifugal_expansion(rig, entry, result.point.speed) - entry.diametral_clearance
         assert own < 1.5e-6
@@ -98,10 +98,10 @@ def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
 def test_a_plate_warmer_at_its_bore_narrows_the_gap_by_hand_too() -> None:
     rig = build_rig(load_case(PROTOTYPE / "given_losses.toml"), "quick")
     result = solve_point(rig, held_points(rig)[0])
-    subject: Any = SimpleNamespace(case=rig.case, rig=rig, points=(result,))
-    expansion: Any = SimpleNamespace(gearbox="test", stage=result.point.stage)
+    solved: Any = SimpleNamespace(case=rig.case, rig=rig, points=(result,))
+    warm: Any = SimpleNamespace(gearbox="test", stage=result.point.stage)
     for name, seal in result.last.expansion["test"].deformed.seals.items():
-        by_hand = partition_gap(subject, expansion, name)
+        by_hand = partition_gap(solved, warm, name)
         if by_hand is not None:
             assert abs(seal.mean - by_hand) < abs(seal.mean - seal.gap_by_hand)
 
@@ -109,8 +109,8 @@ def test_a_plate_warmer_at_its_bore_narrows_the_gap_by_hand_too() -> None:
 def test_both_windage_laws_stand_beside_each_other_and_the_range_of_the_mist_holds_them() -> None:
     """Every gear of the prototype: Anderson and Loewenthal lie between the default law at 1.2 and at 20 kg/m3."""
     rig, result = base()
-    subject: Any = SimpleNamespace(rig=rig, test=result, cooler=())
-    rows = {row["quantity"]: row for row in _losses(subject) if row["quantity"].startswith("windage")}
+    solved: Any = SimpleNamespace(rig=rig, test=result, cooling=())
+    rows = {row["quantity"]: row for row in _losses(solved) if row["quantity"].startswith("windage")}
     assert len(rows) == 4
     wide = rows["windage, reference.pinion"]
     fed = rig.case.gearboxes["reference"].oil

@@ -62,7 +62,7 @@ class ThermalHistory:
 def run_transient(
     rig: Rig, points: Sequence[PointResult], say: Callable[[str], None] = lambda message: None
 ) -> TransientRun:
-    """March every housing through the schedule and its events, from the cold rig.
+    """March every housing through the schedule and its events; the rig begins at the temperature of the room.
 
     Losses and films are those of the coupled run with its warm clearances, interpolated between the operating
     points of the schedule; the oil leaves with what it has taken up.
@@ -72,21 +72,21 @@ def run_transient(
     ConditionError
         Conditions that cannot be computed.
     NotConverged
-        A time step or an expansion that does not settle.
+        A time step or an expansion does not converge.
     """
     heating = Heating(rig, points)
     branches: list[Branch] = []
     soaks: list[Soak] = []
     missed: dict[str, float] = {}
     for name in rig.models:
-        courses = _courses(rig, heating, name, say)
-        say(f"expanding {name} over {sum(len(c.fields) for c in courses)} times")
-        own, missed[name] = _read(rig, name, courses)
+        histories = _histories(rig, heating, name, say)
+        say(f"expanding {name} over {sum(len(h.fields) for h in histories)} times")
+        own, missed[name] = _read(rig, name, histories)
         by_name = {branch.name: branch for branch in own}
 
-        def trial(step: int, name: str = name, courses: list[ThermalHistory] = courses) -> bool:
-            say(f"{name}: warm-up of {courses[0].solution.times[step] / 3600.0:.2f} h")
-            (tried,), _ = _read(rig, name, [_after_warm_up(rig, heating, name, courses[0], step)])
+        def trial(step: int, name: str = name, histories: list[ThermalHistory] = histories) -> bool:
+            say(f"{name}: warm-up of {histories[0].solution.times[step] / 3600.0:.2f} h")
+            (tried,), _ = _read(rig, name, [_after_warm_up(rig, heating, name, histories[0], step)])
             return first_broken(rig.case, tried) is None
 
         soaks.append(soak_of(rig.case, by_name[SCHEDULE], by_name.get("cold_start"), trial))
@@ -109,11 +109,11 @@ def _oil_history(branch: Branch) -> OilHistory:
     )
 
 
-def _read(rig: Rig, name: str, courses: Sequence[ThermalHistory]) -> tuple[list[Branch], float]:
-    """Clearances of courses of one housing, and what the patterns of their expansion miss [K]."""
-    fields = [np.asarray(field, dtype=np.float64) for course in courses for field in course.fields]
-    shapes = ExpansionBasis.of(rig.expansion[name], rig.case.ambient.reference_temperature, fields)
-    return [read_branch(rig, name, course, shapes) for course in courses], shapes.missed
+def _read(rig: Rig, name: str, histories: Sequence[ThermalHistory]) -> tuple[list[Branch], float]:
+    """Clearances of the histories of one housing, and what the patterns of their expansion miss [K]."""
+    fields = [np.asarray(field, dtype=np.float64) for history in histories for field in history.fields]
+    basis = ExpansionBasis.of(rig.expansion[name], rig.case.ambient.reference_temperature, fields)
+    return [read_branch(rig, name, history, basis) for history in histories], basis.missed
 
 
 def _after_warm_up(
@@ -123,25 +123,37 @@ def _after_warm_up(
     phases = planned.phases[1:]
     last = max(i for i, phase in enumerate(phases) if phase.held)
     field = np.asarray(planned.fields[step], dtype=np.float64)
-    return march(rig, heating, name, "shorter_warm_up", phases[: last + 1], field)
+    return march(rig, heating, name, "shorter_warm_up", phases[: last + 1], WarmStart(field))
 
 
-def _courses(rig: Rig, heating: Heating, name: str, say: Callable[[str], None]) -> list[ThermalHistory]:
+def _histories(rig: Rig, heating: Heating, name: str, say: Callable[[str], None]) -> list[ThermalHistory]:
     phases = schedule_phases(rig.case)
     say(f"{name} over the schedule: {', '.join(phase.name for phase in phases)}")
     planned = march(rig, heating, name, SCHEDULE, phases)
     number = max(i for i, phase in enumerate(phases) if phase.held)
     field, volumes = planned.ends[number]
     stopped = sum(phase.duration for phase in phases[: number + 1])
-    courses = [planned]
+    histories = [planned]
     for event in rig.case.transient.events:
         say(f"{name}: {event.replace('_', ' ')}")
         own = event_phases(rig.case, event, phases[number])
         if event == "cold_start":
-            courses.append(march(rig, heating, name, event, own))
+            histories.append(march(rig, heating, name, event, own))
         else:
-            courses.append(march(rig, heating, name, event, own, field, volumes, stopped))
-    return courses
+            histories.append(march(rig, heating, name, event, own, WarmStart(field, volumes, stopped)))
+    return histories
+
+
+@dataclass(frozen=True)
+class WarmStart:
+    """State of one housing from which a history goes on."""
+
+    field: FloatArray
+    """(n_nodes,) [K]"""
+    volumes: Mapping[str, float] | None = None
+    """Oil volume -> temperature [K]; None where they follow from the field."""
+    time: float = 0.0
+    """In the schedule [s]."""
 
 
 def march(
@@ -150,13 +162,18 @@ def march(
     name: str,
     event: str,
     phases: tuple[Phase, ...],
-    initial: FloatArray | None = None,
-    volumes: Mapping[str, float] | None = None,
-    start: float = 0.0,
+    start: WarmStart | None = None,
 ) -> ThermalHistory:
-    """Temperatures of one housing over ``phases``.
+    """Temperatures of the housing of gearbox ``name`` over ``phases``.
 
-    initial : field [K] to start from, the cold rig when left out; start : its time in the schedule [s]
+    event : name of the history; start : the rig at the temperature of the room when left out
+
+    Raises
+    ------
+    ConditionError
+        Conditions that cannot be computed.
+    NotConverged
+        A time step does not converge.
     """
     setup = rig.conduction[name]
     materials = rig.body_materials(name)
@@ -174,40 +191,40 @@ def march(
         setup.conductivity,
         {body: material.density * material.heat_capacity for body, material in materials.items()},
         [heating.stage(name, phase) for phase in phases],
-        rig.case.ambient.temperature if initial is None else initial,
+        rig.case.ambient.temperature if start is None else start.field,
         probes=probes_of(rig, name),
         observe_at=None,
         observer=keep,
-        initial_volumes=volumes,
+        initial_volumes=None if start is None else start.volumes,
         tolerance=rig.case.transient.tolerance,
         first_step=FIRST_STEP,
         largest_step=UNBOUND,
         reuse=setup,
     )
-    return ThermalHistory(event, phases, start, solution, fields, ends)
+    return ThermalHistory(event, phases, 0.0 if start is None else start.time, solution, fields, ends)
 
 
-def read_branch(rig: Rig, name: str, course: ThermalHistory, shapes: ExpansionBasis) -> Branch:
-    """Clearances of a course at every time."""
-    solution = course.solution
-    begins = np.concatenate([[0.0], np.cumsum([phase.duration for phase in course.phases])])
+def read_branch(rig: Rig, name: str, history: ThermalHistory, basis: ExpansionBasis) -> Branch:
+    """Clearances and alignment of a history at every time."""
+    solution = history.solution
+    begins = np.concatenate([[0.0], np.cumsum([phase.duration for phase in history.phases])])
     read: list[Clearances] = []
     aligned: list[Alignment] = []
     axes: list[Mapping[str, ShaftAxis]] = []
-    for time, number, field in zip(solution.times, solution.stages, course.fields, strict=True):
-        phase = course.phases[number]
+    for time, number, field in zip(solution.times, solution.stages, history.fields, strict=True):
+        phase = history.phases[number]
         speed = phase.speed(min(float(time - begins[number]), phase.duration))
         temperature = np.asarray(field, dtype=np.float64)
-        shape = shapes.shape(temperature)
+        shape = basis.shape(temperature)
         read.append(clearances(rig, name, temperature, shape, speed))
         aligned.append(alignment(rig, name, shape, read[-1]["bearing_clearance"]))
         axes.append(shape.axes)
     return Branch(
         gearbox=name,
-        name=course.name,
-        phases=course.phases,
-        start=course.start,
-        times=solution.times + course.start,
+        name=history.name,
+        phases=history.phases,
+        start=history.start,
+        times=solution.times + history.start,
         phase=solution.stages,
         temperatures=solution.probes,
         clearances=tuple(read),

@@ -1,0 +1,174 @@
+"""Checks of warm clearances: seals, shafts, meshes, bearings.
+
+Of a gearbox whose housing is not expanded those of its drawing are held. Its gears and axes have the temperatures of
+its oil, so that backlash and tip clearance are those of the meshes that carry the load; what expansion would do to the
+rest is left out, and said to be.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+from rigdesign.checks.omissions import EXPANSION, HEAT, of_gearboxes, sealed, unexpanded, with_play
+from rigdesign.checks.registry import REGISTRY, RigRule, RuleFamily, Topic, Values
+from rigdesign.coupling.loads import MeshModel
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.result import Check
+from rigdesign.results.units import MICROMETRE, MILLIMETRE
+
+GROUP = "clearances"
+NO_PLAY = "no shaft states an axial play between stops at both of its bearings"
+NO_SEAL = "no shaft has a seal without contact"
+NOT_EXPANDED = of_gearboxes(EXPANSION, unexpanded)
+SEALS_NOT_EXPANDED = of_gearboxes(EXPANSION, sealed)
+PLAY_NOT_EXPANDED = of_gearboxes(EXPANSION, with_play)
+
+
+def _seal_gaps(solved: SolvedRig) -> Iterator[tuple[float, str]]:
+    """Warm gap of every seal; as drawn where the housing is not expanded."""
+    for warm in solved.warm:
+        for seal in warm.seals:
+            yield seal.minimum, f"{seal.name} at {math.degrees(seal.angle_of_minimum):.0f} deg"
+    for name in solved.unexpanded:
+        for part, seals in solved.case.gearboxes[name].seals.items():
+            if seals.kind == "contactless":
+                yield seals.radial_gap, f"{name}.{part}, cold"
+
+
+def _plays(solved: SolvedRig) -> Iterator[tuple[float, str]]:
+    """Warm axial play of every shaft between stops; as drawn where the housing is not expanded."""
+    for warm in solved.warm:
+        for shaft in warm.shafts:
+            if shaft.play_as_drawn > 0.0:
+                yield shaft.play, shaft.name
+    for name in solved.unexpanded:
+        for bearing in solved.case.gearboxes[name].bearings.values():
+            if bearing.axial_play > 0.0:
+                yield bearing.axial_play, f"{bearing.shaft}, {name}, cold"
+
+
+def _meshes(solved: SolvedRig) -> Iterator[tuple[str, MeshModel]]:
+    """Every mesh at every held stage."""
+    for point in solved.points:
+        for model in point.last.models:
+            bare = model.name.split(".")[0] in solved.unexpanded
+            basis = ", gears and axes at the temperature of their oil" if bare else ""
+            yield f"{model.name}{basis}, stage {point.point.stage}", model
+
+
+def _backlashes(solved: SolvedRig) -> Values:
+    return ((model.pair.transverse_backlash, where) for where, model in _meshes(solved))
+
+
+def _tip_clearances(solved: SolvedRig) -> Values:
+    return ((min(model.pair.tip_clearances), where) for where, model in _meshes(solved))
+
+
+def _bearing_clearances(solved: SolvedRig) -> Values:
+    return (
+        (clearance, f"{name}, stage {point.point.stage}")
+        for point in solved.points
+        for name, clearance in point.last.coupling_state.bearing_clearance.items()
+    )
+
+
+RULES = (
+    RigRule(
+        key="clearance.seal_gap",
+        title="smallest hot radial gap of a seal",
+        unit=MILLIMETRE,
+        group=GROUP,
+        source="limits.clearances.seal_gap_minimum",
+        comparison=">=",
+        limit=lambda limits: limits.clearances.seal_gap_minimum,
+        values=_seal_gaps,
+        absent=NO_SEAL,
+        leaves_out=(SEALS_NOT_EXPANDED, *HEAT),
+        moved_by=frozenset({"housing"}),
+    ),
+    RigRule(
+        key="clearance.axial_play",
+        title="smallest hot axial play of a shaft",
+        unit=MILLIMETRE,
+        group=GROUP,
+        source="limits.clearances.axial_play_minimum",
+        comparison=">=",
+        limit=lambda limits: limits.clearances.axial_play_minimum,
+        values=_plays,
+        absent=NO_PLAY,
+        leaves_out=(PLAY_NOT_EXPANDED, *HEAT),
+        moved_by=frozenset({"housing", "axial play"}),
+    ),
+    RigRule(
+        key="clearance.backlash",
+        title="smallest hot backlash",
+        unit=MILLIMETRE,
+        group=GROUP,
+        source="limits.clearances.backlash_minimum",
+        comparison=">=",
+        limit=lambda limits: limits.clearances.backlash_minimum,
+        values=_backlashes,
+        leaves_out=(NOT_EXPANDED, *HEAT),
+        moved_by=frozenset({"housing"}),
+    ),
+    RigRule(
+        key="clearance.tip_clearance",
+        title="smallest hot tip clearance",
+        unit=MILLIMETRE,
+        group=GROUP,
+        source="limits.clearances.tip_clearance_minimum",
+        comparison=">=",
+        limit=lambda limits: limits.clearances.tip_clearance_minimum,
+        values=_tip_clearances,
+        leaves_out=(NOT_EXPANDED, *HEAT),
+        moved_by=frozenset({"housing"}),
+    ),
+    RigRule(
+        key="clearance.bearing_clearance",
+        title="smallest hot diametral bearing clearance",
+        unit=MICROMETRE,
+        group=GROUP,
+        source="limits.clearances.bearing_clearance_minimum",
+        comparison=">=",
+        limit=lambda limits: limits.clearances.bearing_clearance_minimum,
+        values=_bearing_clearances,
+        leaves_out=(NOT_EXPANDED, *HEAT),
+        moved_by=frozenset({"housing"}),
+    ),
+)
+SEAL_TRAVEL = RuleFamily(
+    key="clearance.seal_travel",
+    title="axial movement of a shaft in its seals, {place}",
+    unit=MILLIMETRE,
+    group=GROUP,
+    source="gearboxes.{place}.axial_travel",
+    leaves_out=HEAT,
+    moved_by=frozenset({"housing"}),
+)
+
+
+def checks(solved: SolvedRig) -> list[Check]:
+    """One for every limit of a clearance, then the travel of every shaft in its seals."""
+    return [*(rule.check(solved) for rule in RULES), *seal_travel(solved)]
+
+
+def seal_travel(solved: SolvedRig) -> Iterator[Check]:
+    """Axial movement of every shaft in its seals against what they take, the worst of the held stages."""
+    for box in dict.fromkeys(warm.gearbox for warm in solved.warm):
+        for name, seals in solved.case.gearboxes[box].seals.items():
+            rule = replace(
+                SEAL_TRAVEL.rule(seals.axial_travel, f"{box}.{name}"),
+                title=f"axial movement of the {name} shaft in its seals ({box})",
+                source=f"gearboxes.{box}.seals.{name}.axial_travel",
+            )
+            shifts = (
+                (abs(seal.axial_shift), f"{seal.name}, stage {warm.stage}")
+                for warm in solved.warm
+                if warm.gearbox == box
+                for seal in warm.seals
+                if seal.shaft == seals.shaft
+            )
+            yield SEAL_TRAVEL.worst(solved, rule, shifts)
+
+
+REGISTRY.register(Topic(order=32, families=(*RULES, SEAL_TRAVEL), checks=checks, of_housing_mesh=True))

@@ -1,0 +1,122 @@
+"""Checks of the films of the journal bearings, and what all values of a film leave out."""
+
+import math
+from collections.abc import Iterator
+
+from dynamics.bearing.protocol import BearingState
+from rigdesign.checks.omissions import Found, of_gearboxes, thrust, warming, without_housing
+from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
+from rigdesign.checks.rules import Omission
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.result import Check
+from rigdesign.results.units import MEGAPASCAL, MICROMETRE, MPA, UM
+
+GROUP = "bearings"
+SHAFT_HEAT = of_gearboxes(
+    "heat of shafts and shells into the films of gearbox {box}: it has no housing", without_housing
+)
+THRUST_TILT = of_gearboxes("tilting moment of the axial force of the gears of gearbox {box}", thrust)
+
+
+def films(solved: SolvedRig) -> Iterator[tuple[str, BearingState]]:
+    """(place and stage, state) of every journal bearing at every held stage."""
+    for point in solved.points:
+        for name, state in point.last.bearings.items():
+            yield f"{name}, stage {point.point.stage}", state
+
+
+def _tilted(solved: SolvedRig, check: Check) -> Found:
+    """The tilt of a shaft in its bore, which the expansion knows and the film does not."""
+    bores = [bore for warm in solved.warm for bore in warm.bores]
+    if bores:
+        worst = max(bores, key=lambda bore: bore.tilt * bore.width)
+        size = 0.5 * (UM * worst.tilt * worst.width)
+        text = f"tilt of the shaft in bearing {worst.bearing}, {size:.2g} um at the edges of the film"
+        yield Omission(text, size)
+
+
+def _thrust_load(solved: SolvedRig, check: Check) -> Found:
+    """Tilting moment of the axial force of helical gears, T tan(beta), on the two bearings of a shaft [MPa]."""
+    sizes = [
+        (
+            abs(point.last.coupling_state.mesh_torque[full]) * math.tan(abs(mesh.helix_angle)) * ratio,
+            name,
+            bearing,
+        )
+        for point in solved.points
+        for name, box in solved.case.gearboxes.items()
+        if thrust(solved, name, box)
+        for own, mesh in box.meshes.items()
+        if not mesh.double_helical
+        for full in (f"{name}.{own}",)
+        for gear, ratio in ((mesh.pinion, 1.0), (mesh.wheel, _wheel_ratio(solved, full)))
+        for bearing in box.bearings.values()
+        if bearing.shaft == box.gears[gear].shaft and bearing.radial_load is None
+    ]
+    found = [
+        MPA * moment / (span * bearing.diameter * bearing.width)
+        for moment, name, bearing in sizes
+        for span in (_span(solved, name, bearing.shaft),)
+        if span
+    ]
+    if sizes and len(found) == len(sizes):
+        size = max(found)
+        yield Omission(f"tilting moment of the axial force of helical gears, {size:.2g} MPa", size)
+    elif sizes:
+        yield Omission("tilting moment of the axial force of helical gears")
+
+
+def _wheel_ratio(solved: SolvedRig, mesh: str) -> float:
+    """Torque of the wheel over that of the pinion."""
+    teeth = solved.rig.pairs[mesh].teeth
+    return teeth[1] / teeth[0]
+
+
+def _span(solved: SolvedRig, name: str, shaft: str) -> float:
+    """Distance of the two bearings of a shaft [m]; zero where it is not stated."""
+    bearings = solved.case.gearboxes[name].bearings.values()
+    places = [b.position for b in bearings if b.shaft == shaft and b.position is not None]
+    return max(places) - min(places) if len(places) > 1 else 0.0
+
+
+def _thicknesses(solved: SolvedRig) -> Values:
+    return ((state.minimum_film, where) for where, state in films(solved) if state.minimum_film is not None)
+
+
+def _specific_loads(solved: SolvedRig) -> Values:
+    return ((state.specific_load, where) for where, state in films(solved) if state.specific_load is not None)
+
+
+RULES = (
+    RigRule(
+        key="bearing.minimum_film",
+        title="smallest film of a journal bearing",
+        unit=MICROMETRE,
+        group=GROUP,
+        source="limits.bearing.film_thickness_minimum; film after ISO 7902-1",
+        comparison=">=",
+        limit=lambda limits: limits.bearing.film_thickness_minimum,
+        values=_thicknesses,
+        leaves_out=(SHAFT_HEAT, THRUST_TILT, _tilted, warming),
+        moved_by=frozenset({"housing"}),
+    ),
+    RigRule(
+        key="bearing.specific_load",
+        title="largest specific load of a journal bearing",
+        unit=MEGAPASCAL,
+        group=GROUP,
+        source="limits.bearing.specific_load_maximum",
+        limit=lambda limits: limits.bearing.specific_load_maximum,
+        values=_specific_loads,
+        leaves_out=(_thrust_load, warming),
+        moved_by=frozenset({"housing"}),
+    ),
+)
+
+
+def checks(solved: SolvedRig) -> list[Check]:
+    """Thickness of the films and load of the bearings."""
+    return [rule.check(solved) for rule in RULES]
+
+
+REGISTRY.register(Topic(order=34, families=RULES, checks=checks, of_housing_mesh=True))

@@ -1,0 +1,55 @@
+"""Which inputs move a part of the checks only.
+
+An input that no group names moves every check: a missing entry costs time, not truth. A limit that a check names as
+its source always belongs to it, and no other limit does unless it stands here. `tests/verification/test_ranges_plan`
+perturbs every number of a case and compares.
+"""
+
+from collections.abc import Mapping
+from typing import Literal
+
+Influence = Literal[
+    "start torque", "ramp limits", "resonance limits", "specimen limits", "strength limits", "test time",
+    "thermal history", "cold coupling offset", "time run", "spline friction", "gear rating", "housing", "axial play",
+]  # fmt: skip
+"""``housing``: what the temperature fields move; the teeth of the loop feel it by less than a thousandth of a limit."""
+
+INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
+    ("limits.bearing.start_torque_limit",): ("start torque",),
+    ("limits.ramp",): ("ramp limits",),
+    (
+        "limits.dynamics.dangerous_amplification",
+        "limits.dynamics.dangerous_force_share",
+        "limits.dynamics.resonance_distance_minimum",
+    ): ("resonance limits",),
+    ("limits.specimen",): ("specimen limits",),
+    ("limits.strength",): ("strength limits",),
+    ("limits",): (),
+    ("test_plan",): ("test time",),
+    ("transient",): ("thermal history",),
+    (
+        "gearboxes.*.seals.*.axial_travel",
+        "drivetrain.couplings.*.radial_offset_maximum",
+        "drivetrain.couplings.*.angle_maximum",
+        "gearboxes.*.bearings.*.radial_stiffness",
+        "gearboxes.*.bearings.*.radial_damping",
+        "gearboxes.{bare}.heat_split",
+        "gearboxes.{bare}.bearings.*.locating",
+    ): (),
+    ("drivetrain.couplings.*.cold_offset_lateral", "drivetrain.couplings.*.cold_offset_vertical"): (
+        "cold coupling offset",
+    ),
+    ("drivetrain.motor.torque_limit", "schedule.stages.*.duration"): ("time run",),
+    ("drivetrain.bracing.spline_friction_coefficient", "drivetrain.bracing.spline_pitch_radius"): (
+        "spline friction",
+    ),
+    ("gearboxes.*.meshes.*.face_load_factor", "gearboxes.*.gears.*.quality_grade"): ("gear rating",),
+    ("gearboxes.*.housing", "gearboxes.*.seals"): ("housing",),
+    ("gearboxes.*.bearings.*.axial_play",): ("axial play",),
+}  # fmt: skip
+"""Inputs -> what they move; the first entry that holds a path counts. ``*`` stands for any name, ``{bare}`` for a
+gearbox without a housing."""
+OF_ONE_GEARBOX: tuple[Influence, ...] = ("gear rating",)
+"""Influences of an input that stay in its gearbox: the place of a check begins with it."""
+SPEEDS = ("schedule", "gearboxes.*.gears", "gearboxes.*.meshes")
+"""Inputs behind the speeds and torques of all shafts."""

@@ -1,0 +1,88 @@
+"""Checks of the oil plant and the room: flow, cooler, heaters, heat to the room."""
+
+from collections.abc import Callable
+
+from rigdesign.case.gearbox import Gearbox
+from rigdesign.checks.omissions import HEAT, of_gearboxes, warming, without_housing
+from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
+from rigdesign.checks.temperatures import OIL_EXCHANGE
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.housing import CoolingBalance
+from rigdesign.results.result import Check
+from rigdesign.results.units import KILOWATT, LITRE_PER_MINUTE
+
+GROUP = "oil"
+FLOWS = ("gearboxes.*.oil.flow", "gearboxes.*.bearing_oil.flow")
+"""Inputs behind the flow of the oils."""
+
+
+def _warm_oil(solved: SolvedRig, name: str, box: Gearbox) -> bool:
+    """A gearbox without a housing whose oil is warmer than the room."""
+    warmest = max(box.oil.inlet_temperature, box.bearing_oil.inlet_temperature)
+    return box.housing is None and warmest > solved.case.ambient.temperature
+
+
+ROOM_HEAT = of_gearboxes("heat that gearbox {box} gives to the room: it has no housing", without_housing)
+WALL_HEAT = of_gearboxes(
+    "heat that warm oil gives to the walls of gearbox {box}: it has no housing", _warm_oil
+)
+
+
+def _of_stages(value: Callable[[CoolingBalance], float]) -> Callable[[SolvedRig], Values]:
+    """A quantity of the heat balance at every held stage."""
+    return lambda solved: ((value(balance), f"stage {balance.stage}") for balance in solved.cooling)
+
+
+RULES = (
+    RigRule(
+        key="oil.flow",
+        title="oil flow of the rig",
+        unit=LITRE_PER_MINUTE,
+        group=GROUP,
+        source="limits.oil.flow_maximum",
+        limit=lambda limits: limits.oil.flow_maximum,
+        values=_of_stages(lambda balance: balance.flow),
+        only_inputs=FLOWS,
+    ),
+    RigRule(
+        key="oil.cooler",
+        title="power the cooler carries",
+        unit=KILOWATT,
+        group=GROUP,
+        source="limits.oil.cooler_power_maximum",
+        limit=lambda limits: limits.oil.cooler_power_maximum,
+        values=_of_stages(lambda balance: balance.cooler),
+        leaves_out=(OIL_EXCHANGE, *HEAT),
+        moved_by=frozenset({"housing"}),
+    ),
+    RigRule(
+        key="oil.heater",
+        title="power the heaters of the warm circuits give",
+        unit=KILOWATT,
+        group=GROUP,
+        source="limits.oil.heater_power_maximum",
+        limit=lambda limits: limits.oil.heater_power_maximum,
+        values=_of_stages(lambda balance: balance.heater),
+        leaves_out=(WALL_HEAT, warming),
+        moved_by=frozenset({"housing"}),
+    ),
+    RigRule(
+        key="oil.room",
+        title="heat to the room",
+        unit=KILOWATT,
+        group=GROUP,
+        source="limits.oil.room_heat_maximum",
+        limit=lambda limits: limits.oil.room_heat_maximum,
+        values=_of_stages(lambda balance: balance.room),
+        leaves_out=(ROOM_HEAT, *HEAT),
+        moved_by=frozenset({"housing"}),
+    ),
+)
+
+
+def checks(solved: SolvedRig) -> list[Check]:
+    """One for every limit of the oil plant."""
+    return [rule.check(solved) for rule in RULES]
+
+
+REGISTRY.register(Topic(order=36, families=RULES, checks=checks, of_housing_mesh=True))

@@ -1,0 +1,109 @@
+"""The dynamic section of the result: K_V(n) beside ISO 6336, gear data, crossings, time run, torque balance."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+from dynamics.drivetrain.modes import order_crossings, sampling_audit, shaft_frequencies
+from rigdesign.coupling.loop import PointResult
+from rigdesign.records.curves import factor_points, iso_factor, own_ratio
+from rigdesign.records.dynamics import DynamicRun, numbered
+from rigdesign.records.resonances import HARMONICS
+from rigdesign.records.time_run import ramp_history
+from rigdesign.results.loads import DynamicLoads, MeshLoads
+from rigdesign.results.result import DynamicsResult, GearboxDynamics
+from rigdesign.results.rows import dynamics as rows
+from rigdesign.rig.model import Rig
+
+
+def dynamics_section(rig: Rig, run: DynamicRun, loads: DynamicLoads) -> DynamicsResult:
+    """All of it as rows of the result; ``loads`` are those of the run."""
+    drivetrain = rig.drivetrain
+    assert drivetrain is not None
+    frequencies = shaft_frequencies(drivetrain)
+    top = max(run.curves.response.speeds) * max(own_ratio(rig, m) for m in range(len(rig.mesh_names)))
+    sampling = sampling_audit(
+        drivetrain, rig.drive_speed(run.test.point.speed), rig.case.numerics.sample_rate
+    )[0]
+    return DynamicsResult(
+        gearboxes={
+            rig.mesh_labels[name]: _mesh_section(rig, run, mesh, loads.meshes[rig.mesh_labels[name]])
+            for mesh, name in enumerate(rig.mesh_names)
+        },
+        natural_frequencies=[rows.mode_row(number, mode) for number, mode in numbered(loads.modes)],
+        shaft_frequencies={name: [float(f) for f in values] for name, values in frequencies.items()},
+        crossings=[
+            rows.shaft_crossing_row(rig.mesh_labels[crossing.mesh], crossing)
+            for crossing in order_crossings(drivetrain, frequencies, top, HARMONICS)
+        ],
+        damping_audit=[rows.damping_row(record) for record in loads.damping],
+        sampling={
+            "sample_rate_Hz": rig.case.numerics.sample_rate,
+            "mesh_frequency_Hz": sampling.mesh_frequency,
+            "samples_per_mesh": sampling.samples_per_mesh,
+            "internal_steps_per_mesh": sampling.samples_per_mesh * rig.case.numerics.internal_steps,
+        },
+        bracing=[rows.bracing_row(bracing) for bracing in loads.bracing],
+        ramp=ramp_history(rig, run.ramp),
+        torque_balance=[torque_balance(rig, point) for point in run.points],
+        loop_crossings=[rows.mode_crossing_row(crossing) for crossing in loads.loop_crossings],
+    )
+
+
+def _mesh_section(rig: Rig, run: DynamicRun, mesh: int, loads: MeshLoads) -> GearboxDynamics:
+    """Section of one mesh."""
+    name = rig.mesh_names[mesh]
+    response = run.test.last.response
+    assert response is not None
+    speed = rig.shaft_speed(rig.mesh_gear(mesh, 0).shaft, run.test.point.speed)
+    iso = iso_factor(rig, name, float(response.mean[mesh]), speed)
+    main = next(iter(run.curves.named))
+    return GearboxDynamics(
+        role=loads.role,
+        torque=main,
+        dynamic_factor=factor_points(rig, mesh, run.curves.response),
+        dynamic_factor_variants={
+            kind: factor_points(rig, mesh, curve) for kind, curve in run.curves.variants.items()
+        },
+        dynamic_factor_at={
+            other: factor_points(rig, mesh, curve)
+            for other, (_, curve) in run.curves.named.items()
+            if other != main
+        },
+        stage_loads=[rows.stage_load_row(load) for load in loads.stage_loads],
+        dynamic_torque_peak_Nm=loads.torque_peak,
+        iso_factors=_flat(asdict(iso)),
+        lift_off=[rows.contact_loss_row(loss) for loss in loads.contact_losses],
+        resonances=[rows.resonance_row(resonance) for resonance in loads.resonances],
+        unsolved=[rows.unsolved_row(speed) for speed in loads.unsolved],
+        root_stress=[rows.root_stress_row(path) for path in loads.root_stress],
+        root_stress_factor=[rows.root_ratio_row(ratio) for ratio in loads.root_stress_ratios],
+        geometry=rows.geometry_row(rig.pairs[name], run.test.last.models[mesh]),
+    )
+
+
+def _flat(record: Mapping[str, Any]) -> dict[str, float | str]:
+    """Every factor by its printed symbol; nested stiffness factors side by side."""
+    flat: dict[str, float | str] = {}
+    for key, value in record.items():
+        if isinstance(value, Mapping):
+            flat |= _flat(value)
+        elif isinstance(value, int | float | str):
+            flat[key] = value
+    return flat
+
+
+def torque_balance(rig: Rig, point: PointResult) -> dict[str, Any]:
+    """Motor power against the losses of one held point [W]."""
+    response = point.last.response
+    assert response is not None
+    drive = response.drive_torque * rig.drive_speed(point.point.speed)
+    losses = math.fsum(placed.loss.power for placed in point.last.losses)
+    return {
+        "stage": point.point.stage,
+        "drive_torque_Nm": response.drive_torque,
+        "drive_power_W": drive,
+        "losses_W": losses,
+        "joints_W": drive - losses,
+    }

@@ -1,0 +1,130 @@
+"""Temperatures and heat of the solved rig: housings, heat balance, fields, residuals of the loop."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from rigdesign.coupling.iteration import IterationResult
+from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.oil import heater_and_cooler
+from rigdesign.coupling.temperatures import HousingField, heat_stored, heat_to_room, solve_housing
+from rigdesign.records.heat_split import COMPARED, heat_splits
+from rigdesign.results.housing import BodyTemperature, CoolingBalance, HousingTemperatures, RadiationReadings
+from rigdesign.results.result import CouplingHistory, TemperatureField
+from rigdesign.results.units import UM
+from rigdesign.rig.model import Rig
+from thermal.conduction.flux import heat_flux
+
+
+def cooling_balance(rig: Rig, last: IterationResult) -> CoolingBalance:
+    """What cooler and room take out against what shafts, pump and heaters put in, at one held stage."""
+    damped = math.fsum(placed.not_heat for placed in last.losses)
+    heats = {stream.name: np.array([stream.heat]) for stream in last.streams}
+    heater, carried = (float(power[0]) for power in heater_and_cooler(rig.case, heats))
+    steady = rig.case.ambient.warming_time is None
+    return CoolingBalance(
+        stage=last.point.stage,
+        losses=math.fsum(placed.loss.power for placed in last.losses) - damped,
+        pump=math.fsum(placed.pumped for placed in last.losses),
+        heater=heater,
+        cooler=carried,
+        room=math.fsum(heat_to_room(field) for field in last.fields.values()),
+        stored=None if steady else math.fsum(heat_stored(field) for field in last.fields.values()),
+        not_heat=damped,
+        flow=math.fsum(stream.flow for stream in last.streams),
+    )
+
+
+def compared_temperatures(rig: Rig, result: PointResult, field: HousingField) -> HousingTemperatures:
+    """Temperatures and heat of one housing at one held stage, with what was solved to compare: the other reading of
+    radiation, the ends of the ranges of the flank films.
+
+    Raises
+    ------
+    NotConverged
+        One of these solves stalls.
+    """
+    name, last = field.gearbox, result.last
+    housing = rig.case.gearboxes[name].housing
+    assert housing is not None
+    other = solve_housing(
+        rig, name, result.point, last.coupling_state, last.bearings, last.losses, field,
+        radiation_included=not housing.radiation_included, tolerance=COMPARED,
+    )  # fmt: skip
+    readings = {housing.radiation_included: field, not housing.radiation_included: other}
+    return replace(
+        housing_temperatures(rig, result, field),
+        radiation=RadiationReadings(
+            highest_apart=float(readings[False].temperature.max()),
+            highest_included=float(readings[True].temperature.max()),
+            other_room_heat=heat_to_room(other),
+        ),
+        heat_split=heat_splits(rig, result, field),
+    )
+
+
+def housing_temperatures(rig: Rig, result: PointResult, field: HousingField) -> HousingTemperatures:
+    """Temperatures and heat of one housing at one held stage as the loop left them: nothing is solved again."""
+    mesh = rig.models[field.gearbox].mesh
+    bodies = body_temperatures(rig, field)
+    return HousingTemperatures(
+        gearbox=field.gearbox,
+        stage=result.point.stage,
+        highest=float(field.temperature.max()),
+        hottest_body=max(bodies, key=lambda body: bodies[body].highest),
+        bodies=bodies,
+        heat=tuple(field.solution.balance.rows),
+        closure=field.solution.balance.closure,
+        room_heat=heat_to_room(field),
+        nodes=len(mesh.points),
+        elements=len(mesh.cells),
+    )
+
+
+def body_temperatures(rig: Rig, field: HousingField) -> dict[str, BodyTemperature]:
+    """Mean, highest and lowest temperature of every body."""
+    mesh = rig.models[field.gearbox].mesh
+    elements = rig.conduction[field.gearbox].elements
+    temperatures = {}
+    for body, cells in mesh.bodies.items():
+        nodes = field.temperature[np.unique(mesh.cells[cells])]
+        temperatures[body] = BodyTemperature(
+            mean=elements.body_mean(field.temperature, body),
+            highest=float(nodes.max()),
+            lowest=float(nodes.min()),
+        )
+    return temperatures
+
+
+def coupling_history(result: PointResult) -> CouplingHistory:
+    """Residuals of every iteration of the loop at one held stage."""
+    return CouplingHistory(
+        stage=result.point.stage,
+        iterations=len(result.residuals),
+        residuals=[
+            {
+                "temperature_K": residual.temperature,
+                "growth_um": UM * residual.length,
+                "torque_relative": residual.torque,
+            }
+            for residual in result.residuals
+        ],
+    )
+
+
+def fields_of(rig: Rig, result: PointResult) -> list[TemperatureField]:
+    """Fields of one held stage for pictures and files."""
+    return [
+        TemperatureField(
+            name,
+            result.point.stage,
+            rig.models[name].mesh,
+            field.temperature,
+            result.last.expansion[name].deformed.displacement
+            if name in result.last.expansion
+            else np.zeros_like(rig.models[name].mesh.points),
+            heat_flux(rig.conduction[name], field.temperature),
+        )
+        for name, field in result.last.fields.items()
+    ]

@@ -1,0 +1,110 @@
+"""Temperatures and heat of the housings at the held stages: SI records."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from thermal.conduction.heat_rows import HeatFlow
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyTemperature:
+    """Temperatures of one body [K]."""
+
+    mean: float
+    """Over its volume."""
+    highest: float
+    lowest: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeatSplit:
+    """Where the friction heat of one gear goes."""
+
+    gear: str
+    """``gearbox.gear``."""
+    rule: Literal["assumed", "flank_film"]
+    friction: float
+    """Of all its meshes, into its flanks [W]."""
+    at_once: float
+    """Leaves with the oil before it reaches the rim [W]."""
+    film: float
+    """From the rim into the gear oil [W]; other heat of the gear leaves this way too."""
+    bulk_temperature: float
+    """Mean of the gear body [K]."""
+    tooth_temperature: float | None
+    """Mean of the teeth [K]; None without a flank film."""
+    coefficient: float | None
+    """Of the flank film, mean over all flanks [W/(m2 K)]."""
+    fin_efficiency: float | None
+    weak_film: "HeatSplit | None" = None
+    """The same gear at the low ends of the ranges of the film; None where the case states none."""
+    strong_film: "HeatSplit | None" = None
+    """At the high ends."""
+
+    @property
+    def share_into_oil(self) -> float:
+        """(at once + film) / friction; above 1 where other heat of the gear leaves through its teeth."""
+        return (self.at_once + self.film) / self.friction
+
+
+@dataclass(frozen=True, kw_only=True)
+class RadiationReadings:
+    """The field under both readings of the given film coefficients: radiation apart from them, or counted in them."""
+
+    highest_apart: float
+    """[K]"""
+    highest_included: float
+    """[K]"""
+    other_room_heat: float
+    """Heat to the room under the reading that the case does not take [W]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HousingTemperatures:
+    """Steady temperatures and heat of one gearbox at one held stage."""
+
+    gearbox: str
+    stage: str
+    highest: float
+    """Of the whole field [K]."""
+    hottest_body: str
+    bodies: Mapping[str, BodyTemperature]
+    heat: tuple[HeatFlow, ...]
+    """Of every condition at every surface."""
+    closure: float
+    """Gap of the heat balance relative to the heat turned over."""
+    room_heat: float
+    """[W]"""
+    nodes: int
+    elements: int
+    radiation: RadiationReadings | None = None
+    """None where the other reading was not solved."""
+    heat_split: tuple[HeatSplit, ...] = ()
+    """Of every gear that friction heats."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CoolingBalance:
+    """What shafts, pump and heaters put in and cooler and room take out at one held stage, of the whole rig [W]."""
+
+    stage: str
+    losses: float
+    """Of the shafts, as far as they are heat."""
+    pump: float
+    """Kinetic energy of the jets."""
+    heater: float
+    cooler: float
+    room: float
+    stored: float | None
+    """Taken up by bodies that still warm up; None in the steady state."""
+    not_heat: float
+    """Work of mesh dampers: power of the motor that is heat of no part."""
+    flow: float
+    """Of all oils [m3/s]."""
+
+    @property
+    def imbalance(self) -> float:
+        """Put in less taken out and stored [W]."""
+        given = self.losses + self.pump + self.heater
+        return given - self.cooler - self.room - (self.stored or 0.0)

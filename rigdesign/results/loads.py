@@ -1,0 +1,162 @@
+"""Dynamic loads of the meshes: SI records. Speeds are those of a mesh's own pinion, torques positive on the flank that
+carries."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from dynamics.drivetrain.bracing import BracingDrift
+from dynamics.drivetrain.modes import DampingRecord, LoopMode
+from rigdesign.results.result import Role
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageLoad:
+    """Load of one mesh in one stage of the time run, by its envelopes."""
+
+    stage: str
+    dynamic_factor: float
+    """Highest torque over the mean of its window."""
+    speed: float
+    """Where the dynamic factor occurs [rad/s]."""
+    mean: float
+    """Mean torque there [N m]."""
+    peak: float
+    """Highest torque of the stage [N m]."""
+    least: float
+    """Lowest torque of the stage [N m]."""
+    least_share: float
+    """Lowest torque over the mean of its window; below zero where the other flank is hit."""
+    least_share_speed: float
+    """[rad/s]"""
+    least_share_mean: float
+    """[N m]"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactLoss:
+    """An interval of the time run in which a mesh kept losing contact."""
+
+    stage: str
+    start: float
+    """[s]"""
+    end: float
+    """[s]"""
+    share: float
+    """Of the time without contact."""
+    longest_gap: float
+    """[s]"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshResonance:
+    """A peak of the dynamic torque over speed."""
+
+    torque: str
+    """Torque of the curve where the case counts it, in words: ``180 Nm``."""
+    mode: str
+    frequency: float
+    """[Hz]"""
+    harmonic: int
+    speed: float
+    """[rad/s]"""
+    dynamic_factor: float
+    force_share: float
+    amplification: float
+    """Peak over the level it stands on."""
+    at_end: bool
+    """The torque still rises at the highest speed computed."""
+    dangerous: bool
+    """Above a limit of the case."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModeCrossing:
+    """A mesh or shaft order that meets a mode of the closed loop."""
+
+    kind: Literal["mesh", "shaft"]
+    order_of: str
+    """Label of the mesh, or shaft."""
+    mode: int
+    shape: str
+    frequency: float
+    """[Hz]"""
+    damping_ratio: float
+    harmonic: int
+    speed: float
+    """Of the pinion of the mesh, or of the shaft [rad/s]."""
+    gain: float
+    excited: bool
+    """The mesh reaches the mode."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnsolvedSpeed:
+    """A speed at which a curve has no point because no periodic response was found."""
+
+    curve: str
+    speed: float
+    """[rad/s]"""
+    reason: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class RootStressPath:
+    """Root stress of one gear over its rolling angle at the held stage that stresses it most."""
+
+    gear: str
+    stage: str
+    rolling_angle: tuple[float, ...]
+    """(n,), zero at the pitch point [rad]."""
+    dynamic: tuple[float, ...]
+    """(n,) [Pa]"""
+    quasi_static: tuple[float, ...]
+    """(n,) [Pa]"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RootStressRatio:
+    """Highest dynamic over highest quasi-static root stress at one speed."""
+
+    speed: float
+    """[rad/s]"""
+    pinion: float
+    wheel: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshLoads:
+    """Dynamic loads of one mesh."""
+
+    role: Role
+    torque_peak: float
+    """Highest of the time run and the periodic responses of the held stages [N m]."""
+    stage_loads: tuple[StageLoad, ...] = ()
+    """Of every stage that turns under torque."""
+    contact_losses: tuple[ContactLoss, ...] = ()
+    resonances: tuple[MeshResonance, ...] = ()
+    unsolved: tuple[UnsolvedSpeed, ...] = ()
+    root_stress: tuple[RootStressPath, ...] = ()
+    """Of pinion and wheel."""
+    root_stress_ratios: tuple[RootStressRatio, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageBracing:
+    """The bracing of one held stage, as set and warmed up."""
+
+    stage: str
+    drift: BracingDrift
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicLoads:
+    """What the drivetrain says of its loads."""
+
+    meshes: Mapping[str, MeshLoads]
+    """By the label of the mesh."""
+    modes: tuple[LoopMode, ...] = ()
+    """Of the closed loop, meshes at their mean stiffness."""
+    loop_crossings: tuple[ModeCrossing, ...] = ()
+    damping: tuple[DampingRecord, ...] = ()
+    bracing: tuple[StageBracing, ...] = ()

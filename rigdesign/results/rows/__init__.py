@@ -1,0 +1,1 @@
+"""Records in SI -> the rows of results.json, in their units."""
