@@ -5,7 +5,23 @@ from functools import cache
 import numpy as np
 
 from rigdesign.case.assumptions import AssumptionRecord
-from rigdesign.results import result as r
+from rigdesign.results.check import Check, Checks
+from rigdesign.results.dynamics import (
+    DynamicFactorPoint,
+    DynamicsResult,
+    GearboxDynamics,
+    RampHistory,
+    RootStressHistory,
+)
+from rigdesign.results.result import CouplingHistory, Finding, RunResult
+from rigdesign.results.thermal import (
+    ExpansionResult,
+    HeatRow,
+    LossRow,
+    OilRow,
+    TemperatureField,
+    ThermalResult,
+)
 from thermal.fe.mesh import NamedMesh
 
 KUHN = [(0, 1, 3, 7), (0, 1, 5, 7), (0, 2, 3, 7), (0, 2, 6, 7), (0, 4, 5, 7), (0, 4, 6, 7)]
@@ -64,7 +80,7 @@ def gearbox_field(spacing=0.025):
     temperature = 313.15 + 95 * warm * np.exp(-(((z - 0.11) / 0.25) ** 2)) + 12 * np.cos(20 * y) * warm
     displacement = 1.2e-5 * (temperature - 293.15)[:, None] * (mesh.points - [0.35, 0.15, 0.0])
     heat_flux = -50.0 * np.column_stack([temperature * 0.01 / spacing, 0.0 * x, z])
-    return r.TemperatureField("test", "dwell", mesh, temperature, displacement, heat_flux)
+    return TemperatureField("test", "dwell", mesh, temperature, displacement, heat_flux)
 
 
 def make_check(identity, value, limit, *, verdict=None, comparison="<=", unit="mm", **more):
@@ -78,7 +94,7 @@ def make_check(identity, value, limit, *, verdict=None, comparison="<=", unit="m
         "group": "clearances",
         **more,
     }
-    return r.Check(
+    return Check(
         id=identity,
         value=value,
         limit=limit,
@@ -131,7 +147,7 @@ def checks():
         make_check(
             "start_torque", 10.0, 10.0, unit="Nm", group="ramp", title="Torque before the transition speed"
         ),
-        r.Check(
+        Check(
             id="bought_part_coupling",
             title="Limit of a bought part: coupling",
             value=None,
@@ -146,7 +162,7 @@ def checks():
             reason="no coupling is fitted",
             group="ramp",
         ),
-        r.Check(
+        Check(
             id="load_cycles",
             title="Load cycles in the planned test time",
             value=2.1e9,
@@ -175,7 +191,7 @@ def gearbox(role, excitation, resonances):
 
     def curve(scale):
         return [
-            r.DynamicFactorPoint(
+            DynamicFactorPoint(
                 speed_rpm=float(n),
                 simulated=float(1 + scale * (k - 1)),
                 simulated_half_peak_to_peak=float(1 + 0.6 * scale * (k - 1)),
@@ -188,7 +204,7 @@ def gearbox(role, excitation, resonances):
     phi = np.linspace(0, 9.2, 240)
     static = 1800 * np.clip(np.sin(np.pi * phi / 9.2), 0, None) ** 0.7
     histories = [
-        r.RootStressHistory(
+        RootStressHistory(
             gear=gear,
             stage="dwell",
             rolling_angle_deg=phi.tolist(),
@@ -197,7 +213,7 @@ def gearbox(role, excitation, resonances):
         )
         for gear in ("pinion", "wheel")
     ]
-    return r.GearboxDynamics(
+    return GearboxDynamics(
         role=role,
         torque="180 Nm",
         dynamic_factor=curve(1.0),
@@ -252,7 +268,7 @@ def ramp():
         }
         for name, f in (("test", 1.0), ("reference", 0.3))
     }
-    return r.RampHistory(
+    return RampHistory(
         time_s=time.tolist(),
         speed_rpm=speed.tolist(),
         stage=stage.tolist(),
@@ -301,7 +317,7 @@ def dynamics():
             "dangerous": False,
         },
     ]
-    return r.DynamicsResult(
+    return DynamicsResult(
         gearboxes={"test": gearbox("specimen", 0.5, resonances), "reference": gearbox("rig", 0.1, [])},
         natural_frequencies=[
             {"frequency_Hz": 412.0, "damping_ratio": 0.04, "shape": "test against reference gearbox"}
@@ -346,7 +362,7 @@ def losses():
     ]
     shares = {"to bearing speed": 0.01, "half torque": 0.02, "run-up": 0.55, "dwell": 1.0}
     return [
-        r.LossRow(
+        LossRow(
             place=place,
             kind=kind,
             stage=stage,
@@ -377,13 +393,13 @@ def thermal_and_expansion():
         ("chamber_wall", "oil", 2300.0, 0.4, film),
         ("shells", "bearing_film", 79.0, 0.02, None),
     ]
-    thermal = r.ThermalResult(
+    thermal = ThermalResult(
         gearbox="test",
         stage="dwell",
         max_temperature_degC=178.6,
         max_temperature_body="shaft_pinion",
         heat=[
-            r.HeatRow(surface=s, kind=k, power_W=p, area_m2=a, mean_temperature_degC=120.0, coefficient=c)
+            HeatRow(surface=s, kind=k, power_W=p, area_m2=a, mean_temperature_degC=120.0, coefficient=c)
             for s, k, p, a, c in heat
         ],
         closure_relative=3.1e-11,
@@ -407,7 +423,7 @@ def thermal_and_expansion():
         for shaft in ("pinion", "wheel")
         for side, phase in (("left", 0), ("right", 60))
     ]
-    expansion = r.ExpansionResult(
+    expansion = ExpansionResult(
         gearbox="test",
         stage="dwell",
         seal_gaps=seals,
@@ -452,7 +468,7 @@ def make_result(**changes):
         "dynamics": dynamics(),
         "losses": losses(),
         "oil": [
-            r.OilRow(
+            OilRow(
                 consumer=f"bearing_{n}",
                 stage="dwell",
                 inlet_degC=40.0,
@@ -463,7 +479,7 @@ def make_result(**changes):
             for n in range(1, 9)
         ]
         + [
-            r.OilRow(
+            OilRow(
                 consumer="test_mesh",
                 stage="dwell",
                 inlet_degC=140.0,
@@ -487,7 +503,7 @@ def make_result(**changes):
         "thermal": [thermal],
         "expansion": [expansion],
         "coupling": [
-            r.CouplingHistory(
+            CouplingHistory(
                 stage="dwell",
                 iterations=4,
                 residuals=[
@@ -520,9 +536,9 @@ def make_result(**changes):
         ],
         "overrides": [],
         "not_modelled": ["shaft bending and tooth flank wear"],
-        "warnings": [r.Finding(id="iso_6336_range", text="stiffness regression outside its range")],
+        "warnings": [Finding(id="iso_6336_range", text="stiffness regression outside its range")],
         "timings_s": {"total": 21.4, "dynamics": 9.1},
         "fields": [gearbox_field()],
     }
     given = {**values, **changes}
-    return r.RunResult(**{**given, "checks": r.Checks(given["checks"])})
+    return RunResult(**{**given, "checks": Checks(given["checks"])})

@@ -16,7 +16,8 @@ import pytest
 
 from rigdesign import load_case, run_case
 from rigdesign.report import results_document
-from rigdesign.results.result import Check, RunResult
+from rigdesign.results.check import Check
+from rigdesign.results.result import RunResult
 from tests.regression import expected
 from tests.regression.expected import CASES, NAMES
 

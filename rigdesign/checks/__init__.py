@@ -7,7 +7,7 @@ from rigdesign.checks.omissions import omissions
 from rigdesign.checks.registry import REGISTRY, load_topics
 from rigdesign.checks.rules import with_error, with_omissions
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 
 __all__ = ["all_checks", "held_checks", "mesh_checks"]
 

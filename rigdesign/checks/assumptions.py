@@ -6,7 +6,7 @@ from dataclasses import replace
 from rigdesign.case.model import Case
 from rigdesign.checks.influences import INPUTS, OF_ONE_GEARBOX, Influence
 from rigdesign.checks.registry import REGISTRY, RuleFamily
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 
 PATH = re.compile(r"[a-z_0-9]+(?:\.[a-z_0-9]+)+")
 

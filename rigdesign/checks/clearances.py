@@ -13,7 +13,7 @@ from rigdesign.checks.omissions import EXPANSION, HEAT, of_gearboxes, sealed, un
 from rigdesign.checks.registry import REGISTRY, RigRule, RuleFamily, Topic, Values
 from rigdesign.coupling.loads import MeshModel
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.results.units import MICROMETRE, MILLIMETRE
 
 GROUP = "clearances"

@@ -18,7 +18,7 @@ from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, Rule, exact, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.results.units import NUMBER
 from rigdesign.rig.shaft_seals import shaft_seals
 

@@ -14,8 +14,8 @@ from rigdesign.coupling.loads import signed_torque
 from rigdesign.records.curves import resolved, speed_ranges
 from rigdesign.records.resonances import NEAR
 from rigdesign.records.solved_rig import SolvedRig, worst
+from rigdesign.results.check import Check
 from rigdesign.results.loads import MeshLoads, ModeCrossing, StageLoad
-from rigdesign.results.result import Check
 from rigdesign.results.units import NUMBER, RPM
 
 GROUP = "dynamics"

@@ -8,7 +8,7 @@ from rigdesign.checks.omissions import Found, of_gearboxes, thrust, warming, wit
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.results.units import MEGAPASCAL, MICROMETRE, MPA, UM
 
 GROUP = "bearings"

@@ -7,8 +7,8 @@ from rigdesign.checks.omissions import HEAT, of_gearboxes, warming, without_hous
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.temperatures import OIL_EXCHANGE
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.check import Check
 from rigdesign.results.housing import CoolingBalance
-from rigdesign.results.result import Check
 from rigdesign.results.units import KILOWATT, LITRE_PER_MINUTE
 
 GROUP = "oil"

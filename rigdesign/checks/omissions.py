@@ -17,7 +17,7 @@ from rigdesign.coupling.loads import laws_of
 from rigdesign.coupling.shaft_torques import torques_left_out
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.rig.oil_supply import injected_flow
 
 Found = Iterator[Omission]

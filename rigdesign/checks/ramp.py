@@ -11,7 +11,7 @@ from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
 from rigdesign.checks.rules import exact, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.results.units import NEWTON_METRE, REVOLUTION_PER_MINUTE
 
 SOURCES = {

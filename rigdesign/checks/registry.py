@@ -14,7 +14,7 @@ from rigdesign.case.model import Case
 from rigdesign.checks.influences import Influence
 from rigdesign.checks.rules import Comparison, Omission, Rule, hold, not_applicable
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LIMIT, NO_LOADS, SolvedRig, worst
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.results.units import DisplayUnit
 
 Values = Iterable[tuple[float, str]]

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from rigdesign.base.finite import finite
-from rigdesign.results.result import Check, Role
+from rigdesign.results.check import Check, Role
 from rigdesign.results.verdict import Verdict
 
 Comparison = Literal["<=", ">=", "within"]

@@ -12,7 +12,7 @@ from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import hold, not_applicable
 from rigdesign.records.curves import iso_factor
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.results.units import HOUR, MEGAPASCAL, MPA, NUMBER, RPM
 
 REVERSED = 0.7

@@ -8,7 +8,7 @@ from rigdesign.checks.omissions import HEAT, Found, of_gearboxes, without_housin
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.results.units import DEGREE_CELSIUS, KELVIN, ZERO
 
 GROUP = "temperatures"

@@ -10,8 +10,8 @@ from rigdesign.checks.registry import REGISTRY, Finder, RuleFamily, Topic
 from rigdesign.checks.rules import Comparison, hold, not_applicable
 from rigdesign.checks.temperatures import WALLS
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.check import Check
 from rigdesign.results.extremes import Extreme
-from rigdesign.results.result import Check
 from rigdesign.results.rows.history import UNITS
 from rigdesign.results.units import HOUR, DisplayUnit
 from rigdesign.transient.warm_up import Soak

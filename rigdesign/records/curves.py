@@ -16,7 +16,7 @@ from rigdesign.coupling.iteration import IterationResult
 from rigdesign.coupling.loads import laws_of, locked_share, mesh_models, signed_torque
 from rigdesign.coupling.time_run import held_points
 from rigdesign.coupling.tooth_deviations import periodic_laws
-from rigdesign.results.result import DynamicFactorPoint
+from rigdesign.results.dynamics import DynamicFactorPoint
 from rigdesign.rig.model import Rig
 
 QUICK_SPEEDS = 24

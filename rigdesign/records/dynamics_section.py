@@ -11,8 +11,8 @@ from rigdesign.records.curves import factor_points, iso_factor, own_ratio
 from rigdesign.records.dynamics import DynamicRun, numbered
 from rigdesign.records.resonances import HARMONICS
 from rigdesign.records.time_run import ramp_history
+from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics
 from rigdesign.results.loads import DynamicLoads, MeshLoads
-from rigdesign.results.result import DynamicsResult, GearboxDynamics
 from rigdesign.results.rows import dynamics as rows
 from rigdesign.rig.model import Rig
 

@@ -11,7 +11,8 @@ from rigdesign.coupling.oil import heater_and_cooler
 from rigdesign.coupling.temperatures import HousingField, heat_stored, heat_to_room, solve_housing
 from rigdesign.records.heat_split import COMPARED, heat_splits
 from rigdesign.results.housing import BodyTemperature, CoolingBalance, HousingTemperatures, RadiationReadings
-from rigdesign.results.result import CouplingHistory, TemperatureField
+from rigdesign.results.result import CouplingHistory
+from rigdesign.results.thermal import TemperatureField
 from rigdesign.results.units import UM
 from rigdesign.rig.model import Rig
 from thermal.conduction.flux import heat_flux

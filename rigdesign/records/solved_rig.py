@@ -10,10 +10,11 @@ from rigdesign.coupling.temperatures import HousingField
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.housing import cooling_balance
 from rigdesign.records.warm_gearbox import warm_gearbox
+from rigdesign.results.check import Role
 from rigdesign.results.extremes import HistoryExtremes
 from rigdesign.results.housing import CoolingBalance, HousingTemperatures
 from rigdesign.results.loads import DynamicLoads
-from rigdesign.results.result import DiscretisationRow, MeshShift, Role
+from rigdesign.results.result import DiscretisationRow, MeshShift
 from rigdesign.results.warm_gearbox import WarmGearbox
 from rigdesign.rig.model import Rig
 

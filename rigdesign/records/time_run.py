@@ -9,8 +9,8 @@ from dynamics.response.envelopes import EnvelopeWindows, split_lift_off
 from dynamics.response.time_response import TimeResponse
 from rigdesign.coupling.time_run import LEAST_TORQUE, schedule_of, stage_names
 from rigdesign.records.curves import own_ratio
+from rigdesign.results.dynamics import RampHistory
 from rigdesign.results.loads import ContactLoss, StageLoad
-from rigdesign.results.result import RampHistory
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 

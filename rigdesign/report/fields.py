@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from rigdesign.results.result import TemperatureField
+from rigdesign.results.thermal import TemperatureField
 
 ZERO_CELSIUS = 273.15
 

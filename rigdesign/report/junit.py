@@ -5,7 +5,8 @@ from itertools import groupby
 from pathlib import Path
 
 from rigdesign.report.numbers import limit_text, margin_text, quantity_text
-from rigdesign.results.result import Check, RunResult
+from rigdesign.results.check import Check
+from rigdesign.results.result import RunResult
 
 NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML 1.0 cannot hold."""

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 
 UNIT_SIGNS = {
     "degC": "°C", "deg": "°", "um": "µm", "N/mm2": "N/mm²", "MPa": "N/mm²", "m2": "m²",

@@ -3,8 +3,8 @@
 from typing import Any
 
 from rigdesign.report.csv_text import csv_text
-from rigdesign.results.curves import curves_of
-from rigdesign.results.result import HeatRow, RunResult
+from rigdesign.results.result import RunResult
+from rigdesign.results.thermal import HeatRow
 
 
 def curve_tables(result: RunResult) -> dict[str, str]:
@@ -12,7 +12,7 @@ def curve_tables(result: RunResult) -> dict[str, str]:
     tables = {"checks.csv": _checks(result), "losses.csv": _losses(result), "oil.csv": _oil(result)}
     if result.thermal:
         tables["heat.csv"] = _heat(result)
-    for name, columns in curves_of(result).items():
+    for name, columns in result.columns.items():
         tables[f"{name}.csv"] = csv_text(list(columns), zip(*columns.values(), strict=True))
     return tables
 

@@ -1,33 +1,28 @@
 """The curves of a result as columns: what curves/*.csv holds and `RunResult.curves` gives as arrays."""
 
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 from rigdesign.base.output_folder import file_stem
+from rigdesign.results.dynamics import DynamicsResult, GearboxDynamics, RampHistory
+from rigdesign.results.thermal import ExpansionResult
 from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult
-
-if TYPE_CHECKING:
-    from rigdesign.results.result import (
-        DynamicsResult,
-        ExpansionResult,
-        GearboxDynamics,
-        RampHistory,
-        RunResult,
-    )
 
 Columns = dict[str, list[Any]]
 """Values of one length by ``quantity [unit]``."""
 
 
-def curves_of(result: "RunResult") -> dict[str, Columns]:
-    """Every curve of a result by the stem of its file, in a fixed order."""
+def curves_of(
+    expansion: Sequence[ExpansionResult], dynamics: DynamicsResult | None, transient: TransientResult | None
+) -> dict[str, Columns]:
+    """Every curve of a run by the stem of its file, in a fixed order."""
     found: dict[str, Columns] = {}
-    if result.expansion:
-        found["seal_gaps"] = _seal_gaps(result.expansion)
-    if result.dynamics is not None:
-        found.update(_dynamics(result.dynamics))
-    if result.transient is not None:
-        found.update(transient_curves(result.transient))
+    if expansion:
+        found["seal_gaps"] = _seal_gaps(expansion)
+    if dynamics is not None:
+        found.update(_dynamics(dynamics))
+    if transient is not None:
+        found.update(transient_curves(transient))
     return found
 
 
@@ -48,7 +43,7 @@ def _columns(header: Iterable[str], rows: Iterable[Iterable[Any]]) -> Columns:
     return columns
 
 
-def _seal_gaps(expansion: "list[ExpansionResult]") -> Columns:
+def _seal_gaps(expansion: Sequence[ExpansionResult]) -> Columns:
     header = ("gearbox", "stage", "seal", "angle [deg]", "cold gap [mm]", "hot gap [mm]")
     return _columns(
         header,
@@ -61,7 +56,7 @@ def _seal_gaps(expansion: "list[ExpansionResult]") -> Columns:
     )
 
 
-def _dynamics(dynamics: "DynamicsResult") -> Iterator[tuple[str, Columns]]:
+def _dynamics(dynamics: DynamicsResult) -> Iterator[tuple[str, Columns]]:
     for name, gearbox in dynamics.gearboxes.items():
         yield file_stem("dynamic_factor", name), _dynamic_factor(gearbox)
         for history in gearbox.root_stress:
@@ -77,7 +72,7 @@ def _dynamics(dynamics: "DynamicsResult") -> Iterator[tuple[str, Columns]]:
         yield "ramp", _ramp(dynamics.ramp)
 
 
-def _dynamic_factor(gearbox: "GearboxDynamics") -> Columns:
+def _dynamic_factor(gearbox: GearboxDynamics) -> Columns:
     """K_V(n): the curves of all torques and variants below each other, distinguished by the last two columns."""
     header = (
         "speed [rpm]", "max/mean [1]", "half peak-to-peak [1]", "ISO 6336-1 method B [1]", "method", "torque",
@@ -102,7 +97,7 @@ def _dynamic_factor(gearbox: "GearboxDynamics") -> Columns:
     )  # fmt: skip
 
 
-def _ramp(ramp: "RampHistory") -> Columns:
+def _ramp(ramp: RampHistory) -> Columns:
     return {
         "time [s]": ramp.time_s,
         "stage": list(ramp.stage),

@@ -7,7 +7,7 @@ from typing import Literal
 
 from dynamics.drivetrain.bracing import BracingDrift
 from dynamics.drivetrain.modes import DampingRecord, LoopMode
-from rigdesign.results.result import Role
+from rigdesign.results.check import Role
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,7 +26,8 @@ from rigdesign.records.dynamics_section import dynamics_section
 from rigdesign.records.hand import hand_checks
 from rigdesign.records.housing import compared_temperatures, coupling_history, fields_of
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
-from rigdesign.results.result import Check, Checks, Finding, RunResult
+from rigdesign.results.check import Check, Checks
+from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.housing import cooling_row, loss_rows, oil_rows, thermal_row
 from rigdesign.results.rows.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig

@@ -23,7 +23,8 @@ from rigdesign.base.errors import RigdesignError
 from rigdesign.coupling.expansion import HousingExpansion
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.temperatures import HousingField, body_mean
-from rigdesign.results.result import Check, DiscretisationRow, MeshShift
+from rigdesign.results.check import Check
+from rigdesign.results.result import DiscretisationRow, MeshShift
 from rigdesign.rig.model import Rig
 from rigdesign.run.mesh_refinement import checked, on_mesh
 from thermal.errors import ThermalError

@@ -26,8 +26,8 @@ from rigdesign.coupling.temperatures import HousingField, heat_into_films, heat_
 from rigdesign.records.heat_split import split_as_solved
 from rigdesign.records.housing import housing_temperatures
 from rigdesign.records.solved_rig import housing_fields, solved_rig
+from rigdesign.results.check import Check
 from rigdesign.results.housing import HousingTemperatures
-from rigdesign.results.result import Check
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import MeshError, NamedMesh
 from thermal.housing.stations import GearboxModel

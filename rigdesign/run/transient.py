@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from rigdesign.checks import all_checks
 from rigdesign.checks.rules import overall
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.check import Check, Checks
 from rigdesign.results.extremes import Extreme, HistoryExtremes
-from rigdesign.results.result import Check, Checks, Finding, RunResult
+from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.history import UNITS, worst_moment_row
 from rigdesign.results.transient import Settling, TransientCurve, TransientResult
 from rigdesign.results.units import MM, RPM, ZERO

@@ -18,7 +18,8 @@ from rigdesign.coupling.temperatures import HousingField
 from rigdesign.coupling.tooth_deviations import averaged_gears
 from rigdesign.records.curves import iso_factor, resolved
 from rigdesign.records.solved_rig import SolvedRig
-from rigdesign.results.result import Check, Finding
+from rigdesign.results.check import Check
+from rigdesign.results.result import Finding
 from rigdesign.results.units import RPM
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil

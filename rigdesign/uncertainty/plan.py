@@ -13,8 +13,8 @@ from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
 from rigdesign.checks.assumptions import is_under
+from rigdesign.results.check import Check
 from rigdesign.results.ranges import LeftOut
-from rigdesign.results.result import Check
 
 Part = Literal["coupling", "curves", "time run"]
 End = Literal["low", "high"]

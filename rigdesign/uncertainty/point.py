@@ -18,8 +18,8 @@ from rigdesign.records.curves import Curves, solve_curves
 from rigdesign.records.dynamics import DynamicRun, dynamic_loads, stage_bracing
 from rigdesign.records.housing import housing_temperatures
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
+from rigdesign.results.check import Check
 from rigdesign.results.loads import DynamicLoads
-from rigdesign.results.result import Check
 from rigdesign.results.units import ZERO
 from rigdesign.results.verdict import Verdict
 from rigdesign.rig.model import Rig, build_rig

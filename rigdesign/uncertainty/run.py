@@ -14,8 +14,9 @@ from functools import partial
 from rigdesign.base.worker_pool import compute_all, worker_count
 from rigdesign.case.model import Case
 from rigdesign.checks.rules import overall
+from rigdesign.results.check import Checks
 from rigdesign.results.ranges import LeftOut, RangedInput, RangesResult, TemperatureRange
-from rigdesign.results.result import Checks, RunResult
+from rigdesign.results.result import RunResult
 from rigdesign.uncertainty.plan import RangeEnd, plan
 from rigdesign.uncertainty.point import FIDELITY, EndResult, Reference, settle, solve_end
 from rigdesign.uncertainty.verdicts import (

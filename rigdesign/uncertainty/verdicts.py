@@ -7,8 +7,8 @@ stated rig at the same fidelity; added to the margin of the run, it leaves out w
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from rigdesign.results.check import Check
 from rigdesign.results.ranges import CheckRange, RangeMargin
-from rigdesign.results.result import Check
 from rigdesign.results.verdict import Verdict
 from rigdesign.uncertainty.plan import RangeEnd
 from rigdesign.uncertainty.point import CheckAtEnd, EndResult

@@ -14,7 +14,8 @@ that the oil must bring.
 from collections.abc import Callable, Iterator
 from math import fsum
 
-from rigdesign.results.result import RunResult, ThermalResult
+from rigdesign.results.result import RunResult
+from rigdesign.results.thermal import ThermalResult
 from rigdesign.validation.rows import ValidationRow, compare, not_modelled
 
 AIR, RADIATION, BEARING_OIL = "air", "radiation", "bearing_oil"

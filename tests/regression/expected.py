@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from rigdesign import load_case, run_case
-from rigdesign.results.result import Check, RunResult
+from rigdesign.results.check import Check
+from rigdesign.results.result import RunResult
 
 CASES = Path(__file__).parents[2] / "cases"
 NAMES = ("uhcf_prototype", "uhcf_main", "loop_1to1", "loop_hunting")

@@ -14,8 +14,8 @@ from rigdesign.case import Case
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.component_limits import bought_parts
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.check import Check
 from rigdesign.results.loads import DynamicLoads, MeshLoads, StageBracing
-from rigdesign.results.result import Check
 from rigdesign.rig.model import build_rig
 from tests.idler_case import idler_case
 

@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.case import Case, load_case
 from rigdesign.checks.assumptions import is_under, with_assumptions
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.results.verdict import Verdict
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"

@@ -15,9 +15,9 @@ from rigdesign.checks import clearances, dynamics, films, oil, ramp, strength, t
 from rigdesign.checks.omissions import omissions
 from rigdesign.checks.rules import with_omissions
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.check import Check
 from rigdesign.results.housing import CoolingBalance
 from rigdesign.results.loads import ContactLoss, DynamicLoads, MeshResonance, StageLoad, UnsolvedSpeed
-from rigdesign.results.result import Check
 from rigdesign.results.warm_gearbox import SealGap, WarmGearbox
 from rigdesign.rig.model import Rig, build_rig
 from tests.loads_example import mesh_loads

@@ -6,7 +6,7 @@ from typing import cast
 import pytest
 
 from rigdesign.checks.rules import with_error
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.results.verdict import Verdict
 from rigdesign.run.mesh_convergence import EDGE_ORDER, richardson
 

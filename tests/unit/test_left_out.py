@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign import load_case
 from rigdesign.checks.clearances import NO_PLAY, checks
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.results.warm_gearbox import ShaftExpansion, WarmGearbox
 from rigdesign.rig.model import build_rig
 from rigdesign.run.warnings import not_modelled

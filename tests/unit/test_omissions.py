@@ -21,7 +21,8 @@ from rigdesign.checks.transient import EXTREMES
 from rigdesign.coupling.loop import PointResult
 from rigdesign.records.housing import housing_temperatures
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
-from rigdesign.results.result import Check, RunResult
+from rigdesign.results.check import Check
+from rigdesign.results.result import RunResult
 from rigdesign.rig.model import Rig
 from tests.warm_prototype import base, settled
 

@@ -9,7 +9,7 @@ import pytest
 
 from rigdesign import load_case, run_case
 from rigdesign.case import Case
-from rigdesign.results.result import Check
+from rigdesign.results.check import Check
 from rigdesign.uncertainty import point as ranges_point
 from rigdesign.uncertainty.plan import PARTS, Part, RangeEnd, parts_of, plan
 from rigdesign.uncertainty.point import EndResult, Reference, settle, solve_end

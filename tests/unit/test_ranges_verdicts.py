@@ -7,7 +7,8 @@ import pytest
 from rigdesign.report.figures.ranges import margins_figure
 from rigdesign.report.pages.report import report_html
 from rigdesign.report.results_json import results_document
-from rigdesign.results.result import Check, RunResult
+from rigdesign.results.check import Check
+from rigdesign.results.result import RunResult
 from rigdesign.uncertainty.plan import PARTS, RangeEnd, parts_of
 from rigdesign.uncertainty.point import CheckAtEnd, EndResult
 from rigdesign.uncertainty.run import joined

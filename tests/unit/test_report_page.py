@@ -9,13 +9,12 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from rigdesign.report import numbers
+from rigdesign.report import numbers, views
 from rigdesign.report.figures.drawing import drawing_style, inline_svg, new_figure
 from rigdesign.report.figures.dynamics import dynamic_factor_figure
 from rigdesign.report.figures.ramp import stage_spans
-from rigdesign.report.pages import views
 from rigdesign.report.pages.report import report_html, signs, symbol
-from rigdesign.results import result as r
+from rigdesign.results.result import Finding, MeshShift
 from tests.report_example import checks, gearbox_field, make_check, make_result
 
 VOID = {"meta", "br", "link", "img", "hr", "input"}
@@ -163,7 +162,7 @@ def test_everything_from_the_case_is_escaped():
         fields=[replace(item, gearbox=nasty, stage=nasty) for item in base.fields],
         coupling=[replace(item, stage=nasty) for item in base.coupling],
         not_modelled=[nasty],
-        warnings=[r.Finding(id=nasty, text=nasty)],
+        warnings=[Finding(id=nasty, text=nasty)],
         dynamics=dynamics,
     )
     page = report_html(result)
@@ -253,7 +252,7 @@ def test_mesh_errors_stand_by_their_share_of_the_margin():
         make_check("oil.room", 1.0, 3.0),
         make_check("temperature.housing", 99.0, 100.0, unit="degC", discretisation_error=0.5),
     ]
-    shift = r.MeshShift(id="temperature.housing", standard=98.8, reference=99.0, shift=0.2, unit="degC")
+    shift = MeshShift(id="temperature.housing", standard=98.8, reference=99.0, shift=0.2, unit="degC")
     result = replace(make_result(), checks=given, reference_shift=[shift])
     rows = views.mesh_errors(result)
     assert [row["check"] for row in rows] == ["temperature.housing", "clearance.seal gap"]

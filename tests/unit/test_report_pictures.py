@@ -16,7 +16,7 @@ from rigdesign.report.figures.mesh_views import (
     surface_triangles,
     view_outside,
 )
-from rigdesign.results.result import TemperatureField
+from rigdesign.results.thermal import TemperatureField
 from tests.report_example import gearbox_field, voxel_mesh
 from thermal.fe.mesh import NamedMesh, box_mesh
 from thermal.fe.numbering import Numbering, inverse

@@ -15,7 +15,8 @@ from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
 from rigdesign.cli import main as cli
 from rigdesign.cli.terminal import print_validation
-from rigdesign.results.result import HeatRow, RunResult
+from rigdesign.results.result import RunResult
+from rigdesign.results.thermal import HeatRow
 from rigdesign.validation import (
     benchmarks,
     films,

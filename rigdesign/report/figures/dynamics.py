@@ -15,7 +15,7 @@ from rigdesign.report.figures.drawing import (
     new_figure,
     plain,
 )
-from rigdesign.results.result import DynamicFactorPoint, DynamicsResult, GearboxDynamics
+from rigdesign.results.dynamics import DynamicFactorPoint, DynamicsResult, GearboxDynamics
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

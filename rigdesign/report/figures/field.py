@@ -17,7 +17,7 @@ from rigdesign.report.figures.mesh_views import (
     view_outside,
 )
 from rigdesign.report.numbers import number_text
-from rigdesign.results.result import TemperatureField
+from rigdesign.results.thermal import TemperatureField
 from thermal.fe.mesh import FloatArray, NamedMesh
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from rigdesign.report.figures.drawing import INK, SERIES, new_figure, plain
 from rigdesign.report.figures.sankey import NODE_WIDTH, Flow, SankeyLayout, layout, spread
 from rigdesign.report.numbers import number_text
-from rigdesign.results.result import LossRow, OilRow, ThermalResult
+from rigdesign.results.thermal import LossRow, OilRow, ThermalResult
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

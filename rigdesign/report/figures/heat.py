@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING
 
 from rigdesign.report.figures.drawing import MUTED, SERIES, finish, legend_right, new_figure, plain
 from rigdesign.report.numbers import power_text
-from rigdesign.results.result import CouplingHistory, LossRow, OilRow
+from rigdesign.results.result import CouplingHistory
+from rigdesign.results.thermal import LossRow, OilRow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,7 +4,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from rigdesign.report.figures.drawing import INK, MUTED, SERIES, finish, new_figure, plain
-from rigdesign.results.result import RampHistory
+from rigdesign.results.dynamics import RampHistory
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,7 +6,7 @@ import numpy as np
 
 from rigdesign.report.figures.drawing import INK, MUTED, SERIES, finish, legend_right, new_figure, plain
 from rigdesign.report.numbers import number_text
-from rigdesign.results.result import ExpansionResult
+from rigdesign.results.thermal import ExpansionResult
 from thermal.fe.mesh import FloatArray
 
 if TYPE_CHECKING:

@@ -1,7 +1,8 @@
 """Ramp, dynamic factor, root stress, resonances."""
 
 from rigdesign.report.sections.section import Draw, Section, Values
-from rigdesign.results.result import GearboxDynamics, RunResult
+from rigdesign.results.dynamics import GearboxDynamics
+from rigdesign.results.result import RunResult
 
 
 def _loads(result: RunResult, draw: Draw) -> Values:

@@ -6,6 +6,7 @@ from typing import Any
 from dynamics.drivetrain.modes import Crossing, DampingRecord, LoopMode
 from dynamics.gear.pair import GearPair
 from rigdesign.coupling.loads import MeshModel
+from rigdesign.results.dynamics import RootStressHistory
 from rigdesign.results.loads import (
     ContactLoss,
     MeshResonance,
@@ -16,7 +17,6 @@ from rigdesign.results.loads import (
     StageLoad,
     UnsolvedSpeed,
 )
-from rigdesign.results.result import RootStressHistory
 from rigdesign.results.units import MM, MPA, RPM
 
 

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.oil import OilStream
 from rigdesign.results.housing import CoolingBalance, HeatSplit, HousingTemperatures
-from rigdesign.results.result import HeatRow, HeatSplitRow, LossRow, OilRow, ThermalResult
+from rigdesign.results.thermal import HeatRow, HeatSplitRow, LossRow, OilRow, ThermalResult
 from rigdesign.results.units import L_MIN, ZERO
 from thermal.conduction.heat_rows import HeatFlow
 

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 from rigdesign.coupling.losses import bearing_ratings
-from rigdesign.results.result import ExpansionResult
+from rigdesign.results.thermal import ExpansionResult
 from rigdesign.results.units import MM, MRAD, UM, ZERO
 from rigdesign.results.warm_gearbox import (
     AxisAlignment,

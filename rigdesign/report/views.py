@@ -5,7 +5,9 @@ from typing import Any
 
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.report.numbers import unit_text
-from rigdesign.results.result import Check, LossRow, RunResult
+from rigdesign.results.check import Check
+from rigdesign.results.result import RunResult
+from rigdesign.results.thermal import LossRow
 
 VERDICT_ORDER = ("fail", "warn", "pass", "not applicable")
 BAR_END = 1.5

@@ -1,0 +1,106 @@
+"""Dynamic results of a run, as they stand in results.json."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    pass
+
+from rigdesign.results.check import Role
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicFactorPoint:
+    """K_V of one gearbox at one speed [rpm]; simulated = max/mean (P2, Formula 1)."""
+
+    speed_rpm: float
+    simulated: float
+    simulated_half_peak_to_peak: float
+    iso_6336_1_method_b: float
+    method: str = ""
+    """harmonic_balance or time_integration."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RootStressHistory:
+    """Root stress of one gear over its rolling angle at the held stage that stresses it most."""
+
+    gear: str
+    stage: str
+    rolling_angle_deg: list[float]
+    dynamic_MPa: list[float]  # noqa: N815
+    quasi_static_MPa: list[float]  # noqa: N815
+
+
+@dataclass(frozen=True, kw_only=True)
+class GearboxDynamics:
+    """Dynamic results of one mesh; speeds are those of its pinion."""
+
+    role: Role
+    torque: str
+    """Torque of ``dynamic_factor`` where the case counts it, in words: ``180 Nm``."""
+    dynamic_factor: list[DynamicFactorPoint]
+    dynamic_factor_at: dict[str, list[DynamicFactorPoint]]
+    """The same at the other torques at which the schedule holds or changes the speed (``90 Nm``)."""
+    dynamic_factor_variants: dict[str, list[DynamicFactorPoint]]
+    """The curve of ``dynamic_factor`` under a named variant of the mesh law (``weber_banaschek_0.8``)."""
+    stage_loads: list[dict[str, Any]]
+    """Time run, per stage that turns under torque: {stage, dynamic_factor, speed_rpm, mean_Nm, peak_Nm, least_Nm,
+    least_share, least_share_at_rpm, least_share_mean_Nm}."""
+    dynamic_torque_peak_Nm: float  # noqa: N815
+    """Highest of the time run and the periodic responses of the held stages."""
+    iso_factors: dict[str, float | str]
+    """Every factor of ISO 6336-1 method B at the test speed, by its printed symbol."""
+    lift_off: list[dict[str, Any]]
+    """{stage, start_s, end_s, share} intervals without tooth contact."""
+    resonances: list[dict[str, Any]]
+    """{torque, mode, frequency_Hz, harmonic, speed_rpm, dynamic_factor, force_share, amplification, at_end,
+    dangerous}; at_end: the torque still rises at the highest speed computed."""
+    unsolved: list[dict[str, Any]]
+    """{curve, speed_rpm, reason}: speeds at which a curve has no point because no periodic response was found."""
+    root_stress: list[RootStressHistory]
+    root_stress_factor: list[dict[str, float]]
+    """{speed_rpm, pinion, wheel}: max sigma_F dynamic / quasi-static beside K_V(n)."""
+    geometry: dict[str, float | str]
+    """Gear data, cold and warm, for the report."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RampHistory:
+    """Time run over the schedule, decimated for the report; envelopes keep the peaks at the internal rate."""
+
+    time_s: list[float]
+    speed_rpm: list[float]
+    stage: list[str]
+    target_torque_Nm: list[float]  # noqa: N815
+    drive_torque_Nm: list[float]  # noqa: N815
+    torque: dict[str, dict[str, list[float]]]
+    """gearbox -> {mean, maximum, minimum} of the dynamic torque [Nm] in each time window."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DynamicsResult:
+    """Everything the drivetrain says."""
+
+    gearboxes: dict[str, GearboxDynamics]
+    """By gearbox; by ``gearbox.mesh`` where a gearbox has several meshes."""
+    natural_frequencies: list[dict[str, Any]]
+    """{mode, frequency_Hz, damping_ratio, shape, largest_at}: modes of the closed loop, meshes at their mean
+    stiffness; shape: parts that hold the strain energy; largest_at: shaft and place that swing most; mode 0 turns
+    without swinging."""
+    shaft_frequencies: dict[str, list[float]]
+    """Free-free torsional frequencies [Hz] of each isolated shaft."""
+    crossings: list[dict[str, Any]]
+    """{gearbox, shaft, frequency_Hz, harmonic, speed_rpm}: of the isolated shafts."""
+    damping_audit: list[dict[str, Any]]
+    """{joint, damping_ratio, corner_frequency_Hz, warning}."""
+    sampling: dict[str, float]
+    bracing: list[dict[str, Any]]
+    """Per stage: {stage, mode, torque_Nm, twist_deg, axial_shift_mm, half_gear_rotation_deg,
+    actuator_force_N, torque_cold_Nm, torque_hot_Nm}."""
+    ramp: RampHistory | None
+    torque_balance: list[dict[str, Any]]
+    loop_crossings: list[dict[str, Any]] = field(default_factory=list)
+    """{kind, order_of, mode, shape, frequency_Hz, damping_ratio, harmonic, speed_rpm, gain, excited}: mesh and shaft
+    orders that meet a mode of the closed loop; order_of: gearbox or shaft, speed_rpm that of its pinion or its own;
+    excited: the mesh reaches the mode."""
