@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources b86c9c1e
+# compiled from sources 31cf8e21
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -83,9 +83,7 @@ class ContactTable(NamedTuple):
 
 
 @inlined
-def flank_in_phase(
-    space: Array, at: int, meshes: PackedMeshes, m: int, state: ContactState
-) -> Flank:  # fmt: skip
+def flank_in_phase(space: Array, at: int, meshes: PackedMeshes, m: int, state: ContactState) -> Flank:
     """Return the contacts of one flank of mesh ``m`` with equal teeth.
 
     ``space`` holds the numbers of the law, the columns of ``PackedMeshes.values``, from ``at`` on.
