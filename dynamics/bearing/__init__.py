@@ -1,1 +1,1 @@
-"""Journal bearings: film, temperature, drag."""
+"""Bearings behind one protocol; the journal bearing: film, temperature, drag torque."""

@@ -63,7 +63,7 @@ class JournalBearing:
             value = getattr(self, name)
             if not value > 0.0:
                 remedy = (
-                    "the hot bearing has seized: enlarge the clearance at assembly"
+                    "the bearing has seized at temperature: enlarge its clearance at assembly"
                     if "clear" in name
                     else "enlarge it"
                 )

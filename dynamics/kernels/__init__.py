@@ -11,10 +11,10 @@ its own file: a hash of all sources in each file that takes from another goes wi
 from dynamics.kernels.drag import DragLaws
 from dynamics.kernels.linear_step import FOUR, WIDTH, DiscreteModes, DragModes
 from dynamics.kernels.march import march
-from dynamics.kernels.march_state import Carried, Commands
+from dynamics.kernels.march_state import Carried, Commands, MarchRecord, Steps
 from dynamics.kernels.mesh_tables import N_COUNTS, N_PHASE, N_VALUES, VECTOR, PackedMeshes
 from dynamics.kernels.mesh_workspace import port_place
-from dynamics.kernels.reactions import mesh_reactions, tooth_pair_forces
+from dynamics.kernels.reactions import MeshStates, mesh_reactions, tooth_pair_forces
 
 __all__ = [
     "FOUR",
@@ -28,7 +28,10 @@ __all__ = [
     "DiscreteModes",
     "DragLaws",
     "DragModes",
+    "MarchRecord",
+    "MeshStates",
     "PackedMeshes",
+    "Steps",
     "march",
     "mesh_reactions",
     "port_place",

@@ -51,7 +51,7 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 49af733f
+# compiled from sources 31cf8e21
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -70,10 +70,20 @@ class ContactState(NamedTuple):
     omega_2: float
 
 
+class ContactTable(NamedTuple):
+    """Room for the contacts of one flank with individual teeth."""
+
+    data: Array
+    first: int
+    """First number of the table in it."""
+    stride: int
+    """Length of a row."""
+    pairs: Integers
+    """(2, capacity, or 0) tooth pair and slice of each contact."""
+
+
 @inlined
-def flank_in_phase(
-    space: Array, at: int, meshes: PackedMeshes, m: int, state: ContactState
-) -> Flank:  # fmt: skip
+def flank_in_phase(space: Array, at: int, meshes: PackedMeshes, m: int, state: ContactState) -> Flank:
     """Return the contacts of one flank of mesh ``m`` with equal teeth.
 
     ``space`` holds the numbers of the law, the columns of ``PackedMeshes.values``, from ``at`` on.
@@ -105,14 +115,16 @@ def flank_in_phase(
 
 @njit(cache=True, fastmath=LOOSE)
 def list_on_path(
-    space: Array, at: int, counts: Integers, cells: Array, shifts: Array, deviations: Array, scales: Array, m: int,
-    sign: float, theta_1: float, out: Array, first: int, stride: int, pairs: Integers,
-) -> int:  # fmt: skip
-    """Write the contacts of a flank with individual teeth into the table ``out`` from ``first`` on.
+    space: Array, at: int, meshes: PackedMeshes, m: int, sign: float, theta_1: float, table: ContactTable
+) -> int:
+    """Write the contacts of a flank with individual teeth into a table.
 
-    The polynomials are those of place 0 in cells of one metre. ``pairs`` (2, capacity, or 0) receives tooth pair
-    and slice of each. Returns the number of contacts; the table goes on with zeros to a whole turn.
+    The polynomials are those of place 0 in cells of one metre. Returns the number of contacts; the table goes on with
+    zeros to a whole turn of the compiled loop.
     """
+    counts, cells, shifts = meshes.counts, meshes.cells, meshes.shifts
+    deviations, scales = meshes.deviations, meshes.scales
+    out, first, stride, pairs = table.data, table.first, table.stride, table.pairs
     n_cells = counts[m, N_CELLS]
     per_step = space[at + PER_STEP]
     pitch = space[at + PITCH] * per_step
@@ -168,8 +180,10 @@ def list_on_path(
 
 @inlined
 def flank_on_path(
-    space: Array, at: int, first: int, stride: int, found: int, omega_1: float, omega_2: float
-) -> Flank:  # fmt: skip
+    space: Array, at: int, table: ContactTable, found: int, omega_1: float, omega_2: float
+) -> Flank:
     """Return the contacts that ``list_on_path`` has written, filled up to whole turns."""
     n = VECTOR * ((found + VECTOR - 1) // VECTOR)
-    return Flank(first, stride, n, 0.0, 1.0, space[at + ROLL_1], space[at + ROLL_2], omega_1, omega_2)
+    return Flank(
+        table.first, table.stride, n, 0.0, 1.0, space[at + ROLL_1], space[at + ROLL_2], omega_1, omega_2
+    )

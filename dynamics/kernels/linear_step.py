@@ -15,12 +15,12 @@ from dynamics.kernels.contact import LOOSE, inlined
 from dynamics.kernels.mesh_tables import POSITIVE
 from dynamics.kernels.mesh_workspace import OLD, SPEED, TAU, TURN
 
-# compiled from sources 49af733f
+# compiled from sources 31cf8e21
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 WIDTH = 16
-"""Modes beside each other in the tables: a fixed number, so that the compiler makes vector instructions of a loop
+"""Modes in a row of the tables: a fixed number, so that the compiler makes vector instructions of a loop
 over them."""
 FOUR = 4
 """Drag torques in a group, for the same reason."""

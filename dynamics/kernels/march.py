@@ -25,7 +25,7 @@ from dynamics.kernels.linear_step import (
     step_modes,
     take_state,
 )
-from dynamics.kernels.march_state import Carried, Commands, Workspace
+from dynamics.kernels.march_state import Carried, Commands, MarchRecord, Steps, Workspace
 from dynamics.kernels.mesh_solve import (
     LEAST_GUARD,
     ListedContacts,
@@ -69,7 +69,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 49af733f
+# compiled from sources 31cf8e21
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -131,19 +131,18 @@ def _account(meshes: PackedMeshes, carried: Carried, work: Workspace, step: floa
 
 
 def march(
-    meshes: PackedMeshes, modes: DiscreteModes, commands: Commands, carried: Carried, step: float, substeps: int,
-    history: Array, samples: Array,
+    meshes: PackedMeshes, modes: DiscreteModes, commands: Commands, carried: Carried, steps: Steps,
+    record: MarchRecord,
 ) -> int:  # fmt: skip
-    """March over ``len(commands.given)`` samples of ``substeps`` steps; return the number of unconverged steps.
+    """March over the samples of ``commands``; return the number of unconverged steps.
 
     Each step: outputs and modal state for the old torques; contacts chosen at the predicted angles; Newton on
-    the new mesh torques with these contacts held; drag torques at the new speeds; accounts. ``history`` (n_meshes, 1
-    or 6, steps): front - back force [, approach, pinion angle, approach rate, pinion speed, tau_1]; ``samples``
-    (n_samples, 2 n_slow + n_drags + 1): slow inputs, their speeds, drag torques, angle of the first pinion.
+    the new mesh torques with these contacts held; drag torques at the new speeds; accounts.
     """
     n_meshes, n_rows, n_drags = len(meshes.values), len(modes.rows), len(carried.drags)
     most = int(max(1, meshes.counts[:, MOST].max()))
     work = Workspace(
+        record=record,
         listed=ListedContacts(
             contacts=np.zeros(2 * n_meshes * N_PHASE * most),
             found=np.zeros((n_meshes, 2), np.int64),
@@ -159,7 +158,7 @@ def march(
         fresh=np.zeros(len(carried.work)),
         drags=DragWork(np.zeros(n_drags), np.zeros(n_drags), np.zeros(n_drags), np.zeros(4 * n_meshes)),
     )
-    return int(_march(meshes, modes, commands, carried, work, step, substeps, history, samples))
+    return int(_march(meshes, modes, commands, carried, work, steps))
 
 
 @inlined
@@ -230,10 +229,15 @@ def _sweep_meshes(space: Array, give: Array, n_meshes: int) -> bool:
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _march(
-    meshes: PackedMeshes, modes: DiscreteModes, commands: Commands, carried: Carried, work: Workspace, step: float,
-    substeps: int, history: Array, samples: Array,
-) -> int:  # fmt: skip
+    meshes: PackedMeshes,
+    modes: DiscreteModes,
+    commands: Commands,
+    carried: Carried,
+    work: Workspace,
+    steps: Steps,
+) -> int:
     """Do what ``march`` says. No array is made here, so that none has to be counted in the loop (``_nrt``)."""
+    step, substeps, history, samples = steps.step, steps.substeps, work.record.history, work.record.samples
     counts = meshes.counts
     blocks, further, links, through = modes.blocks, modes.further, modes.links, modes.through
     state, slow, listed = carried.state, carried.slow, work.listed

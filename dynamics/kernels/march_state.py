@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 from dynamics.kernels.drag import DragLaws, DragWork
 from dynamics.kernels.mesh_solve import ListedContacts
 
-# compiled from sources 49af733f
+# compiled from sources 31cf8e21
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 
 class Commands(NamedTuple):
-    """What a march is told, values at the end of each sample."""
+    """Commands of a march, values at the end of each sample."""
 
     given: Array
     """(n_samples, 4 + n_given) motor torque, twist, speed of the drive, torque of the first mesh, then the other slow
@@ -52,9 +52,28 @@ class Carried(NamedTuple):
     """(n_meshes, 2) last damping force and approach rate."""
 
 
+class Steps(NamedTuple):
+    """Steps of a march."""
+
+    step: float
+    """[s]"""
+    substeps: int
+    """Steps in a sample."""
+
+
+class MarchRecord(NamedTuple):
+    """What a march writes down."""
+
+    history: Array
+    """(n_meshes, 1 or 6, steps): front - back force [, approach, pinion angle, approach rate, pinion speed, tau_1]."""
+    samples: Array
+    """(n_samples, 2 n_slow + n_drags + 1): slow inputs, their speeds, drag torques, angle of the first pinion."""
+
+
 class Workspace(NamedTuple):
     """Scratch arrays of a march."""
 
+    record: MarchRecord
     listed: ListedContacts
     bank: Array
     """That of the modes with the state in it."""

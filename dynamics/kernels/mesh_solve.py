@@ -13,7 +13,13 @@ from numba import njit
 from numpy.typing import NDArray
 
 from dynamics.kernels.contact import LOOSE, Flank, Pressed, Pressing, inlined, press_flank
-from dynamics.kernels.flank_contacts import ContactState, flank_in_phase, flank_on_path, list_on_path
+from dynamics.kernels.flank_contacts import (
+    ContactState,
+    ContactTable,
+    flank_in_phase,
+    flank_on_path,
+    list_on_path,
+)
 from dynamics.kernels.mesh_tables import (
     BACKLASH,
     DAMP_TIME,
@@ -56,7 +62,7 @@ from dynamics.kernels.mesh_workspace import (
     TURN,
 )
 
-# compiled from sources 49af733f
+# compiled from sources 31cf8e21
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -100,11 +106,9 @@ def list_individual(meshes: PackedMeshes, space: Array, m: int, listed: ListedCo
     counts, contacts = meshes.counts, listed.contacts
     stride = contacts.shape[0] // (2 * N_PHASE * counts.shape[0])
     for side in range(2):
-        listed.found[m, side] = list_on_path(
-            space, m * N_SPACE, counts, meshes.cells, meshes.shifts, meshes.deviations, meshes.scales, m,
-            1.0 - 2.0 * side, space[m * N_SPACE + CHOSEN_ANGLE], contacts, (2 * m + side) * N_PHASE * stride, stride,
-            listed.no_pairs,
-        )  # fmt: skip
+        table = ContactTable(contacts, (2 * m + side) * N_PHASE * stride, stride, listed.no_pairs)
+        angle = space[m * N_SPACE + CHOSEN_ANGLE]
+        listed.found[m, side] = list_on_path(space, m * N_SPACE, meshes, m, 1.0 - 2.0 * side, angle, table)
 
 
 @inlined
@@ -126,8 +130,8 @@ def chosen_flank(
         state = ContactState(sign, within, space[at + CHOSEN_ANGLE], omega_1, omega_2)
         return flank_in_phase(space, at, meshes, m, state)
     stride = listed.contacts.shape[0] // (2 * N_PHASE * meshes.counts.shape[0])
-    first = (2 * m + side) * N_PHASE * stride
-    return flank_on_path(space, at, first, stride, listed.found[m, side], omega_1, omega_2)
+    table = ContactTable(listed.contacts, (2 * m + side) * N_PHASE * stride, stride, listed.no_pairs)
+    return flank_on_path(space, at, table, listed.found[m, side], omega_1, omega_2)
 
 
 @inlined

@@ -1,5 +1,7 @@
 """What gear meshes answer at given states: totals with tangents, and forces of single tooth pairs."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -14,7 +16,13 @@ from dynamics.kernels.contact import (
     press_flank,
     sliding_direction,
 )
-from dynamics.kernels.flank_contacts import ContactState, flank_in_phase, flank_on_path, list_on_path
+from dynamics.kernels.flank_contacts import (
+    ContactState,
+    ContactTable,
+    flank_in_phase,
+    flank_on_path,
+    list_on_path,
+)
 from dynamics.kernels.mesh_tables import (
     BACKLASH,
     CLOSING,
@@ -36,9 +44,21 @@ from dynamics.kernels.mesh_tables import (
     PackedMeshes,
 )
 
-# compiled from sources 49af733f
+# compiled from sources 31cf8e21
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
+
+
+class MeshStates(NamedTuple):
+    """States at which a mesh is evaluated."""
+
+    theta_1: Array
+    """(n,) rotation of the pinion [rad]."""
+    reach: Array
+    """(n,) approach, offset of the law included [m]."""
+    omega_1: Array
+    """(n,) speeds of pinion and wheel [rad/s]."""
+    omega_2: Array
 
 
 @inlined
@@ -79,15 +99,10 @@ def _path_slopes(table: Array, flank: Flank, law: Array, pressing: Pressing) -> 
     return slope_1, slope_2, energy
 
 
-def mesh_reactions(
-    meshes: PackedMeshes, theta_1: Array, reach: Array, omega_1: Array, omega_2: Array, out: Array
-) -> None:
-    """Evaluate the first mesh at many states; ``out`` (n, 13) in the order of ``MeshReaction``.
-
-    ``reach`` (n,) is the approach including the offset of the law.
-    """
+def mesh_reactions(meshes: PackedMeshes, states: MeshStates, out: Array) -> None:
+    """Evaluate the first mesh at many states; ``out`` (n, 13) in the order of ``MeshReaction``."""
     contacts = np.zeros(int(meshes.counts[0, MOST]) * N_PHASE)
-    _mesh_reactions(meshes, theta_1, reach, omega_1, omega_2, contacts, np.empty((2, 0), np.int64), out)
+    _mesh_reactions(meshes, states, contacts, np.empty((2, 0), np.int64), out)
 
 
 @inlined
@@ -114,12 +129,11 @@ def _add_flank(table: Array, flank: Flank, law: Array, side: int, pressing: Pres
 
 @njit(cache=True, fastmath=LOOSE, _nrt=False)  # type: ignore[call-overload]
 def _mesh_reactions(
-    meshes: PackedMeshes, theta_1: Array, reach: Array, omega_1: Array, omega_2: Array, contacts: Array,
-    no_pairs: Integers, out: Array,
-) -> None:  # fmt: skip
+    meshes: PackedMeshes, states: MeshStates, contacts: Array, no_pairs: Integers, out: Array
+) -> None:
     """Do what ``mesh_reactions`` says, ``contacts`` being room for a table."""
+    theta_1, reach, omega_1, omega_2 = states.theta_1, states.reach, states.omega_1, states.omega_2
     law, counts = meshes.values[0], meshes.counts
-    cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
     stride = counts[0, MOST]
     for n in range(theta_1.shape[0]):
         out[n] = 0.0
@@ -135,27 +149,17 @@ def _mesh_reactions(
                 alike = flank_in_phase(law, 0, meshes, 0, state)
                 _add_flank(meshes.phase_data, alike, law, side, pressing, out[n])
             else:
-                found = list_on_path(
-                    law, 0, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], contacts, 0, stride,
-                    no_pairs,
-                )  # fmt: skip
-                single = flank_on_path(law, 0, 0, stride, found, omega_1[n], omega_2[n])
+                table = ContactTable(contacts, 0, stride, no_pairs)
+                found = list_on_path(law, 0, meshes, 0, sign, theta_1[n], table)
+                single = flank_on_path(law, 0, table, found, omega_1[n], omega_2[n])
                 _add_flank(contacts, single, law, side, pressing, out[n])
 
 
 @njit(cache=True, fastmath=LOOSE)
-def tooth_pair_forces(
-    meshes: PackedMeshes,
-    theta_1: Array,
-    reach: Array,
-    omega_1: Array,
-    omega_2: Array,
-    lowest: Integers,
-    force: Array,
-) -> None:
+def tooth_pair_forces(meshes: PackedMeshes, states: MeshStates, lowest: Integers, force: Array) -> None:
     """Fill ``force`` (n, n_pairs, n_slices, 2), front and back; ``lowest`` (n,) is the pair of column 0."""
+    theta_1, reach, omega_1, omega_2 = states.theta_1, states.reach, states.omega_1, states.omega_2
     law, counts = meshes.values[0], meshes.counts
-    cells, shifts, deviations, scales = meshes.cells, meshes.shifts, meshes.deviations, meshes.scales
     stride = counts[0, MOST]
     contacts = np.empty(stride * N_PHASE)
     pairs = np.empty((2, stride), np.int64)
@@ -165,9 +169,8 @@ def tooth_pair_forces(
             pressed = sign * reach[n] - side * law[BACKLASH]
             if pressed <= law[LEAST_GAP]:
                 continue
-            found = list_on_path(
-                law, 0, counts, cells, shifts, deviations, scales, 0, sign, theta_1[n], contacts, 0, stride, pairs
-            )  # fmt: skip
+            table = ContactTable(contacts, 0, stride, pairs)
+            found = list_on_path(law, 0, meshes, 0, sign, theta_1[n], table)
             path_speed = law[CLOSING] * sign * law[R1] * omega_1[n]
             rate = sign * (law[R1] * omega_1[n] - law[R2] * omega_2[n])
             for i in range(found):

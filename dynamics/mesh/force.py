@@ -90,9 +90,9 @@ def evaluate_mesh(
     Source: potential of ``dynamics.mesh.law``; Oh, Grosh, Barber, ASME J. Mech. Des. 2005, for the torques.
     """
     packed = law if isinstance(law, PackedMeshes) else pack_meshes([law])
-    angle, reach, w_1, w_2 = _states(theta_1, approach, omega_1, omega_2)
-    out = np.empty((len(angle), len(MeshReaction._fields)))
-    kernels.mesh_reactions(packed, angle, reach, w_1, w_2, out)
+    states = _states(theta_1, approach, omega_1, omega_2)
+    out = np.empty((len(states.theta_1), len(MeshReaction._fields)))
+    kernels.mesh_reactions(packed, states, out)
     return MeshReaction(*np.ascontiguousarray(out.T))
 
 
@@ -104,7 +104,8 @@ def tooth_forces(
     Arguments as in ``evaluate_mesh``; with both speeds zero they are the elastic forces alone.
     """
     packed = pack_meshes([law], over_phase=False)
-    angle, reach, w_1, w_2 = _states(theta_1, approach, omega_1, omega_2)
+    states = _states(theta_1, approach, omega_1, omega_2)
+    angle = states.theta_1
     length = law.path_step * (law.stiffness.shape[1] - 1)
     low, high = float(law.slice_shift.min()), float(law.slice_shift.max())
     front = law.phase + law.base_radius_1 * angle
@@ -115,7 +116,7 @@ def tooth_forces(
     lowest_any = np.minimum(lowest, behind)
     n_pairs += int(np.max(np.abs(lowest - behind), initial=0))
     force = np.zeros((len(angle), n_pairs, len(law.slice_shift), 2))
-    kernels.tooth_pair_forces(packed, angle, reach, w_1, w_2, lowest_any, force)
+    kernels.tooth_pair_forces(packed, states, lowest_any, force)
     pair = lowest_any[:, None] + np.arange(n_pairs)
     return ToothForces(
         pair=pair,
@@ -126,6 +127,6 @@ def tooth_forces(
     )
 
 
-def _states(*columns: ArrayLike) -> list[Array]:
+def _states(*columns: ArrayLike) -> kernels.MeshStates:
     broadcast = np.broadcast_arrays(*(np.atleast_1d(np.asarray(column, float)) for column in columns))
-    return [np.ascontiguousarray(column) for column in broadcast]
+    return kernels.MeshStates(*(np.ascontiguousarray(column) for column in broadcast))

@@ -244,10 +244,8 @@ class TimeMarch:
             self.propagator.modes,
             commands,
             self._carried,
-            self.step,
-            self.substeps,
-            history,
-            samples,
+            kernels.Steps(self.step, self.substeps),
+            kernels.MarchRecord(history, samples),
         )
         if not np.all(np.isfinite(self._carried.ports)):
             raise MarchDiverged(self._diverged(history[:, 0], samples[:, : 2 * n_slow]))

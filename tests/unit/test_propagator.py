@@ -13,7 +13,7 @@ from dynamics.kernels.mesh_workspace import (
     CURVED,
     GUARD,
     KINKED,
-    N_BOOK,
+    N_SPACE,
     NET,
     NET_V,
     NET_X,
@@ -250,13 +250,13 @@ def test_critical_damping_is_still_accurate() -> None:
 @pytest.mark.parametrize(("looked", "known"), [(4e-9, True), (3e-9, False)])
 def test_a_step_of_a_mesh_is_off_its_tangent_by_no_more_than_its_kinks(looked: float, known: bool) -> None:
     """3.2 nm moved: the contacts that may open or close within, and nothing known where none were looked for so far."""
-    book = np.zeros(N_BOOK)
+    space = np.zeros(N_SPACE)
     for place, value in {
         R1: 0.04, DAMP_TIME: 1e-6, REACH: 3e-9, RATE: -2e-4, GUARD: looked, KINKED: 2e8, CURVED: 5e4,
         NET: 100.0, NET_X: 1e9, NET_V: 1e3,
     }.items():  # fmt: skip
-        book[place] = value
+        space[place] = value
     bound = 0.04 * (2e8 * 3.2e-9 + 5e4 * 3e-9 * 2e-4)
-    assert left_open(book, 0) == (pytest.approx(bound) if known else np.inf)
-    assert book[NET] == pytest.approx(100.0 + 1e9 * 3e-9 - 1e3 * 2e-4)
-    assert book[GUARD] == pytest.approx(6.4e-9)
+    assert left_open(space, 0) == (pytest.approx(bound) if known else np.inf)
+    assert space[NET] == pytest.approx(100.0 + 1e9 * 3e-9 - 1e3 * 2e-4)
+    assert space[GUARD] == pytest.approx(6.4e-9)
