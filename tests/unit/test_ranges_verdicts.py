@@ -95,7 +95,9 @@ def test_an_end_without_a_result_makes_what_rests_on_it_warn() -> None:
     lost = outcome(None, "coupling did not settle\nin 30 passes")
     result = ranged(stated, both(GAP, lost, stated), GAP_CHECK, other)
     assert [check.verdict for check in result.checks] == ["warn", "pass"]
-    assert f"no result at {GAP} = 4 mm, on which it rests: coupling did not settle" in result.checks[0].reason
+    assert (
+        f"no result at {GAP} = 4 mm, on which it depends: coupling did not settle" in result.checks[0].reason
+    )
     assert result.ranges is not None
     assert result.ranges.inputs[0].low_error == "coupling did not settle\nin 30 passes"
     assert result.ranges.inputs[0].max_temperature_low_degC is None
