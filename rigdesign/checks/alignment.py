@@ -106,7 +106,7 @@ OFFSET = RuleFamily(
     source="drivetrain.couplings.{place}.radial_offset_maximum",
     absent=_no_coupling,
     leaves_out=(coupled_shafts, *HEAT),
-    moved_by=frozenset({"housing", "cold coupling offset"}),
+    moved_by=frozenset({"housing", "coupling offset"}),
 )
 ANGLE = RuleFamily(
     key="alignment.coupling_angle",
@@ -116,7 +116,7 @@ ANGLE = RuleFamily(
     source="drivetrain.couplings.{place}.angle_maximum",
     absent=_no_coupling,
     leaves_out=(coupled_shafts, *HEAT),
-    moved_by=frozenset({"housing", "cold coupling offset"}),
+    moved_by=frozenset({"housing", "coupling offset"}),
 )
 
 

@@ -2,7 +2,7 @@
 
 Of a gearbox whose housing is not expanded those of its drawing are held. Its gears and axes have the temperatures of
 its oil, so that backlash and tip clearance are those of the meshes that carry the load; what expansion would do to the
-rest is left out, and said to be.
+rest is left out, and reported as such.
 """
 
 import math
@@ -32,7 +32,7 @@ def _seal_gaps(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     for name in solved.unexpanded:
         for part, seals in solved.case.gearboxes[name].seals.items():
             if seals.kind == "contactless":
-                yield seals.radial_gap, f"{name}.{part}, cold"
+                yield seals.radial_gap, f"{name}.{part}, as drawn"
 
 
 def _plays(solved: SolvedRig) -> Iterator[tuple[float, str]]:
@@ -44,7 +44,7 @@ def _plays(solved: SolvedRig) -> Iterator[tuple[float, str]]:
     for name in solved.unexpanded:
         for bearing in solved.case.gearboxes[name].bearings.values():
             if bearing.axial_play > 0.0:
-                yield bearing.axial_play, f"{bearing.shaft}, {name}, cold"
+                yield bearing.axial_play, f"{bearing.shaft}, {name}, as drawn"
 
 
 def _meshes(solved: SolvedRig) -> Iterator[tuple[str, MeshModel]]:

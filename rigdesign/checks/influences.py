@@ -10,7 +10,7 @@ from typing import Literal
 
 Influence = Literal[
     "start torque", "ramp limits", "resonance limits", "specimen limits", "strength limits", "test time",
-    "thermal history", "cold coupling offset", "time run", "spline friction", "gear rating", "housing", "axial play",
+    "thermal history", "coupling offset", "time run", "spline friction", "gear rating", "housing", "axial play",
 ]  # fmt: skip
 """``housing``: what the temperature fields move; the teeth of the loop feel it by less than a thousandth of a limit."""
 
@@ -37,7 +37,7 @@ INPUTS: Mapping[tuple[str, ...], tuple[Influence, ...]] = {
         "gearboxes.{bare}.bearings.*.locating",
     ): (),
     ("drivetrain.couplings.*.cold_offset_lateral", "drivetrain.couplings.*.cold_offset_vertical"): (
-        "cold coupling offset",
+        "coupling offset",
     ),
     ("drivetrain.motor.torque_limit", "schedule.stages.*.duration"): ("time run",),
     ("drivetrain.bracing.spline_friction_coefficient", "drivetrain.bracing.spline_pitch_radius"): (

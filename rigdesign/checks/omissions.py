@@ -73,7 +73,7 @@ def with_play(solved: SolvedRig, name: str, box: Gearbox) -> bool:
 
 
 def coupled_shafts(solved: SolvedRig, check: Check) -> Found:
-    """Ends of a coupling that stay at their cold place."""
+    """Shafts of a coupling that no housing carries: they stay where they were set."""
     power = solved.case.drivetrain
     if power is None:
         return
@@ -85,7 +85,7 @@ def coupled_shafts(solved: SolvedRig, check: Check) -> Found:
     }
     for shaft in power.couplings[check.id.split(".", 2)[2]].shafts:
         if shaft not in housed:
-            yield Omission(f"thermal expansion behind shaft {shaft}: it stays at its cold place")
+            yield Omission(f"thermal expansion behind shaft {shaft}: it stays where it was set")
 
 
 def warming(solved: SolvedRig, check: Check) -> Found:

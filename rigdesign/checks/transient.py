@@ -57,7 +57,7 @@ def _coupling(quantity: str, title: str, limit: str) -> RuleFamily:
     """Largest misalignment of every coupling over time."""
     source = f"drivetrain.couplings.{{place}}.{limit}; thermal history"
     family = _family(quantity, title, source, leaves_out=(coupled_shafts,))
-    return replace(family, moved_by=MOVED_BY | {"cold coupling offset"})
+    return replace(family, moved_by=MOVED_BY | {"coupling offset"})
 
 
 EXTREMES = (

@@ -1,4 +1,4 @@
-"""K_V over speed: simulated, under variants of the mesh law, and by ISO 6336-1 beside it."""
+"""K_V over speed: simulated, under variants of the mesh law, and by ISO 6336-1."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -22,7 +22,7 @@ from rigdesign.rig.model import Rig
 QUICK_SPEEDS = 24
 """Speeds of a curve at quick fidelity, or where every speed is solved over a whole revolution."""
 ROUNDS = 2
-"""Halvings of the speed step beside a peak."""
+"""Halvings of the speed step around a peak."""
 SLOWEST = 0.05
 """Share of a held speed below which no resonance is looked for."""
 BEYOND = 1.25
@@ -31,7 +31,7 @@ HARDNESS = ("case_hardened", "nitrided", "through_hardened")
 """Treatments of flanks from hard to soft: the softer gear of a mesh runs in."""
 DEFAULT = RatingOptions()
 VARIANT = "weber_banaschek_0.8"
-"""The other reading of the mesh stiffness, shown beside the shipped one."""
+"""The other reading of the mesh stiffness, shown for comparison."""
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ def _curve(
 
 
 def rating_options(rig: Rig, name: str) -> RatingOptions:
-    """What ISO 6336-1 needs of a mesh beside its geometry; profile crowning counts as tip relief C_a."""
+    """What ISO 6336-1 needs of a mesh in addition to its geometry; profile crowning counts as tip relief C_a."""
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
@@ -180,7 +180,7 @@ def rating_options(rig: Rig, name: str) -> RatingOptions:
 
 
 def iso_factor(rig: Rig, name: str, torque: float, speed: float) -> DynamicFactor:
-    """K_V of one mesh by ISO 6336-1 method B; torque [N m] and speed [rad/s] of its pinion, cold gears."""
+    """K_V of one mesh by ISO 6336-1 method B; torque [N m] and speed [rad/s] of its pinion, gears as drawn."""
     return dynamic_factor(rig.pairs[name], abs(torque), speed, rating_options(rig, name))
 
 
@@ -191,7 +191,7 @@ def own_ratio(rig: Rig, mesh: int) -> float:
 
 
 def factor_points(rig: Rig, mesh: int, curve: ResponseCurve) -> list[DynamicFactorPoint]:
-    """The K_V(n) curve of one mesh with ISO beside it, over the speed of its own pinion."""
+    """The K_V(n) curve of one mesh with that of ISO 6336-1, over the speed of its own pinion."""
     name = rig.mesh_names[mesh]
     ratio = own_ratio(rig, mesh)
     points = []

@@ -1,4 +1,4 @@
-"""The dynamic section of the result: K_V(n) beside ISO 6336, gear data, crossings, time run, torque balance."""
+"""The dynamic section of the result: K_V(n) with that of ISO 6336, gear data, crossings, time run, torque balance."""
 
 import math
 from collections.abc import Mapping

@@ -123,7 +123,7 @@ def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
     for warm in solved.warm:
         rows += [
             _row(
-                f"growth of {shaft.name}", MM * shaft.total, MM * shaft.free, "mm",
+                f"thermal expansion of {shaft.name}", MM * shaft.total, MM * shaft.free, "mm",
                 "alpha L (T_m - T_0)",
             )
             for shaft in warm.shafts
@@ -159,7 +159,7 @@ def axis_rise(solved: SolvedRig, warm: WarmGearbox) -> float:
     elements, bodies = solved.rig.conduction[name].elements, solved.rig.models[name].mesh.bodies
     box = elements.mesh.points[np.unique(elements.mesh.cells[bodies["housing"]]), :2]
     low, high = box.min(axis=0), box.max(axis=0)
-    cold, rise = solved.case.ambient.reference_temperature, 0.0
+    reference, rise = solved.case.ambient.reference_temperature, 0.0
     for body, material, height in (
         ("field", housing.field.material, housing.field.thickness),
         ("housing", housing.material, housing.shaft_height),
@@ -168,7 +168,7 @@ def axis_rise(solved: SolvedRig, warm: WarmGearbox) -> float:
         places, _ = elements.at_points(elements.mesh.points[:, :2], bodies[body])
         under = ((places >= low) & (places <= high)).all(axis=1)
         mean = float(np.average(values[under], weights=volumes[under]))
-        rise += solved.rig.materials[material].expansion_coefficient * height * (mean - cold)
+        rise += solved.rig.materials[material].expansion_coefficient * height * (mean - reference)
     return rise
 
 
@@ -189,9 +189,9 @@ def partition_gap(solved: SolvedRig, warm: WarmGearbox, seal: str) -> float | No
         for names in ((f"partition_warm_{side}", f"partition_cold_{side}"), (f"shaft_{shaft}_seal_{side}",))
     )
     entry, materials = housing.shafts[shaft], solved.rig.materials
-    cold = solved.case.ambient.reference_temperature
-    wide = materials[housing.material].expansion_coefficient * (plate - cold)
-    thick = materials[entry.material].expansion_coefficient * (journal - cold)
+    reference = solved.case.ambient.reference_temperature
+    wide = materials[housing.material].expansion_coefficient * (plate - reference)
+    thick = materials[entry.material].expansion_coefficient * (journal - reference)
     gap = next(s.radial_gap for s in solved.case.gearboxes[warm.gearbox].seals.values() if s.shaft == shaft)
     return gap + 0.5 * entry.seal_diameter * (wide - thick)
 
@@ -217,9 +217,9 @@ def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: str) -> float
         return None
     wall = float(np.average(values[inside], weights=volumes[inside]))
     journal = _mean_temperature(field.solution.balance.rows, (f"shaft_{entry.shaft}_journal_{entry.side}",))
-    cold, materials = solved.case.ambient.reference_temperature, rig.materials
-    wide = materials[box.housing.material].expansion_coefficient * (wall - cold)
-    thick = materials[box.housing.shafts[entry.shaft].material].expansion_coefficient * (journal - cold)
+    reference, materials = solved.case.ambient.reference_temperature, rig.materials
+    wide = materials[box.housing.material].expansion_coefficient * (wall - reference)
+    thick = materials[box.housing.shafts[entry.shaft].material].expansion_coefficient * (journal - reference)
     spin = centrifugal_expansion(rig, entry, point.point.speed)
     return entry.diametral_clearance + entry.diameter * (wide - thick) - spin
 

@@ -86,8 +86,8 @@ def name_of(
     at = int(np.argmin(np.abs(curve.speeds - peak.speed)))
     amplitude = _amplitudes(curve.points[at], mesh)
     base = peak.speed * teeth / (2.0 * math.pi)
-    beside = curve.speeds[max(at - 1, 0) : at + 2]
-    step = 0.5 * float(np.ptp(beside)) * teeth / (2.0 * math.pi) / max(len(beside) - 1, 1)
+    around = curve.speeds[max(at - 1, 0) : at + 2]
+    step = 0.5 * float(np.ptp(around)) * teeth / (2.0 * math.pi) / max(len(around) - 1, 1)
     strongest = int(np.argmax(amplitude)) + 1
     candidates = [
         (harmonic, height, mode, abs(harmonic * base - mode.frequency))

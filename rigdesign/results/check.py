@@ -34,7 +34,7 @@ class Check:
     role: Role
     reason: str = ""
     group: str = ""
-    """Section of the report: dynamics, losses, temperatures, clearances, specimen, ramp."""
+    """Section of the report, as the rule of the check states it."""
     upper_limit: float | None = None
     """Second limit of a window (comparison ``within``)."""
     assumptions: tuple[str, ...] = ()

@@ -60,9 +60,9 @@ class GearboxDynamics:
     """{curve, speed_rpm, reason}: speeds at which a curve has no point because no periodic response was found."""
     root_stress: list[RootStressHistory]
     root_stress_factor: list[dict[str, float]]
-    """{speed_rpm, pinion, wheel}: max sigma_F dynamic / quasi-static beside K_V(n)."""
+    """{speed_rpm, pinion, wheel}: max sigma_F dynamic / quasi-static, to compare with K_V(n)."""
     geometry: dict[str, float | str]
-    """Gear data, cold and warm, for the report."""
+    """Gear data, as drawn and warm, for the report."""
 
 
 @dataclass(frozen=True, kw_only=True)

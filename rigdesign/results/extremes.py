@@ -20,7 +20,7 @@ class Extreme:
     """The worst of the held stages in their steady state."""
     limit: float | None
     planned: bool = True
-    """False for the cold start, which the case does not plan: it tells what the warm-up is good for."""
+    """False for the cold start, which the case does not plan: it shows what the warm-up is good for."""
 
 
 @dataclass(frozen=True, kw_only=True)

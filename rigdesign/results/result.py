@@ -95,7 +95,7 @@ class RunResult:
     reference_shift: list[MeshShift] = field(default_factory=list)
     """At reference: every check that depends on a housing mesh, on the standard mesh and on the fine one."""
     hand_checks: list[dict[str, Any]]
-    """{quantity, computed, by_hand, unit, formula}: a number an engineer can redo beside each key result."""
+    """{quantity, computed, by_hand, unit, formula}: a number an engineer can redo for each key result."""
     assumptions: list[AssumptionRecord]
     overrides: list[dict[str, str]]
     not_modelled: list[str]

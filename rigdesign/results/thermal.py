@@ -108,7 +108,8 @@ class ThermalResult:
 
 @dataclass(frozen=True, kw_only=True)
 class ExpansionResult:
-    """Expansion of one gearbox at one held stage; every entry carries cold, hot and unit."""
+    """Expansion of one gearbox at one held stage; every entry as drawn (``cold``) and warm (``hot``), with its
+    unit."""
 
     gearbox: str
     stage: str
@@ -123,14 +124,15 @@ class ExpansionResult:
     """{bearing, diametral_clearance_cold_um, diametral_clearance_hot_um}"""
     bores: list[dict[str, Any]] = field(default_factory=list)
     """{bearing, tilt_mrad, tilt_lateral_mrad, tilt_vertical_mrad, tilt_over_width_um, out_of_round_um,
-    second_harmonic_um, long_axis_deg, out_of_round_share}: shaft axis in the bore, bore round; cold all are zero."""
+    second_harmonic_um, long_axis_deg, out_of_round_share}: shaft axis in the bore, bore round; as drawn all are
+    zero."""
     axes: list[dict[str, Any]] = field(default_factory=list)
     """{gear_pair, centre_distance_change_um, face_width_mm, inclination_um, recommended_inclination_um, skew_um,
-    recommended_skew_um}: axes of a mesh over its face width; cold they are parallel."""
+    recommended_skew_um}: axes of a mesh over its face width; as drawn they are parallel."""
     couplings: list[dict[str, Any]] = field(default_factory=list)
     """{coupling, first, second, offset_cold_mm, offset_hot_mm, lateral_hot_mm, vertical_hot_mm, angle_cold_mrad,
     angle_hot_mrad, ends_nearer_mm, recommended_cold_lateral_mm, recommended_cold_vertical_mm}: first shaft against
-    second; a shaft without a housing stays at its cold place."""
+    second; a shaft without a housing stays where it was set."""
 
 
 @dataclass(frozen=True)

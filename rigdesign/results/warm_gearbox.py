@@ -167,7 +167,7 @@ class CouplingAlignment:
         return self.warm.lateral - self.as_set.lateral, self.warm.vertical - self.as_set.vertical
 
     def shown(self, end: int) -> str:
-        """Name of the first (0) or second (1) shaft; one that no housing carries is said to be cold."""
+        """Name of the first (0) or second (1) shaft; one that no housing carries is marked cold."""
         name = (self.first, self.second)[end]
         return name if self.housed[end] else f"{name} (cold)"
 

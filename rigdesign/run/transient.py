@@ -18,7 +18,7 @@ from rigdesign.results.units import MM, RPM, ZERO
 from rigdesign.rig.model import Rig
 from rigdesign.run.transient_alignment import misalignments, worst_misalignments
 from rigdesign.run.transient_oil import oil_power_curve, worst_powers
-from rigdesign.run.warnings import cold_oil
+from rigdesign.run.warnings import oil_at_room_temperature
 from rigdesign.transient.branch import Branch
 from rigdesign.transient.clearances import QUANTITIES, Quantity, smallest
 from rigdesign.transient.limits import clearance_limits
@@ -282,8 +282,8 @@ def _dwell_histories(branch: Branch, at: NDArray[np.intp]) -> Iterator[DwellHist
 
 
 def _oil_at_start(solved: SolvedRig) -> Iterator[Finding]:
-    """What is too thick to be pumped when the rig is as cold as the room."""
-    yield from (Finding(id="oil", text=text) for text in cold_oil(solved.rig))
+    """Oil that is too thick to be pumped at the temperature of the room."""
+    yield from (Finding(id="oil", text=text) for text in oil_at_room_temperature(solved.rig))
 
 
 def _warnings(run: TransientRun) -> Iterator[Finding]:
@@ -305,7 +305,7 @@ def simplifications(rig: Rig) -> Sequence[str]:
     """What the thermal history leaves out."""
     return (
         "over time: losses and films are those of the coupled steady run, interpolated over speed and torque; "
-        "thicker oil and tighter bearings of a rig still cold are not fed back into them",
+        "thicker oil and tighter bearings of a rig that still warms up are not fed back into them",
         "over time: every oil is fed at its inlet temperature from the first moment on, whatever heaters and cooler "
         "must give or take for it; the heat content of tanks and pipes is left out",
         "over time: at standstill gears stand still; jets do not reach them, still air and the shafts warm them",

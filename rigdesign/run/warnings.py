@@ -71,7 +71,7 @@ def _gears(solved: SolvedRig) -> Iterator[str]:
     for point in solved.points:
         for model in point.last.models:
             for text in solved.rig.pairs[model.name].warnings:
-                yield f"{model.name}, cold: {text}"
+                yield f"{model.name}, as drawn: {text}"
             for text in model.pair.warnings:
                 yield f"{model.name}, hot, stage {point.point.stage}: {text}"
             for text in model.stiffness.warnings:
@@ -174,12 +174,14 @@ def _oils(solved: SolvedRig) -> Iterator[str]:
                     yield f"{stream.name}, stage {point.point.stage}: {text}"
 
 
-def cold_oil(rig: Rig) -> Iterator[str]:
-    """Every oil as the rig starts: as cold as the room."""
+def oil_at_room_temperature(rig: Rig) -> Iterator[str]:
+    """Every oil as the rig starts: at the temperature of the room."""
     room = rig.case.ambient.temperature
     for name in rig.case.gearboxes:
         for kind, oil in (("gear_oil", gear_oil(rig, name)), ("bearing_oil", bearing_oil(rig, name))):
-            yield from (f"{name}.{kind}, start in the cold: {text}" for text in oil.warnings(room))
+            yield from (
+                f"{name}.{kind}, start at the temperature of the room: {text}" for text in oil.warnings(room)
+            )
 
 
 def _warming(solved: SolvedRig) -> Iterator[str]:

@@ -155,7 +155,7 @@ def _bearing_network(
     for placed in own:
         if placed.loss.kind == "bearing":
             friction[placed.part] += placed.loss.power
-    beside = math.fsum(placed.into_bearing_oil for placed in own if placed.loss.kind != "bearing")
+    others = math.fsum(placed.into_bearing_oil for placed in own if placed.loss.kind != "bearing")
     parts = [
         _films(BEARING_OIL, feed, fed.inlet, wetted, oil),
         *(_films(f"{BEARING_FILM}:{part}", feed, fed.inlet, wetted, oil) for part in box.bearings),
@@ -170,7 +170,7 @@ def _bearing_network(
     return StreamNetwork(
         specific_heat=specific_heat,
         volumes=(
-            Volume(name=BEARING_OIL, power=beside),
+            Volume(name=BEARING_OIL, power=others),
             *(Volume(name=f"{BEARING_FILM}:{part}", power=friction[part]) for part in box.bearings),
         ),
         films=tuple(film for part in parts for film in part.films),

@@ -17,10 +17,10 @@ Trial = Callable[[int], bool]
 """Whether all limits of clearances hold after the warm-up has been left at this of its time steps."""
 
 
-def soak_of(case: Case, planned: Branch, cold: Branch | None, trial: Trial) -> Soak:
+def soak_of(case: Case, planned: Branch, unwarmed: Branch | None, trial: Trial) -> Soak:
     """Soak time of one gearbox.
 
-    planned : the schedule with its warm-up; cold : without it, None if the case does not ask for it
+    planned : the schedule with its warm-up; unwarmed : without it, None if the case does not ask for it
     trial : runs the schedule from a time step of the warm-up to the end of the dwell
     """
     stage = next(phase.name for phase in planned.phases if phase.held)
@@ -42,12 +42,12 @@ def soak_of(case: Case, planned: Branch, cold: Branch | None, trial: Trial) -> S
         return _soak(
             planned, stage, None, f"after the planned warm-up of {hours(planned.phases[0].duration)}: {text}"
         )
-    if cold is None:
+    if unwarmed is None:
         return _soak(
             planned, stage, planned.phases[0].duration,
             "the planned warm-up is enough; a shorter one was not tried (event cold_start is not listed)",
         )  # fmt: skip
-    text = first_broken(case, cold)
+    text = first_broken(case, unwarmed)
     if text is None:
         return _soak(planned, stage, 0.0, "every limit of a clearance holds from a cold start")
     steps = [i for i, number in enumerate(planned.phase) if number == 0]

@@ -1,4 +1,5 @@
-"""The rig with one input at one end of its range: from the settled stated rig, only what the input touches again."""
+"""The rig with one input at one end of its range: from the converged stated rig, only what the input touches
+is solved again."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -65,7 +66,7 @@ class EndResult:
 
 @dataclass(frozen=True, kw_only=True)
 class Reference:
-    """The settled stated rig, small enough to be handed to worker processes; they make the rest again from it."""
+    """The converged stated rig, small enough to be handed to worker processes; they make the rest again from it."""
 
     case: Case
     states: tuple[CouplingState, ...]
@@ -78,7 +79,7 @@ class Reference:
     key: str
 
 
-def settle(case: Case) -> tuple[Reference, EndResult]:
+def solve_stated(case: Case) -> tuple[Reference, EndResult]:
     """Solve the stated rig and say what its checks are."""
     with solver_errors(case), threadpool_limits(limits=1):
         solved = solve_case(case, FIDELITY)
@@ -128,7 +129,7 @@ def _stated(reference: Reference) -> SolvedRig:
 
 
 def _restored(reference: Reference) -> SolvedRig:
-    """The stated rig with its fields, from its settled coupling state."""
+    """The stated rig with its fields, from its converged coupling state."""
     rig = build_rig(reference.case, FIDELITY)
     points = [
         solve_point(rig, point, start=coupling_state)

@@ -18,7 +18,7 @@ from rigdesign.results.check import Checks
 from rigdesign.results.ranges import LeftOut, RangedInput, RangesResult, TemperatureRange
 from rigdesign.results.result import RunResult
 from rigdesign.uncertainty.plan import RangeEnd, plan
-from rigdesign.uncertainty.point import FIDELITY, EndResult, Reference, settle, solve_end
+from rigdesign.uncertainty.point import FIDELITY, EndResult, Reference, solve_end, solve_stated
 from rigdesign.uncertainty.verdicts import (
     Ranged,
     check_range,
@@ -66,7 +66,7 @@ def with_ranges(
     wanted = [end for end in ends if end.case is not None and not end.same]
     if progress is not None:
         progress(f"stated rig at {FIDELITY} fidelity")
-    reference, stated = settle(case)
+    reference, stated = solve_stated(case)
     solved = _solve(wanted, reference, processes, count or (lambda done, whole, path: None))
     outcomes = [_outcome(end, stated, solved) for end in ends]
     found = joined(result, stated, list(zip(ends, outcomes, strict=True)), left)

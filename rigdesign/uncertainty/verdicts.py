@@ -93,7 +93,7 @@ def judged(ranged: Ranged) -> Check:
     doubts = [_words(end, check, "fails") for end in broken]
     doubts = [f"decided by assumption {text}" for text in doubts]
     doubts += [
-        f"no result at {end.path} = {end.value}, on which it rests: {error.partition(chr(10))[0]}"
+        f"no result at {end.path} = {end.value}, on which it depends: {error.partition(chr(10))[0]}"
         for end, error in ranged.unsolved
     ]
     return replace(check, verdict="warn", reason=_joined(check.reason, doubts)) if doubts else check

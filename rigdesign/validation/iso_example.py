@@ -11,7 +11,7 @@ from math import pi, radians
 from dynamics.gear.cylindrical_gear import Rack
 from dynamics.gear.pair import GearPair
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, mesh_data
-from rigdesign.validation.rows import ValidationRow, compare_printed, not_modelled
+from rigdesign.validation.rows import PublishedQuantity, ValidationRow, compare_printed, not_modelled
 
 SOURCE = "ISO/TR 6336-30 example 1"
 TORQUE, SPEED = 9000.0, 360.0 * pi / 30.0
@@ -58,13 +58,25 @@ def iso_example_rows() -> Iterator[ValidationRow]:
     )
     for symbol, text, computed, unit in printed:
         yield compare_printed(
-            id=f"TR6336-30-1-{symbol}", quantity=f"{symbol}, example 1", source=SOURCE, printed=text,
-            computed=computed, unit=unit,
+            PublishedQuantity(
+                id=f"TR6336-30-1-{symbol}",
+                text=f"{symbol}, example 1",
+                source=SOURCE,
+                printed=text,
+                unit=unit,
+            ),
+            computed,
             assumptions="tip diameters rounded to 0.01 mm" if symbol.startswith("c_gamma") else "",
-        )  # fmt: skip
+        )
     for symbol, text in PITTING:
         yield not_modelled(
-            id=f"TR6336-30-1-{symbol}", quantity=f"{symbol}, example 1", source=SOURCE, published=text,
-            unit="MPa" if symbol.startswith("sigma") else "1", basis="verification",
+            PublishedQuantity(
+                id=f"TR6336-30-1-{symbol}",
+                text=f"{symbol}, example 1",
+                source=SOURCE,
+                printed=text,
+                unit="MPa" if symbol.startswith("sigma") else "1",
+            ),
+            "verification",
             reason="flank load capacity and face load factor (ISO 6336-1 clause 7, 6336-2) are not modelled",
-        )  # fmt: skip
+        )

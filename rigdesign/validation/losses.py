@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dynamics.gear.pair import GearPair
 from dynamics.mesh.sliding import ToothPath, ohlendorf_factor, tooth_loss_factor
 from rigdesign.validation.prototype import Prototype
-from rigdesign.validation.rows import ValidationRow, compare, compare_printed, stated
+from rigdesign.validation.rows import PublishedQuantity, ValidationRow, compare, compare_printed
 
 SOURCE = "DIN ISO 14635-1 geometry, Ohlendorf as in FVA"
 
@@ -19,31 +19,55 @@ def loss_rows(prototype: Prototype) -> Iterator[ValidationRow]:
     """H_V of FZG-C and FZG-A, and of the test gear for two splits."""
     path_c, path_a = fzg_path(0.1817, 14e-3), fzg_path(0.8532, 20e-3)
     yield compare_printed(
-        id="FZG-C-HV", quantity="tooth-loss factor, FZG-C, integral", source=SOURCE, printed="0.1986",
-        computed=tooth_loss_factor(path_c), unit="1", assumptions="rigid load sharing, no dynamics",
-    )  # fmt: skip
+        PublishedQuantity(
+            id="FZG-C-HV",
+            text="tooth-loss factor, FZG-C, integral",
+            source=SOURCE,
+            printed="0.1986",
+            unit="1",
+        ),
+        tooth_loss_factor(path_c),
+        assumptions="rigid load sharing, no dynamics",
+    )
     yield compare_printed(
-        id="FZG-A-HV", quantity="tooth-loss factor, FZG-A, Ohlendorf's formula", source=SOURCE,
-        printed="0.3043",
-        computed=ohlendorf_factor(path_a, 16), unit="1", assumptions="closed formula, for comparison only",
-    )  # fmt: skip
+        PublishedQuantity(
+            id="FZG-A-HV",
+            text="tooth-loss factor, FZG-A, Ohlendorf's formula",
+            source=SOURCE,
+            printed="0.3043",
+            unit="1",
+        ),
+        ohlendorf_factor(path_a, 16),
+        assumptions="closed formula, for comparison only",
+    )
     yield compare(
-        id="FZG-A-HV-integral", quantity="tooth-loss factor, FZG-A, integral", source=SOURCE,
-        published=0.3043,
-        computed=tooth_loss_factor(path_a), unit="1", basis="verification",
+        PublishedQuantity(
+            id="FZG-A-HV-integral",
+            text="tooth-loss factor, FZG-A, integral",
+            source=SOURCE,
+            value=0.3043,
+            unit="1",
+        ),
+        tooth_loss_factor(path_a),
+        "verification",
         assumptions="the pitch point lies in double contact, where the closed formula counts a sign wrong",
-    )  # fmt: skip
+    )
     for identity, text, pair in (
         ("x1-0", "x1 = 0, as shipped", prototype.test_pair),
         ("equal", "x1 = x2", prototype.equal_shifts),
     ):
-        yield stated(
-            id=f"P2-HV-{identity}", quantity=f"tooth-loss factor, test gear of P2, {text}",
-            source="P2, Figure 7",
-            published="split of the profile shifts not printed", unit="1", basis="arithmetic",
-            computed=tooth_loss_factor(ToothPath.of_pair(pair)),
+        yield compare(
+            PublishedQuantity(
+                id=f"P2-HV-{identity}",
+                text=f"tooth-loss factor, test gear of P2, {text}",
+                source="P2, Figure 7",
+                printed="split of the profile shifts not printed",
+                unit="1",
+            ),
+            tooth_loss_factor(ToothPath.of_pair(pair)),
+            "arithmetic",
             assumptions="the heat of the test mesh is proportional to it",
-        )  # fmt: skip
+        )
 
 
 def fzg_path(profile_shift: float, face_width: float) -> ToothPath:

@@ -12,11 +12,12 @@ that the oil must bring.
 """
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from math import fsum
 
 from rigdesign.results.result import RunResult
 from rigdesign.results.thermal import ThermalResult
-from rigdesign.validation.rows import ValidationRow, compare, not_modelled
+from rigdesign.validation.rows import Goal, PublishedQuantity, ValidationRow, compare, not_modelled
 
 AIR, RADIATION, BEARING_OIL = "air", "radiation", "bearing_oil"
 FREE_PARAMETERS = {"as_published": 8, "fitted": 12}
@@ -30,7 +31,7 @@ HEAT: tuple[tuple[str, str, float, str, tuple[str, ...]], ...] = (
     ("heat-bearings", "heat into the oil of the bearings", 345.23, BEARING_OIL, ("bearing_bore_", "shaft_")),
 )
 EXPANSION = (("pinion", "test_pinion", 0.53), ("wheel", "test_wheel_a", 0.43))
-HEAT_GOAL, EXPANSION_GOAL, GAP_GOAL = 0.15, 0.1, 0.1
+HEAT_GOAL, EXPANSION_GOAL, GAP_GOAL = Goal(0.15), Goal(0.1), Goal(0.1)
 """Largest relative deviations of the heat flows, of the expansion of both shafts, of the seal gap."""
 HIGHEST, GAP = 178.59, 0.6
 
@@ -40,9 +41,13 @@ def main_rig_rows(run: Callable[[str], RunResult]) -> Iterator[ValidationRow]:
     for reading in FREE_PARAMETERS:
         result = run(reading)
         yield from _heat(reading, result.thermal[0])
+        highest = PublishedQuantity(
+            id="P2-Tmax", text="highest temperature", source="P2, Figure 12", value=HIGHEST, unit="degC"
+        )
+        thermal = result.thermal[0]
         yield _row(
-            reading, "Tmax", "highest temperature", "Figure 12", HIGHEST, result.thermal[0].max_temperature_degC,
-            "degC", f"at {result.thermal[0].max_temperature_body}", 5.0 / HIGHEST,
+            reading, highest, thermal.max_temperature_degC, Goal(5.0 / HIGHEST),
+            f"at {thermal.max_temperature_body}",
         )  # fmt: skip
         yield from _expansion(reading, result)
 
@@ -58,54 +63,70 @@ def rows_without_run() -> Iterator[ValidationRow]:
     numbers.append(("growth-seal-gap", "smallest hot seal gap", GAP, "mm"))
     for name, text, published, unit in numbers:
         yield not_modelled(
-            id=f"P2-{name}", quantity=f"main rig, {text}", source="P2, Figure 12", published=f"{published:g}",
-            unit=unit, basis="fitted", reason="needs the runs of cases/uhcf_main", free_parameters=12,
-        )  # fmt: skip
+            PublishedQuantity(
+                id=f"P2-{name}",
+                text=f"main rig, {text}",
+                source="P2, Figure 12",
+                printed=f"{published:g}",
+                unit=unit,
+            ),
+            "fitted",
+            reason="needs the runs of cases/uhcf_main",
+            free_parameters=12,
+        )
 
 
 def _heat(reading: str, thermal: ThermalResult) -> Iterator[ValidationRow]:
-    for name, text, published, kind, surfaces in HEAT:
+    for name, text, value, kind, surfaces in HEAT:
         rows = [row for row in thermal.heat if row.kind == kind and row.surface.startswith(surfaces)]
+        heat = PublishedQuantity(id=f"P2-{name}", text=text, source="P2, Figure 12", value=value, unit="W")
         area = fsum(row.area_m2 for row in rows)
         yield _row(
-            reading, name, text, "Figure 12", published, -fsum(row.power_W for row in rows), "W",
-            f"over {area:.2f} m2 of our box", HEAT_GOAL,
-        )  # fmt: skip
+            reading, heat, -fsum(row.power_W for row in rows), HEAT_GOAL, f"over {area:.2f} m2 of our box"
+        )
 
 
 def _expansion(reading: str, result: RunResult) -> Iterator[ValidationRow]:
     expansion = result.expansion[0]
-    for name, shaft, published in EXPANSION:
+    for name, shaft, value in EXPANSION:
         row = next(row for row in expansion.shafts if row["shaft"] == shaft)
+        growth = PublishedQuantity(
+            id=f"P2-growth-{name}",
+            text=f"expansion of the {name} shaft",
+            source="P2, text",
+            value=value,
+            unit="mm",
+        )
         yield _row(
-            reading, f"growth-{name}", f"expansion of the {name} shaft", "text", published, row["growth_mm"], "mm",
+            reading, growth, row["growth_mm"], EXPANSION_GOAL,
             "equal boxes give pinion and wheel nearly equal expansion; P2's ratio of 1.23 asks for other lengths",
-            EXPANSION_GOAL,
         )  # fmt: skip
-    gap = min(row["hot_min_mm"] for row in expansion.seal_gaps)
+    gap = PublishedQuantity(
+        id="P2-growth-seal-gap",
+        text="smallest hot seal gap",
+        source="P2, text: still 0.6 mm",
+        value=GAP,
+        unit="mm",
+    )
     yield _row(
-        reading, "growth-seal-gap", "smallest hot seal gap", "text: still 0.6 mm", GAP, gap, "mm",
-        "the warm partitions lift their bores against the shafts, which the cold end walls carry", GAP_GOAL,
+        reading, gap, min(row["hot_min_mm"] for row in expansion.seal_gaps), GAP_GOAL,
+        "the warm partitions lift their bores against the shafts, which the cold end walls carry",
     )  # fmt: skip
 
 
 def _row(
-    reading: str,
-    name: str,
-    text: str,
-    place: str,
-    published: float,
-    computed: float,
-    unit: str,
-    remark: str,
-    goal: float,
+    reading: str, published: PublishedQuantity, computed: float, goal: Goal, remark: str
 ) -> ValidationRow:
+    """Row of one reading of the paper: with the fitted coefficients, or with the printed ones."""
     mark, words = (
         ("", "fitted coefficients") if reading == "fitted" else ("-as-published", "printed coefficients")
     )
+    named = replace(published, id=f"{published.id}{mark}", text=f"main rig, {published.text}, {words}")
     return compare(
-        id=f"P2-{name}{mark}", quantity=f"main rig, {text}, {words}", source=f"P2, {place}",
-        published=published, computed=computed, unit=unit,
-        basis="fitted", goal=goal, free_parameters=FREE_PARAMETERS[reading],
+        named,
+        computed,
+        "fitted",
+        goal,
+        free_parameters=FREE_PARAMETERS[reading],
         assumptions=f"cases/uhcf_main/{reading}.toml, quick; box, shafts and materials are ours; {remark}",
-    )  # fmt: skip
+    )

@@ -13,7 +13,7 @@ from dynamics.response.periodic_response import TimeSettings, periodic_by_time
 from rigdesign.rig.model import Rig
 from rigdesign.validation.oscillator import oscillator_rows
 from rigdesign.validation.prototype import RPM, TEST_TORQUE, Prototype
-from rigdesign.validation.rows import ValidationRow, compare, not_modelled, stated
+from rigdesign.validation.rows import Gate, PublishedQuantity, ValidationRow, Window, compare, not_modelled
 from rigdesign.validation.speed_sweeps import simulation_laws, smooth
 
 Array = NDArray[np.float64]
@@ -27,10 +27,16 @@ def mechanics_rows(prototype: Prototype) -> Iterator[ValidationRow]:
     """V4, V5, V11 and V12 of the validation sheet."""
     yield from oscillator_rows()
     yield not_modelled(
-        id="V5-rotor", quantity="geared rotor, mesh mode", source="Kahraman et al. 1992", published="2524",
-        unit="Hz",
-        basis="verification", reason="needs bending of the shafts; the drivetrain is torsional",
-    )  # fmt: skip
+        PublishedQuantity(
+            id="V5-rotor",
+            text="geared rotor, mesh mode",
+            source="Kahraman et al. 1992",
+            printed="2524",
+            unit="Hz",
+        ),
+        "verification",
+        reason="needs bending of the shafts; the drivetrain is torsional",
+    )
     yield from _energy_rows(prototype)
     yield _closure_row(prototype)
     yield _momentum_row(prototype)
@@ -50,22 +56,34 @@ def _energy_rows(prototype: Prototype) -> Iterator[ValidationRow]:
         ("-wave", "k(angle) waving by 30 %, 100 meshes at 12,000 rpm", wave, _torques, 12000.0, 100, 1e-3),
     )
     for identity, text, law, torques, speed, meshes, limit in cases:
-        yield stated(
-            id=f"V11-energy{identity}", quantity=f"energy drift per strain energy, {text}", source=ENERGY,
-            published="conserved", computed=_drift(rig, law, torques, speed, meshes), unit="1",
-            basis="verification",
-            window=(0.0, limit), assumptions=free,
-        )  # fmt: skip
-    yield stated(
-        id="V11-energy-control", quantity="the same with force times base radius only, k(angle) waving by "
-        "30 %",
-        source=ENERGY, published="above 0.3", computed=_drift(rig, wave, _bare_torques, 12000.0, 100),
-        unit="1",
-        basis="verification", window=(0.3, np.inf),
+        yield compare(
+            PublishedQuantity(
+                id=f"V11-energy{identity}",
+                text=f"energy drift per strain energy, {text}",
+                source=ENERGY,
+                printed="conserved",
+                unit="1",
+            ),
+            _drift(rig, law, torques, speed, meshes),
+            "verification",
+            Window(0.0, limit),
+            assumptions=free,
+        )
+    yield compare(
+        PublishedQuantity(
+            id="V11-energy-control",
+            text="the same with force times base radius only, k(angle) waving by 30 %",
+            source=ENERGY,
+            printed="above 0.3",
+            unit="1",
+        ),
+        _drift(rig, wave, _bare_torques, 12000.0, 100),
+        "verification",
+        Window(0.3, np.inf),
         assumptions="negative control: without the torque from the change of stiffness over the angle "
         "energy is made and lost; the shipped law shows "
         f"{_drift(rig, shipped, _bare_torques, 12000.0, 100):.2g}",
-    )  # fmt: skip
+    )
 
 
 def _waved(law: MeshLaw, depth: float) -> MeshLaw:
@@ -149,13 +167,19 @@ def _closure_row(prototype: Prototype) -> ValidationRow:
     laws = [smooth(law)._replace(backlash=0.0, damping=0.0, offset=0.0) for law in simulation_laws(prototype)]
     state = solve_static(port_model(rig.system, laws), LoopLoad(torque=TEST_TORQUE))
     return compare(
-        id="V12-closure", quantity="stiffness of the closed loop, torque per bracing twist",
-        source="series sum of sections, splines, couplings and meshes",
-        published=_series_stiffness(rig, laws),
-        computed=TEST_TORQUE / state.twist, unit="N m/rad", basis="verification", gate=1e-6,
+        PublishedQuantity(
+            id="V12-closure",
+            text="stiffness of the closed loop, torque per bracing twist",
+            source="series sum of sections, splines, couplings and meshes",
+            value=_series_stiffness(rig, laws),
+            unit="N m/rad",
+        ),
+        TEST_TORQUE / state.twist,
+        "verification",
+        Gate(1e-6),
         assumptions="meshes as constant springs of their mean stiffness, no play; the sum is taken by hand, "
         "section by section from gear to coupling",
-    )  # fmt: skip
+    )
 
 
 def _momentum_row(prototype: Prototype) -> ValidationRow:
@@ -170,13 +194,20 @@ def _momentum_row(prototype: Prototype) -> ValidationRow:
         settings=TimeSettings(tolerance=1e-4, internal_rate=640e3),
     )
     return compare(
-        id="V12-momentum", quantity=f"drive power of the time integration against its losses, {DWELL:.0f} rpm",
-        source="momentum balance", published=run.total_loss, computed=run.drive_power + run.bracing_power, unit="W",
-        basis="verification", gate=1e-3,
+        PublishedQuantity(
+            id="V12-momentum",
+            text=f"drive power of the time integration against its losses, {DWELL:.0f} rpm",
+            source="momentum balance",
+            value=run.total_loss,
+            unit="W",
+        ),
+        run.drive_power + run.bracing_power,
+        "verification",
+        Gate(1e-3),
         assumptions="motor torque from the momentum gained and lost from block to block; losses integrated from the "
         "contacts, the rates of the joints and the bearing drag"
         + ("" if run.steady else f"; not steady: {'; '.join(run.warnings)}"),
-    )  # fmt: skip
+    )
 
 
 def _series_stiffness(rig: Rig, laws: list[MeshLaw]) -> float:

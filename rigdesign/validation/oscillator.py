@@ -19,7 +19,7 @@ from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_balance import solve_periodic
 from dynamics.response.harmonic_problem import BalanceProblem, HarmonicGrid, HarmonicSolution
 from dynamics.response.waveform import waveform
-from rigdesign.validation.rows import ValidationRow, compare
+from rigdesign.validation.rows import Gate, PublishedQuantity, ValidationRow, compare
 
 ZETA, MEAN_FORCE, FORCE = 0.05, 0.1, 0.05
 BOTH = {
@@ -47,13 +47,19 @@ def oscillator_rows() -> Iterator[ValidationRow]:
         found = sweep(steps if direction == "up" else steps[::-1])
         for frequency in SHOWN[direction]:
             yield compare(
-                id=f"V4-{direction}-{frequency:.2f}",
-                quantity=f"piecewise-linear oscillator, half peak-to-peak at {frequency:.2f}, sweep "
-                f"{direction}",
-                source="Kahraman and Singh 1990, DOP853", published=published[frequency],
-                computed=found[frequency], unit="1", basis="verification", gate=5e-3,
+                PublishedQuantity(
+                    id=f"V4-{direction}-{frequency:.2f}",
+                    text=f"piecewise-linear oscillator, half peak-to-peak at {frequency:.2f}, sweep "
+                    f"{direction}",
+                    source="Kahraman and Singh 1990, DOP853",
+                    value=published[frequency],
+                    unit="1",
+                ),
+                found[frequency],
+                "verification",
+                Gate(5e-3),
                 assumptions="harmonic balance with 24 harmonics; damper grounded",
-            )  # fmt: skip
+            )
 
 
 def sweep(frequencies: Sequence[float]) -> dict[float, float]:

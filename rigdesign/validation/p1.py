@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from rigdesign.validation.rows import Basis, ValidationRow, not_modelled
+from rigdesign.validation.rows import Basis, PublishedQuantity, ValidationRow, not_modelled
 
 NO_CASE = "no case of P1's rig yet: its tooth numbers, helix angle and profile shifts are not printed"
 NO_FE = "needs loaded tooth contact with FE influence numbers and stress at a gauge"
@@ -38,11 +38,7 @@ def p1_rows() -> Iterator[ValidationRow]:
     """Every number of P1 with what it waits for."""
     for identity, quantity, source, published, unit, basis, reason in ROWS:
         yield not_modelled(
-            id=identity,
-            quantity=quantity,
-            source=source,
-            published=published,
-            unit=unit,
-            basis=basis,
+            PublishedQuantity(id=identity, text=quantity, source=source, printed=published, unit=unit),
+            basis,
             reason=reason,
         )

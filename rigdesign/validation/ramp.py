@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dynamics.response.schedule import RampLimits, ramp_rules
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.validation.prototype import RPM, Prototype
-from rigdesign.validation.rows import ValidationRow, compare, stated
+from rigdesign.validation.rows import PublishedQuantity, ValidationRow, compare
 
 SOURCE = "P2, Figure 9"
 P2_LIMITS = RampLimits(
@@ -37,16 +37,24 @@ def ramp_rows(prototype: Prototype) -> Iterator[ValidationRow]:
     )
     for name, quantity, published, computed, unit in values:
         yield compare(
-            id=f"P2-ramp-{name}", quantity=quantity, source=SOURCE, published=published, computed=computed,
-            unit=unit,
-            basis="input", assumptions="input of the shipped schedule; durations are not printed",
-        )  # fmt: skip
+            PublishedQuantity(id=f"P2-ramp-{name}", text=quantity, source=SOURCE, value=published, unit=unit),
+            computed,
+            "input",
+            assumptions="input of the shipped schedule; durations are not printed",
+        )
     rules = ramp_rules(schedule_of(prototype.rig), P2_LIMITS)
     held = sum(rule.holds for rule in rules)
-    yield stated(
-        id="P2-ramp-rules", quantity=f"ramp rules of P2 that the schedule keeps, of {len(rules)}",
-        source=SOURCE,
-        published="the order of the five steps", computed=float(held), unit="1", basis="input",
-        assumptions="; ".join(f"{rule.text} {rule.value:g} {rule.comparison} {rule.limit:g} N "
-        f"m" for rule in rules),
-    )  # fmt: skip
+    yield compare(
+        PublishedQuantity(
+            id="P2-ramp-rules",
+            text=f"ramp rules of P2 that the schedule keeps, of {len(rules)}",
+            source=SOURCE,
+            printed="the order of the five steps",
+            unit="1",
+        ),
+        float(held),
+        "input",
+        assumptions="; ".join(
+            f"{rule.text} {rule.value:g} {rule.comparison} {rule.limit:g} N m" for rule in rules
+        ),
+    )

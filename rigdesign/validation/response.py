@@ -29,7 +29,7 @@ from dynamics.drivetrain.modes import loop_modes
 from dynamics.rating.iso_rating import dynamic_factor
 from rigdesign.validation.gears import REFERENCE_RESONANCE, resonance_speed
 from rigdesign.validation.prototype import REFERENCE_OPTIONS, RPM, TEST_TORQUE, Prototype
-from rigdesign.validation.rows import Bound, Published, ValidationRow, compare, stated
+from rigdesign.validation.rows import Bound, Goal, Published, PublishedQuantity, ValidationRow, compare
 from rigdesign.validation.shafts import SHAFT_PARAMETERS
 from rigdesign.validation.speed_sweeps import (
     COARSE,
@@ -98,13 +98,21 @@ def response_rows(prototype: Prototype) -> Iterator[ValidationRow]:
     yield _influence("reference", 1, main, course(prototype, [smooth(laws[0]), laws[1]], FINE))
     yield _influence("test", 0, main, course(prototype, [laws[0], smooth(laws[1])], FINE))
     yield compare(
-        id="P2-drive", quantity="drive torque at 12,000 rpm and 180 N m", source="P2, dynamic simulation",
-        published=9.0, published_text="9, reaches 12,000 rpm", bound="at most",
-        computed=float(main.drive[-1]),
-        unit="N m", basis="predicted", free_parameters=1,
+        PublishedQuantity(
+            id="P2-drive",
+            text="drive torque at 12,000 rpm and 180 N m",
+            source="P2, dynamic simulation",
+            value=9.0,
+            printed="9, reaches 12,000 rpm",
+            bound="at most",
+            unit="N m",
+        ),
+        float(main.drive[-1]),
+        "predicted",
+        free_parameters=1,
         assumptions="P2 runs up with 9 N m, so the losses must stay below; eight bearings of 0.0007 N m "
         "s/rad (number assumed), tooth friction by Schlenk, mesh damping; no windage, as in P2's simulation",
-    )  # fmt: skip
+    )
 
 
 def _amplitude_readings() -> Iterator[ValidationRow]:
@@ -114,13 +122,19 @@ def _amplitude_readings() -> Iterator[ValidationRow]:
     ):
         for name, share in (("zero to peak", 1.0), ("half peak-to-peak", 0.5)):
             yield compare(
-                id=f"P2-KVsim-reading-{amplitude:.0f}-{name.replace(' ', '-')}",
-                quantity=f"K_V from {amplitude:.0f} N m of Figure 7 as {name}, {place}", source=FIGURE_8,
-                published=published, published_text=text, computed=1.0 + share * amplitude / TEST_TORQUE,
-                unit="1",
-                basis="arithmetic", assumptions="1 + amplitude / 180 N m or 1 + half of it; Figures 7 and 8 "
+                PublishedQuantity(
+                    id=f"P2-KVsim-reading-{amplitude:.0f}-{name.replace(' ', '-')}",
+                    text=f"K_V from {amplitude:.0f} N m of Figure 7 as {name}, {place}",
+                    source=FIGURE_8,
+                    value=published,
+                    printed=text,
+                    unit="1",
+                ),
+                1.0 + share * amplitude / TEST_TORQUE,
+                "arithmetic",
+                assumptions="1 + amplitude / 180 N m or 1 + half of it; Figures 7 and 8 "
                 "of P2 agree in neither reading",
-            )  # fmt: skip
+            )
 
 
 def _simulated_factors(
@@ -141,18 +155,36 @@ def _simulated_factors(
         value, speed = main.highest(mesh, limits)
         bound: Bound | None = "at least" if identity == "TG-sub" else None
         yield compare(
-            id=f"P2-KVsim-{identity}", quantity=f"simulated K_V (max/mean), {text}", source=FIGURE_8,
-            published=published, published_text=printed, computed=value, unit="1", basis="predicted",
-            goal=GOAL, bound=bound,
+            PublishedQuantity(
+                id=f"P2-KVsim-{identity}",
+                text=f"simulated K_V (max/mean), {text}",
+                source=FIGURE_8,
+                value=published,
+                printed=printed,
+                bound=bound,
+                unit="1",
+            ),
+            value,
+            "predicted",
+            Goal(GOAL),
             assumptions=_depends_on(main, variants, mesh, limits, speed) + (f"; {why}" if why else ""),
-        )  # fmt: skip
+        )
         for name, curve in others.items():
             short, instead = READINGS[name]
             yield compare(
-                id=f"P2-KVsim-{identity}-{name}", quantity=f"the same, {short}, {text}", source=FIGURE_8,
-                published=published, published_text=printed, computed=curve.highest(mesh, limits)[0], unit="1",
-                basis="predicted", bound=bound, assumptions=instead + curve.left_out(limits),
-            )  # fmt: skip
+                PublishedQuantity(
+                    id=f"P2-KVsim-{identity}-{name}",
+                    text=f"the same, {short}, {text}",
+                    source=FIGURE_8,
+                    value=published,
+                    printed=printed,
+                    bound=bound,
+                    unit="1",
+                ),
+                curve.highest(mesh, limits)[0],
+                "predicted",
+                assumptions=instead + curve.left_out(limits),
+            )
 
 
 def _reference_main_resonance(
@@ -170,11 +202,18 @@ def _reference_main_resonance(
          UNSCALED + unscaled.left_out(MAIN)),
     )  # fmt: skip
     for suffix, text, computed, assumptions in rows:
-        yield stated(
-            id=f"P2-KVsim-RG-main{suffix}", quantity=f"{text}, reference gear, main resonance",
-            source=FIGURE_8, published="sufficiently accurate by ISO 6336, no number", computed=computed, unit="1",
-            basis="predicted", assumptions=assumptions,
-        )  # fmt: skip
+        yield compare(
+            PublishedQuantity(
+                id=f"P2-KVsim-RG-main{suffix}",
+                text=f"{text}, reference gear, main resonance",
+                source=FIGURE_8,
+                printed="sufficiently accurate by ISO 6336, no number",
+                unit="1",
+            ),
+            computed,
+            "predicted",
+            assumptions=assumptions,
+        )
 
 
 def _depends_on(
@@ -199,12 +238,20 @@ def _amplitudes(main: SpeedSweep) -> Iterator[ValidationRow]:
     for identity, text, mesh, limits, published, printed, bound in places:
         for name, value in zip(("max-mean", "max-min"), main.amplitude(mesh, limits)):
             yield compare(
-                id=f"P2-dM-{identity}-{name}", quantity=f"torque amplitude {name.replace('-', ' - ')}, "
-                f"{text}",
-                source=FIGURE_7, published=published, published_text=printed, computed=value, unit="N m",
-                basis="predicted", bound=bound, assumptions="P2 does not say whether its amplitude is "
+                PublishedQuantity(
+                    id=f"P2-dM-{identity}-{name}",
+                    text=f"torque amplitude {name.replace('-', ' - ')}, {text}",
+                    source=FIGURE_7,
+                    value=published,
+                    printed=printed,
+                    bound=bound,
+                    unit="N m",
+                ),
+                value,
+                "predicted",
+                assumptions="P2 does not say whether its amplitude is "
                 "zero-to-peak or peak-to-peak; depends on the same as P2-KVsim",
-            )  # fmt: skip
+            )
 
 
 def _peaks(main: SpeedSweep) -> Iterator[ValidationRow]:
@@ -217,34 +264,55 @@ def _peaks(main: SpeedSweep) -> Iterator[ValidationRow]:
         nearest = float(peaks[int(np.argmin(np.abs(peaks - published)))])
         found = "" if abs(nearest / published - 1.0) < 0.15 else "no peak there in this model; "
         yield compare(
-            id=f"P2-peak-{identity}", quantity=f"response peak nearest to P2's resonance {identity}",
-            source=FIGURE_7,
-            published=published, computed=nearest, unit="rpm", basis="fitted", free_parameters=FITTED_SHAFTS,
+            PublishedQuantity(
+                id=f"P2-peak-{identity}",
+                text=f"response peak nearest to P2's resonance {identity}",
+                source=FIGURE_7,
+                value=published,
+                unit="rpm",
+            ),
+            nearest,
+            "fitted",
+            free_parameters=FITTED_SHAFTS,
             assumptions=f"{found}follows from shafts fitted to Table 2; peaks of K_V that stand out by 0.01: "
             f"{', '.join(f'{peak:.0f}' for peak in peaks)} rpm; P2 identifies its peaks with free shafts, "
             "here they are modes of the closed loop",
-        )  # fmt: skip
+        )
     value, speed = main.highest(1, (1000.0, 4500.0))
     yield compare(
-        id="P2-nE-RG-sim", quantity="speed of the strongest peak of the reference gear", source="P2, text",
-        published=REFERENCE_RESONANCE, computed=speed, unit="rpm", basis="fitted",
+        PublishedQuantity(
+            id="P2-nE-RG-sim",
+            text="speed of the strongest peak of the reference gear",
+            source="P2, text",
+            value=REFERENCE_RESONANCE,
+            unit="rpm",
+        ),
+        speed,
+        "fitted",
         free_parameters=FITTED_SHAFTS,
         assumptions=f"P2: its simulation agrees with n_E of ISO 6336-1. K_V {value:.3f} there; splines that "
         "Table 1's dampers make rigid add the inertia of the shafts to that of the gears",
-    )  # fmt: skip
+    )
 
 
 def _late_resonances(main: SpeedSweep) -> Iterator[ValidationRow]:
     for name, mesh in (("test", 0), ("reference", 1)):
         late = [peak for peak in main.peaks(mesh) if peak >= ABOVE_4000[0]]
         value, speed = main.highest(mesh, ABOVE_4000)
-        yield stated(
-            id=f"P2-free-{name}", quantity=f"highest K_V above 4000 rpm, {name} gear", source="P2, text",
-            published="no further significant resonance", computed=value, unit="1", basis="predicted",
+        yield compare(
+            PublishedQuantity(
+                id=f"P2-free-{name}",
+                text=f"highest K_V above 4000 rpm, {name} gear",
+                source="P2, text",
+                printed="no further significant resonance",
+                unit="1",
+            ),
+            value,
+            "predicted",
             assumptions=f"at {speed:.0f} rpm{main.left_out(ABOVE_4000)}; peaks at "
             f"{', '.join(f'{peak:.0f}' for peak in late) or 'no speed'} rpm. Table 2 puts the second mode of "
             "the reference pinion at 4705 rpm",
-        )  # fmt: skip
+        )
 
 
 def _influence(name: str, mesh: int, main: SpeedSweep, alone: SpeedSweep) -> ValidationRow:
@@ -252,11 +320,16 @@ def _influence(name: str, mesh: int, main: SpeedSweep, alone: SpeedSweep) -> Val
     both, first, second = np.intersect1d(main.speed, alone.speed, return_indices=True)
     change = np.abs(main.factor[first, mesh] / alone.factor[second, mesh] - 1.0)
     at = int(np.argmax(change))
-    return stated(
-        id=f"P2-free-influence-{name}", quantity="largest influence of the other gearbox on K_V of the "
-        f"{name} gear",
-        source="P2, text", published="the gearboxes do not influence each other", computed=float(change[at]),
-        unit="1", basis="predicted",
+    return compare(
+        PublishedQuantity(
+            id=f"P2-free-influence-{name}",
+            text=f"largest influence of the other gearbox on K_V of the {name} gear",
+            source="P2, text",
+            printed="the gearboxes do not influence each other",
+            unit="1",
+        ),
+        float(change[at]),
+        "predicted",
         assumptions=f"other mesh replaced by a constant spring; at {both[at]:.0f} rpm K_V "
         f"{main.factor[first, mesh][at]:.3f} with and {alone.factor[second, mesh][at]:.3f} without it",
-    )  # fmt: skip
+    )

@@ -1,6 +1,6 @@
-"""One row of `rigdesign validate`: a published number against ours, with what it is worth."""
+"""One row of `rigdesign validate`: a published number and ours, with what agreement is worth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 Basis = Literal["predicted", "fitted", "arithmetic", "input", "verification"]
@@ -43,145 +43,129 @@ class ValidationRow:
         return "" if self.computed is None else f"{self.computed:.6g}"
 
 
+@dataclass(frozen=True, kw_only=True)
+class PublishedQuantity:
+    """What a publication prints: a number, a range, or words only."""
+
+    id: str
+    text: str
+    """What it is."""
+    source: str
+    unit: str
+    value: Published | None = None
+    """None where `printed` is words, or where the digits of `printed` are the value."""
+    printed: str | None = None
+    """As printed, where that is not the number itself (``above 1.5``)."""
+    bound: Bound | None = None
+    """For a printed limit, on whose right side there is no deviation."""
+
+    @property
+    def as_printed(self) -> str:
+        """Value in words."""
+        if self.printed is not None:
+            return self.printed
+        return "" if self.value is None else _text(self.value)
+
+    def deviation(self, computed: float) -> float | None:
+        """Of a computed value, relative; from the nearer end of a range, zero inside it. None for words."""
+        if self.value is None:
+            return None
+        found = _deviation(self.value, computed)
+        if self.bound is None:
+            return found
+        return min(found, 0.0) if self.bound == "at least" else max(found, 0.0)
+
+
+@dataclass(frozen=True)
+class Gate:
+    """The deviation must not be larger."""
+
+    largest_deviation: float
+    """Relative."""
+
+
+@dataclass(frozen=True)
+class Goal:
+    """The deviation should not be larger; a goal that is missed is reported."""
+
+    largest_deviation: float
+    """Relative."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """The computed value itself must lie within."""
+
+    low: float
+    high: float
+
+
 def compare(
-    *,
-    id: str,  # noqa: A002 - the name in the document's contract
-    quantity: str,
-    source: str,
-    published: Published,
+    published: PublishedQuantity,
     computed: float,
-    unit: str,
     basis: Basis,
-    gate: float | None = None,
-    goal: float | None = None,
-    window: tuple[float, float] | None = None,
-    bound: Bound | None = None,
-    published_text: str | None = None,
+    criterion: Gate | Goal | Window | None = None,
+    *,
     free_parameters: int = 0,
     assumptions: str = "",
 ) -> ValidationRow:
-    """Row of a number we compute and a publication prints.
+    """Row of a number that we compute and a publication prints, or has words for; without criterion it is shown only.
 
-    ``gate`` and ``goal`` are relative tolerances: a gate must hold, a goal is reported. ``window`` is a gate
-    on the computed value itself. With none of them the row is shown only. ``bound`` says that the
-    published number is a limit, on whose right side there is no deviation. ``published_text`` replaces the
-    number as printed ("above 1.5").
-
-    Raises ValueError if more than one of gate, goal and window is given.
+    Raises
+    ------
+    ValueError
+        A gate or goal is given, and the publication prints no number.
     """
-    if sum(limit is not None for limit in (gate, goal, window)) > 1:
-        raise ValueError(f"row {id}: give one of gate, goal and window")
-    deviation = _deviation(published, computed)
-    if bound is not None:
-        deviation = min(deviation, 0.0) if bound == "at least" else max(deviation, 0.0)
-    verdict: RowVerdict = "shown"
-    if gate is not None:
-        verdict = "gate held" if abs(deviation) <= gate else "gate missed"
-    elif window is not None:
-        verdict = "gate held" if window[0] <= computed <= window[1] else "gate missed"
-    elif goal is not None:
-        verdict = "goal met" if abs(deviation) <= goal else "goal missed"
+    deviation = published.deviation(computed)
+    tolerance = None if criterion is None or isinstance(criterion, Window) else criterion.largest_deviation
+    if tolerance is not None and deviation is None:
+        raise ValueError(f"row {published.id}: words have no deviation; give a window")
     return ValidationRow(
-        id=id,
-        quantity=quantity,
-        source=source,
-        published=published,
-        published_text=_text(published) if published_text is None else published_text,
+        id=published.id,
+        quantity=published.text,
+        source=published.source,
+        published=published.value,
+        published_text=published.as_printed,
         computed=computed,
-        unit=unit,
+        unit=published.unit,
         deviation=deviation,
-        tolerance=gate if gate is not None else goal,
-        verdict=verdict,
+        tolerance=tolerance,
+        verdict=_verdict(criterion, computed, deviation),
         basis=basis,
-        window=window,
+        window=(criterion.low, criterion.high) if isinstance(criterion, Window) else None,
         free_parameters=free_parameters,
         assumptions=assumptions,
     )
 
 
 def compare_printed(
-    *,
-    id: str,  # noqa: A002
-    quantity: str,
-    source: str,
-    printed: str,
-    computed: float,
-    unit: str,
-    basis: Basis = "verification",
-    assumptions: str = "",
+    published: PublishedQuantity, computed: float, *, basis: Basis = "verification", assumptions: str = ""
 ) -> ValidationRow:
-    """Row of a gate to the printed digits: half a unit of the last digit of ``printed``."""
-    decimals = len(printed.partition(".")[2])
-    published = float(printed)
-    return compare(
-        id=id,
-        quantity=quantity,
-        source=source,
-        published=published,
-        published_text=printed,
-        computed=computed,
-        unit=unit,
-        basis=basis,
-        gate=0.5 * 10.0**-decimals / abs(published),
-        assumptions=assumptions,
-    )
+    """Row of a gate to the printed digits: half a unit of the last digit of ``published.printed``.
 
-
-def stated(
-    *,
-    id: str,  # noqa: A002
-    quantity: str,
-    source: str,
-    published: str,
-    computed: float,
-    unit: str,
-    basis: Basis,
-    window: tuple[float, float] | None = None,
-    free_parameters: int = 0,
-    assumptions: str = "",
-) -> ValidationRow:
-    """Row of a number we compute where the publication has words only; ``window`` makes it a gate."""
-    verdict: RowVerdict = "shown"
-    if window is not None:
-        verdict = "gate held" if window[0] <= computed <= window[1] else "gate missed"
-    return ValidationRow(
-        id=id,
-        quantity=quantity,
-        source=source,
-        published=None,
-        published_text=published,
-        computed=computed,
-        unit=unit,
-        deviation=None,
-        tolerance=None,
-        verdict=verdict,
-        basis=basis,
-        window=window,
-        free_parameters=free_parameters,
-        assumptions=assumptions,
-    )
+    Raises
+    ------
+    ValueError
+        What is printed is no number.
+    """
+    digits = published.as_printed
+    value, decimals = float(digits), len(digits.partition(".")[2])
+    gate = Gate(0.5 * 10.0**-decimals / abs(value))
+    return compare(replace(published, value=value), computed, basis, gate, assumptions=assumptions)
 
 
 def not_modelled(
-    *,
-    id: str,  # noqa: A002
-    quantity: str,
-    source: str,
-    published: str,
-    unit: str,
-    basis: Basis,
-    reason: str,
-    free_parameters: int = 0,
+    published: PublishedQuantity, basis: Basis, *, reason: str, free_parameters: int = 0
 ) -> ValidationRow:
-    """Row whose model does not exist yet."""
+    """Row whose model does not exist yet; the printed number is shown as words."""
     return ValidationRow(
-        id=id,
-        quantity=quantity,
-        source=source,
+        id=published.id,
+        quantity=published.text,
+        source=published.source,
         published=None,
-        published_text=published,
+        published_text=published.as_printed,
         computed=None,
-        unit=unit,
+        unit=published.unit,
         deviation=None,
         tolerance=None,
         verdict="not modelled",
@@ -189,6 +173,17 @@ def not_modelled(
         free_parameters=free_parameters,
         assumptions=reason,
     )
+
+
+def _verdict(criterion: Gate | Goal | Window | None, computed: float, deviation: float | None) -> RowVerdict:
+    if isinstance(criterion, Window):
+        return "gate held" if criterion.low <= computed <= criterion.high else "gate missed"
+    if criterion is None or deviation is None:
+        return "shown"
+    near = abs(deviation) <= criterion.largest_deviation
+    if isinstance(criterion, Gate):
+        return "gate held" if near else "gate missed"
+    return "goal met" if near else "goal missed"
 
 
 def _deviation(published: Published, computed: float) -> float:

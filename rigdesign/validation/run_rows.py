@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from math import pi
 
 from rigdesign.results.result import RunResult
-from rigdesign.validation.rows import ValidationRow, compare, stated
+from rigdesign.validation.rows import Gate, PublishedQuantity, ValidationRow, Window, compare
 
 CLOSURE = 1e-8
 """Greatest gap of a heat balance relative to the heat turned over."""
@@ -30,27 +30,45 @@ def run_rows(result: RunResult) -> Iterator[ValidationRow]:
 def _heat(result: RunResult) -> Iterator[ValidationRow]:
     for thermal in result.thermal:
         place = f"{thermal.gearbox} gearbox, {thermal.stage}"
-        yield stated(
-            id=f"run-closure-{thermal.gearbox}-{thermal.stage}", quantity=f"open heat balance, {place}",
-            source="heat balance by named surface", published="closed", computed=thermal.closure_relative,
-            unit="1",
-            basis="verification", window=(0.0, CLOSURE),
+        yield compare(
+            PublishedQuantity(
+                id=f"run-closure-{thermal.gearbox}-{thermal.stage}",
+                text=f"open heat balance, {place}",
+                source="heat balance by named surface",
+                printed="closed",
+                unit="1",
+            ),
+            thermal.closure_relative,
+            "verification",
+            Window(0.0, CLOSURE),
             assumptions=f"{thermal.nodes} nodes, fidelity {result.fidelity}; every surface by its own law, "
             "prescribed temperatures by their reactions",
-        )  # fmt: skip
-        yield stated(
-            id=f"run-Tmax-{thermal.gearbox}-{thermal.stage}", quantity=f"highest temperature, {place}",
-            source="P2, Figure 12 (main rig)", published="178.59 for the main rig",
-            computed=thermal.max_temperature_degC, unit="degC", basis="predicted",
+        )
+        yield compare(
+            PublishedQuantity(
+                id=f"run-Tmax-{thermal.gearbox}-{thermal.stage}",
+                text=f"highest temperature, {place}",
+                source="P2, Figure 12 (main rig)",
+                printed="178.59 for the main rig",
+                unit="degC",
+            ),
+            thermal.max_temperature_degC,
+            "predicted",
             assumptions=f"prototype at {thermal.max_temperature_body}; housing assumed, sinks of the "
             "bearings at film temperature instead of 40 degC",
-        )  # fmt: skip
-        yield stated(
-            id=f"run-room-{thermal.gearbox}-{thermal.stage}", quantity=f"heat to the room, {place}",
-            source="P2, Figure 12 (main rig)", published="4264 for the main rig",
-            computed=thermal.room_heat_W,
-            unit="W", basis="predicted", assumptions="prototype; housing and clamping field assumed",
-        )  # fmt: skip
+        )
+        yield compare(
+            PublishedQuantity(
+                id=f"run-room-{thermal.gearbox}-{thermal.stage}",
+                text=f"heat to the room, {place}",
+                source="P2, Figure 12 (main rig)",
+                printed="4264 for the main rig",
+                unit="W",
+            ),
+            thermal.room_heat_W,
+            "predicted",
+            assumptions="prototype; housing and clamping field assumed",
+        )
 
 
 def _losses(result: RunResult) -> Iterator[ValidationRow]:
@@ -58,22 +76,37 @@ def _losses(result: RunResult) -> Iterator[ValidationRow]:
     for row in result.losses:
         if row.stage == stage and row.kind == "mesh" and row.place.startswith("test"):
             yield compare(
-                id=f"run-loss-{row.place}", quantity=f"loss of mesh {row.place}, {stage}",
-                source="P2, structure of the thermal model (main rig)", published=500.0, computed=row.power_W,
-                unit="W", basis="predicted", free_parameters=2,
+                PublishedQuantity(
+                    id=f"run-loss-{row.place}",
+                    text=f"loss of mesh {row.place}, {stage}",
+                    source="P2, structure of the thermal model (main rig)",
+                    value=500.0,
+                    unit="W",
+                ),
+                row.power_W,
+                "predicted",
+                free_parameters=2,
                 assumptions="500 W is what P2 puts into the FE model of the main rig, for 80 kW "
                 "dissipated by the meshes; depends on the split of the profile shifts and on the friction "
                 "coefficient",
-            )  # fmt: skip
+            )
     bearings = [row.power_W for row in result.losses if row.stage == stage and row.kind in BEARING_KINDS]
     if bearings:
         yield compare(
-            id="run-loss-bearing", quantity=f"mean loss of a journal bearing, {stage}", source="P2, Table 1",
-            published=BEARING_LOSS, published_text=f"{BEARING_LOSS:.0f}, from 0.0007 N m s/rad",
-            computed=sum(bearings) / len(bearings), unit="W", basis="predicted", free_parameters=4,
+            PublishedQuantity(
+                id="run-loss-bearing",
+                text=f"mean loss of a journal bearing, {stage}",
+                source="P2, Table 1",
+                value=BEARING_LOSS,
+                printed=f"{BEARING_LOSS:.0f}, from 0.0007 N m s/rad",
+                unit="W",
+            ),
+            sum(bearings) / len(bearings),
+            "predicted",
+            free_parameters=4,
             assumptions=f"{len(bearings)} bearings of assumed size, clearance and oil, film by ISO 7902; P2 "
             "took its damping from the loss at the operating point",
-        )  # fmt: skip
+        )
 
 
 def _drive(result: RunResult) -> Iterator[ValidationRow]:
@@ -81,22 +114,34 @@ def _drive(result: RunResult) -> Iterator[ValidationRow]:
         return
     balance = result.dynamics.torque_balance[-1]
     yield compare(
-        id="run-drive", quantity=f"drive torque of the coupled case, {balance['stage']}",
-        source="P2, dynamic simulation", published=9.0, computed=float(balance["drive_torque_Nm"]),
-        unit="N m",
-        basis="predicted", free_parameters=4,
+        PublishedQuantity(
+            id="run-drive",
+            text=f"drive torque of the coupled case, {balance['stage']}",
+            source="P2, dynamic simulation",
+            value=9.0,
+            unit="N m",
+        ),
+        float(balance["drive_torque_Nm"]),
+        "predicted",
+        free_parameters=4,
         assumptions="windage, oil jets and computed bearing films included, which P2's simulation leaves out",
-    )  # fmt: skip
+    )
     if "drive_power_W" in balance:
         yield compare(
-            id="V12-power", quantity=f"drive power against the sum of all losses, {balance['stage']}",
-            source="energy balance", published=float(balance["losses_W"]),
-            computed=float(balance["drive_power_W"]),
-            unit="W", basis="verification", gate=POWER_BALANCE,
+            PublishedQuantity(
+                id="V12-power",
+                text=f"drive power against the sum of all losses, {balance['stage']}",
+                source="energy balance",
+                value=float(balance["losses_W"]),
+                unit="W",
+            ),
+            float(balance["drive_power_W"]),
+            "verification",
+            Gate(POWER_BALANCE),
             assumptions="motor torque of the periodic response times speed against meshes, mesh damping, "
             "bearings, seals, windage and jets, each by its own law; what splines and couplings lose is the "
             "difference",
-        )  # fmt: skip
+        )
 
 
 def _seal_gaps(result: RunResult) -> Iterator[ValidationRow]:
@@ -104,10 +149,16 @@ def _seal_gaps(result: RunResult) -> Iterator[ValidationRow]:
         gaps = [float(seal["hot_min_mm"]) for seal in expansion.seal_gaps]
         if gaps:
             yield compare(
-                id=f"run-seal-gap-{expansion.gearbox}-{expansion.stage}",
-                quantity=f"smallest hot seal gap, {expansion.gearbox} gearbox, {expansion.stage}",
-                source="P2, text (main rig)", published=0.6, published_text="still 0.6", computed=min(gaps),
-                unit="mm",
-                basis="predicted", free_parameters=1,
+                PublishedQuantity(
+                    id=f"run-seal-gap-{expansion.gearbox}-{expansion.stage}",
+                    text=f"smallest hot seal gap, {expansion.gearbox} gearbox, {expansion.stage}",
+                    source="P2, text (main rig)",
+                    value=0.6,
+                    printed="still 0.6",
+                    unit="mm",
+                ),
+                min(gaps),
+                "predicted",
+                free_parameters=1,
                 assumptions="prototype with the cold gap of the main rig; P2 prints one digit",
-            )  # fmt: skip
+            )

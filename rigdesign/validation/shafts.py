@@ -23,7 +23,7 @@ from dynamics.drivetrain.modes import (
     shaft_frequencies,
 )
 from rigdesign.validation.prototype import RPM, Prototype
-from rigdesign.validation.rows import ValidationRow, compare, stated
+from rigdesign.validation.rows import Gate, PublishedQuantity, ValidationRow, Window, compare
 from rigdesign.validation.speed_sweeps import TOP_SPEED, simulation_laws
 
 TABLE_2 = {
@@ -62,40 +62,67 @@ def shaft_rows(prototype: Prototype) -> Iterator[ValidationRow]:
     for shaft, printed in TABLE_2.items():
         for mode, published in enumerate(printed, start=1):
             yield compare(
-                id=f"P2-T2-{shaft}-{mode}", quantity=f"torsional frequency {mode}, shaft {shaft}",
-                source="P2, Table 2", published=published, computed=float(frequencies[shaft][mode - 1]),
-                unit="Hz",
-                basis="fitted", gate=0.02, free_parameters=SHAFT_PARAMETERS,
+                PublishedQuantity(
+                    id=f"P2-T2-{shaft}-{mode}",
+                    text=f"torsional frequency {mode}, shaft {shaft}",
+                    source="P2, Table 2",
+                    value=published,
+                    unit="Hz",
+                ),
+                float(frequencies[shaft][mode - 1]),
+                "fitted",
+                Gate(0.02),
+                free_parameters=SHAFT_PARAMETERS,
                 assumptions="sections of the shafts are assumed and fitted to this table (fit_shafts.py)",
-            )  # fmt: skip
+            )
     crossings = order_crossings(drivetrain, frequencies, TOP_SPEED * RPM)
     for identity, speed, shaft, mode, harmonic, text in CROSSINGS:
         yield compare(
-            id=f"P2-cross-{identity}", quantity=f"order crossing, {text}", source="P2, text and Table 2",
-            published=speed, computed=_crossing(crossings, shaft, mode, harmonic) / RPM, unit="rpm",
-            basis="fitted", gate=0.02, free_parameters=SHAFT_PARAMETERS,
+            PublishedQuantity(
+                id=f"P2-cross-{identity}",
+                text=f"order crossing, {text}",
+                source="P2, text and Table 2",
+                value=speed,
+                unit="rpm",
+            ),
+            _crossing(crossings, shaft, mode, harmonic) / RPM,
+            "fitted",
+            Gate(0.02),
+            free_parameters=SHAFT_PARAMETERS,
             assumptions=f"60 f / (99 h), mode {mode} of shaft {shaft}, h = {harmonic}: follows from Table 2, to "
             f"which the shafts are fitted{REMARKS.get(identity, '')}",
-        )  # fmt: skip
+        )
     highest = max((c for c in crossings if c.harmonic == 1), key=lambda crossing: crossing.speed)
-    yield stated(
-        id="P2-cross-highest", quantity="highest crossing of a shaft frequency by f_z", source="P2, Table 2",
-        published="no resonances above 4000 rpm", computed=highest.speed / RPM, unit="rpm",
-        basis="fitted", free_parameters=SHAFT_PARAMETERS,
+    yield compare(
+        PublishedQuantity(
+            id="P2-cross-highest",
+            text="highest crossing of a shaft frequency by f_z",
+            source="P2, Table 2",
+            printed="no resonances above 4000 rpm",
+            unit="rpm",
+        ),
+        highest.speed / RPM,
+        "fitted",
+        free_parameters=SHAFT_PARAMETERS,
         assumptions=f"mode {highest.mode} of shaft {highest.shaft}; a crossing is no resonance yet, the "
         "response rows P2-free say what it does",
-    )  # fmt: skip
+    )
     yield from _damping(prototype)
     audit = sampling_audit(drivetrain, _drive_speed(prototype), 40e3)[0]
-    yield stated(
-        id="P2-sampling", quantity="samples per mesh period at 40 kHz and 12,000 rpm",
-        source="P2, dynamic simulation",
-        published="tooth meshing reproduced with sufficient accuracy", computed=audit.samples_per_mesh,
-        unit="1",
-        basis="arithmetic", window=(2.015, 2.025),
+    yield compare(
+        PublishedQuantity(
+            id="P2-sampling",
+            text="samples per mesh period at 40 kHz and 12,000 rpm",
+            source="P2, dynamic simulation",
+            printed="tooth meshing reproduced with sufficient accuracy",
+            unit="1",
+        ),
+        audit.samples_per_mesh,
+        "arithmetic",
+        Window(2.015, 2.025),
         assumptions=f"f_z = {audit.mesh_frequency:.0f} Hz; enough for one harmonic and no waveform; as an "
         "integration step it makes 68 % error, so the tool steps at least 8 times finer",
-    )  # fmt: skip
+    )
 
 
 def _crossing(crossings: Sequence[Crossing], shaft: str, mode: int, harmonic: int) -> float:
@@ -114,11 +141,17 @@ def _damping(prototype: Prototype) -> Iterator[ValidationRow]:
     for record in records:
         joint = f"{record.kind} {record.name}"
         name = f"P2-damping-{record.kind}-{record.name}".replace(" ", "-")
-        yield stated(
-            id=name, quantity=f"damping ratio, {joint}", source="P2, Table 1",
-            published="only a small influence of the damping values", computed=record.damping_ratio, unit="1",
-            basis="arithmetic",
+        yield compare(
+            PublishedQuantity(
+                id=name,
+                text=f"damping ratio, {joint}",
+                source="P2, Table 1",
+                printed="only a small influence of the damping values",
+                unit="1",
+            ),
+            record.damping_ratio,
+            "arithmetic",
             assumptions=f"corner frequency {record.corner_frequency:.3g} Hz, undamped it would resonate at "
-            f"{record.own_frequency:.4g} Hz" + (": the damper makes the joint "
-            "rigid" if record.warning else ""),
-        )  # fmt: skip
+            f"{record.own_frequency:.4g} Hz"
+            + (": the damper makes the joint rigid" if record.warning else ""),
+        )

@@ -9,7 +9,7 @@ import pytest
 from rigdesign.case import load_case
 from rigdesign.properties.oil import FVA_3, FVA_3A
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.warnings import _oils, cold_oil
+from rigdesign.run.warnings import _oils, oil_at_room_temperature
 
 ZERO = 273.15
 
@@ -49,6 +49,6 @@ def test_usual_oil_says_nothing_and_hot_oil_is_still_found() -> None:
 def test_a_cold_start_is_judged_at_the_temperature_of_the_room(room: str, thick: int) -> None:
     """ISO VG 100 at 20 degC has about 300 mm2/s, at -10 degC more than any pump takes: all four circuits."""
     assert FVA_3.kinematic_viscosity(293.15) * 1e6 == pytest.approx(320.0, rel=0.1)
-    texts = list(cold_oil(rig(room)))
+    texts = list(oil_at_room_temperature(rig(room)))
     assert len(texts) == thick
-    assert all("start in the cold" in text and "-10 degC" in text for text in texts)
+    assert all("start at the temperature of the room" in text and "-10 degC" in text for text in texts)

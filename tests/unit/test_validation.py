@@ -33,7 +33,15 @@ from rigdesign.validation import (
     write_validation,
 )
 from rigdesign.validation.prototype import Prototype
-from rigdesign.validation.rows import compare, compare_printed, not_modelled, stated
+from rigdesign.validation.rows import (
+    Gate,
+    Goal,
+    PublishedQuantity,
+    Window,
+    compare,
+    compare_printed,
+    not_modelled,
+)
 from rigdesign.validation.run_rows import run_rows
 from rigdesign.validation.speed_sweeps import FINE, SpeedSweep, course, simulation_laws, smooth
 from tests.report_example import make_result
@@ -45,12 +53,14 @@ KEYS = {
 }  # fmt: skip
 
 
-def row(**changes):
-    given = {
-        "id": "x", "quantity": "q", "source": "s", "published": 2.0, "computed": 2.1, "unit": "1",
-        "basis": "predicted",
-    }  # fmt: skip
-    return compare(**{**given, **changes})
+def quantity(**changes):
+    given = {"id": "x", "text": "q", "source": "s", "value": 2.0, "unit": "1"}
+    return PublishedQuantity(**{**given, **changes})
+
+
+def row(criterion=None, *, computed=2.1, basis="predicted", **changes):
+    """Row of a published 2.0, or of what ``changes`` say."""
+    return compare(quantity(**changes), computed, basis, criterion)
 
 
 @pytest.fixture(scope="module")
@@ -67,25 +77,25 @@ def shipped():
 
 
 @pytest.mark.parametrize(
-    ("limits", "verdict"),
+    ("criterion", "verdict"),
     [
-        ({}, "shown"),
-        ({"gate": 0.051}, "gate held"),
-        ({"gate": 0.049}, "gate missed"),
-        ({"goal": 0.051}, "goal met"),
-        ({"goal": 0.049}, "goal missed"),
-        ({"window": (2.05, 2.15)}, "gate held"),
-        ({"window": (2.11, 2.15)}, "gate missed"),
+        (None, "shown"),
+        (Gate(0.051), "gate held"),
+        (Gate(0.049), "gate missed"),
+        (Goal(0.051), "goal met"),
+        (Goal(0.049), "goal missed"),
+        (Window(2.05, 2.15), "gate held"),
+        (Window(2.11, 2.15), "gate missed"),
     ],
 )
-def test_verdict_of_a_comparison(limits, verdict):
-    assert row(**limits).verdict == verdict
-    assert row(**limits).deviation == pytest.approx(0.05)
+def test_verdict_of_a_comparison(criterion, verdict):
+    assert row(criterion).verdict == verdict
+    assert row(criterion).deviation == pytest.approx(0.05)
 
 
-def test_two_kinds_of_limit_at_once_are_refused():
-    with pytest.raises(ValueError, match="give one of gate, goal and window"):
-        row(gate=0.1, window=(1.0, 3.0))
+def test_a_gate_on_words_is_refused():
+    with pytest.raises(ValueError, match="words have no deviation"):
+        row(Gate(0.1), value=None, printed="low")
 
 
 @pytest.mark.parametrize(
@@ -104,25 +114,20 @@ def test_two_kinds_of_limit_at_once_are_refused():
 def test_deviation_counts_from_the_nearer_end_and_on_the_wrong_side_only(
     published, computed, bound, deviation
 ):
-    assert row(published=published, computed=computed, bound=bound).deviation == pytest.approx(deviation)
+    assert row(value=published, computed=computed, bound=bound).deviation == pytest.approx(deviation)
 
 
 @pytest.mark.parametrize(("computed", "verdict"), [(1.00349, "gate held"), (1.00351, "gate missed")])
 def test_printed_digits_are_half_a_unit_of_the_last(computed, verdict):
-    found = compare_printed(id="x", quantity="q", source="s", printed="1.003", computed=computed, unit="1")
+    found = compare_printed(quantity(value=None, printed="1.003"), computed)
     assert found.verdict == verdict
     assert found.published_text == "1.003"
 
 
 def test_words_have_no_deviation_and_a_missing_model_no_number():
-    words = stated(
-        id="x", quantity="q", source="s", published="low", computed=2.0, unit="1", basis="predicted",
-        window=(2.5, math.inf),
-    )  # fmt: skip
+    words = row(Window(2.5, math.inf), computed=2.0, value=None, printed="low")
     assert (words.deviation, words.verdict) == (None, "gate missed")
-    missing = not_modelled(
-        id="x", quantity="q", source="s", published="1.03", unit="1", basis="fitted", reason="no model"
-    )
+    missing = not_modelled(quantity(value=None, printed="1.03"), "fitted", reason="no model")
     assert (missing.computed, missing.verdict, missing.published_text) == (None, "not modelled", "1.03")
 
 
@@ -363,9 +368,12 @@ def test_full_addendum_and_low_load_readings_as_calculated_in_the_sheet(rows):
 
 
 def test_headline_counts_predicted_rows_and_shows_the_others_by_basis():
-    met, missed, plain = row(goal=0.1), row(goal=0.01), row()
-    held, broken = row(basis="fitted", gate=0.1), row(basis="verification", window=(3.0, 4.0))
-    flattering, waiting = row(basis="fitted", goal=0.1), next(p1.p1_rows())
+    met, missed, plain = row(criterion=Goal(0.1)), row(criterion=Goal(0.01)), row()
+    held, broken = (
+        row(basis="fitted", criterion=Gate(0.1)),
+        row(basis="verification", criterion=Window(3.0, 4.0)),
+    )
+    flattering, waiting = row(basis="fitted", criterion=Goal(0.1)), next(p1.p1_rows())
     assert headline([met, missed, plain, held, broken, flattering, waiting]) == {
         "rows": 7,
         "predicted_with_goal": 2,
@@ -378,7 +386,7 @@ def test_headline_counts_predicted_rows_and_shows_the_others_by_basis():
         "goals_missed": 1,
         "not_modelled": 1,
     }
-    assert headline([row(gate=0.1)])["predicted_met"] == 1
+    assert headline([row(criterion=Gate(0.1))])["predicted_met"] == 1
 
 
 def test_document_keeps_the_contract_and_is_strict_json(rows):
@@ -404,9 +412,9 @@ def test_files_are_written_whole(rows, tmp_path):
 
 def test_table_and_headline_in_the_terminal(rows, capsys):
     missed = [
-        row(id="broken", gate=0.01),
-        row(id="far", goal=0.02, unit="mm"),
-        row(id="outside", window=(3.0, 4.0)),
+        row(id="broken", criterion=Gate(0.01)),
+        row(id="far", criterion=Goal(0.02), unit="mm"),
+        row(id="outside", criterion=Window(3.0, 4.0)),
     ]
     print_validation([*rows, *missed])
     printed = " ".join(capsys.readouterr().out.split())
@@ -428,7 +436,9 @@ def test_table_and_headline_in_the_terminal(rows, capsys):
 
 @pytest.mark.parametrize(("limit", "status"), [(0.1, 0), (0.01, 1)])
 def test_command_fails_when_a_gate_is_missed_and_counts_a_missed_goal(limit, status, monkeypatch, capsys):
-    monkeypatch.setattr(validation, "validation_rows", lambda **_: (row(gate=limit), row(goal=0.01)))
+    monkeypatch.setattr(
+        validation, "validation_rows", lambda **_: (row(criterion=Gate(limit)), row(criterion=Goal(0.01)))
+    )
     assert cli.validate(json=True) == status
     document = json.loads(capsys.readouterr().out)
     assert document["rows"][0]["id"] == "x"

@@ -41,8 +41,8 @@ def test_half_of_the_heat_under_a_film_of_walls_is_far_too_hot_and_said(tmp_path
     rig, result = settled(fzg_case(tmp_path, split="mesh_into_gears = 0.5\n", rims=RIM_FILM))
     assert rig.case.gearboxes["test"].heat_split.rule == "assumed"
     assert min(bulk(result)) > MICHAELIS + 40.0
-    subject: Any = SimpleNamespace(rig=rig, points=(result,))
-    texts = list(_thin_rim_films(subject, result.last.fields["test"]))
+    solved: Any = SimpleNamespace(rig=rig, points=(result,))
+    texts = list(_thin_rim_films(solved, result.last.fields["test"]))
     assert len(texts) == 2
     assert "film on its rim = 300 W/(m2 K) with mesh_into_gears = 0.5" in texts[0]
     assert 'law = "flank_film"' in texts[0]

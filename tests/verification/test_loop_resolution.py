@@ -168,7 +168,7 @@ def test_checks_of_the_loads_carry_the_error_of_too_few_slices(coarse_loop) -> N
 
 
 def test_rule_leaves_a_small_error_at_the_checks() -> None:
-    subject = solve_case(load_case("cases/loop_1to1"), "quick")
-    errors = {check.id: check.discretisation_error for check in all_checks(subject)}
+    solved = solve_case(load_case("cases/loop_1to1"), "quick")
+    errors = {check.id: check.discretisation_error for check in all_checks(solved)}
     for label in ("test", "reference"):
         assert 0.0 < errors[f"dynamics.dynamic_factor.{label}"] < 0.01
