@@ -9,11 +9,10 @@ import matplotlib as mpl
 import numpy as np
 import pytest
 
-from rigdesign.report import numbers
+from rigdesign.report import numbers, views
 from rigdesign.report.figures.drawing import drawing_style, inline_svg, new_figure
 from rigdesign.report.figures.dynamics import dynamic_factor_figure
 from rigdesign.report.figures.ramp import stage_spans
-from rigdesign.report.pages import views
 from rigdesign.report.pages.report import report_html, signs, symbol
 from rigdesign.results import result as r
 from tests.report_example import checks, gearbox_field, make_check, make_result

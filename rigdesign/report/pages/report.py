@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rigdesign.base.version import __version__
-from rigdesign.report import numbers
+from rigdesign.report import numbers, views
 from rigdesign.report.figures.drawing import drawing_style, inline_svg
-from rigdesign.report.pages import views
 from rigdesign.report.sections import SECTIONS
 from rigdesign.report.sections.section import Draw, Section
 from rigdesign.results.result import RunResult

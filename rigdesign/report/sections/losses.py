@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from rigdesign.report.pages import views
+from rigdesign.report import views
 from rigdesign.report.sections.section import Draw, Section, Values
 from rigdesign.results.result import RunResult
 

@@ -1,6 +1,6 @@
 """Verdict with the table of all checks, and what drives it."""
 
-from rigdesign.report.pages import views
+from rigdesign.report import views
 from rigdesign.report.sections.section import Draw, Section, Values
 from rigdesign.results.result import RunResult
 
