@@ -41,7 +41,7 @@ FilmFactor = Annotated[float, Field(gt=0.0, le=10.0)]
 """Multiplies a film: what it really is, over what its law or the case says."""
 
 ROOM, WARM_WALL = 293.15, 343.15
-"""Temperatures of air and wall [K] at which a law is asked whether its coefficient contains radiation."""
+"""Temperatures of air and wall [K] at which a law is evaluated for whether its coefficient contains radiation."""
 
 
 class SurfaceCondition(Part):
@@ -225,7 +225,7 @@ class TakenFrom(Part):
     temperature_difference: TemperatureDifference
     """Wall above air that was assumed; the run warns when it comes out otherwise."""
     law: Annotated[str, _PrintedLaw()] | None = None
-    """Film law it was read from: tells what the coefficient would have been, and whether it holds radiation."""
+    """Film law it was read from: gives the coefficient at other differences, and whether it contains radiation."""
     height: Size | None = None
     """h: height of the housing, where the law needs one."""
 
@@ -334,7 +334,7 @@ class RotatingCylinder(TurningFilm):
 
     law: Literal["rotating_cylinder"]
     correlation: Literal["becker", "jungnickel", "kays_bjorklund", "etemad", "dropkin_carmi"] = "becker"
-    """becker, etemad, dropkin_carmi: air at the film temperature; kays_bjorklund: with buoyancy, down to standstill;
+    """becker, etemad, dropkin_carmi: air at the film temperature; kays_bjorklund: with buoyancy, down to zero speed;
     jungnickel: constants of air near room temperature."""
     fluid: Fluid
     medium: Medium = "air"

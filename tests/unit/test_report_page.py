@@ -109,7 +109,7 @@ def test_sections_stand_in_the_order_of_reading(page):
         "simulated at 180 Nm, max / mean",
         "simulated, 1 + half peak-to-peak / mean",
         "0 to peak",
-        "pass [–]",
+        "iteration [–]",
     ],
 )
 def test_axes_carry_unit_and_convention(page, label):

@@ -193,7 +193,9 @@ def bearing_film(conductivity: float, film_thickness: float, nusselt: float = 2.
     positive("Nusselt number of the film", nusselt, "")
     warnings = outside("film thickness", film_thickness, 1e-6, 1e-3, "check the unit of the clearance", "m")
     warnings += outside("oil conductivity", conductivity, 0.08, 0.2, "check the oil data", "W/(m K)")
-    warnings += outside("Nusselt number of the film", nusselt, 1.0, 6.0, "give 2 unless you know better")
+    warnings += outside(
+        "Nusselt number of the film", nusselt, 1.0, 6.0, "give 2 where nothing better is known"
+    )
     return _always(
         FilmCoefficient(
             value=nusselt * conductivity / film_thickness,

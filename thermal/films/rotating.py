@@ -84,7 +84,7 @@ def rotating_cylinder_kays_bjorklund(speed: float, diameter: float, density: flo
     """Horizontal cylinder turning in still air, buoyancy included: Nu_D = 0.11 ((0.5 Re^2 + Gr) Pr)^0.35.
 
     speed : w [rad/s]
-    diameter : D [m]. The only rotating law here that holds down to standstill; upper limit assumed.
+    diameter : D [m]. The only rotating law here that holds down to zero speed; upper limit assumed.
     density : of a mist [kg/m3]; that of air when left out
     """
     return _cylinder(

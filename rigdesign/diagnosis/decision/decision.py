@@ -223,7 +223,7 @@ def _credible(one: Evidence, candidates: Candidates) -> bool:
 def _smallest_group(
     evidence: Sequence[Evidence], weights: Posterior, effects: frozenset[str], thresholds: Thresholds
 ) -> tuple[str, ...]:
-    """Smallest set of effects of which at least one is present with the asked probability; empty if none is small."""
+    """Smallest set of effects of which at least one is present at the required probability; empty if none is small."""
     parts = [
         part for part, _ in sorted(weights.inclusion.items(), key=lambda item: -item[1]) if part in effects
     ]

@@ -1,4 +1,4 @@
-"""One look at a residual: every explanation evaluated, the best of them joined in pairs, a verdict."""
+"""One evaluation of a residual: every explanation evaluated, the best of them joined in pairs, a verdict."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -103,12 +103,12 @@ def evaluate(
     known = (*explanations.physical, *explanations.sensor)
     table = detectabilities(space, known, explanations.unmodelled)
     contest = None if criteria.signature is None else Contest(space, criteria.signature)
-    singles = _judged(
+    singles = _with_model_error(
         contest, [evaluate_hypothesis(space, one) for one in (*known, *explanations.unmodelled)]
     )
     singles = _without_copies(singles)
     data = [evaluate_hypothesis(space, one) for one in explanations.data]
-    pairs = _judged(contest, _pairs(space, singles))
+    pairs = _with_model_error(contest, _pairs(space, singles))
     evidence = sorted((*singles, *data, *pairs), key=lambda one: -one.log_bayes)
     weights = posterior(evidence, explanations.members, criteria.priors)
     candidates = Candidates(
@@ -132,7 +132,7 @@ def evaluate(
 
 @dataclass(frozen=True, kw_only=True)
 class Earlier:
-    """The first look, and what was named since."""
+    """The first evaluation, and what was named since."""
 
     look: Evaluation
     named: frozenset[str]
@@ -147,9 +147,9 @@ class Earlier:
 
 
 def _undivided(decision: Decision, earlier: Earlier | None, thresholds: Thresholds) -> Decision:
-    """The decision without a further name that the first look left divided: it knew the names and their rivals at once.
+    """The decision without a further name that the first evaluation left divided, where all names compete at once.
 
-    With the sizes of the names left free, a later look sees less of what tells the rivals apart.
+    With the sizes of the names left free, a later evaluation sees less of what separates the rivals.
     """
     if earlier is None or decision.verdict != "named":
         return decision
@@ -174,7 +174,7 @@ def _supported(
 ) -> Decision:
     """The decision without the names that depend on one operating point or add too little to the others.
 
-    Of an alias group its leader is asked.
+    Of an alias group its leader is checked.
     """
     if not criteria.points or decision.verdict not in ("named", "alias_group"):
         return decision
@@ -205,8 +205,8 @@ def _added(best: Evidence, part: str, evidence: Sequence[Evidence]) -> float:
     return best.gain - alone
 
 
-def _judged(contest: Contest | None, evidence: list[Evidence]) -> list[Evidence]:
-    return evidence if contest is None else contest.judged(evidence)
+def _with_model_error(contest: Contest | None, evidence: list[Evidence]) -> list[Evidence]:
+    return evidence if contest is None else contest.evaluated(evidence)
 
 
 def _without_copies(singles: Sequence[Evidence]) -> list[Evidence]:

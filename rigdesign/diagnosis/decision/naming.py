@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import atan2, exp, hypot, isfinite, log, pi
 
 from rigdesign.diagnosis.catalogue.effects import Effect, Parameter
-from rigdesign.diagnosis.residual.sensors import SensorError, angle_of_mark
+from rigdesign.diagnosis.residual.sensors import SensorError, index_pulse_offset
 from rigdesign.diagnosis.statistics.evidence import Evidence
 from rigdesign.diagnosis.statistics.intervals import NORMAL_95, Size
 
@@ -278,7 +278,7 @@ def _without_entry(explanation: str) -> str:
         return f"channels {first} and {second} exchanged"
     if kind == "swapped_points":
         return f"operating points {first} and {second} exchanged"
-    if angle := angle_of_mark(explanation):
+    if angle := index_pulse_offset(explanation):
         return f"index pulse offset by {angle}"
     if kind == "unit":
         channel, _, what = rest.partition(" (")

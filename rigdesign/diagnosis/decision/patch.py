@@ -2,7 +2,7 @@
 
 The user's case is never written to: the variant extends it. Fitted values are marked as assumed, with the evidence as
 the reason and the interval as the range, so that a check lists what decides on them. The patch applied to the tree of
-the case (what it extends merged in, marks included) is the tree of the variant.
+the case (what it extends merged in, provenance included) is the tree of the variant.
 """
 
 import os

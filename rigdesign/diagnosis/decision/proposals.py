@@ -1,4 +1,4 @@
-"""What to measure next: the rivals of a diagnosis held against everything the rig could still be asked."""
+"""What to measure next: the rivals of a diagnosis against every further measurement of the rig."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

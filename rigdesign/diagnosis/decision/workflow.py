@@ -1,4 +1,4 @@
-"""The workflow of a diagnosis on numbers in memory: from readings and library to a verdict with its proof.
+"""The workflow of a diagnosis on numbers: from readings and library to a verdict with its proof.
 
 readings -> single outliers out -> points held out -> evidence -> verdict, again for what is left
          -> joint fit with intervals -> what may be claimed -> alternatives
@@ -316,8 +316,10 @@ def _with_named(space: Whitened, found: Sequence[Evidence], signature: Signature
         columns += signature.columns(one.hypothesis, lower @ one.answer, precision)
     owns = [own for one in found for own in one.hypothesis.own]
     residual = lower @ (space.freed(owns) - sum((one.answer for one in found), np.zeros(len(space.residual))))
-    bends = {effect: lower @ bend for effect, bend in space.bends.items() if effect not in owns}
-    return Whitened.of(space.covariance.with_extra(columns), residual, bends)
+    nonlinear_parts = {
+        effect: lower @ part for effect, part in space.nonlinear_parts.items() if effect not in owns
+    }
+    return Whitened.of(space.covariance.with_extra(columns), residual, nonlinear_parts)
 
 
 def _half(one: Evidence) -> float:
@@ -349,8 +351,8 @@ def _wrong_data(
     everything = _explanations(problem, residuals, whole, rivals=False)
     singles = (*everything.physical, *everything.sensor, *everything.data)
     contest = Contest(whole, _signature(problem, residuals, calibration))
-    judged = contest.judged([evaluate_hypothesis(whole, one) for one in singles])
-    evidence = sorted(judged, key=lambda one: -one.log_bayes)
+    evaluated = contest.evaluated([evaluate_hypothesis(whole, one) for one in singles])
+    evidence = sorted(evaluated, key=lambda one: -one.log_bayes)
     weights = posterior(evidence, everything.members)
     if weights.families.get("input", 0.0) <= calibration.thresholds(problem.baseline is not None).input:
         return None

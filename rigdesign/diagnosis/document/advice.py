@@ -38,7 +38,7 @@ MOST_PROPOSED = 8
 class NextStep:
     """Something to measure or do next.
 
-    separation : of the rivals it tells apart least [variances], cost : relative to one thermocouple; None where it
+    separation : of the rivals it separates least [variances], cost : relative to one thermocouple; None where it
     follows from a rule and not from a computation
     """
 
@@ -145,7 +145,7 @@ def _why(outcome: Outcome, proposal: Ranked) -> str:
 
 
 def _first(outcome: Outcome) -> list[NextStep]:
-    """What the verdict itself asks for."""
+    """What follows from the verdict itself."""
     corrections = [NextStep(text=one.text, why="then diagnose again") for one in outcome.corrections]
     match outcome.verdict:
         case "alias_group":

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rigdesign.diagnosis.decision.naming import Sized, formatted
-from rigdesign.diagnosis.residual.sensors import SensorError, angle_of_mark
+from rigdesign.diagnosis.residual.sensors import SensorError, index_pulse_offset
 from rigdesign.measurement import MeasuredChannel, MeasurementSet
 
 MISREAD_UNITS = {
@@ -71,7 +71,7 @@ def of_data(name: str, measurement: MeasurementSet) -> Correction:
             text=f"exchange the readings of operating points {first} and {second} in the table, settings kept, once "
             "the log of the test says so",
         )
-    if angle := angle_of_mark(name):
+    if angle := index_pulse_offset(name):
         return Correction(name=name, text=_turned(angle))
     channel, _, found = rest.partition(" (")
     found = found.removesuffix(")")

@@ -33,7 +33,7 @@ class Response:
         return bool(len(self.coordinates) == self.coordinates.shape[1] + 1)
 
     @property
-    def bends(self) -> bool:
+    def nonlinear(self) -> bool:
         """Several runs of one parameter: the answer is a curve over it."""
         return self._count == 1 and not self.linear
 

@@ -82,7 +82,7 @@ def _excess(squares: Array) -> float:
 
 def _missing(along: Sequence["_Along"]) -> float:
     """Spread of a likeness at which its squares are no longer too large."""
-    lengths = np.sqrt(np.concatenate([np.diagonal(one.gram)[one.judged] for one in along]))
+    lengths = np.sqrt(np.concatenate([np.diagonal(one.gram)[one.visible] for one in along]))
 
     def excess(logarithm: float) -> float:
         spread = float(np.exp(logarithm))
@@ -98,7 +98,7 @@ class _Along:
 
     gram: Array
     load: Array
-    judged: NDArray[np.bool_]
+    visible: NDArray[np.bool_]
 
     @cached_property
     def axes(self) -> tuple[Array, Array]:
@@ -110,7 +110,7 @@ class _Along:
         """Of the residual along those that count, with all of them inflated by a spread."""
         values, vectors = self.axes
         left = 1.0 / (1.0 + spread**2 * values)
-        own = vectors[self.judged]
+        own = vectors[self.visible]
         return np.asarray(
             (own @ (left * (vectors.T @ self.load))) ** 2 / np.maximum(own**2 @ (values * left), 1e-30)
         )
@@ -120,13 +120,13 @@ class _Along:
 class _Seen:
     """What one healthy set says: products of its whitened directions (k, k) and with the residual (k,).
 
-    likeness : (k,) of each direction; judged : (k,) whether it is seen
+    likeness : (k,) of each direction; visible : (k,) whether it can be seen
     """
 
     gram: Array
     load: Array
     likeness: NDArray[np.str_]
-    judged: NDArray[np.bool_]
+    visible: NDArray[np.bool_]
 
     @classmethod
     def of(cls, residuals: ResidualProblem, space: Whitened) -> "_Seen":
@@ -139,7 +139,7 @@ class _Seen:
             gram=white.T @ white,
             load=white.T @ space.residual,
             likeness=np.repeat([one.likeness for one in found], counts),
-            judged=lengths * np.repeat([one.reach for one in found], counts) > UNSEEN,
+            visible=lengths * np.repeat([one.reach for one in found], counts) > UNSEEN,
         )
 
     def squares(self) -> dict[str, Array]:
@@ -148,13 +148,13 @@ class _Seen:
         return {
             likeness: squares[own]
             for likeness in dict.fromkeys(self.likeness.tolist())
-            if (own := self.judged & (self.likeness == likeness)).any()
+            if (own := self.visible & (self.likeness == likeness)).any()
         }
 
     def along(self, likeness: str) -> _Along:
         """The part of one likeness."""
         own = np.flatnonzero(self.likeness == likeness)
-        return _Along(gram=self.gram[np.ix_(own, own)], load=self.load[own], judged=self.judged[own])
+        return _Along(gram=self.gram[np.ix_(own, own)], load=self.load[own], visible=self.visible[own])
 
     def inflated(self, likeness: str, spread: float) -> "_Seen":
         """The same with the covariance wider along a likeness."""

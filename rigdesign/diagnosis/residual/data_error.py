@@ -1,6 +1,6 @@
 """Data that are wrong as they stand: exchanged channels or points, another unit or sign, an index pulse offset.
 
-Each explanation undoes one of these and leaves a residual; nothing is fitted but the angle of the mark.
+Each explanation undoes one of these and leaves a residual; nothing is fitted but the angle of the index pulse.
 """
 
 from collections.abc import Mapping, Sequence
@@ -29,8 +29,8 @@ def data_error(
 ) -> list[Hypothesis]:
     """Every way in which the readings ``values`` (n,) may be wrong, held against what is ``expected`` (n,).
 
-    met_before : whether a healthy set says what to expect; orders of the model alone tell no angle of the mark, as
-        those of a mesh come back from tooth to tooth
+    met_before : whether a healthy set says what to expect; orders of the model alone give no index angle, as those
+        of a mesh come back from tooth to tooth
     """
     changes = (
         *_swapped_channels(features, channels, values),
@@ -125,7 +125,7 @@ def _units(
 
 
 STEP = 0.3
-"""Step of the angle of the mark times the highest order [rad]."""
+"""Step of the angle of the index pulse times the highest order [rad]."""
 
 
 def _turned_mark(
@@ -133,7 +133,7 @@ def _turned_mark(
 ) -> list[Hypothesis]:
     """The index pulse at another angle of the reference gear: order k of every signal is turned by k times it.
 
-    Beyond what an error of the mark may be that is admitted to an explanation by its slope (`sensors`). Once orders are
+    Beyond the error of the index pulse that an explanation admits by its sensitivity (`sensors`). Once orders are
     taken apart, the residual is a sum of their cosine and sine parts at any angle.
     """
     turning = Turning.of(features)
@@ -146,7 +146,7 @@ def _turned_mark(
     products = white @ white.T
 
     def shares(angles: Array) -> Array:
-        """(m, k) share of every part with the mark put back by angles (m,)."""
+        """(m, k) share of every part with the index pulse put back by angles (m,)."""
         turned = np.multiply.outer(angles, orders)
         return np.hstack([np.ones((len(angles), 1)), np.cos(turned), np.sin(turned)])
 

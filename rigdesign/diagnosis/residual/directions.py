@@ -53,7 +53,7 @@ def directions(library: Library, effects: Sequence[Effect], teeth_a_turn: int) -
 def _courses(response: Response) -> Array:
     """(k, n) sensitivities at neutral; of a nonlinear response the secants to its runs as well."""
     slopes = response.sensitivity().T
-    if not response.bends:
+    if not response.nonlinear:
         return slopes
     places = response.coordinates[:, 0]
     away = places != 0.0

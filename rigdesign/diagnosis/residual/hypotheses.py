@@ -44,10 +44,10 @@ def physical(
     ]
     runs = []
     for _, response, _, tooth in copies:
-        rows = response.answers if response.bends else response.sensitivity().T
+        rows = response.answers if response.nonlinear else response.sensitivity().T
         runs.append(turning.turned(rows, tooth, teeth_a_turn) if tooth else rows)
     found = [
-        _curve(effect, response, name, white) if response.bends else _plane(effect, name, white)
+        _curve(effect, response, name, white) if response.nonlinear else _plane(effect, name, white)
         for (effect, response, name, _), white in zip(copies, whitened(covariance, runs), strict=True)
     ]
     return [one for one in found if _reach(one) > least]

@@ -129,11 +129,11 @@ class ResidualProblem:
         return Covariance(base=base, columns=self.columns(), amplitudes=amplitudes.as_dict())
 
     def curves(self) -> dict[str, Curve]:
-        """Effect -> its answer over its size, of constants of one parameter that bend."""
+        """Effect -> its answer over its size, of nonlinear constants of one parameter."""
         found = {}
         for effect in self.effects:
             response = self.library.responses.get(effect.name)
-            if effect.healthy > 0.0 and response is not None and response.bends:
+            if effect.healthy > 0.0 and response is not None and response.nonlinear:
                 found[effect.name] = Curve.of(response.coordinates[:, 0], response.answers)
         return found
 
@@ -198,15 +198,15 @@ def plain(
 ) -> Whitened:
     """The residual of one set against the model.
 
-    Constants are far enough off for their answer to bend: each column is the slope where the data put its constant,
-    found by a few steps, and what the answer has beyond it is taken out of the residual.
+    Constants are so far off that their answer is nonlinear: each column is the sensitivity at the constant the data
+    give, found by a few steps, and what the answer has beyond it is taken out of the residual.
     """
     covariance = residuals.covariance(amplitudes, inflation)
     curves = residuals.curves()
-    bends: dict[str, Array] = {}
+    nonlinear_parts: dict[str, Array] = {}
     sizes = dict.fromkeys(curves, 0.0)
     for _ in range(BENDING_STEPS if curves else 0):
-        residual = residuals.residual - sum(bends.values(), np.zeros(len(residuals.features)))
+        residual = residuals.residual - sum(nonlinear_parts.values(), np.zeros(len(residuals.features)))
         found = _constants_at(covariance, residual, curves)
         sizes = {
             effect: size + BENDING_SHARE * (found[effect] - size)
@@ -214,7 +214,7 @@ def plain(
             if effect in found
         }
         slopes = {effect: curves[effect].sensitivity(size) for effect, size in sizes.items()}
-        bends = {
+        nonlinear_parts = {
             effect: curves[effect].at(np.array([size]))[0] - size * slopes[effect]
             for effect, size in sizes.items()
         }
@@ -223,8 +223,8 @@ def plain(
             for column in covariance.columns
         )
         covariance = Covariance(base=covariance.base, columns=columns, amplitudes=covariance.amplitudes)
-    residual = residuals.residual - sum(bends.values(), np.zeros(len(residuals.features)))
-    return Whitened.of(covariance, residual, bends)
+    residual = residuals.residual - sum(nonlinear_parts.values(), np.zeros(len(residuals.features)))
+    return Whitened.of(covariance, residual, nonlinear_parts)
 
 
 BENDING_STEPS = 5

@@ -108,10 +108,10 @@ def sensor_errors(
 
 
 ANGLE_ZERO = 2e-3
-"""Healthy error of the angle at which the mark of the tach stands [rad], one sigma."""
+"""Healthy error of the angle of the index pulse [rad], one sigma."""
 
 LARGEST_ANGLE_ERROR = 20.0 * ANGLE_ZERO
-"""Up to which orders answer to it by their slope [rad]; beyond it the index pulse is offset (`wrong_data`)."""
+"""Up to which orders answer to it by their sensitivity [rad]; beyond it the index pulse is offset (`wrong_data`)."""
 
 
 def mark_elsewhere(angle: float) -> str:
@@ -119,7 +119,7 @@ def mark_elsewhere(angle: float) -> str:
     return f"angle_zero ({angle:+.4f} rad)"
 
 
-def angle_of_mark(explanation: str) -> str:
+def index_pulse_offset(explanation: str) -> str:
     """The angle in such a name, as ``+0.2000 rad``; empty for other names."""
     kind, _, angle = explanation.partition(" (")
     return angle.removesuffix(")") if kind == "angle_zero" else ""

@@ -43,7 +43,7 @@ SLIGHT = 0.1
 """Error of one number by itself that is left out [standard deviations of its residual on a healthy rig]."""
 
 MOST_ALONE = 400
-"""Numbers whose own error counts, those with the largest."""
+"""Numbers whose model error counts, those with the largest."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,12 +125,12 @@ class Signature:
 
 @dataclass(frozen=True)
 class Contest:
-    """Explanations of one residual, each under the covariance that its own answer asks for."""
+    """Explanations of one residual, each under the covariance that belongs to its own answer."""
 
     space: Whitened
     signature: Signature
 
-    def judged(self, evidence: Sequence[Evidence]) -> list[Evidence]:
+    def evaluated(self, evidence: Sequence[Evidence]) -> list[Evidence]:
         """The best of them evaluated again, the others as they were."""
         ordered = sorted(evidence, key=lambda one: -one.log_bayes)
         return [self.again(one) for one in ordered[:CONTENDERS]] + ordered[CONTENDERS:]

@@ -93,23 +93,25 @@ def inverse_of_factor(lower: Array) -> Array:
 class Whitened:
     """A covariance with a residual in its space; what an effect's own spread hid can be given back.
 
-    residual : (n,) whitened; bends : effect -> (n,) whitened, what its constant adds beyond its column where the data
-        put it: taken out of the residual, given back while that effect is tested
+    residual : (n,) whitened; nonlinear_parts : effect -> (n,) whitened, what its constant adds beyond its column
+        where the data put it: taken out of the residual, given back while that effect is tested
     """
 
     covariance: Covariance
     residual: Array
-    bends: Mapping[str, Array] = field(default_factory=dict)
+    nonlinear_parts: Mapping[str, Array] = field(default_factory=dict)
 
     @classmethod
     def of(
-        cls, covariance: Covariance, residual: Array, bends: Mapping[str, Array] | None = None
+        cls, covariance: Covariance, residual: Array, nonlinear_parts: Mapping[str, Array] | None = None
     ) -> "Whitened":
-        """Whiten a residual (n,) with its bends, all in the units of the features."""
+        """Whiten a residual (n,) with its nonlinear_parts, all in the units of the features."""
         return cls(
             covariance=covariance,
             residual=covariance.whiten(residual),
-            bends={effect: covariance.whiten(bend) for effect, bend in (bends or {}).items()},
+            nonlinear_parts={
+                effect: covariance.whiten(part) for effect, part in (nonlinear_parts or {}).items()
+            },
         )
 
     def rows(self, keep: Sequence[int]) -> "Whitened":
@@ -119,7 +121,10 @@ class Whitened:
 
     def freed(self, own: Sequence[str]) -> Array:
         """(n,) the residual while these effects are tested."""
-        return np.asarray(self.residual + sum((self.bends[one] for one in own if one in self.bends), 0.0))
+        return np.asarray(
+            self.residual
+            + sum((self.nonlinear_parts[one] for one in own if one in self.nonlinear_parts), 0.0)
+        )
 
     @cached_property
     def chi_square(self) -> float:

@@ -57,7 +57,7 @@ def detectabilities(
 ) -> tuple[Detectability, ...]:
     """The table of all effects against all rivals, unmodelled causes included.
 
-    Nonlinear effects are judged by their slope at the detectable size, found by one repetition.
+    Nonlinear effects are evaluated by their sensitivity at the detectable size, found by one repetition.
     """
     seen = [_seen(space, effect) for effect in effects]
     rows = []

@@ -46,7 +46,7 @@ class Rival:
 class Ranked:
     """A proposal with what it would bring.
 
-    separation : of the two rivals that it tells apart least, in variances
+    separation : of the two rivals that it separates least, in variances
     """
 
     title: str

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 RATIO = 1.3
 """How near measured over simulated has to come to the ratio of two units."""
 UNLIKE = 3.0
-"""Least ratio of two units that can be told from a difference of model and rig."""
+"""Least ratio of two units that can be distinguished from a difference of model and rig."""
 
 
 def unit_findings(data: Data, simulated: Array) -> Iterator[DataFinding]:

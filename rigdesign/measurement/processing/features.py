@@ -22,7 +22,7 @@ from rigdesign.measurement.reading.measurement_set import (
 from rigdesign.prediction.model import Feature, OperatingCondition, features_of
 
 THERMAL = frozenset(("temperature", "oil_outlet_temperature", "seal_gap"))
-"""Quantities that mean nothing before temperatures have settled."""
+"""Quantities that mean nothing before temperatures are steady."""
 LEAST_GAIN = 0.1
 """What a sensor must let through of an order to be corrected for."""
 
@@ -82,7 +82,7 @@ def _mean(values: NDArray[np.float64]) -> float:
 def _not_steady(
     measurement: MeasurementSet, names: Sequence[Feature], usable: NDArray[np.bool_]
 ) -> Iterable[DataFinding]:
-    """Take temperatures out at points that had not settled."""
+    """Take temperatures out at points that were not steady."""
     restless = tuple(point.name for point in measurement.points if not point.steady)
     thermal = {name for name, entry in measurement.channels.items() if entry.channel.quantity in THERMAL}
     hit = [i for i, feature in enumerate(names) if feature.setting in restless and feature.channel in thermal]
@@ -137,7 +137,7 @@ def _few_readings(
     if len(settings) == 1:
         yield DataFinding(
             id="one_point", weight="note", points=(settings[0].name,),
-            text="one operating point only: most effects cannot be told apart; measure at other speeds, torques "
+            text="one operating point only: most effects cannot be separated; measure at other speeds, torques "
             "and oil temperatures",
         )  # fmt: skip
     if not _repeated(names, repeats, usable):

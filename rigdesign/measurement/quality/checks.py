@@ -1,4 +1,4 @@
-"""Data checks: what readings say about themselves before any model is asked."""
+"""Data checks: what readings say about themselves before any model is evaluated."""
 
 from collections.abc import Iterator
 
@@ -41,7 +41,7 @@ def _dead(measurement: MeasurementSet) -> Iterator[DataFinding]:
 
 
 def _without_uncertainty(measurement: MeasurementSet) -> Iterator[DataFinding]:
-    """A declared uncertainty of zero: repeats stand in, without them the channel cannot be weighed."""
+    """A declared uncertainty of zero: repeats stand in, without them the channel has no weight."""
     for name, entry in measurement.channels.items():
         if entry.noise > 0.0:
             continue

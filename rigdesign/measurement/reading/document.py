@@ -82,7 +82,7 @@ class Point(Part):
     """What is known of one operating point in addition to its row."""
 
     steady: bool = True
-    """Whether temperatures had settled."""
+    """Whether temperatures were steady."""
     reassembled: bool = False
     """Put together anew since the point before."""
     tooth_offset: Mapping[Text, int] = {}
@@ -161,4 +161,4 @@ class MeasurementFile(Part):
     settings: Mapping[Label, SettingColumn] = Field(min_length=1)
     channels: Mapping[Label, ChannelTable] = Field(min_length=1)
     doubts: tuple[Doubt, ...] = ()
-    """What the writer of the set suspects of it; told as suspected input errors."""
+    """What the writer of the set suspects of it; reported as suspected input errors."""

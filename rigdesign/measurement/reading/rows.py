@@ -30,7 +30,7 @@ from rigdesign.measurement.reading.measurement_set import (
 from rigdesign.measurement.reading.table import Table, numbers
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Feature, OperatingCondition
 
-STANDSTILL = "standstill"
+STATIC_TESTS = "standstill"
 """Name of rows that hold numbers of the rig at rest and cold; they need no settings."""
 KEYS = ("point", "repeat")
 WHOLE = re.compile(r"[0-9]{1,9}")
@@ -58,7 +58,7 @@ class Rows:
         }  # fmt: skip
         self.faults += self._read_columns()
         self.names: tuple[str, ...] = tuple(
-            dict.fromkeys(point for point in self.points if point != STANDSTILL)
+            dict.fromkeys(point for point in self.points if point != STATIC_TESTS)
         )
         """Operating points in the order of the table."""
         self.faults += [
@@ -138,12 +138,12 @@ class Rows:
                 f"{file} line 1", "", "there is no column 'point'", "name the point of each row there"
             )
             return (), (), [missing]
-        cells = tuple(cell.strip() or STANDSTILL for cell in self.table.column("point"))
+        cells = tuple(cell.strip() or STATIC_TESTS for cell in self.table.column("point"))
         repeats = [1] * len(cells)
         if "repeat" in self.table.names:
             for row, cell in enumerate(self.table.column("repeat")):
                 text = cell.strip()
-                if not WHOLE.fullmatch(text) and (text or cells[row] != STANDSTILL):
+                if not WHOLE.fullmatch(text) and (text or cells[row] != STATIC_TESTS):
                     faults.append(
                         Fault(f"{file} line {self.table.lines[row]}, repeat", written(text), "not a whole number",
                               "count the repeats of each point from 1")
@@ -151,7 +151,7 @@ class Rows:
                 repeats[row] = int(text) if WHOLE.fullmatch(text) else 1
         seen: dict[tuple[str, int], int] = {}
         for row, key in enumerate(zip(cells, repeats)):
-            if seen.setdefault(key, row) != row and key[0] != STANDSTILL:
+            if seen.setdefault(key, row) != row and key[0] != STATIC_TESTS:
                 faults.append(
                     Fault(f"{file} line {self.table.lines[row]}", f"{key[0]}, {key[1]}",
                           f"stands in line {self.table.lines[seen[key]]}, too", "number the repeats of a point 1, 2, …")

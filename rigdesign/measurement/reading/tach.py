@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 HYSTERESIS = 0.2
 """Half width of the band about the middle of a pulse, as a share of its height, that noise must not cross."""
 NEIGHBOURS = 9
-"""Intervals whose median a lost or surplus pulse is judged by."""
+"""Intervals whose median a lost or surplus pulse is found by."""
 MOST_LOST = 0.05
 """Share of lost and surplus pulses from which a recording cannot be used."""
 ENCODER_STEPS = 64

@@ -98,7 +98,7 @@ def oil_figure(oil: list[OilRow], stage: str) -> "Figure":
 
 
 def convergence_figure(histories: list[CouplingHistory]) -> "Figure":
-    """Residuals of the coupling loop by pass, logarithmic."""
+    """Residuals of the coupling loop by iteration, logarithmic."""
     quantities = list(dict.fromkeys(key for history in histories for row in history.residuals for key in row))
     figure = new_figure(2.3)
     axes_list = figure.subplots(1, max(1, len(quantities)), squeeze=False)[0]
@@ -118,7 +118,7 @@ def convergence_figure(histories: list[CouplingHistory]) -> "Figure":
         if any(row.get(quantity) for history in histories for row in history.residuals):
             _logarithmic(axes)
         axes.xaxis.get_major_locator().set_params(integer=True)
-        finish(axes, "pass [–]", _residual_label(quantity))
+        finish(axes, "iteration [–]", _residual_label(quantity))
         axes.legend(loc="best")
     figure.subplots_adjust(left=0.085, right=0.985, top=0.94, bottom=0.21, wspace=0.32)
     return figure

@@ -1,0 +1,84 @@
+"""Boundary conditions of the case say themselves what they need of a surface and which law they stand for there."""
+
+from typing import get_args
+
+import pytest
+
+from rigdesign.case.films import (
+    PRINTED_LAWS,
+    ConstantFilm,
+    NiemannWinter,
+    RotatingCylinder,
+    SurfaceFilm,
+    TakenFrom,
+    VerticalPlate,
+)
+from rigdesign.case.surface_conditions import Condition, FlankFilm, GapExchange, SurfaceExchange
+from rigdesign.case.surface_place import ShaftPlace, SurfacePlace, SurfaceSite
+from thermal.films import convection
+
+WALL = SurfaceSite(surface="outer_warm", housing_height=0.28, on_shaft=False, has_teeth=False)
+SHAFT = ShaftPlace(speed=1200.0, diameter=0.04, seal_gap=6e-4)
+
+
+def test_every_condition_is_a_film_or_an_exchange_or_needs_no_law_of_its_own() -> None:
+    union, _ = get_args(Condition)
+    without = {
+        kind.__name__ for kind in get_args(union) if not issubclass(kind, SurfaceFilm | SurfaceExchange)
+    }
+    assert without == {"FlankFilm", "BearingFilm", "ThermalRadiation", "FixedTemperature", "Insulated"}
+
+
+def test_a_plate_takes_the_height_of_its_place_or_its_own() -> None:
+    film = NiemannWinter(surfaces=("outer_warm",), law="niemann_winter", film_factor=0.5)
+    own = film.model_copy(update={"height": 0.4})
+    for entry, height in ((film, 0.28), (own, 0.4)):
+        found = entry.film_law(SurfacePlace(height=0.28))(340.0, 293.15)
+        assert found.value == 0.5 * convection.niemann_winter(height)(340.0, 293.15).value
+        assert found.radiation_included
+    assert [fault.path for fault in own.faults_on(WALL)] == ["height"]
+    assert not list(film.faults_on(WALL))
+
+
+def test_a_film_of_a_shaft_turns_in_mist_only_where_it_says_so() -> None:
+    place = SurfacePlace(height=0.28, shaft=SHAFT, mist_density=5.0)
+    dry, wet = (
+        RotatingCylinder(surfaces=("s",), law="rotating_cylinder", fluid="gear_oil_mean", medium=medium)
+        for medium in ("air", "mist")
+    )
+    assert dry.film_law(place)(340.0, 330.0).inputs["density"] < 2.0
+    assert wet.film_law(place)(340.0, 330.0).inputs["density"] == 5.0
+    assert [fault.path for fault in dry.faults_on(WALL)] == ["surfaces"]
+
+
+@pytest.mark.parametrize(("law", "contains"), [("niemann_winter", True), ("iso_tr_14179_2", False)])
+def test_a_printed_coefficient_contains_the_radiation_of_its_law(law: str, contains: bool) -> None:
+    taken = TakenFrom.model_validate(
+        {"temperature_difference": "100 K", "law": law, "height": "0.4 m"},
+    )
+    film = ConstantFilm.model_validate(
+        {
+            "surfaces": ("outer_warm",), "law": "constant_film", "fluid": "ambient", "taken_from": taken,
+            "heat_transfer_coefficient": "19.5 W/(m2 K)",
+        }
+    )  # fmt: skip
+    assert film.radiation_included(SurfacePlace(height=0.28)) is contains
+    bare = film.model_copy(update={"taken_from": taken.model_copy(update={"height": None})})
+    assert [fault.path for fault in bare.faults_on(WALL)] == ["taken_from.height"]
+
+
+def test_a_printed_coefficient_may_come_from_every_law_that_needs_no_more_than_a_height() -> None:
+    assert {"niemann_winter", "iso_tr_14179_2", "recknagel_plate", "vertical_plate"} == set(PRINTED_LAWS)
+    assert PRINTED_LAWS["vertical_plate"] is VerticalPlate
+
+
+def test_gaps_and_flanks_ask_for_seals_and_teeth() -> None:
+    gap = GapExchange(surfaces=("s_*",), law="narrow_gap", partner="bore_*")
+    assert gap.partner_of(("front",)) == "bore_front"
+    assert [fault.path for fault in gap.faults_on(WALL)] == ["gap"]
+    seal = SurfaceSite(
+        surface="s", housing_height=0.28, on_shaft=True, has_teeth=False, seal="pinion", seal_gap=6e-4
+    )
+    assert not list(gap.faults_on(seal))
+    film = FlankFilm(surfaces=("outer_warm",), law="flank_film", correlation="constant")
+    assert [fault.path for fault in film.faults_on(WALL)] == ["surfaces", "heat_transfer_coefficient"]
