@@ -38,7 +38,7 @@ DEFAULT_SAMPLING = Sampling()
 
 
 @dataclass(frozen=True, kw_only=True)
-class EnergyBalance:
+class LoopEnergy:
     """Where the work went, integrated at the internal steps [J].
 
     input_work : of the motor and of all torques that swing with a shaft; bracing_work : of the twist
@@ -93,7 +93,7 @@ class TimeResponse:
     torque: Array
     windows: EnvelopeWindows
     lift_off: tuple[LiftOff, ...]
-    energy: EnergyBalance | None
+    energy: LoopEnergy | None
     drive_limited_share: float
     speed_missed: float
     end: DriveState
@@ -246,7 +246,7 @@ def run_schedule(
         lift_off=statistics.lift_off(float(command.time[0])),
         energy=None
         if not sampling.keep_accounts
-        else EnergyBalance(
+        else LoopEnergy(
             input_work=float(accounts.slow_work[0] + accounts.slow_work[2:].sum()),
             bracing_work=float(accounts.slow_work[1]),
             friction=accounts.friction,

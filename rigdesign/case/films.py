@@ -87,7 +87,7 @@ class SurfaceFilm(SurfaceCondition):
         return usual
 
 
-class Correlation(SurfaceFilm):
+class PublishedFilm(SurfaceFilm):
     """A film that follows a published law."""
 
     film_factor: FilmFactor = 1.0
@@ -102,7 +102,7 @@ class Correlation(SurfaceFilm):
         raise NotImplementedError
 
 
-class StillAirFilm(Correlation):
+class StillAirFilm(PublishedFilm):
     """A film between a still wall or plate and room air."""
 
     @property
@@ -301,7 +301,7 @@ class ConstantFilm(SurfaceFilm):
             )  # fmt: skip
 
 
-class TurningFilm(Correlation):
+class TurningFilm(PublishedFilm):
     """A film that takes diameter and speed from a shaft or gear."""
 
     def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:

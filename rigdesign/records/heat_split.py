@@ -10,7 +10,7 @@ from rigdesign.coupling.boundary import GEAR_OIL
 from rigdesign.coupling.flank_heat import GearFlanks, flank_films, gear_flanks, rim_surfaces
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.temperatures import HousingField, body_mean
-from rigdesign.results.housing import HeatSplit
+from rigdesign.results.housing import GearHeatSplit
 from rigdesign.rig.model import Rig
 from thermal.conditions.boundary import Film, SurfaceSource
 from thermal.conduction.condition_checks import Condition
@@ -24,7 +24,7 @@ COMPARED = 1e-7
 """Heat left over, relative to the heat turned over, of fields that are solved only to compare: microkelvins."""
 
 
-def heat_splits(rig: Rig, result: PointResult, field: HousingField) -> tuple[HeatSplit, ...]:
+def heat_splits(rig: Rig, result: PointResult, field: HousingField) -> tuple[GearHeatSplit, ...]:
     """Heat split of every gear of a housing at a held stage, with its range.
 
     The range keeps losses, oil and warm gears of the converged state and solves the housing anew.
@@ -32,7 +32,7 @@ def heat_splits(rig: Rig, result: PointResult, field: HousingField) -> tuple[Hea
     friction = friction_heat(rig, result, field.gearbox)
     films = _films(rig, field.gearbox)
     splits = split_as_solved(rig, result, field)
-    found: list[dict[str, HeatSplit]] = []
+    found: list[dict[str, GearHeatSplit]] = []
     for end in (0, 1):
         ends = _ends(rig, field.gearbox, films, end)
         if ends is None:
@@ -45,7 +45,7 @@ def heat_splits(rig: Rig, result: PointResult, field: HousingField) -> tuple[Hea
     )
 
 
-def split_as_solved(rig: Rig, result: PointResult, field: HousingField) -> dict[str, HeatSplit]:
+def split_as_solved(rig: Rig, result: PointResult, field: HousingField) -> dict[str, GearHeatSplit]:
     """Split of every meshed gear that friction heats, without its range: nothing is solved again."""
     films, box = _films(rig, field.gearbox), rig.case.gearboxes[field.gearbox]
     bodies = rig.models[field.gearbox].mesh.bodies
@@ -122,7 +122,7 @@ def _solved_again(
 
 def _split(
     rig: Rig, result: PointResult, field: HousingField, gear: str, condition: FlankFilm | None
-) -> HeatSplit:
+) -> GearHeatSplit:
     name = field.gearbox
     box = rig.case.gearboxes[name]
     rim = rim_surfaces(box)[gear]
@@ -137,7 +137,7 @@ def _split(
         efficiency = fin_efficiency(flanks.ring, coefficient)
         excess = tooth_excess(flanks.ring, coefficient, heat, wall - flanks.oil_temperature)
         tooth = flanks.oil_temperature + excess
-    return HeatSplit(
+    return GearHeatSplit(
         gear=f"{name}.{gear}",
         rule=box.heat_split.rule,
         friction=heat,

@@ -17,7 +17,7 @@ from rigdesign.results.warm_gearbox import (
     BoreAlignment,
     CouplingAlignment,
     MeshClearance,
-    SealGap,
+    SealClearance,
     ShaftExpansion,
     ShaftOffset,
     WarmGearbox,
@@ -43,10 +43,10 @@ def warm_gearbox(rig: Rig, result: PointResult, name: str) -> WarmGearbox:
     )
 
 
-def _seals(rig: Rig, name: str, shape: Expansion) -> Iterator[SealGap]:
+def _seals(rig: Rig, name: str, shape: Expansion) -> Iterator[SealClearance]:
     shafts = {station.name: station.shaft for station in rig.models[name].seals}
     for seal in shape.seals.values():
-        yield SealGap(
+        yield SealClearance(
             name=seal.name,
             shaft=shafts[seal.name],
             as_drawn=seal.cold_gap,

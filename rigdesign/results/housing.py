@@ -18,7 +18,7 @@ class BodyTemperature:
 
 
 @dataclass(frozen=True, kw_only=True)
-class HeatSplit:
+class GearHeatSplit:
     """Where the friction heat of one gear goes."""
 
     gear: str
@@ -37,9 +37,9 @@ class HeatSplit:
     coefficient: float | None
     """Of the flank film, mean over all flanks [W/(m2 K)]."""
     fin_efficiency: float | None
-    weak_film: "HeatSplit | None" = None
+    weak_film: "GearHeatSplit | None" = None
     """The same gear at the low ends of the ranges of the film; None where the case states none."""
-    strong_film: "HeatSplit | None" = None
+    strong_film: "GearHeatSplit | None" = None
     """At the high ends."""
 
     @property
@@ -80,7 +80,7 @@ class HousingTemperatures:
     elements: int
     radiation: RadiationReadings | None = None
     """None where the other reading was not solved."""
-    heat_split: tuple[HeatSplit, ...] = ()
+    heat_split: tuple[GearHeatSplit, ...] = ()
     """Of every gear that friction heats."""
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)
-class SealGap:
+class SealClearance:
     """Radial gap of one seal without contact [m]."""
 
     name: str
@@ -178,7 +178,7 @@ class WarmGearbox:
 
     gearbox: str
     stage: str
-    seals: tuple[SealGap, ...] = ()
+    seals: tuple[SealClearance, ...] = ()
     shafts: tuple[ShaftExpansion, ...] = ()
     meshes: tuple[MeshClearance, ...] = ()
     bearings: tuple[BearingClearance, ...] = ()

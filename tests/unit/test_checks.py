@@ -18,7 +18,7 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.housing import CoolingBalance
 from rigdesign.results.loads import ContactLoss, DynamicLoads, MeshResonance, StageLoad, UnsolvedSpeed
-from rigdesign.results.warm_gearbox import SealGap, WarmGearbox
+from rigdesign.results.warm_gearbox import SealClearance, WarmGearbox
 from rigdesign.rig.model import Rig, build_rig
 from tests.loads_example import mesh_loads
 
@@ -168,7 +168,7 @@ def test_a_ramp_rule_without_its_limit_does_not_apply(left_out: tuple[str, str],
 def warm(stage: str, shifts: dict[str, tuple[str, float]]) -> WarmGearbox:
     """The test gearbox with seals by name: shaft and its axial shift [m]."""
     seals = tuple(
-        SealGap(
+        SealClearance(
             name=seal, shaft=shaft, as_drawn=6e-4, minimum=5e-4, mean=5e-4, angle_of_minimum=0.0, by_hand=5e-4,
             axial_shift=shift, angles=(), gaps=(),
         )

@@ -7,7 +7,7 @@ import pytest
 from rigdesign.report.pages import report
 from rigdesign.report.pages.report import environment, report_html
 from rigdesign.report.sections import SECTIONS
-from rigdesign.report.sections.section import Section
+from rigdesign.report.sections.section import ReportSection
 from tests.report_example import make_check, make_result
 
 
@@ -21,7 +21,7 @@ def test_every_section_has_its_template_and_a_place():
 
 
 def test_a_new_section_is_numbered_listed_and_drawn(monkeypatch: pytest.MonkeyPatch):
-    own = Section(
+    own = ReportSection(
         id="extra", title="An extra section", template="limits.html.j2",
         values=lambda result, draw: {}, applies=lambda result: bool(result.not_modelled),
     )  # fmt: skip

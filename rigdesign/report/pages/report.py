@@ -11,7 +11,7 @@ from rigdesign.base.version import __version__
 from rigdesign.report import numbers, views
 from rigdesign.report.figures.drawing import drawing_style, inline_svg
 from rigdesign.report.sections import SECTIONS
-from rigdesign.report.sections.section import Draw, Section
+from rigdesign.report.sections.section import Draw, ReportSection
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ class _Figures:
         return Markup(inline_svg(figure, f"f{self._count}", description))
 
 
-def _body(section: Section, result: RunResult, number_of: Mapping[str, int], draw: Draw) -> "Markup":
+def _body(section: ReportSection, result: RunResult, number_of: Mapping[str, int], draw: Draw) -> "Markup":
     """Text of a section, from its template."""
     from markupsafe import Markup
 

@@ -12,12 +12,12 @@ from rigdesign.report.sections.ground import (
 from rigdesign.report.sections.loads import LOADS
 from rigdesign.report.sections.losses import LOSSES
 from rigdesign.report.sections.ranges import RANGES
-from rigdesign.report.sections.section import Section
+from rigdesign.report.sections.section import ReportSection
 from rigdesign.report.sections.temperatures import TEMPERATURES
 from rigdesign.report.sections.transient import TRANSIENT
 from rigdesign.report.sections.verdict import DRIVERS, VERDICT
 
-SECTIONS: tuple[Section, ...] = (
+SECTIONS: tuple[ReportSection, ...] = (
     VERDICT,
     DRIVERS,
     LOADS,

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from rigdesign.report.sections.section import Draw, Section, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
@@ -33,6 +33,6 @@ def _seals_round(result: RunResult, draw: Draw) -> dict[tuple[str, str], "Markup
     }
 
 
-CLEARANCES = Section(
+CLEARANCES = ReportSection(
     id="clearances", title="Clearances cold and hot", template="clearances.html.j2", values=_clearances
 )

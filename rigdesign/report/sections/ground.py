@@ -1,6 +1,6 @@
 """What the verdicts depend on and where they come from: assumptions, hand checks, limits, warnings, provenance."""
 
-from rigdesign.report.sections.section import Draw, Section, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
 
@@ -16,11 +16,13 @@ def _convergence(result: RunResult, draw: Draw) -> Values:
     }
 
 
-ASSUMPTIONS = Section(
+ASSUMPTIONS = ReportSection(
     id="assumptions", title="Assumptions behind the verdicts", template="assumptions.html.j2"
 )
-OVERRIDES = Section(id="overrides", template="overrides.html.j2", within="assumptions")
-HAND_CHECKS = Section(id="hand", title="Hand checks", template="hand.html.j2")
-NOT_MODELLED = Section(id="limits", title="What is not modelled", template="limits.html.j2")
-WARNINGS = Section(id="warnings", title="Warnings", template="warnings.html.j2")
-PROVENANCE = Section(id="provenance", title="Provenance", template="provenance.html.j2", values=_convergence)
+OVERRIDES = ReportSection(id="overrides", template="overrides.html.j2", within="assumptions")
+HAND_CHECKS = ReportSection(id="hand", title="Hand checks", template="hand.html.j2")
+NOT_MODELLED = ReportSection(id="limits", title="What is not modelled", template="limits.html.j2")
+WARNINGS = ReportSection(id="warnings", title="Warnings", template="warnings.html.j2")
+PROVENANCE = ReportSection(
+    id="provenance", title="Provenance", template="provenance.html.j2", values=_convergence
+)

@@ -1,6 +1,6 @@
 """Ramp, dynamic factor, root stress, resonances."""
 
-from rigdesign.report.sections.section import Draw, Section, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.dynamics import GearboxDynamics
 from rigdesign.results.result import RunResult
 
@@ -39,4 +39,4 @@ def _has_root_stress(gearbox: GearboxDynamics) -> bool:
     return bool(gearbox.root_stress or gearbox.root_stress_factor)
 
 
-LOADS = Section(id="loads", title="Ramp and loads", template="loads.html.j2", values=_loads)
+LOADS = ReportSection(id="loads", title="Ramp and loads", template="loads.html.j2", values=_loads)

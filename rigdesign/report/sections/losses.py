@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from rigdesign.report import views
-from rigdesign.report.sections.section import Draw, Section, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
@@ -50,4 +50,4 @@ def _rig_flow(result: RunResult, stage: str, draw: Draw) -> "Markup | None":
     return draw(figure, f"Heat of the rig from losses to cooler and room at stage {stage}")
 
 
-LOSSES = Section(id="losses", title="Losses and oil", template="losses.html.j2", values=_losses)
+LOSSES = ReportSection(id="losses", title="Losses and oil", template="losses.html.j2", values=_losses)

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from rigdesign.report.sections.section import Draw, Section, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
@@ -38,6 +38,6 @@ def _evaluated(result: RunResult) -> bool:
     return result.ranges is not None
 
 
-RANGES = Section(
+RANGES = ReportSection(
     id="ranges", template="ranges.html.j2", values=_ranges, applies=_evaluated, within="assumptions"
 )

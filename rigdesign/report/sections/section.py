@@ -25,7 +25,7 @@ def _nothing(result: RunResult, draw: Draw) -> Values:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Section:
+class ReportSection:
     """One section: its entry in the contents, its template, and what the template shows in addition to the result.
 
     id : anchor on the page; title : heading and entry in the contents, empty for a part of another section

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from rigdesign.report.sections.section import Draw, Section, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
 if TYPE_CHECKING:
@@ -42,6 +42,6 @@ def _pictures(result: RunResult, draw: Draw) -> dict[tuple[str, str], list[tuple
     return shown
 
 
-TEMPERATURES = Section(
+TEMPERATURES = ReportSection(
     id="temperatures", title="Temperatures", template="temperatures.html.j2", values=_temperatures
 )

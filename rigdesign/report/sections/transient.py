@@ -1,6 +1,6 @@
 """Thermal histories over the schedule and its events: figures by history, worst moments, settling times."""
 
-from rigdesign.report.sections.section import Draw, Section, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
 
@@ -31,6 +31,6 @@ def _computed(result: RunResult) -> bool:
     return result.transient is not None
 
 
-TRANSIENT = Section(
+TRANSIENT = ReportSection(
     id="transient", template="transient.html.j2", values=_histories, applies=_computed, within="clearances"
 )

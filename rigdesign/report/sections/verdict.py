@@ -1,7 +1,7 @@
 """Verdict with the table of all checks, and what drives it."""
 
 from rigdesign.report import views
-from rigdesign.report.sections.section import Draw, Section, Values
+from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
 
@@ -20,5 +20,7 @@ def _drivers(result: RunResult, draw: Draw) -> Values:
     return {"drivers": views.drivers(result)}
 
 
-VERDICT = Section(id="verdict", title="Verdict and margins", template="verdict.html.j2", values=_verdict)
-DRIVERS = Section(id="drivers", title="Governing checks", template="drivers.html.j2", values=_drivers)
+VERDICT = ReportSection(
+    id="verdict", title="Verdict and margins", template="verdict.html.j2", values=_verdict
+)
+DRIVERS = ReportSection(id="drivers", title="Governing checks", template="drivers.html.j2", values=_drivers)

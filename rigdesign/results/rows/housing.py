@@ -5,7 +5,7 @@ from dataclasses import asdict
 
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.oil import OilStream
-from rigdesign.results.housing import CoolingBalance, HeatSplit, HousingTemperatures
+from rigdesign.results.housing import CoolingBalance, GearHeatSplit, HousingTemperatures
 from rigdesign.results.thermal import HeatRow, HeatSplitRow, LossRow, OilRow, ThermalResult
 from rigdesign.results.units import L_MIN, ZERO
 from thermal.conduction.heat_rows import HeatFlow
@@ -111,7 +111,7 @@ def _heat_row(flow: HeatFlow) -> HeatRow:
     )
 
 
-def heat_split_row(split: HeatSplit) -> HeatSplitRow:
+def heat_split_row(split: GearHeatSplit) -> HeatSplitRow:
     """Where the friction heat of one gear goes, with its range."""
     return HeatSplitRow(
         gear=split.gear,
@@ -130,7 +130,7 @@ def heat_split_row(split: HeatSplit) -> HeatSplitRow:
     )
 
 
-def _at_end(split: HeatSplit | None) -> dict[str, float | None] | None:
+def _at_end(split: GearHeatSplit | None) -> dict[str, float | None] | None:
     """What a row shows at one end of the ranges of the film."""
     if split is None:
         return None

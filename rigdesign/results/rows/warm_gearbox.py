@@ -12,7 +12,7 @@ from rigdesign.results.warm_gearbox import (
     BoreAlignment,
     CouplingAlignment,
     MeshClearance,
-    SealGap,
+    SealClearance,
     ShaftExpansion,
     WarmGearbox,
 )
@@ -33,7 +33,7 @@ def expansion_row(warm: WarmGearbox) -> ExpansionResult:
     )
 
 
-def _seal_row(seal: SealGap) -> dict[str, Any]:
+def _seal_row(seal: SealClearance) -> dict[str, Any]:
     return {
         "seal": seal.name,
         "shaft": seal.shaft,
