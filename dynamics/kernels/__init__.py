@@ -8,6 +8,8 @@ its own file: a hash of all sources in each file that takes from another goes wi
 (``tests/unit/test_kernel_cache.py`` says what to write).
 """
 
+from pathlib import Path
+
 from dynamics.kernels.drag import DragLaws
 from dynamics.kernels.linear_step import FOUR, WIDTH, DiscreteModes, DragModes
 from dynamics.kernels.march import march
@@ -15,6 +17,7 @@ from dynamics.kernels.march_state import Carried, Commands, MarchRecord, Steps
 from dynamics.kernels.mesh_tables import N_COUNTS, N_PHASE, N_VALUES, VECTOR, PackedMeshes
 from dynamics.kernels.mesh_workspace import port_place
 from dynamics.kernels.reactions import MeshStates, mesh_reactions, tooth_pair_forces
+from thermal.fe.kernel_cache import remove_outdated
 
 __all__ = [
     "FOUR",
@@ -37,3 +40,5 @@ __all__ = [
     "port_place",
     "tooth_pair_forces",
 ]
+
+remove_outdated(Path(__file__).parent)
