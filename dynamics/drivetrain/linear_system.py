@@ -29,7 +29,7 @@ class LinearSystem:
     twist_load : (n,) torque on each freedom per radian of bracing twist (zero sum) [N m/rad]
     drag_loads : name -> (n,) share of a drag torque that acts on each freedom, summing to -1 (drag opposes
         rotation); one entry per loss place that brakes (bearing, windage, seal)
-    shaft_torques : torques that swing with the rotation of a shaft
+    shaft_torques : torques that alternate with the rotation of a shaft
     """
 
     inertia: Array
@@ -45,5 +45,5 @@ class LinearSystem:
 
     @cached_property
     def form(self) -> ModalForm:
-        """Complex modes without the meshes, solved once for all speeds and passes."""
+        """Complex modes without the meshes, solved once for all speeds and iterations."""
         return modal_form(self.inertia, self.damping, self.stiffness, self.lines)

@@ -1,7 +1,7 @@
 """Speeds at which a mesh or shaft order meets a mode of the closed loop.
 
-Crossings of isolated shafts (`modes.order_crossings`, P2's way) tell which shaft would swing alone; what is measured
-on the rig are the modes of the assembled loop: couplings, meshes and the bracing close it.
+Crossings of isolated shafts (`modes.order_crossings`, P2's way) tell which shaft would oscillate alone; what is
+measured on the rig are the modes of the assembled loop: couplings, meshes and the bracing close it.
 """
 
 import math
@@ -19,7 +19,7 @@ class LoopCrossing:
     """An order that meets a mode of the closed loop.
 
     source : mesh or shaft whose order it is; kind : which of the two
-    mode : number of the mode, 1 for the lowest that swings
+    mode : number of the mode, 1 for the lowest that oscillates
     harmonic : of the mesh frequency, or order of the shaft speed
     speed : at which they meet, of the motor's shaft; own_speed : of the pinion of the mesh, or of the shaft [rad/s]
     gain : `LoopMode.mesh_gain` of the mesh [-]; 0 for a shaft, which excites by its errors only
@@ -58,12 +58,12 @@ def loop_crossings(
 
     c is the number of cycles of the order per turn of the motor's shaft. Modes without a frequency are left out.
     """
-    swinging = [mode for mode in modes if mode.frequency > 0.0]
+    oscillating = [mode for mode in modes if mode.frequency > 0.0]
     found = []
     for order in _orders(drivetrain):
         own = []
         harmonics = mesh_harmonics if order.kind == "mesh" else shaft_harmonics
-        for number, mode in enumerate(swinging, start=1):
+        for number, mode in enumerate(oscillating, start=1):
             for harmonic in range(1, harmonics + 1):
                 speed = 2.0 * math.pi * mode.frequency / (harmonic * order.cycles)
                 if speed <= highest_speed:

@@ -53,7 +53,7 @@ class LoopMode:
     energy : part -> share of strain energy [-], shafts, splines, couplings and meshes
     mesh_gain : (n_meshes,) peak of mean mesh stiffness times approach per mesh force of this mode alone [-];
         far below 1 the mesh hardly excites it
-    largest : freedom that swings most, ``shaft/station``
+    largest : freedom that oscillates most, ``shaft/station``
     """
 
     frequency: float

@@ -1,4 +1,4 @@
-"""Torques that swing with the rotation of a shaft: ripple of the motor, couplings between axes out of line."""
+"""Torques that alternate with the rotation of a shaft: ripple of the motor, couplings between axes out of line."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -20,7 +20,7 @@ from dynamics.standards import iso_tr_14179_2_2001 as tr14179
 
 Array = NDArray[np.float64]
 PairStiffness = Callable[[Array], Array]
-"""Stiffness of one tooth pair per face width over path positions; only its relative course matters."""
+"""Stiffness of one tooth pair per face width over path positions; only its shape over the path matters."""
 
 GAUSS_POINTS = 16
 GAUSS = np.polynomial.legendre.leggauss(GAUSS_POINTS)
@@ -135,7 +135,7 @@ def tooth_loss_factor(path: ToothPath, stiffness: PairStiffness | None = None) -
     Parameters
     ----------
     path : geometry
-    stiffness : course of the single-pair stiffness over the path, by which pairs share the load; None shares
+    stiffness : the single-pair stiffness over the path, by which pairs share the load; None shares
         it evenly over the contact lines (rigid, uniform: 1/n in a spur gear)
 
     Returns

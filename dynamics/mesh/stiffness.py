@@ -50,7 +50,7 @@ class PairStiffness:
         return float(np.trapezoid(self.value, self.path)) / self.base_pitch
 
     def scaled(self, factor: float) -> Self:
-        """The same course with every value times ``factor`` (0.8: usual ratio of measured to calculated)."""
+        """The same stiffness with every value times ``factor`` (0.8: usual ratio of measured to calculated)."""
         if not factor > 0.0:
             raise DynamicsInputError(
                 f"stiffness factor = {factor} must be positive; 1 leaves the stiffness as it is"
@@ -58,14 +58,14 @@ class PairStiffness:
         return replace(self, value=self.value * factor)
 
     def scaled_to(self, c_gamma_alpha: float) -> Self:
-        """The same course with the mesh mean ``c_gamma_alpha`` [N/m2] (1 N/(mm um) = 1e9 N/m2)."""
+        """The same stiffness with the mesh mean ``c_gamma_alpha`` [N/m2] (1 N/(mm um) = 1e9 N/m2)."""
         return self.scaled(c_gamma_alpha / self.mesh_mean)
 
 
 def pair_stiffness(
     pair: GearPair, line_load: float, *, n_path: int = 121, body: Body = "half_plane"
 ) -> PairStiffness:
-    """Course of the single-pair stiffness over the active path.
+    """Single-pair stiffness over the active path.
 
     ``line_load`` [N/m] is the transverse force per face width that flattens the contact (usually F_bt / b).
     ``body="ring"`` replaces the half plane under each tooth by the elastic ring of Sainsot et al. on the bore

@@ -61,7 +61,7 @@ class BalanceProblem:
     """Everything that stays the same over speed.
 
     load : mean torque asked of a mesh, or the twist that is held
-    shaft_torques : torques that swing with the rotation of a shaft
+    shaft_torques : torques that alternate with the rotation of a shaft
     ratios : (n,) speed of each freedom of the drivetrain per speed of the drive freedom
     """
 
@@ -72,7 +72,7 @@ class BalanceProblem:
     ratios: Array | None = None
 
     def driven(self, grid: HarmonicGrid, base: float) -> Complex:
-        """Windup of the mesh bodies (n_bodies, top + 1) that the swinging torques would make without the meshes.
+        """Windup of the mesh bodies (n_bodies, top + 1) that the alternating torques would make without the meshes.
 
         Their angle is zero where that of the first pinion would be without windup.
         """

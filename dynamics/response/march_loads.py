@@ -1,4 +1,4 @@
-"""Columns of load through which a march acts on the drivetrain: motor, bracing, swinging and drag torques."""
+"""Columns of load through which a march acts on the drivetrain: motor, bracing, alternating and drag torques."""
 
 from collections.abc import Sequence
 
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 def march_model(
     system: LinearSystem, laws: Sequence[MeshLaw], drags: Sequence[str] = (), cutoff: float = DEFAULT_CUTOFF
 ) -> ModalModel:
-    """Modal model of a drivetrain with the loads of a march: motor, twist, swinging torques and the drags named.
+    """Modal model of a drivetrain with the loads of a march: motor, twist, alternating torques and the drags named.
 
     cutoff : modes above this frequency keep their static effect only [Hz]
 
@@ -27,7 +27,7 @@ def march_model(
 
 
 def slow_loads(system: LinearSystem) -> Array:
-    """Return the loads (n, 2 + n_shaft_torques) of motor, twist and swinging torques."""
+    """Return the loads (n, 2 + n_shaft_torques) of motor, twist and alternating torques."""
     drive = np.zeros(len(system.inertia))
     drive[system.drive_dof] = 1.0
     return np.column_stack((drive, system.twist_load, *(torques.load for torques in system.shaft_torques)))

@@ -54,7 +54,7 @@ class Block(NamedTuple):
     torque_1: Array
     """(n_meshes, n_steps) generalized torque on the pinion body, friction included [N m]."""
     slow: Array
-    """(n_samples, n_slow) motor torque [N m], twist [rad] and swinging torques [N m] at the end of each sample."""
+    """(n_samples, n_slow) motor torque [N m], twist [rad] and alternating torques [N m] at the end of each sample."""
     slow_speed: Array
     """(n_samples, n_slow) speed that each slow input works on: its power is input times this."""
     drags: Array
@@ -71,7 +71,7 @@ class Accounts(NamedTuple):
     mesh_damping: Array
     """(n_meshes,)"""
     slow_work: Array
-    """(n_slow,) work done on the drivetrain by motor, bracing and swinging torques."""
+    """(n_slow,) work done on the drivetrain by motor, bracing and alternating torques."""
     drag: Array
     """(n_drags,)"""
     joint_damping: float

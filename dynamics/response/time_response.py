@@ -41,7 +41,7 @@ DEFAULT_SAMPLING = Sampling()
 class LoopEnergy:
     """Where the work went, integrated at the internal steps [J].
 
-    input_work : of the motor and of all torques that swing with a shaft; bracing_work : of the twist
+    input_work : of the motor and of all torques that alternate with a shaft; bracing_work : of the twist
     friction, mesh_damping : (n_meshes,); joint_damping : joints and linear bearing damping; drag : by name
     change : of kinetic and elastic energy
     """
@@ -203,8 +203,8 @@ def run_schedule(
             drive_angle[-1]
             + np.concatenate(([0.0], np.cumsum(0.5 * (target[1:] + target[:-1])))) / sample_rate
         )
-        for i, swinging in enumerate(system.shaft_torques):
-            given[:, 4 + i] = swinging.at(ratios[swinging.dof] / drive_ratio * drive_angle[1:])
+        for i, torque in enumerate(system.shaft_torques):
+            given[:, 4 + i] = torque.at(ratios[torque.dof] / drive_ratio * drive_angle[1:])
         if command.torque is not None:
             asked = np.interp(at[1:], command.time, command.torque)
             given[:, 3] = asked

@@ -49,7 +49,7 @@ class BackgroundTasks(Generic[T]):
 
     @property
     def running(self) -> bool:
-        """Whether other cores are at work; not after `results`."""
+        """Whether other cores are computing; not after `results`."""
         return bool(self._copies)
 
     def end(self) -> None:

@@ -49,7 +49,7 @@ class ShaftInput(Part):
 
 
 class HarmonicTorqueInput(Part):
-    """Torque that swings with the turn of a shaft: torque cos(order angle - phase)."""
+    """Torque that alternates with the rotation of a shaft: torque cos(order angle - phase)."""
 
     order: float = Field(gt=0.0, le=1000.0)
     """Per turn of that shaft; the angle is zero where the pinion of the first mesh passes zero."""

@@ -122,7 +122,7 @@ Stress = Annotated[float, Quantity("pressure", above="0 MPa", example="500 MPa")
 Modulus = Annotated[float, Quantity("pressure", above="0 MPa")]
 Time = Annotated[float, Quantity("time", above="0 s")]
 Hours = Annotated[float, Quantity("time", above="0 s", example="2 h")]
-"""A time in which temperatures settle, or a test is run."""
+"""A time in which temperatures become steady, or a test is run."""
 Frequency = Annotated[float, Quantity("frequency", above="0 Hz", at_most="10000 kHz")]
 Flow = Annotated[float, Quantity("flow", above="0 l/min", at_most="100000 l/min")]
 Density = Annotated[float, Quantity("density", above="0 kg/m3", at_most="25000 kg/m3")]

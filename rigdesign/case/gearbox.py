@@ -157,7 +157,7 @@ class Seals(Part):
     axial_travel: Clearance
     """Axial movement of the shaft the seals take without touching."""
     rubbing_torque: Torque = 0.0
-    """Friction torque of seals that touch, of all seals of the shaft together, beside what ``kind`` loses."""
+    """Friction torque of seals that touch, of all seals of the shaft together, on top of what ``kind`` loses."""
 
 
 MeshRule = Literal["assumed", "flank_film"]

@@ -90,7 +90,7 @@ class Losses(Part):
     """Squeezing of oil out of the mesh, as a share of the mesh loss."""
     mesh_damping_heats_oil: bool = False
     """Whether the work of the mesh dampers is heat of the gear oil. Left out, the motor pays it and it stands among the
-    losses, but heats nothing: such a damper stands for all that settles the vibration of a loop, tooth friction and
+    losses, but heats nothing: such a damper stands for all that damps the vibration of a loop, tooth friction and
     films having their own heat."""
     bearing_drag: Literal["film", "constant"] = "film"
     """film: from the bearing solution; constant: ``torsional_damping`` of each bearing, and

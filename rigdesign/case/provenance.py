@@ -1,6 +1,6 @@
 """Marks: what a case file says about a value besides the value.
 
-Any value may be written as a table that holds it under ``value`` beside one or more marks:
+Any value may be written as a table that holds it under ``value`` with one or more marks:
 
     flow = { value = "5 l/min", assumed = "as for an FZG rig of this power", range = ["3 l/min", "8 l/min"] }
     damping = { value = "1000 N s/m", source = "P2, Table 1" }

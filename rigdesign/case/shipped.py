@@ -1,4 +1,4 @@
-"""Cases that ship with the tool, found by name: in the installed package, or beside it in a checkout."""
+"""Cases that ship with the tool, found by name: in the installed package, or next to it in a checkout."""
 
 from pathlib import Path
 

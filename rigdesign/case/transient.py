@@ -29,7 +29,7 @@ class TransientProbe(Part):
 
 
 class Transient(Part):
-    """Thermal course of the schedule; every key has a default."""
+    """Thermal history of the schedule; every key has a default."""
 
     warm_up: Hours = 4.0 * HOUR
     """Oil on at standstill before the first stage."""
@@ -44,12 +44,12 @@ class Transient(Part):
     oil_loss_time: Time = 10.0
     """Turning on without oil until the loss is noticed; the emergency stop follows."""
     events: tuple[Event, ...] = ("cold_start", "emergency_stop", "oil_loss")
-    """Computed beside the schedule: the run without warm-up, and what may end the dwell."""
+    """Computed in addition to the schedule: the run without warm-up, and what may end the dwell."""
     still_film: HeatTransferCoefficient = 5.0
     """Least film of a shaft, gear or dry wall in air that hardly moves: free convection in a chamber."""
     settled_share: Annotated[float, Field(gt=0.0, lt=0.5)] = 0.05
-    """A quantity has settled once it stays within this share of its whole change in the dwell."""
+    """A quantity is steady once it stays within this share of its whole change in the dwell."""
     tolerance: TemperatureDifference = 0.2
     """Error of a time step."""
     probes: Mapping[Name, TransientProbe] = {}
-    """Places beside the bodies, bearings and oil outlets that are always kept."""
+    """Places in addition to the bodies, bearings and oil outlets that are always kept."""

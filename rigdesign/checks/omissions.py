@@ -116,13 +116,13 @@ def given_losses(solved: SolvedRig, check: Check) -> Found:
 
 
 def long_periods(solved: SolvedRig, check: Check) -> Found:
-    """Single teeth and swinging torques that do not fit into the period of the response."""
+    """Single teeth and alternating torques that do not fit into the period of the response."""
     rig = solved.rig
     if rig.drivetrain is None or rig.system is None or not solved.points:
         return
     laws = laws_of(solved.points[-1].last.models)
     missing = [f"differences between the teeth of {gear}" for gear in averaged_gears(rig, laws)]
-    missing += [f"torque swing of {name}" for name in torques_left_out(rig, laws)]
+    missing += [f"alternating torque of {name}" for name in torques_left_out(rig, laws)]
     for what in missing:
         yield Omission(f"{what} (numerics.response_period = {rig.case.numerics.response_period})")
 

@@ -64,7 +64,7 @@ def dynamic_loads(rig: Rig, run: DynamicRun) -> DynamicLoads:
 
 
 def numbered(modes: Sequence[LoopMode]) -> list[tuple[int, LoopMode]]:
-    """The listed modes with their numbers: 1 for the lowest that swings, 0 for what turns without swinging."""
+    """The listed modes with their numbers: 1 for the lowest that oscillates, 0 for rigid rotation."""
     rigid = sum(mode.frequency == 0.0 for mode in modes)
     listed = [mode for mode in modes if mode.frequency <= HIGHEST_MODE]
     return [(max(0, number), mode) for number, mode in enumerate(listed, start=1 - rigid)]

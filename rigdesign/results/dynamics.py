@@ -86,8 +86,8 @@ class DynamicsResult:
     """By gearbox; by ``gearbox.mesh`` where a gearbox has several meshes."""
     natural_frequencies: list[dict[str, Any]]
     """{mode, frequency_Hz, damping_ratio, shape, largest_at}: modes of the closed loop, meshes at their mean
-    stiffness; shape: parts that hold the strain energy; largest_at: shaft and place that swing most; mode 0 turns
-    without swinging."""
+    stiffness; shape: parts that hold the strain energy; largest_at: shaft and place that oscillate most; mode 0 is
+    rigid rotation."""
     shaft_frequencies: dict[str, list[float]]
     """Free-free torsional frequencies [Hz] of each isolated shaft."""
     crossings: list[dict[str, Any]]

@@ -52,7 +52,7 @@ def build_drivetrain(
                 ends=(ENDS[coupling.ends[0]], ENDS[coupling.ends[1]]),
                 stiffness=coupling.torsional_stiffness,
                 damping=coupling.torsional_damping,
-                excitation=_swinging(coupling.excitation),
+                excitation=_shaft_torques(coupling.excitation),
             )
             for name, coupling in power.couplings.items()
         ),
@@ -149,11 +149,11 @@ def _motor(case: Case) -> Motor:
         shaft=motor.shaft,
         position=0.0 if motor.end == "start" else length,
         inertia=motor.inertia,
-        ripple=_swinging(motor.ripple),
+        ripple=_shaft_torques(motor.ripple),
     )
 
 
-def _swinging(torques: Sequence[HarmonicTorqueInput]) -> tuple[ShaftTorque, ...]:
+def _shaft_torques(torques: Sequence[HarmonicTorqueInput]) -> tuple[ShaftTorque, ...]:
     return tuple(
         ShaftTorque(order=torque.order, torque=torque.torque, phase=torque.phase) for torque in torques
     )

@@ -21,7 +21,7 @@ LARGEST_MESH = 2_000_000_000
 
 
 def user_model(name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Path) -> GearboxModel:
-    """Model of the mesh file of gearbox ``name``, beside its ``case`` file.
+    """Model of the mesh file of gearbox ``name``, next to its ``case`` file.
 
     Raises
     ------

@@ -118,13 +118,13 @@ def _response(solved: SolvedRig) -> Iterator[str]:
 
 
 def _deviating_teeth(solved: SolvedRig) -> Iterator[str]:
-    """What single teeth and swinging torques add beyond the period of the periodic response."""
+    """What single teeth and alternating torques add beyond the period of the periodic response."""
     rig = solved.rig
     if rig.drivetrain is None or not solved.points:
         return
     laws = laws_of(solved.points[-1].last.models)
     missing = [f"{gear}: its teeth differ" for gear in averaged_gears(rig, laws)]
-    missing += [f"{name}: its torque swings" for name in torques_left_out(rig, laws)]
+    missing += [f"{name}: its torque alternates" for name in torques_left_out(rig, laws)]
     for what in missing:
         yield (
             f"{what}, which a response over response_period = {rig.case.numerics.response_period} does not show: "

@@ -1,4 +1,4 @@
-"""Films of surfaces in air that hardly moves: a floor under laws that vanish at standstill."""
+"""Films of surfaces in air that hardly moves: a lower bound under laws that vanish at standstill."""
 
 from thermal.films.law import FilmCoefficient, FilmLaw
 

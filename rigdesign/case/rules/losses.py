@@ -55,7 +55,7 @@ def loss_faults(case: "Case") -> Iterator[Fault]:
         if losses.bearing_drag == "constant" and case.drivetrain is not None and loss.kind != "mesh":
             yield Fault(
                 f"{at}.kind", f'"{loss.kind}"', "would heat without braking: losses.bearing_drag is constant, so that "
-                "the torsional damping of the bearings is all that brakes beside the teeth",
+                "the torsional damping of the bearings is all that brakes besides the teeth",
                 'write bearing_drag = "film" or remove the given loss',
             )  # fmt: skip
         for stage in loss.stages:

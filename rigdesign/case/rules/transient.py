@@ -1,4 +1,4 @@
-"""Rules of the thermal course: events once each, probes at places that exist."""
+"""Rules of the thermal history: events once each, probes at places that exist."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
