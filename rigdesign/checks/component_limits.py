@@ -12,8 +12,7 @@ from rigdesign.case.component_limits import shafts_of
 from rigdesign.case.limits import BoughtPart, ResultQuantity
 from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.oil import FLOWS
-from rigdesign.checks.omissions import Found as Omissions
-from rigdesign.checks.omissions import constant_drag, warming
+from rigdesign.checks.omissions import Omissions, constant_drag, warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
 from rigdesign.checks.rules import Omission, Rule, exact, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
@@ -29,7 +28,7 @@ EXACT = ("speed", "torque_mean", "oil_flow")
 """Inputs of the case: at the limit they are not near it but on it."""
 
 
-def bought_parts(solved: SolvedRig) -> Iterator[Check]:
+def checks(solved: SolvedRig) -> Iterator[Check]:
     """One check for each bought part of the case."""
     for name, part in solved.case.limits.bought_parts.items():
         yield _check(solved, name, part)
@@ -268,4 +267,4 @@ FAMILIES = (
 )
 """By quantity: the id of a check ends with the name of its part."""
 
-REGISTRY.register(Topic(order=60, families=FAMILIES, checks=bought_parts))
+REGISTRY.register(Topic(order=60, families=FAMILIES, checks=checks))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rigdesign.case.limits import DynamicsLimits
-from rigdesign.checks.omissions import Found, long_periods
+from rigdesign.checks.omissions import Omissions, long_periods
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Omission
 from rigdesign.coupling.loads import signed_torque
@@ -146,7 +146,7 @@ def loaded_stages(solved: SolvedRig, mesh: int) -> list[StageLoad]:
     return [load for load in _loads(solved, mesh).stage_loads if load.stage in loaded]
 
 
-def _gaps(solved: SolvedRig, check: Check) -> Found:
+def _gaps(solved: SolvedRig, check: Check) -> Omissions:
     """Resonances at speeds without a solution, and modes of the closed loop between the speeds of a coarse curve.
 
     A mode counts if the mesh excites it and an order meets it nearer to a held speed than the limit and what loaded

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from dynamics.bearing.protocol import BearingState
-from rigdesign.checks.omissions import Found, of_gearboxes, thrust, warming, without_housing
+from rigdesign.checks.omissions import Omissions, of_gearboxes, thrust, warming, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
 from rigdesign.records.solved_rig import SolvedRig
@@ -25,7 +25,7 @@ def films(solved: SolvedRig) -> Iterator[tuple[str, BearingState]]:
             yield f"{name}, stage {point.point.stage}", state
 
 
-def _tilted(solved: SolvedRig, check: Check) -> Found:
+def _tilted(solved: SolvedRig, check: Check) -> Omissions:
     """The tilt of a shaft in its bore, which the expansion knows and the film does not."""
     bores = [bore for warm in solved.warm for bore in warm.bores]
     if bores:
@@ -35,7 +35,7 @@ def _tilted(solved: SolvedRig, check: Check) -> Found:
         yield Omission(text, size)
 
 
-def _thrust_load(solved: SolvedRig, check: Check) -> Found:
+def _thrust_load(solved: SolvedRig, check: Check) -> Omissions:
     """Tilting moment of the axial force of helical gears, T tan(beta), on the two bearings of a shaft [MPa]."""
     sizes = [
         (

@@ -20,7 +20,7 @@ from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.rig.oil_supply import injected_flow
 
-Found = Iterator[Omission]
+Omissions = Iterator[Omission]
 
 
 def omissions(solved: SolvedRig, check: Check) -> tuple[Omission, ...]:
@@ -38,7 +38,7 @@ def of_gearboxes(text: str, applies: Callable[[SolvedRig, str, Gearbox], bool]) 
     text : with ``{box}`` for the name of the gearbox, ``{why}`` for the reason for which it is not expanded
     """
 
-    def finder(solved: SolvedRig, check: Check) -> Found:
+    def finder(solved: SolvedRig, check: Check) -> Omissions:
         for name, box in solved.case.gearboxes.items():
             if applies(solved, name, box):
                 yield Omission(text.format(box=name, why=solved.why_unexpanded(name)))
@@ -72,7 +72,7 @@ def with_play(solved: SolvedRig, name: str, box: Gearbox) -> bool:
     return unexpanded(solved, name, box) and any(b.axial_play > 0.0 for b in box.bearings.values())
 
 
-def coupled_shafts(solved: SolvedRig, check: Check) -> Found:
+def coupled_shafts(solved: SolvedRig, check: Check) -> Omissions:
     """Shafts of a coupling that no housing carries: they stay where they were set."""
     power = solved.case.drivetrain
     if power is None:
@@ -88,20 +88,20 @@ def coupled_shafts(solved: SolvedRig, check: Check) -> Found:
             yield Omission(f"thermal expansion behind shaft {shaft}: it stays where it was set")
 
 
-def warming(solved: SolvedRig, check: Check) -> Found:
+def warming(solved: SolvedRig, check: Check) -> Omissions:
     """A rig that still warms up."""
     time = solved.case.ambient.warming_time
     if time is not None:
         yield Omission(f"the rest of the warm-up after ambient.warming_time = {show(time, 'time')}")
 
 
-def constant_drag(solved: SolvedRig, check: Check) -> Found:
+def constant_drag(solved: SolvedRig, check: Check) -> Omissions:
     """With the constant drag of the bearings nothing but them and the teeth loses power."""
     if solved.case.drivetrain is not None and solved.case.losses.bearing_drag == "constant":
         yield Omission("windage, seals, oil acceleration and squeezing (losses.bearing_drag = constant)")
 
 
-def given_losses(solved: SolvedRig, check: Check) -> Found:
+def given_losses(solved: SolvedRig, check: Check) -> Omissions:
     """Kinds of loss of a gearbox of which the case gives none, where it gives the losses."""
     if solved.case.losses.basis != "input":
         return
@@ -115,7 +115,7 @@ def given_losses(solved: SolvedRig, check: Check) -> Found:
             yield Omission(f"{', '.join(missing)} losses of gearbox {name}: losses.given holds none")
 
 
-def long_periods(solved: SolvedRig, check: Check) -> Found:
+def long_periods(solved: SolvedRig, check: Check) -> Omissions:
     """Single teeth and alternating torques that do not fit into the period of the response."""
     rig = solved.rig
     if rig.drivetrain is None or rig.system is None or not solved.points:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT, films
-from rigdesign.checks.omissions import HEAT, Found, of_gearboxes, without_housing
+from rigdesign.checks.omissions import HEAT, Omissions, of_gearboxes, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
 from rigdesign.records.solved_rig import SolvedRig
@@ -37,7 +37,7 @@ def _teeth_at_bulk(solved: SolvedRig, name: str, box: Gearbox) -> bool:
     return box.housing is not None and box.heat_split.rule == "assumed"
 
 
-def _untempered(solved: SolvedRig, check: Check) -> Found:
+def _untempered(solved: SolvedRig, check: Check) -> Omissions:
     """Gears whose material states no tempering temperature."""
     gears = [
         f"{name}.{gear}"

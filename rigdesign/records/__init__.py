@@ -1,1 +1,1 @@
-"""From the solved rig to its result records, one module per section of the report."""
+"""Solved points -> records in SI (`results`), and the solved rig that holds them."""

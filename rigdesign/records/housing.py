@@ -1,4 +1,4 @@
-"""Temperatures and heat of the solved rig: housings, heat balance, fields, residuals of the loop."""
+"""Temperatures and heat of the solved rig: housings, heat balance of the rig, fields."""
 
 import math
 from dataclasses import replace
@@ -11,9 +11,7 @@ from rigdesign.coupling.oil import heater_and_cooler
 from rigdesign.coupling.temperatures import HousingField, heat_stored, heat_to_room, solve_housing
 from rigdesign.records.heat_split import COMPARED, heat_splits
 from rigdesign.results.housing import BodyTemperature, CoolingBalance, HousingTemperatures, RadiationReadings
-from rigdesign.results.result import CouplingHistory
 from rigdesign.results.thermal import TemperatureField
-from rigdesign.results.units import UM
 from rigdesign.rig.model import Rig
 from thermal.conduction.flux import heat_flux
 
@@ -96,22 +94,6 @@ def body_temperatures(rig: Rig, field: HousingField) -> dict[str, BodyTemperatur
             lowest=float(nodes.min()),
         )
     return temperatures
-
-
-def coupling_history(result: PointResult) -> CouplingHistory:
-    """Residuals of every iteration of the loop at one held stage."""
-    return CouplingHistory(
-        stage=result.point.stage,
-        iterations=len(result.residuals),
-        residuals=[
-            {
-                "temperature_K": residual.temperature,
-                "growth_um": UM * residual.length,
-                "torque_relative": residual.torque,
-            }
-            for residual in result.residuals
-        ],
-    )
 
 
 def fields_of(rig: Rig, result: PointResult) -> list[TemperatureField]:

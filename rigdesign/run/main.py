@@ -24,10 +24,11 @@ from rigdesign.coupling.time_run import held_points, schedule_of
 from rigdesign.records.dynamics import dynamic_loads
 from rigdesign.records.dynamics_section import dynamics_section
 from rigdesign.records.hand import hand_checks
-from rigdesign.records.housing import compared_temperatures, coupling_history, fields_of
+from rigdesign.records.housing import compared_temperatures, fields_of
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import Finding, RunResult
+from rigdesign.results.rows.coupling import coupling_row
 from rigdesign.results.rows.housing import cooling_row, loss_rows, oil_rows, thermal_row
 from rigdesign.results.rows.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
@@ -140,7 +141,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         cooler=[cooling_row(balance) for balance in solved.cooling],
         thermal=[thermal_row(found) for found in solved.temperatures],
         expansion=[expansion_row(warm) for warm in solved.warm],
-        coupling=[coupling_history(p) for p in points],
+        coupling=[coupling_row(p) for p in points],
         discretisation=list(solved.discretisation),
         reference_shift=list(solved.mesh_shifts),
         hand_checks=hand_checks(solved),

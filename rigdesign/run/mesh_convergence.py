@@ -25,13 +25,12 @@ from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.temperatures import HousingField, body_mean
 from rigdesign.results.check import Check
 from rigdesign.results.result import DiscretisationRow, MeshShift
+from rigdesign.results.units import MM, UM, ZERO
 from rigdesign.rig.model import Rig
 from rigdesign.run.mesh_refinement import checked, on_mesh
 from thermal.errors import ThermalError
 from thermal.fe.recovery import energy_error
 
-ZERO = 273.15
-MM, UM = 1e3, 1e6
 EDGE_ORDER = 4.0 / 3.0
 """Order of integrals of the field where its gradient is that of a re-entrant edge of 270 degrees."""
 ORDERS = (0.5, 4.0)

@@ -74,7 +74,11 @@ def _end(end: CouplingEnd, branch: Branch, branches: Sequence[Branch]) -> FloatA
 def worst_misalignments(
     solved: SolvedRig, branches: Sequence[Branch], every: Sequence[Branch], planned: bool
 ) -> Iterator[Extreme]:
-    """Largest misalignment of every kind over some branches; of couplings one for each."""
+    """Largest misalignment of every kind over some branches; of couplings one for each.
+
+    branches : of which the largest is wanted; every : of all gearboxes, for the other shafts of the couplings
+    planned : whether the case plans these branches
+    """
     rig = solved.rig
     found = [(branch, misalignments(rig, branch, every)) for branch in branches]
     for quantity in MISALIGNMENTS:

@@ -12,7 +12,7 @@ from rigdesign import load_case
 from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.checks.assumptions import depends
-from rigdesign.checks.component_limits import bought_parts
+from rigdesign.checks.component_limits import checks
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.loads import DynamicLoads, MeshLoads, StageBracing
@@ -50,7 +50,7 @@ def held(part: str, quantity: str, base: Case | None = None) -> Check:
                   "seal_surface_velocity": "90 m/s", "shaft_growth": "1 mm"}.get(quantity, "400 N m"),
     }  # fmt: skip
     changed = case.with_value("limits.bought_parts", {"x": entry})
-    (check,) = bought_parts(solved_rig_of(changed))
+    (check,) = checks(solved_rig_of(changed))
     return check
 
 

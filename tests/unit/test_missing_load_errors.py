@@ -9,7 +9,7 @@ from rigdesign.run import load_convergence as load_errors
 from rigdesign.run.warnings import _load_errors
 
 
-def subject(known: tuple[str, ...], *, run: object = object()) -> Any:
+def solved(known: tuple[str, ...], *, run: object = object()) -> Any:
     return SimpleNamespace(
         run=run,
         rig=SimpleNamespace(mesh_names=("test.main", "reference.main")),
@@ -21,7 +21,7 @@ def subject(known: tuple[str, ...], *, run: object = object()) -> Any:
 @pytest.fixture(autouse=True)
 def _loaded(monkeypatch: pytest.MonkeyPatch) -> None:
     """Only the test gearbox has loaded stages."""
-    monkeypatch.setattr(load_errors, "loaded_stages", lambda subject, mesh: [{}] if mesh == 0 else [])
+    monkeypatch.setattr(load_errors, "loaded_stages", lambda solved, mesh: [{}] if mesh == 0 else [])
 
 
 KNOWN = (
@@ -31,11 +31,11 @@ KNOWN = (
 
 
 def test_nothing_is_said_where_every_error_is_known() -> None:
-    assert list(_load_errors(subject(KNOWN))) == []
-    assert list(_load_errors(subject((), run=None))) == []
+    assert list(_load_errors(solved(KNOWN))) == []
+    assert list(_load_errors(solved((), run=None))) == []
 
 
 @pytest.mark.parametrize("lost", KNOWN)
 def test_a_check_without_its_error_is_named(lost: str) -> None:
-    (text,) = _load_errors(subject(tuple(name for name in KNOWN if name != lost)))
+    (text,) = _load_errors(solved(tuple(name for name in KNOWN if name != lost)))
     assert text.startswith(f"{lost}: the error of slices and shaft elements is not known")

@@ -20,7 +20,7 @@ from rigdesign.coupling.shaft_torques import swinging_torques, torques_left_out
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.tooth_deviations import averaged_gears, periodic_laws
 from rigdesign.rig.model import Rig, build_rig
-from rigdesign.run.warnings import _unlike
+from rigdesign.run.warnings import _deviating_teeth
 
 POINT = OperatingPoint(stage="test", speed=100.0, torque=200.0)
 PINION = "gearboxes.test.gears.pinion"
@@ -251,8 +251,8 @@ def warned(case: Case) -> list[str]:
     """Warnings of a response that leaves out what single teeth and swinging torques do."""
     rig, models = built(case)
     point = SimpleNamespace(last=SimpleNamespace(models=models))
-    subject: Any = SimpleNamespace(rig=rig, points=[point])
-    return list(_unlike(subject))
+    solved: Any = SimpleNamespace(rig=rig, points=[point])
+    return list(_deviating_teeth(solved))
 
 
 def test_what_the_response_averages_is_warned_of() -> None:
