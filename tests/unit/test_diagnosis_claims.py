@@ -165,7 +165,7 @@ def test_a_pitch_within_the_tolerance_of_its_grade_is_not_named(tmp_path, size, 
     assert found.decision.verdict == verdict, found.decision.reason
     if verdict == "too_small":
         assert found.refused[0].explanation == "single_pitch:test.pinion/5"
-        assert "less than 6.5 um does not matter" in found.decision.reason
+        assert "below 6.5 um it is not significant" in found.decision.reason
 
 
 @pytest.mark.parametrize("rig", ["loop_1to1", "loop_hunting", "uhcf_prototype", "uhcf_main"])
