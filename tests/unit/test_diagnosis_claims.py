@@ -210,7 +210,7 @@ def test_what_is_at_work_apart_from_a_group_is_told():
     document = diagnosis_document(told)
     assert [row["effect"] for row in document["named"]] == ["single_pitch:test.pinion"]
     assert {row["effect"] for row in document["suspects"]} == {"bearing_loss:test", "oil_viscosity:test"}
-    assert "What the model lacks: pitch of one tooth of test.pinion: tooth 5" in document["headline"]
+    assert "Missing in the model: single pitch deviation of test.pinion: tooth 5" in document["headline"]
     assert told.case_patch is None and "--name" in told.refused and document["gap"]["shrunk"]
     assert document["gap"]["effects_added"] == ["single_pitch:test.pinion/5", "bearing_loss:test"]
     assert (
