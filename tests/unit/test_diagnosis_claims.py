@@ -201,7 +201,7 @@ def test_effects_of_one_trace_end_as_a_group():
     assert "oil_viscosity:test has the signature of bearing_loss:test" in found.decision.reason
 
 
-def test_what_is_at_work_apart_from_a_group_is_told():
+def test_effects_present_apart_from_a_group_are_reported():
     problem = thin_oil(healthy())
     both = {"bearing_loss:test": (log(1.12),), "single_pitch:test.pinion/5": (60e-6,)}
     found = diagnosed(with_added(problem, stored(problem, both)))
