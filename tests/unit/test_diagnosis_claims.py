@@ -165,7 +165,7 @@ def test_a_pitch_within_the_tolerance_of_its_grade_is_not_named(tmp_path, size, 
     assert found.decision.verdict == verdict, found.decision.reason
     if verdict == "too_small":
         assert found.refused[0].explanation == "single_pitch:test.pinion/5"
-        assert "less than 6.5 um does not matter" in found.decision.reason
+        assert "below 6.5 um it is not significant" in found.decision.reason
 
 
 @pytest.mark.parametrize("rig", ["loop_1to1", "loop_hunting", "uhcf_prototype", "uhcf_main"])
@@ -201,7 +201,7 @@ def test_effects_of_one_trace_end_as_a_group():
     assert "oil_viscosity:test has the signature of bearing_loss:test" in found.decision.reason
 
 
-def test_what_is_at_work_apart_from_a_group_is_told():
+def test_effects_present_apart_from_a_group_are_reported():
     problem = thin_oil(healthy())
     both = {"bearing_loss:test": (log(1.12),), "single_pitch:test.pinion/5": (60e-6,)}
     found = diagnosed(with_added(problem, stored(problem, both)))
@@ -210,7 +210,7 @@ def test_what_is_at_work_apart_from_a_group_is_told():
     document = diagnosis_document(told)
     assert [row["effect"] for row in document["named"]] == ["single_pitch:test.pinion"]
     assert {row["effect"] for row in document["suspects"]} == {"bearing_loss:test", "oil_viscosity:test"}
-    assert "What the model lacks: pitch of one tooth of test.pinion: tooth 5" in document["headline"]
+    assert "Missing in the model: single pitch deviation of test.pinion: tooth 5" in document["headline"]
     assert told.case_patch is None and "--name" in told.refused and document["gap"]["shrunk"]
     assert document["gap"]["effects_added"] == ["single_pitch:test.pinion/5", "bearing_loss:test"]
     assert (

@@ -217,7 +217,7 @@ def test_refusals_say_why_and_what_to_do() -> None:
     assert any("baseline" in text for text in asked)
     healthy = document("healthy")
     assert healthy["patch"]["case"] is None and healthy["unexplained"]["groups"] == []
-    assert "residual of a healthy rig is as large" in healthy["headline"]
+    assert "residual is within that of a healthy rig" in healthy["headline"]
 
 
 def test_exchanged_channels_are_put_right_in_the_measurement() -> None:
@@ -238,7 +238,7 @@ def test_a_sensor_that_is_off_leaves_the_case_alone() -> None:
     (correction,) = measurement_patch(told_)["corrections"]
     low, high = correction["parameters"][0]["interval_95"]
     assert low <= 0.02 <= high
-    assert headline(told_).startswith("What is off in the measurement")
+    assert headline(told_).startswith("Wrong in the measurement")
 
 
 @pytest.mark.parametrize(

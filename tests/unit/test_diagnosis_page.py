@@ -59,9 +59,9 @@ def test_the_page_says_what_the_document_says() -> None:
 def test_a_refusal_says_why() -> None:
     text = words(page("alias"))
     assert "The case is not patched: the data do not separate the members of the group" in text
-    assert "Nothing was named: the gap there" in text
+    assert "No effect was named; the gap there" in text
     assert "run-out of test.wheel" in text and "--name" in text
-    assert "The user picked run-out of test.wheel" in words(page("alias", pick="run_out:test.wheel"))
+    assert "Chosen by the user: run-out of test.wheel" in words(page("alias", pick="run_out:test.wheel"))
     assert "No operating point was held out" in words(page("one point"))
 
 
@@ -89,7 +89,7 @@ def test_readings_left_out_are_listed(tmp_path: Path) -> None:
     (row,) = found["data"]["rejected_readings"]
     assert (row["channel"], row["point"], row["unit"]) == ("P", "P04", "W") and row["deviation"] > 5.5
     assert found["data"]["numbers"] == len(result.problem.residuals.features) - 1
-    assert "the others contradict them" in words(diagnosis_page(told, found))
+    assert "rejected as outliers" in words(diagnosis_page(told, found))
 
 
 @pytest.mark.parametrize("name", STORIES)

@@ -169,7 +169,7 @@ def flows(part: GearboxPart) -> Iterator[Effect]:
     for key, (words, most, signature, healthy) in FLOWS.items():
         yield Effect(
             name=f"{key}:{name}",
-            title=f"{words} of {name}",
+            title=f"{words} in {name}",
             family=FLOW,
             signature=signature,
             parameters=(share("share", most),),
