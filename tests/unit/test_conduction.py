@@ -251,5 +251,7 @@ def test_a_law_with_a_jump_does_not_converge_and_says_so(mesh: NamedMesh) -> Non
     with pytest.raises(
         ThermalNotConverged, match=r"Newton: residual .*; hottest in body \w+ at x"
     ) as failure:
-        solve_steady(mesh, CONDUCTIVITY, jumping, max_steps=8)
-    assert len(failure.value.residuals) == 9
+        solve_steady(
+            mesh, CONDUCTIVITY, jumping, max_steps=3
+        )  # later steps land at the jump by rounding alone
+    assert len(failure.value.residuals) == 4

@@ -20,7 +20,7 @@ def solved(
     values, weights = elements.at_points(source)
     per_point = values.reshape(len(mesh.cells), -1) * weights.reshape(len(mesh.cells), -1)
     load = np.zeros(len(mesh.points))
-    np.add.at(load, mesh.cells, per_point @ elements.shape.values(elements._load_rule.points))
+    np.add.at(load, mesh.cells, per_point @ elements.shape.values(elements.shape.load_rule.points))
     held = np.zeros(len(mesh.points), dtype=bool)
     for name, nodes in mesh.surfaces.items():
         held[nodes] |= name not in insulated

@@ -15,7 +15,6 @@ from thermal.conditions.boundary import Adiabatic, Film, SurfaceSource
 from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
-from thermal.fe.reference import rules_of
 from thermal.fe.solver import constrain, solve_direct
 
 CELLS = ("tetra10", "hexahedron20", "hexahedron27")
@@ -41,10 +40,9 @@ def slope(at: np.ndarray) -> np.ndarray:
 def error(mesh: NamedMesh, linear: bool) -> float:
     """L2 error of the second-order space or of its linear sub-space."""
     elements = FiniteElements(mesh)
-    rule = rules_of(mesh.shape).load
     places, volumes = elements.at_points(mesh.points)
     source = K * (4.0 + 1.0 - 0.25) * exact(places) * volumes
-    parts = source.reshape(len(mesh.cells), -1) @ mesh.shape.values(rule.points)
+    parts = source.reshape(len(mesh.cells), -1) @ mesh.shape.values(mesh.shape.load_rule.points)
     load = np.bincount(mesh.cells.ravel(), parts.ravel())
     level = elements.coarse if linear else elements.fine
     values = elements.conduction(np.full(len(mesh.cells), K), level)

@@ -7,13 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from thermal.conditions.boundary import ConditionError
-from thermal.fe import assembly
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray
-from thermal.fe.reference import rules_of
-
-CHUNK = 20_000
-"""Cells taken at once."""
+from thermal.forms import heat_capacity
 
 
 class HeatCapacity:
@@ -27,8 +23,11 @@ class HeatCapacity:
         check_capacity(elements.mesh.bodies, capacity)
         self.elements = elements
         self.capacity = dict(capacity)
-        self.fine, self.coarse = _assembled(elements, elements.per_cell(self.capacity))
-        """(nnz,) values of both matrices [J/K]."""
+        per_cell = elements.per_cell(self.capacity)
+        self.fine = elements.assemble(heat_capacity, elements.fine, capacity=per_cell)
+        """(nnz,) values of the second-order matrix [J/K]."""
+        self.coarse = elements.assemble(heat_capacity, elements.coarse, capacity=per_cell)
+        """Values of the linear matrix [J/K]."""
         self.matrix = elements.fine.matrix(self.fine)
 
     def stored(self, rise: FloatArray, body: str) -> float:
@@ -100,24 +99,3 @@ def check_capacity(bodies: Collection[str], capacity: Mapping[str, float]) -> No
     for name, value in capacity.items():
         if not (math.isfinite(value) and value > 0.0):
             raise ConditionError(f"heat capacity of body {name!r} is {value} J/(m3 K); it must be positive")
-
-
-def _assembled(elements: FiniteElements, per_cell: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Values of the second-order and the linear capacity matrix, by the rule for loads (degree 5)."""
-    points = rules_of(elements.shape).load.points
-    shape = elements.shape
-    _, volumes = elements.at_points(np.zeros(len(elements.mesh.points)))
-    weights = volumes.reshape(len(per_cell), len(points)) * per_cell[:, None]
-    spaces = (
-        (elements.fine, shape.values(points)),
-        (elements.coarse, shape.corner_values(points)),
-    )
-    found = []
-    for level, values in spaces:
-        data = np.zeros(len(level.indices))
-        for start in range(0, len(weights), CHUNK):
-            part = slice(start, start + CHUNK)
-            slots = level.indptr[level.cells[part]][:, :, None] + level.offsets[part].astype(np.int32)
-            assembly.add_facet_mass(data, slots, values, weights[part])
-        found.append(data)
-    return found[0], found[1]

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from thermal.fe.elements import SurfaceElements
-from thermal.fe.mesh import FloatArray
-from thermal.fe.reference import triangle_values
-from thermal.fe.shapes import IndexArray
+from thermal.fe.mesh import FloatArray, IndexArray
+from thermal.fe.reference_elements import TRIANGLE_6
 from thermal.housing.stations import Point
 
 
@@ -137,7 +136,7 @@ class CylinderSection:
         eta = (to_2 * edge_1[:, 0] - to_1 * edge_1[:, 1]) / det
         best = np.argmax(np.minimum(np.minimum(xi, eta), 1.0 - xi - eta), axis=1)
         rows = np.arange(len(angles))
-        shapes = triangle_values(np.column_stack([xi[rows, best], eta[rows, best]]))
+        shapes = TRIANGLE_6.values(np.column_stack([xi[rows, best], eta[rows, best]]))
         nodes = surface.facets[best]
         place = np.einsum("na,nai->ni", shapes, points[nodes] - np.array(centre))
         off = radius - np.hypot(place[:, 1], place[:, 2])

@@ -16,8 +16,8 @@ from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 
 from thermal.fe.aggregation import as_blocks, coarsen, inverse_points
+from thermal.fe.arrays import FloatArray
 from thermal.fe.products import BoolArray, LowRank, Matrix, Numbers, Product, WithLowRank
-from thermal.fe.shapes import FloatArray
 from thermal.fe.smoothing import Smoother, chebyshev, largest_eigenvalue
 
 DENSE = 600

@@ -113,7 +113,7 @@ def solve_transient(
         )
     _check(stages, observe_at or (), tolerance=tolerance, first_step=first_step, largest_step=largest_step)
     run = _Run(
-        setup, HeatCapacity(setup.elements, capacity), initial, initial_volumes or {}, newton_tolerance
+        setup, setup.heat_capacity(capacity), initial, initial_volumes or {}, newton_tolerance
     )
     run.watch(probes, observe_at, observer)
     for number, stage in enumerate(stages):
@@ -164,13 +164,14 @@ class _Run:
     ) -> None:
         self._setup = setup
         self._stepper = Stepper(capacity, newton_tolerance)
-        self._account = EnergyAccount(setup.elements, capacity.capacity)
         shape = (len(setup.mesh.points),)
         self._temperature = np.broadcast_to(np.asarray(initial, dtype=np.float64), shape).copy()
         if not (np.isfinite(self._temperature).all() and self._temperature.min() > 0.0):
             raise ConditionError(
                 "initial temperature must be finite and above 0 K at every node; give kelvin"
             )
+        level = float(self._temperature.mean())
+        self._account = EnergyAccount(setup.elements, capacity.capacity, level)
         self._volumes = dict(volumes)
         self._time = self._begin = 0.0
         self._readers: dict[str, Reader] = {}
