@@ -112,9 +112,7 @@ def solve_transient(
             "the setup to reuse belongs to another mesh or other conductivities; make a new one"
         )
     _check(stages, observe_at or (), tolerance=tolerance, first_step=first_step, largest_step=largest_step)
-    run = _Run(
-        setup, setup.heat_capacity(capacity), initial, initial_volumes or {}, newton_tolerance
-    )
+    run = _Run(setup, setup.heat_capacity(capacity), initial, initial_volumes or {}, newton_tolerance)
     run.watch(probes, observe_at, observer)
     for number, stage in enumerate(stages):
         run.stage(number, stage, tolerance, first_step, largest_step)
