@@ -38,11 +38,9 @@ def expand_housing(rig: Rig, field: HousingField, start: HousingExpansion | None
     name = field.gearbox
     setup = rig.expansion[name]
     shape = expand(
-        rig.models[name],
+        setup,
         field.temperature,
         rig.case.ambient.reference_temperature,
-        setup.elastic.elastic,
-        reuse=setup,
         tolerance=TOLERANCE,
         start=None if start is None else start.expansion,
     )

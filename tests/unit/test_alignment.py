@@ -37,7 +37,7 @@ def setup(model: GearboxModel) -> ExpansionSetup:
 
 
 def hot(setup: ExpansionSetup, temperature: np.ndarray) -> Expansion:
-    return expand(setup.model, temperature, COLD, setup.elastic.elastic, reuse=setup, tolerance=1e-11)
+    return expand(setup, temperature, COLD, tolerance=1e-11)
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,7 @@ import pytest
 
 from tests.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, Film, SurfaceSource
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
@@ -118,7 +119,7 @@ def test_reciprocity(cell: CellName) -> None:
             SurfaceSource(surface=heated, power=40.0, kind="loss"),
             *(Adiabatic(surface=name) for name in mesh.surfaces if name not in ("z_min", heated)),
         ]
-        return solve_steady(mesh, {"box": K}, given).temperature - 300.0
+        return solve_steady(ConductionSetup(mesh, {"box": K}), given).temperature - 300.0
 
     surfaces = FiniteElements(mesh).surfaces
     there = surfaces["y_max"].mean(warmed_by("x_max"))

@@ -52,10 +52,6 @@ class ConductionSetup:
         self._capacities: dict[tuple[tuple[str, float], ...], HeatCapacity] = {}
         self._joints: dict[tuple[str, str, float | None, float], SurfaceJoint] = {}
 
-    def matches(self, mesh: NamedMesh, conductivity: Mapping[str, Conductivity]) -> bool:
-        """Whether the setup was made for this mesh and these conductivities."""
-        return self.mesh is mesh and self.conductivity == dict(conductivity)
-
     def notes(self, conditions: Sequence[Condition]) -> tuple[str, ...]:
         """What is to be said of the joints among ``conditions``: surfaces that touch and give heat to others."""
         others = {
