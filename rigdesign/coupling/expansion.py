@@ -8,7 +8,7 @@ import numpy as np
 from rigdesign.case.gearbox import JournalBearingInput
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.rig.model import Rig
-from thermal.expansion.clearances import BearingGrowth, CentreDistance
+from thermal.expansion.clearances import BearingExpansion, CentreDistance
 from thermal.expansion.expansion import Expansion, expand
 
 TOLERANCE = 1e-6
@@ -72,7 +72,7 @@ def axes_of(rig: Rig, name: str, shape: Expansion, shafts: tuple[str, str]) -> C
     )
 
 
-def bearing_growth(rig: Rig, name: str, shape: Expansion, entry: JournalBearingInput) -> BearingGrowth:
+def bearing_growth(rig: Rig, name: str, shape: Expansion, entry: JournalBearingInput) -> BearingExpansion:
     """Growth of the bearing of the case at one end of a shaft."""
     surface = f"bearing_bore_{entry.shaft}_{entry.side}"
     station = next(b for b in rig.models[name].bearings if b.bore_surface == surface)

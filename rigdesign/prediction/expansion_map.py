@@ -64,7 +64,7 @@ class ExpansionMap:
 def numbers_of(growth: HousingExpansion) -> FloatArray:
     """Bores and journals, seal gaps, centre distances, axial travels, in this order [m]."""
     shape = growth.expansion
-    parts = [np.array([(b.bore_growth, b.journal_growth) for b in shape.bearings.values()]).ravel()]
+    parts = [np.array([(b.bore_expansion, b.journal_expansion) for b in shape.bearings.values()]).ravel()]
     parts += [seal.gaps.ravel() for seal in shape.seals.values()]
     parts.append(np.array([*growth.centre_distance.values(), *growth.tooth_growth.values()]))
     return np.concatenate(parts)
@@ -82,7 +82,7 @@ def with_numbers(growth: HousingExpansion, numbers: FloatArray) -> HousingExpans
     bearings = {}
     for name, bearing in growth.expansion.bearings.items():
         bore, journal = map(float, take(2))
-        bearings[name] = replace(bearing, bore_growth=bore, journal_growth=journal)
+        bearings[name] = replace(bearing, bore_expansion=bore, journal_expansion=journal)
     seals = {
         name: replace(seal, gaps=take(seal.gaps.size).reshape(seal.gaps.shape))
         for name, seal in growth.expansion.seals.items()

@@ -183,7 +183,7 @@ def _seal_gaps(rig: Rig, name: str, shape: Expansion) -> list[dict[str, Any]]:
         {
             "seal": seal.name,
             "shaft": shafts[seal.name],
-            "cold_mm": MM * seal.cold_gap,
+            "cold_mm": MM * seal.undeformed_gap,
             "hot_min_mm": MM * seal.minimum,
             "hot_mean_mm": MM * seal.mean,
             "angle_of_min_deg": math.degrees(seal.angle_of_minimum),

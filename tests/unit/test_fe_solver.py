@@ -15,7 +15,15 @@ from thermal.fe.direct import Backend, DirectError, available_backend
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union, second_order
 from thermal.fe.smoothing import Scaling
-from thermal.fe.solver import LowRank, TwoLevelMultigrid, conjugate_gradient, constrain, gmres, solve_direct
+from thermal.fe.solver import (
+    HeldMatrix,
+    LowRank,
+    TwoLevelMultigrid,
+    conjugate_gradient,
+    constrain,
+    gmres,
+    solve_direct,
+)
 
 
 def heat_problem(divisions: int, held: bool = False):
@@ -33,7 +41,9 @@ def heat_problem(divisions: int, held: bool = False):
     matrix = constrain(elements.fine.matrix(fine), fixed)
     held_corners = fixed[elements.corners]
     linear = constrain(elements.coarse.matrix(coarse), held_corners)
-    multigrid = TwoLevelMultigrid(matrix, linear, elements.prolongation, fixed, held_corners)
+    multigrid = TwoLevelMultigrid(
+        HeldMatrix(matrix, fixed), HeldMatrix(linear, held_corners), elements.prolongation
+    )
     return elements, matrix, np.where(fixed, 0.0, elements.body_load("box")), multigrid
 
 
@@ -49,7 +59,9 @@ def elastic_problem(divisions: int):
     matrix = constrain(elements.fine.block_matrix(blocks[0]), fixed.ravel())
     linear = constrain(elements.coarse.block_matrix(blocks[1]), held_corners)
     modes = rigid_modes(elements.mesh.points[elements.corners])
-    multigrid = TwoLevelMultigrid(matrix, linear, elements.prolongation, fixed.ravel(), held_corners, modes)
+    multigrid = TwoLevelMultigrid(
+        HeldMatrix(matrix, fixed.ravel()), HeldMatrix(linear, held_corners), elements.prolongation, modes
+    )
     excess = 100.0 * np.sin(3.0 * elements.mesh.points).sum(axis=1)
     load = elements.expansion_load(np.full(n, 6e6), excess).ravel()
     return matrix, np.where(fixed.ravel(), 0.0, load), multigrid
@@ -114,16 +126,18 @@ def test_flat_cells_cost_few_iterations() -> None:
     free, free_corners = np.zeros(len(mesh.points), dtype=bool), np.zeros(len(elements.corners), dtype=bool)
     matrix = elements.fine.matrix(fine)
     multigrid = TwoLevelMultigrid(
-        matrix, elements.coarse.matrix(coarse), elements.prolongation, free, free_corners
+        HeldMatrix(matrix, free),
+        HeldMatrix(elements.coarse.matrix(coarse), free_corners),
+        elements.prolongation,
     )
     heat = conjugate_gradient(matrix, elements.body_load("box"), multigrid, tolerance=1e-8)
     levels = [
         level.block_matrix(elements.elasticity(np.full(n, 210e9), np.full(n, 0.3), level))
         for level in (elements.fine, elements.coarse)
     ]
-    nothing = [np.zeros(level.shape[0], dtype=bool) for level in levels]
+    free_levels = [HeldMatrix(level, np.zeros(level.shape[0], dtype=bool)) for level in levels]
     modes = rigid_modes(mesh.points[elements.corners])
-    elastic = TwoLevelMultigrid(*levels, elements.prolongation, *nothing, modes)
+    elastic = TwoLevelMultigrid(*free_levels, elements.prolongation, modes)
     excess = 100.0 * np.sin(3.0 * mesh.points).sum(axis=1)
     load = elements.expansion_load(np.full(n, 6e6), excess).ravel()
     expansion = conjugate_gradient(levels[0], load, elastic, tolerance=1e-8)
@@ -255,9 +269,9 @@ def test_a_small_loose_piece_beside_a_large_one_costs_nothing(small: int) -> Non
         level.block_matrix(elements.elasticity(np.full(n, 210e9), np.full(n, 0.3), level))
         for level in (elements.fine, elements.coarse)
     ]
-    nothing = [np.zeros(level.shape[0], dtype=bool) for level in levels]
+    free_levels = [HeldMatrix(level, np.zeros(level.shape[0], dtype=bool)) for level in levels]
     modes = rigid_modes(mesh.points[elements.corners])
-    multigrid = TwoLevelMultigrid(*levels, elements.prolongation, *nothing, modes)
+    multigrid = TwoLevelMultigrid(*free_levels, elements.prolongation, modes)
     excess = 100.0 * np.sin(3.0 * mesh.points).sum(axis=1)
     load = elements.expansion_load(np.full(n, 6e6), excess).ravel()
     assert conjugate_gradient(levels[0], load, multigrid, tolerance=1e-8).iterations <= 16

@@ -75,7 +75,7 @@ def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
 
     def grown(temperature: NDArray[np.float64]) -> dict[str, float]:
         shape = expand(setup, temperature, 293.15, tolerance=1e-6)
-        return {key: bearing.bore_growth for key, bearing in shape.bearings.items()}
+        return {key: bearing.bore_expansion for key, bearing in shape.bearings.items()}
 
     even = field.temperature.copy()
     even[nodes] = 325.0

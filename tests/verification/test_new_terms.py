@@ -13,7 +13,7 @@ from skfem.helpers import dot, grad, mul
 from thermal import forms
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
-from thermal.fe.solver import TwoLevelMultigrid, conjugate_gradient, constrain
+from thermal.fe.solver import HeldMatrix, TwoLevelMultigrid, conjugate_gradient, constrain
 
 CONDUCTIVITY = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, 0.5], [0.0, 0.5, 2.0]])
 """Of a laminate [W/(m K)]."""
@@ -77,11 +77,11 @@ def anisotropic(cell: CellName, n: int) -> float:
     isotropic = elements.coarse.matrix(
         elements.conduction(np.full(len(elements.mesh.cells), 3.0), elements.coarse)
     )
+    inner, corners = constrain(matrix, held), held[elements.corners]
     multigrid = TwoLevelMultigrid(
-        constrain(matrix, held), constrain(isotropic, held[elements.corners]), elements.prolongation,
-        held, held[elements.corners],
-    )  # fmt: skip
-    solution = conjugate_gradient(constrain(matrix, held), right, multigrid)
+        HeldMatrix(inner, held), HeldMatrix(constrain(isotropic, corners), corners), elements.prolongation
+    )
+    solution = conjugate_gradient(inner, right, multigrid)
     return error(elements, given + solution.values)
 
 

@@ -66,7 +66,7 @@ class StoredHeat:
 
     Every body takes up rho c (T - start)/time per volume: the whole warm-up as one implicit step. The field lies
     between the start (no time) and the steady one (long time), with tau/(tau + time) of a rise still missing for a
-    time constant tau; the true course, exp(-time/tau), is nearer to steady. Raises ConditionError for a time that is
+    time constant tau; the true history, exp(-time/tau), is nearer to steady. Raises ConditionError for a time that is
     not positive.
     """
 

@@ -17,7 +17,7 @@ USUAL = 293.15
 
 
 class ConductionSetup:
-    """Conduction matrices of a mesh, assembled once and used for every stage and coupling pass.
+    """Conduction matrices of a mesh, assembled once and used for every stage and iteration of the coupling.
 
     conductivity : body -> k [W/(m K)], a number or a law of the temperature
     elements : share the spaces of an earlier setup on the same mesh

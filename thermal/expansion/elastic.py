@@ -1,7 +1,7 @@
 """Thermo-elastic displacement of a mesh: K u = int B^T D alpha (T - T0).
 
 Every connected piece must be supported; `three_two_one` gives a statically determinate support, under which a
-piece swells freely: the supports carry nothing whatever its temperature field. Such a piece is solved without
+piece expands freely: the supports carry nothing whatever its temperature field. Such a piece is solved without
 its supports, which would strain the three nodes they hold, and then moved as a rigid body onto them.
 """
 
@@ -20,7 +20,14 @@ from thermal.fe.curved import linear_stiffness
 from thermal.fe.direct import solve_direct
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray, IndexArray
-from thermal.fe.solver import BoolArray, LinearSolution, TwoLevelMultigrid, conjugate_gradient, constrain
+from thermal.fe.solver import (
+    BoolArray,
+    HeldMatrix,
+    LinearSolution,
+    TwoLevelMultigrid,
+    conjugate_gradient,
+    constrain,
+)
 
 __all__ = [
     "Displacement",
@@ -43,7 +50,7 @@ class Elastic(NamedTuple):
     """[Pa]"""
     poisson: float
     expansion: float
-    """Mean coefficient of linear expansion between cold and hot [1/K]."""
+    """Mean coefficient of linear expansion between the reference temperature and the hot one [1/K]."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +101,10 @@ class ElasticSetup:
         coarse_matrix = constrain(linear_stiffness(elements, young, poisson), held_corners, overwrite=True)
         modes = rigid_modes(elements.mesh.points[elements.corners])
         self.multigrid = TwoLevelMultigrid(
-            self.matrix, coarse_matrix, elements.prolongation, self._held, held_corners, modes
+            HeldMatrix(self.matrix, self._held),
+            HeldMatrix(coarse_matrix, held_corners),
+            elements.prolongation,
+            modes,
         )
 
     def load(self, temperature: FloatArray, reference: float) -> FloatArray:

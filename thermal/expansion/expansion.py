@@ -13,8 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from thermal.expansion.alignment import ShaftAxis
-from thermal.expansion.clearances import BearingGrowth, CentreDistance, GearGrowth, SealGrowth, ShaftGrowth
-from thermal.expansion.deformed_geometry import HotShape
+from thermal.expansion.clearances import (
+    BearingExpansion,
+    CentreDistance,
+    GearExpansion,
+    SealExpansion,
+    ShaftExpansion,
+)
+from thermal.expansion.deformed_geometry import DeformedGeometry
 from thermal.expansion.elastic import ElasticError
 from thermal.expansion.setup import ExpansionSetup
 from thermal.fe.mesh import FloatArray
@@ -24,16 +30,16 @@ __all__ = ["Expansion", "ExpansionSetup", "expand"]
 
 @dataclass(frozen=True, kw_only=True)
 class Expansion:
-    """Hot shape of a gearbox."""
+    """Deformed geometry of a gearbox."""
 
     displacement: FloatArray
     """(n_nodes, 3) [m], relative to the foot, shafts placed in their bearings."""
     supported: FloatArray
     """(n_nodes, 3) [m] on the supports of the solve, every piece for itself; a start for the next solve."""
-    bearings: dict[str, BearingGrowth]
-    seals: dict[str, SealGrowth]
-    shafts: dict[str, ShaftGrowth]
-    gears: dict[str, GearGrowth]
+    bearings: dict[str, BearingExpansion]
+    seals: dict[str, SealExpansion]
+    shafts: dict[str, ShaftExpansion]
+    gears: dict[str, GearExpansion]
     axes: dict[str, ShaftAxis]
     """Hot axis of every shaft, through its bearing bores."""
     centre_distances: tuple[CentreDistance, ...]
@@ -92,7 +98,7 @@ def read_expansion(
     temperature : (n_nodes,) [K]; supported : (n_nodes, 3) [m], of this temperature
     """
     model = setup.model
-    shape = HotShape(setup, temperature, reference_temperature, supported)
+    shape = DeformedGeometry(setup, temperature, reference_temperature, supported)
     return Expansion(
         displacement=shape.displacement,
         supported=supported,

@@ -112,7 +112,7 @@ class FiniteElements:
         """Load (n_nodes, 3) [N] of free expansion, by the rule of the stiffness: a free body has no stress.
 
         factor : (n_cells,) alpha E / (1 - 2 nu) [Pa/K]
-        excess : (n_nodes,) temperature above the cold one [K]
+        excess : (n_nodes,) temperature above the reference [K]
         """
         return self.fine.expansion_load(factor, excess)
 

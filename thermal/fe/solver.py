@@ -14,11 +14,12 @@ from thermal.errors import ThermalNotConverged
 from thermal.fe import kernels
 from thermal.fe.arrays import FloatArray
 from thermal.fe.direct import solve_direct
-from thermal.fe.multigrid import LinearSpace, TwoLevelMultigrid
+from thermal.fe.multigrid import HeldMatrix, LinearSpace, TwoLevelMultigrid
 from thermal.fe.products import BoolArray, LowRank, Matrix, Product
 
 __all__ = [
     "BoolArray",
+    "HeldMatrix",
     "LinearSolution",
     "LinearSpace",
     "LowRank",
