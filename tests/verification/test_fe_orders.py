@@ -46,7 +46,7 @@ def error(mesh: NamedMesh, linear: bool) -> float:
     parts = source.reshape(len(mesh.cells), -1) @ mesh.shape.values(mesh.shape.load_rule.points)
     load = np.bincount(mesh.cells.ravel(), parts.ravel())
     level = elements.coarse if linear else elements.fine
-    values = elements.conduction(np.full(len(mesh.cells), K), level)
+    values = level.conduction(np.full(len(mesh.cells), K))
     for side in elements.surfaces.values():
         film = np.full_like(side.weights, H)
         (side.add_coarse_mass if linear else side.add_mass)(values, film)
@@ -95,9 +95,7 @@ def test_patch(cell: CellName) -> None:
     # Irons and Razzaque 1972: displacements linear on the boundary are linear inside, whatever the cells
     elements = FiniteElements(distorted(cell))
     points, n = elements.mesh.points, len(elements.mesh.cells)
-    matrix = elements.fine.block_matrix(
-        elements.elasticity(np.full(n, 210e9), np.full(n, 0.3), elements.fine)
-    )
+    matrix = elements.fine.block_matrix(elements.fine.elasticity(np.full(n, 210e9), np.full(n, 0.3)))
     fixed = np.zeros((len(points), 3), dtype=bool)
     for side in elements.surfaces.values():
         fixed[side.nodes] = True

@@ -74,9 +74,7 @@ def anisotropic(cell: CellName, n: int) -> float:
 
     held, given = held_outside(elements)
     right = np.where(held, 0.0, load - matrix @ given)
-    isotropic = elements.coarse.matrix(
-        elements.conduction(np.full(len(elements.mesh.cells), 3.0), elements.coarse)
-    )
+    isotropic = elements.coarse.matrix(elements.coarse.conduction(np.full(len(elements.mesh.cells), 3.0)))
     inner, corners = constrain(matrix, held), held[elements.corners]
     multigrid = TwoLevelMultigrid(
         HeldMatrix(inner, held), HeldMatrix(constrain(isotropic, corners), corners), elements.prolongation

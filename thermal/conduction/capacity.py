@@ -35,11 +35,6 @@ class HeatCapacity:
         values, volumes = self.elements.at_points(rise, self.elements.mesh.bodies[body])
         return self.capacity[body] * float(values @ volumes)
 
-    def root_mean_square(self, values: FloatArray, body: str) -> float:
-        """Root of the mean square of a nodal field over a body."""
-        at, volumes = self.elements.at_points(values, self.elements.mesh.bodies[body])
-        return float(np.sqrt(at**2 @ volumes / volumes.sum()))
-
 
 @dataclass(frozen=True)
 class Storage:

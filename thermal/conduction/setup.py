@@ -37,9 +37,9 @@ class ConductionSetup:
         laws = {name: k for name, k in self.conductivity.items() if callable(k)}
         constant = {name: 0.0 if callable(k) else float(k) for name, k in self.conductivity.items()}
         per_cell = self.elements.per_cell(constant)
-        self.fine = self.elements.conduction(per_cell, self.elements.fine)
+        self.fine = self.elements.fine.conduction(per_cell)
         """(nnz,) values of the second-order matrix [W/K], bodies with a law left out."""
-        self.coarse = self.elements.conduction(per_cell, self.elements.coarse)
+        self.coarse = self.elements.coarse.conduction(per_cell)
         """Values of the linear matrix [W/K], bodies with a law left out."""
         self.variable = VariableConduction(self.elements, laws) if laws else None
         """The bodies with a law."""

@@ -90,7 +90,7 @@ class ElasticSetup:
         self._alpha = np.empty(len(elements.mesh.points))
         self._alpha[elements.mesh.cells] = alpha[:, None]
         self._factor = alpha * young / (1.0 - 2.0 * poisson)
-        fine = elements.elasticity(young, poisson, elements.fine)
+        fine = elements.fine.elasticity(young, poisson)
         self.free = FreePieces.of(elements, fixed)
         """Pieces on six determinate supports, solved without them."""
         held = fixed & ~self.free.nodes[:, None]
@@ -109,7 +109,7 @@ class ElasticSetup:
 
     def load(self, temperature: FloatArray, reference: float) -> FloatArray:
         """Nodal forces (n_nodes, 3) [N] that free expansion from ``reference`` [K] calls for."""
-        return self.elements.expansion_load(self._factor, temperature - reference)
+        return self.elements.fine.expansion_load(self._factor, temperature - reference)
 
     def free_strain(self, temperature: FloatArray, reference: float) -> FloatArray:
         """(n_nodes,) alpha (T - T0); a node between bodies takes one of their alphas."""

@@ -124,9 +124,8 @@ class Bases:
         """
         element, dofs = self._element(space)
         points, weights = self._shape.load_rule if rule is None else rule
-        mapping = MappingIsoparametric(
-            self.mesh, self._shape.element
-        )  # of its own: it keeps what it computes
+        # a mapping keeps all it computes; one for each basis goes with it
+        mapping = MappingIsoparametric(self.mesh, self._shape.element)
         return skfem.CellBasis(
             self.mesh, element, mapping, elements=cells, quadrature=(points.T, weights), dofs=dofs,
             disable_doflocs=True,

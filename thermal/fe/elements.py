@@ -100,22 +100,6 @@ class FiniteElements:
             level.add_local(values, basis.tind, local[:, local_order[None, :], local_order[:, None]])
         return values
 
-    def conduction(self, conductivity: FloatArray, level: Level) -> FloatArray:
-        """Matrix values (nnz,) [W/K] of the integral of k grad u . grad v; see Level.conduction."""
-        return level.conduction(conductivity)
-
-    def elasticity(self, young: FloatArray, poisson: FloatArray, level: Level) -> FloatArray:
-        """Matrix blocks (nnz, 3, 3) [N/m]; young [Pa] and poisson [-] : (n_cells,)."""
-        return level.elasticity(young, poisson)
-
-    def expansion_load(self, factor: FloatArray, excess: FloatArray) -> FloatArray:
-        """Load (n_nodes, 3) [N] of free expansion, by the rule of the stiffness: a free body has no stress.
-
-        factor : (n_cells,) alpha E / (1 - 2 nu) [Pa/K]
-        excess : (n_nodes,) temperature above the reference [K]
-        """
-        return self.fine.expansion_load(factor, excess)
-
     def at_points(self, field: FloatArray, cells: IndexArray | None = None) -> tuple[FloatArray, FloatArray]:
         """Values (k, ...) of a nodal ``field`` (n_nodes, ...) and volume weights (k,) [m3].
 

@@ -99,10 +99,6 @@ class Level:
         rows = self.indptr[self.cells[cells]]
         np.add.at(values, rows[:, :, None] + self.pattern.offsets[cells], local)
 
-    def gradients(self, cells: Cells = ALL) -> FloatArray:
-        """(k, n_q, n_local, 3) physical gradients [1/m] of the shape functions of k ``cells``."""
-        return np.asarray(np.einsum("qjb,eqji->eqbi", self.tables.slopes, self.inverse[cells], optimize=True))
-
     def at_points(self, field: FloatArray, cells: Cells = ALL) -> FloatArray:
         """(k, n_q, ...) values of a nodal ``field`` (n_nodes, ...) at the quadrature points of ``cells``."""
         return np.asarray(np.einsum("qb,eb...->eq...", self.values, field[self.cells[cells]]))
@@ -137,7 +133,11 @@ class Level:
         return assembly.elasticity_rows(self.pattern, self.tables, lame)
 
     def expansion_load(self, factor: FloatArray, excess: FloatArray) -> FloatArray:
-        """Load (n_nodes, 3) [N] of free expansion; see FiniteElements.expansion_load."""
+        """Load (n_nodes, 3) [N] of free expansion, by the rule of the stiffness: a free body has no stress.
+
+        factor : (n_cells,) alpha E / (1 - 2 nu) [Pa/K]
+        excess : (n_nodes,) temperature above the reference [K]
+        """
         return assembly.expansion_load(self.cells, self.values, self.tables, factor, excess)
 
 
