@@ -8,7 +8,7 @@ import numpy as np
 from rigdesign.case.gearbox import BearingInput
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.rig.model import Rig
-from thermal.expansion.clearances import BearingGrowth, CentreDistance
+from thermal.expansion.clearances import BearingExpansion, CentreDistance
 from thermal.expansion.expansion import Expansion, expand
 
 TOLERANCE = 1e-6
@@ -39,11 +39,9 @@ def expand_housing(rig: Rig, field: HousingField, start: HousingExpansion | None
     name = field.gearbox
     setup = rig.expansion[name]
     shape = expand(
-        rig.models[name],
+        setup,
         field.temperature,
         rig.case.ambient.reference_temperature,
-        setup.elastic.elastic,
-        reuse=setup,
         tolerance=TOLERANCE,
         start=None if start is None else start.deformed,
     )
@@ -75,7 +73,7 @@ def axes_of(rig: Rig, name: str, shape: Expansion, shafts: tuple[str, str]) -> C
     )
 
 
-def bearing_expansion(rig: Rig, name: str, shape: Expansion, entry: BearingInput) -> BearingGrowth:
+def bearing_expansion(rig: Rig, name: str, shape: Expansion, entry: BearingInput) -> BearingExpansion:
     """Thermal expansion of the bearing of the case at one end of a shaft."""
     surface = f"bearing_bore_{entry.shaft}_{entry.side}"
     station = next(b for b in rig.models[name].bearings if b.bore_surface == surface)

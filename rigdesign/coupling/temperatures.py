@@ -66,12 +66,7 @@ def solve_housing(
     )
     setup = rig.conduction[name]
     solution = solve_steady(
-        setup.mesh,
-        setup.conductivity,
-        conditions,
-        near=None if start is None else start.solution,
-        reuse=setup,
-        tolerance=tolerance,
+        setup, conditions, near=None if start is None else start.solution, tolerance=tolerance
     )
     return HousingField(gearbox=name, conditions=tuple(conditions), solution=solution)
 

@@ -64,7 +64,7 @@ class ExpansionMap:
 def numbers_of(expansion: HousingExpansion) -> FloatArray:
     """Bores and journals, seal gaps, centre distances, axial travels, in this order [m]."""
     shape = expansion.deformed
-    parts = [np.array([(b.bore_growth, b.journal_growth) for b in shape.bearings.values()]).ravel()]
+    parts = [np.array([(b.bore_expansion, b.journal_expansion) for b in shape.bearings.values()]).ravel()]
     parts += [seal.gaps.ravel() for seal in shape.seals.values()]
     parts.append(np.array([*expansion.centre_distance.values(), *expansion.axial_expansion.values()]))
     return np.concatenate(parts)
@@ -82,7 +82,7 @@ def with_numbers(expansion: HousingExpansion, numbers: FloatArray) -> HousingExp
     bearings = {}
     for name, bearing in expansion.deformed.bearings.items():
         bore, journal = map(float, take(2))
-        bearings[name] = replace(bearing, bore_growth=bore, journal_growth=journal)
+        bearings[name] = replace(bearing, bore_expansion=bore, journal_expansion=journal)
     seals = {
         name: replace(seal, gaps=take(seal.gaps.size).reshape(seal.gaps.shape))
         for name, seal in expansion.deformed.seals.items()

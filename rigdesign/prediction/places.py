@@ -101,7 +101,7 @@ def _local(elements: FiniteElements, corners: FloatArray, point: FloatArray) -> 
 def _inside(elements: FiniteElements, local: FloatArray) -> FloatArray:
     """The point of the reference cell nearest to ``local``, in its own coordinates."""
     if elements.shape.n_corners == 8:
-        return np.clip(local, -1.0, 1.0)
+        return np.clip(local, 0.0, 1.0)
     shares = np.append(1.0 - local.sum(), local)
     for _ in range(4):
         shares = np.maximum(shares, 0.0)

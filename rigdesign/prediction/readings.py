@@ -15,7 +15,7 @@ from rigdesign.prediction.orders import is_ideal, shaft_orders
 from rigdesign.prediction.places import place_weights
 from rigdesign.rig.joints import bearing_of_bore, shell_temperature
 from rigdesign.rig.model import Rig
-from thermal.expansion.clearances import SealGrowth
+from thermal.expansion.clearances import SealExpansion
 from thermal.fe.mesh import FloatArray
 
 
@@ -32,7 +32,7 @@ class Settled:
         """(n_nodes,) field of a housing [K]."""
         return self.last.fields[gearbox].temperature
 
-    def seals(self, gearbox: str) -> Mapping[str, SealGrowth]:
+    def seals(self, gearbox: str) -> Mapping[str, SealExpansion]:
         """Hot seals of a housing."""
         return self.last.expansion[gearbox].deformed.seals
 

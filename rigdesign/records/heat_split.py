@@ -114,9 +114,7 @@ def _solved_again(
             condition = replace(condition, power=kept * friction[gear])
         conditions.append(condition)
     setup = rig.conduction[name]
-    solution = solve_steady(
-        setup.mesh, setup.conductivity, conditions, near=field.solution, reuse=setup, tolerance=COMPARED
-    )
+    solution = solve_steady(setup, conditions, near=field.solution, tolerance=COMPARED)
     return HousingField(gearbox=name, conditions=tuple(conditions), solution=solution)
 
 

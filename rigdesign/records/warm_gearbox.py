@@ -49,7 +49,7 @@ def _seals(rig: Rig, name: str, shape: Expansion) -> Iterator[SealClearance]:
         yield SealClearance(
             name=seal.name,
             shaft=shafts[seal.name],
-            as_drawn=seal.cold_gap,
+            as_drawn=seal.undeformed_gap,
             minimum=seal.minimum,
             mean=seal.mean,
             angle_of_minimum=seal.angle_of_minimum,

@@ -20,7 +20,7 @@ from rigdesign.transient.soak import first_broken, soak_of
 from rigdesign.transient.warm_up import Soak
 from thermal.expansion.alignment import ShaftAxis
 from thermal.expansion.many_fields import ExpansionBasis
-from thermal.transient.history import TransientSolution, solve_transient
+from thermal.transient.history import InitialState, Observed, StepControl, TransientSolution, solve_transient
 
 FloatArray = NDArray[np.float64]
 FIRST_STEP = 0.5
@@ -187,19 +187,15 @@ def march(
             ends[number] = field, dict(fluids)
 
     solution = solve_transient(
-        setup.mesh,
-        setup.conductivity,
+        setup,
         {body: material.density * material.heat_capacity for body, material in materials.items()},
         [heating.stage(name, phase) for phase in phases],
-        rig.case.ambient.temperature if start is None else start.field,
-        probes=probes_of(rig, name),
-        observe_at=None,
-        observer=keep,
-        initial_volumes=None if start is None else start.volumes,
-        tolerance=rig.case.transient.tolerance,
-        first_step=FIRST_STEP,
-        largest_step=UNBOUND,
-        reuse=setup,
+        InitialState(
+            temperature=rig.case.ambient.temperature if start is None else start.field,
+            volumes=None if start is None else start.volumes,
+        ),
+        observed=Observed(probes=probes_of(rig, name), at=None, observer=keep),
+        steps=StepControl(tolerance=rig.case.transient.tolerance, first=FIRST_STEP, largest=UNBOUND),
     )
     return ThermalHistory(event, phases, 0.0 if start is None else start.time, solution, fields, ends)
 

@@ -11,11 +11,12 @@ import numpy as np
 from rigdesign.validation.mapped_mesh import mapped, split
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature, Radiation, SurfaceSource
 from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, FloatArray, NamedMesh, box_mesh
 from thermal.films.convection import constant
-from thermal.transient.history import ThermalStage, solve_transient
+from thermal.transient.history import StepControl, ThermalStage, solve_transient
 
 ZERO = 273.15
 SOURCE = "NAFEMS, The Standard NAFEMS Benchmarks (1990)"
@@ -29,7 +30,9 @@ def t2_end_temperature(cell: CellName = "tetra10") -> float:
         Radiation(surface="x_max", emissivity=0.98, surroundings_temperature=300.0),
         *_insulated("y_min", "y_max", "z_min", "z_max"),
     ]
-    return _at(mesh, solve_steady(mesh, {"box": 55.6}, conditions).temperature, (0.1, 0.0, 0.0))
+    return _at(
+        mesh, solve_steady(ConductionSetup(mesh, {"box": 55.6}), conditions).temperature, (0.1, 0.0, 0.0)
+    )
 
 
 def t3_temperature(cell: CellName = "tetra10") -> float:
@@ -45,7 +48,13 @@ def t3_temperature(cell: CellName = "tetra10") -> float:
 
     mesh = box_mesh((0.1, 0.01, 0.01), (20, 1, 1), cell=cell)
     stage = ThermalStage(name="t3", duration=32.0, conditions=conditions)
-    solution = solve_transient(mesh, {"box": 35.0}, {"box": 440.5 * 7200.0}, [stage], ZERO, tolerance=0.01)
+    solution = solve_transient(
+        ConductionSetup(mesh, {"box": 35.0}),
+        {"box": 440.5 * 7200.0},
+        [stage],
+        ZERO,
+        steps=StepControl(tolerance=0.01),
+    )
     section = np.isclose(mesh.points[:, 0], 0.08)
     return float(solution.temperature[section].mean()) - ZERO
 
@@ -59,7 +68,10 @@ def t4_temperature(cell: CellName = "tetra10") -> float:
         *(Film(surface=side, kind="air", fluid_temperature=ZERO, law=film) for side in ("x_max", "y_max")),
         *_insulated("x_min", "z_min", "z_max"),
     ]
-    return _at(mesh, solve_steady(mesh, {"box": 52.0}, conditions).temperature, (0.6, 0.2, 0.0)) - ZERO
+    return (
+        _at(mesh, solve_steady(ConductionSetup(mesh, {"box": 52.0}), conditions).temperature, (0.6, 0.2, 0.0))
+        - ZERO
+    )
 
 
 def local_flux_temperature(cell: CellName = "tetra10") -> float:
@@ -85,7 +97,9 @@ def local_flux_temperature(cell: CellName = "tetra10") -> float:
         *(PrescribedTemperature(surface=side, temperature=ZERO) for side in ("x_max", "z_min", "z_max")),
         *_insulated("x_min", "y_min", "y_max"),
     ]
-    return _at(mesh, solve_steady(mesh, {"box": 52.0}, conditions).temperature, (0.04, 0.0, 0.04))
+    return _at(
+        mesh, solve_steady(ConductionSetup(mesh, {"box": 52.0}), conditions).temperature, (0.04, 0.0, 0.04)
+    )
 
 
 def _insulated(*surfaces: str) -> list[Condition]:

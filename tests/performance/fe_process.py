@@ -59,14 +59,12 @@ def main(what: str, folder: Path, again: bool) -> None:
         conductivity = dict.fromkeys(mesh.bodies, given["conductivity"])
         setup = ConductionSetup(mesh, conductivity, elements)
         marks.append(time.process_time())
-        first = solve_steady(
-            mesh, conductivity, conditions(mesh, given["films"], given["radiating"]), reuse=setup
-        )
+        first = solve_steady(setup, conditions(mesh, given["films"], given["radiating"]))
         marks.append(time.process_time())
         values, iterations = first.temperature, [first.linear_iterations]
         if again:
             warmer = conditions(mesh, given["films"], given["radiating"], warmer=5.0)
-            second = solve_steady(mesh, conductivity, warmer, near=first, reuse=setup)
+            second = solve_steady(setup, warmer, near=first)
             iterations.append(second.linear_iterations)
     else:
         with np.load(folder / "problem.npz") as stored:

@@ -61,7 +61,7 @@ def shape(rig: Rig) -> Expansion:
     model, setup = rig.models["test"], rig.expansion["test"]
     cold = rig.case.ambient.reference_temperature
     field = np.full(len(model.mesh.points), cold + RISE)
-    return expand(model, field, cold, setup.elastic.elastic, reuse=setup)
+    return expand(setup, field, cold)
 
 
 @pytest.fixture(scope="module")

@@ -39,7 +39,7 @@ def setup() -> ConductionSetup:
 
 @pytest.fixture(scope="module")
 def solved(setup: ConductionSetup) -> TemperatureSolution:
-    return solve_steady(setup.mesh, VARIABLE, conditions(), reuse=setup)
+    return solve_steady(setup, conditions())
 
 
 def test_linearisation_is_the_slope_of_the_residual_with_the_volumes_eliminated(setup) -> None:
@@ -141,7 +141,7 @@ def negated(method: Callable[..., tuple[np.ndarray, float]]) -> Callable[..., tu
 def test_one_wrong_sign_in_the_solver_is_no_solution(setup, terms, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(terms, "heat_out", negated(terms.heat_out))
     with pytest.raises(ThermalNotConverged):
-        solve_steady(setup.mesh, VARIABLE, conditions(), reuse=setup, max_steps=12)
+        solve_steady(setup, conditions(), max_steps=12)
 
 
 def test_one_wrong_sign_in_the_volumes_is_no_solution(setup, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -153,7 +153,7 @@ def test_one_wrong_sign_in_the_volumes_is_no_solution(setup, monkeypatch: pytest
 
     monkeypatch.setattr(VolumeTerms, "heat_out", wrong)
     with pytest.raises(ThermalNotConverged):
-        solve_steady(setup.mesh, VARIABLE, conditions(), reuse=setup, max_steps=12)
+        solve_steady(setup, conditions(), max_steps=12)
 
 
 def test_a_linear_problem_is_reciprocal(setup: ConductionSetup) -> None:
@@ -175,7 +175,7 @@ def test_a_linear_problem_is_reciprocal(setup: ConductionSetup) -> None:
 
 def test_a_stiff_joint_costs_few_iterations(setup: ConductionSetup) -> None:
     stiff = [replace(c, law=law(1e5)) if isinstance(c, Contact) else c for c in conditions()]
-    solution = solve_steady(setup.mesh, VARIABLE, stiff, reuse=setup)
+    solution = solve_steady(setup, stiff)
     assert max(solution.linear_iterations) <= 15
     assert solution.balance.closure <= CLOSURE
 
@@ -213,7 +213,7 @@ BAD: list[tuple[list[Condition], str]] = [
 @pytest.mark.parametrize(("bad", "message"), BAD, ids=[message[:40] for _, message in BAD])
 def test_bad_conditions_are_refused(setup, bad: list[Condition], message: str) -> None:
     with pytest.raises(ConditionError, match=message):
-        solve_steady(setup.mesh, VARIABLE, bad, reuse=setup)
+        solve_steady(setup, bad)
 
 
 def test_surfaces_that_do_not_touch_are_refused(setup: ConductionSetup) -> None:
@@ -221,7 +221,7 @@ def test_surfaces_that_do_not_touch_are_refused(setup: ConductionSetup) -> None:
     with pytest.raises(
         ConditionError, match=r"contact of base_x_min and lid_z_min: 0 of the smaller surface touches"
     ):
-        solve_steady(setup.mesh, VARIABLE, apart, reuse=setup)
+        solve_steady(setup, apart)
 
 
 def test_a_conductivity_law_that_turns_negative_is_named(setup: ConductionSetup) -> None:

@@ -54,7 +54,7 @@ def test_where_all_cells_are_bent_the_linear_stiffness_is_variational(
     monkeypatch.setattr(curved, "BENT", -1.0)
     elements = FiniteElements(ring(0.01, 4, cell))
     young, poisson = np.full(len(elements.mesh.cells), 210e9), np.full(len(elements.mesh.cells), 0.3)
-    whole = elements.fine.block_matrix(elements.elasticity(young, poisson, elements.fine))
+    whole = elements.fine.block_matrix(elements.fine.elasticity(young, poisson))
     way = sparse.kron(elements.prolongation, np.eye(3), format="csr")
     wanted = (way.T @ sparse.csr_array(whole) @ way).toarray()
     found = linear_stiffness(elements, young, poisson).toarray()
@@ -66,7 +66,7 @@ def test_straight_cells_are_not_bent(cell: CellName) -> None:
     elements = FiniteElements(box_mesh((1.0, 1.0, 1e-3), (2, 2, 2), cell=cell))
     assert len(bent_cells(elements)) == 0
     young, poisson = np.full(len(elements.mesh.cells), 210e9), np.full(len(elements.mesh.cells), 0.3)
-    plain = elements.coarse.block_matrix(elements.elasticity(young, poisson, elements.coarse))
+    plain = elements.coarse.block_matrix(elements.coarse.elasticity(young, poisson))
     assert abs(linear_stiffness(elements, young, poisson) - plain).max() == 0.0
 
 

@@ -41,7 +41,7 @@ def test_three_patterns_hold_twelve_fields(setup: ExpansionSetup) -> None:
     assert len(course.patterns) == 3
     assert course.missed <= 1e-3
     for field in (found[4], found[-1]):
-        direct = expand(setup.model, field, COLD, setup.elastic.elastic, reuse=setup, tolerance=1e-10)
+        direct = expand(setup, field, COLD, tolerance=1e-10)
         quick = course.shape(field)
         assert np.abs(quick.displacement - direct.displacement).max() < 2e-9
         for name, seal in direct.seals.items():

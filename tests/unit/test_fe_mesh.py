@@ -9,7 +9,6 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import (
-    GMSH_NODE_ORDER,
     MeshError,
     NamedMesh,
     box_mesh,
@@ -18,6 +17,7 @@ from thermal.fe.mesh import (
     named_mesh,
     second_order,
 )
+from thermal.fe.reference_elements import TETRAHEDRON_10
 
 AREAS = {"x_min": 6.0, "x_max": 6.0, "y_min": 3.0, "y_max": 3.0, "z_min": 2.0, "z_max": 2.0}
 
@@ -66,9 +66,9 @@ def test_means_and_loads_over_a_body() -> None:
 
 def test_gmsh_cells_need_their_last_two_nodes_swapped() -> None:
     mesh = bent(box_mesh((1.0, 1.0, 1.0), (1, 1, 1)))
-    gmsh_cells = mesh.cells[:, np.argsort(GMSH_NODE_ORDER)]
+    gmsh_cells = mesh.cells[:, np.argsort(TETRAHEDRON_10.gmsh_order)]
     corners = {name: nodes[:, [1, 0, 2]] for name, nodes in mesh.surfaces.items()}
-    again = named_mesh(mesh.points, gmsh_cells[:, GMSH_NODE_ORDER], mesh.bodies, corners)
+    again = named_mesh(mesh.points, gmsh_cells[:, TETRAHEDRON_10.gmsh_order], mesh.bodies, corners)
     assert_array_equal(again.cells, mesh.cells)
     assert FiniteElements(again).volume("box") == pytest.approx(1.0, rel=1e-13)
     with pytest.raises(MeshError, match=r"inverted cells: 6 in body 'box'.*NamedMesh order"):

@@ -15,14 +15,22 @@ from thermal.fe.direct import Backend, DirectError, available_backend
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union, second_order
 from thermal.fe.smoothing import Scaling
-from thermal.fe.solver import LowRank, TwoLevelMultigrid, conjugate_gradient, constrain, gmres, solve_direct
+from thermal.fe.solver import (
+    HeldMatrix,
+    LowRank,
+    TwoLevelMultigrid,
+    conjugate_gradient,
+    constrain,
+    gmres,
+    solve_direct,
+)
 
 
 def heat_problem(divisions: int, held: bool = False):
     """Matrix, load and multigrid of a box with a film on one face, or with that face held at zero."""
     elements = FiniteElements(box_mesh((1.0, 1.5, 1.0), (divisions,) * 3))
     k = np.full(len(elements.mesh.cells), 45.0)
-    fine, coarse = elements.conduction(k, elements.fine), elements.conduction(k, elements.coarse)
+    fine, coarse = elements.fine.conduction(k), elements.coarse.conduction(k)
     face = elements.surfaces["z_min"]
     fixed = np.zeros(len(elements.mesh.points), dtype=bool)
     if held:
@@ -33,7 +41,9 @@ def heat_problem(divisions: int, held: bool = False):
     matrix = constrain(elements.fine.matrix(fine), fixed)
     held_corners = fixed[elements.corners]
     linear = constrain(elements.coarse.matrix(coarse), held_corners)
-    multigrid = TwoLevelMultigrid(matrix, linear, elements.prolongation, fixed, held_corners)
+    multigrid = TwoLevelMultigrid(
+        HeldMatrix(matrix, fixed), HeldMatrix(linear, held_corners), elements.prolongation
+    )
     return elements, matrix, np.where(fixed, 0.0, elements.body_load("box")), multigrid
 
 
@@ -45,13 +55,15 @@ def elastic_problem(divisions: int):
     fixed = np.zeros((len(elements.mesh.points), 3), dtype=bool)
     fixed[elements.surfaces["z_min"].nodes] = True
     held_corners = fixed[elements.corners].ravel()
-    blocks = [elements.elasticity(young, poisson, level) for level in (elements.fine, elements.coarse)]
+    blocks = [level.elasticity(young, poisson) for level in (elements.fine, elements.coarse)]
     matrix = constrain(elements.fine.block_matrix(blocks[0]), fixed.ravel())
     linear = constrain(elements.coarse.block_matrix(blocks[1]), held_corners)
     modes = rigid_modes(elements.mesh.points[elements.corners])
-    multigrid = TwoLevelMultigrid(matrix, linear, elements.prolongation, fixed.ravel(), held_corners, modes)
+    multigrid = TwoLevelMultigrid(
+        HeldMatrix(matrix, fixed.ravel()), HeldMatrix(linear, held_corners), elements.prolongation, modes
+    )
     excess = 100.0 * np.sin(3.0 * elements.mesh.points).sum(axis=1)
-    load = elements.expansion_load(np.full(n, 6e6), excess).ravel()
+    load = elements.fine.expansion_load(np.full(n, 6e6), excess).ravel()
     return matrix, np.where(fixed.ravel(), 0.0, load), multigrid
 
 
@@ -107,25 +119,27 @@ def test_flat_cells_cost_few_iterations() -> None:
     elements = FiniteElements(mesh)
     n = len(mesh.cells)
     k = np.full(n, 45.0)
-    fine, coarse = elements.conduction(k, elements.fine), elements.conduction(k, elements.coarse)
+    fine, coarse = elements.fine.conduction(k), elements.coarse.conduction(k)
     skin = elements.surfaces["skin"]
     skin.add_mass(fine, np.full_like(skin.weights, 50.0))
     skin.add_coarse_mass(coarse, np.full_like(skin.weights, 50.0))
     free, free_corners = np.zeros(len(mesh.points), dtype=bool), np.zeros(len(elements.corners), dtype=bool)
     matrix = elements.fine.matrix(fine)
     multigrid = TwoLevelMultigrid(
-        matrix, elements.coarse.matrix(coarse), elements.prolongation, free, free_corners
+        HeldMatrix(matrix, free),
+        HeldMatrix(elements.coarse.matrix(coarse), free_corners),
+        elements.prolongation,
     )
     heat = conjugate_gradient(matrix, elements.body_load("box"), multigrid, tolerance=1e-8)
     levels = [
-        level.block_matrix(elements.elasticity(np.full(n, 210e9), np.full(n, 0.3), level))
+        level.block_matrix(level.elasticity(np.full(n, 210e9), np.full(n, 0.3)))
         for level in (elements.fine, elements.coarse)
     ]
-    nothing = [np.zeros(level.shape[0], dtype=bool) for level in levels]
+    free_levels = [HeldMatrix(level, np.zeros(level.shape[0], dtype=bool)) for level in levels]
     modes = rigid_modes(mesh.points[elements.corners])
-    elastic = TwoLevelMultigrid(*levels, elements.prolongation, *nothing, modes)
+    elastic = TwoLevelMultigrid(*free_levels, elements.prolongation, modes)
     excess = 100.0 * np.sin(3.0 * mesh.points).sum(axis=1)
-    load = elements.expansion_load(np.full(n, 6e6), excess).ravel()
+    load = elements.fine.expansion_load(np.full(n, 6e6), excess).ravel()
     expansion = conjugate_gradient(levels[0], load, elastic, tolerance=1e-8)
     assert heat.iterations <= 24
     assert expansion.iterations <= 27
@@ -157,7 +171,7 @@ def test_cycle_is_symmetric_and_positive() -> None:
 
 def test_constrained_matrix_keeps_the_rest_and_its_input() -> None:
     elements = FiniteElements(box_mesh((1.0, 1.0, 1.0), (1, 1, 1)))
-    blocks = elements.elasticity(np.full(6, 2.0), np.full(6, 0.3), elements.fine)
+    blocks = elements.fine.elasticity(np.full(6, 2.0), np.full(6, 0.3))
     matrix = elements.fine.block_matrix(blocks)
     before = matrix.toarray()
     fixed = np.zeros(matrix.shape[0], dtype=bool)
@@ -252,14 +266,14 @@ def test_a_small_loose_piece_beside_a_large_one_costs_nothing(small: int) -> Non
     elements = FiniteElements(mesh)
     n = len(mesh.cells)
     levels = [
-        level.block_matrix(elements.elasticity(np.full(n, 210e9), np.full(n, 0.3), level))
+        level.block_matrix(level.elasticity(np.full(n, 210e9), np.full(n, 0.3)))
         for level in (elements.fine, elements.coarse)
     ]
-    nothing = [np.zeros(level.shape[0], dtype=bool) for level in levels]
+    free_levels = [HeldMatrix(level, np.zeros(level.shape[0], dtype=bool)) for level in levels]
     modes = rigid_modes(mesh.points[elements.corners])
-    multigrid = TwoLevelMultigrid(*levels, elements.prolongation, *nothing, modes)
+    multigrid = TwoLevelMultigrid(*free_levels, elements.prolongation, modes)
     excess = 100.0 * np.sin(3.0 * mesh.points).sum(axis=1)
-    load = elements.expansion_load(np.full(n, 6e6), excess).ravel()
+    load = elements.fine.expansion_load(np.full(n, 6e6), excess).ravel()
     assert conjugate_gradient(levels[0], load, multigrid, tolerance=1e-8).iterations <= 16
     vector = np.random.default_rng(0).standard_normal(len(load))
     for _ in range(15):

@@ -26,7 +26,7 @@ PLACES = [(type(c).__name__, getattr(c, "kind", "")) for c in conditions() if ha
 @pytest.fixture(scope="module")
 def solved() -> tuple[ConductionSetup, TemperatureSolution, np.ndarray]:
     setup = ConductionSetup(two_blocks(), CONDUCTIVITY)
-    solution = solve_steady(setup.mesh, CONDUCTIVITY, conditions(), reuse=setup)
+    solution = solve_steady(setup, conditions())
     problem = ConductionProblem(setup, conditions())
     return setup, solution, problem.reactions(solution.temperature)
 
@@ -92,7 +92,7 @@ def test_one_wrong_sign_in_the_solver_is_no_solution(name: str) -> None:
     right = surface.load
     surface.load = lambda values: -right(values)  # type: ignore[method-assign]
     with pytest.raises(ThermalNotConverged):
-        solve_steady(setup.mesh, CONDUCTIVITY, conditions(), reuse=setup)
+        solve_steady(setup, conditions())
 
 
 def test_a_source_with_the_wrong_sign_in_the_solver_is_no_solution(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -104,7 +104,7 @@ def test_a_source_with_the_wrong_sign_in_the_solver_is_no_solution(monkeypatch: 
 
     monkeypatch.setattr(ConductionProblem, "__init__", wrong)
     with pytest.raises(ThermalNotConverged, match="heat balance open by"):
-        solve_steady(two_blocks(), CONDUCTIVITY, conditions())
+        solve_steady(ConductionSetup(two_blocks(), CONDUCTIVITY), conditions())
 
 
 def test_one_side_of_an_exchange_with_the_wrong_sign_is_no_solution() -> None:
@@ -122,4 +122,4 @@ def test_one_side_of_an_exchange_with_the_wrong_sign_is_no_solution() -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ConductionProblem, "heat_out", wrong)
         with pytest.raises(ThermalNotConverged):
-            solve_steady(setup.mesh, CONDUCTIVITY, conditions(), reuse=setup)
+            solve_steady(setup, conditions())

@@ -14,8 +14,10 @@ from rigdesign.rig.model import build_rig
 from tests.unit.test_housing import PROTOTYPE, area
 from thermal.conditions.boundary import Adiabatic, Film
 from thermal.conditions.contact import Contact
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.expansion.expansion import expand
+from thermal.expansion.setup import ExpansionSetup
 from thermal.fe.elements import FiniteElements
 from thermal.films.convection import constant
 from thermal.housing.gearbox import build_gearbox, exact_areas, surface_names
@@ -64,7 +66,7 @@ def conditions(model, conductance: float) -> list:
 
 def test_the_joint_passes_the_heat_of_its_mean_jump(model) -> None:
     steel = dict.fromkeys(model.mesh.bodies, 50.0)
-    solution = solve_steady(model.mesh, steel, conditions(model, 100.0))
+    solution = solve_steady(ConductionSetup(model.mesh, steel), conditions(model, 100.0))
     rows = {row.surface: row for row in solution.balance.rows if row.kind == "joint"}
     assert rows[FOOT].power == pytest.approx(-rows[SEAT].power, rel=1e-12)
     jump = rows[FOOT].mean_temperature - rows[SEAT].mean_temperature
@@ -78,9 +80,9 @@ def test_a_very_good_joint_is_no_joint(model) -> None:
     """1e6 W/(m2 K) against shared nodes: mean temperatures within a fiftieth of a kelvin of 100 K."""
     bonded = build_gearbox(PROTOTYPE, "quick")
     steel = dict.fromkeys(model.mesh.bodies, 50.0)
-    joined = solve_steady(model.mesh, steel, conditions(model, 1e6))
+    joined = solve_steady(ConductionSetup(model.mesh, steel), conditions(model, 1e6))
     without = [c for c in conditions(bonded, 1.0) if not isinstance(c, Contact)]
-    shared = solve_steady(bonded.mesh, steel, without)
+    shared = solve_steady(ConductionSetup(bonded.mesh, steel), without)
     for surface in ("outer_warm", "field_bottom"):
         means = [
             next(r.mean_temperature for r in s.balance.rows if r.surface == surface) for s in (joined, shared)
@@ -93,7 +95,9 @@ def test_a_hot_box_slides_on_a_cold_field(model) -> None:
     field = np.unique(model.mesh.cells[model.mesh.bodies["field"]])
     temperature = np.full(len(model.mesh.points), 393.15)
     temperature[field] = 293.15
-    shape = expand(model, temperature, 293.15, dict.fromkeys(model.mesh.bodies, STEEL), tolerance=1e-10)
+    shape = expand(
+        ExpansionSetup(model, dict.fromkeys(model.mesh.bodies, STEEL)), temperature, 293.15, tolerance=1e-10
+    )
     assert np.abs(shape.displacement[field]).max() < 1e-12
     assert shape.largest_reaction < 1e-2
     grown = 0.0995 * 12e-6 * 100.0
@@ -109,7 +113,9 @@ def test_the_foot_follows_a_field_that_bends(model) -> None:
     temperature = np.where(z < 0.0, 293.15 + 100.0 * (1.0 + z / 0.15), 393.15)
     box = np.unique(model.mesh.cells[model.mesh.bodies["housing"]])
     temperature[box] = 293.15
-    shape = expand(model, temperature, 293.15, dict.fromkeys(model.mesh.bodies, STEEL), tolerance=1e-10)
+    shape = expand(
+        ExpansionSetup(model, dict.fromkeys(model.mesh.bodies, STEEL)), temperature, 293.15, tolerance=1e-10
+    )
     foot, seat = (np.unique(model.mesh.surfaces[name]) for name in (FOOT, SEAT))
     assert shape.displacement[seat, 2].mean() > 1e-5
     assert shape.displacement[foot, 2].mean() == pytest.approx(shape.displacement[seat, 2].mean(), rel=0.03)

@@ -26,7 +26,7 @@ def glowing(power: float = 0.0) -> list[BoundaryCondition]:
 
 
 def solved(mesh: NamedMesh, power: float = 0.0, initial: float | None = None) -> TemperatureSolution:
-    return solve_steady(mesh, {"box": 45.0}, glowing(power), initial, tolerance=1e-10)
+    return solve_steady(ConductionSetup(mesh, {"box": 45.0}), glowing(power), initial, tolerance=1e-10)
 
 
 def unused(*_: object, **__: object) -> None:
@@ -69,6 +69,9 @@ def test_a_start_solves_the_linear_space(mesh: NamedMesh) -> None:
 def test_a_given_field_is_taken_as_it_is(mesh: NamedMesh, monkeypatch: pytest.MonkeyPatch) -> None:
     exact = solved(mesh)
     monkeypatch.setattr("thermal.conduction.steady.linear_start", unused)
-    assert solve_steady(mesh, {"box": 45.0}, glowing(), exact.temperature).linear_iterations == ()
-    near = solve_steady(mesh, {"box": 45.0}, glowing(), near=exact)
+    assert (
+        solve_steady(ConductionSetup(mesh, {"box": 45.0}), glowing(), exact.temperature).linear_iterations
+        == ()
+    )
+    near = solve_steady(ConductionSetup(mesh, {"box": 45.0}), glowing(), near=exact)
     assert near.linear_iterations == ()

@@ -166,9 +166,7 @@ def test_the_course_over_time_ends_at_the_same_state() -> None:
     setup = rig.conduction["test"]
     networks = [c for c in conditions if isinstance(c, StreamNetwork)]
     assert [len([s for s in n.streams if s.kind == "leak"]) for n in networks] == [0, 1]
-    solution = solve_steady(
-        setup.mesh, setup.conductivity, conditions, last.fields["test"].temperature, reuse=setup
-    )
+    solution = solve_steady(setup, conditions, last.fields["test"].temperature)
     for kind in (GEAR_OIL, BEARING_OIL):
         assert solution.volumes[kind] == pytest.approx(
             last.coupling_state.oil_outlet[f"test.{kind}"], abs=0.1

@@ -8,6 +8,7 @@ import pytest
 
 from tests.two_blocks import law
 from thermal.conditions.boundary import BoundaryCondition, Film, Radiation
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.expansion.elastic import ElasticSetup, three_two_one
 from thermal.fe.elements import FiniteElements
@@ -32,7 +33,7 @@ def heat(mesh: NamedMesh) -> None:
         for k, name in enumerate(mesh.surfaces)
     ]
     conditions.append(Radiation(surface="z_max", emissivity=0.6, surroundings_temperature=300.0))
-    solve_steady(mesh, {"box": 45.0}, conditions)
+    solve_steady(ConductionSetup(mesh, {"box": 45.0}), conditions)
 
 
 def expansion(mesh: NamedMesh, clamped: bool) -> None:

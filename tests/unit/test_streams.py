@@ -22,6 +22,7 @@ from thermal.conditions.streams import (
     inlet_share_slope,
 )
 from thermal.conduction.condition_checks import Condition, ConditionError
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import TemperatureSolution, solve_steady
 from thermal.fe.mesh import NamedMesh, box_mesh
 
@@ -58,7 +59,7 @@ def passage(*, plug: bool, h: float = 900.0, power: float = 0.0) -> StreamNetwor
 
 
 def solve(mesh: NamedMesh, network: StreamNetwork) -> TemperatureSolution:
-    return solve_steady(mesh, {"box": 40.0}, oiled(network), tolerance=1e-11)
+    return solve_steady(ConductionSetup(mesh, {"box": 40.0}), oiled(network), tolerance=1e-11)
 
 
 def wall_of(solution: TemperatureSolution) -> float:
@@ -114,7 +115,9 @@ def test_many_stirred_volumes_in_a_row_are_a_plug_flow() -> None:
                 Stream(source=f"cell {n - 1}", target=None, mass_flow=0.02),
             ),
         )
-        solution = solve_steady(replace(mesh, surfaces=surfaces), {"box": 4e4}, oiled(network))
+        solution = solve_steady(
+            ConductionSetup(replace(mesh, surfaces=surfaces), {"box": 4e4}), oiled(network)
+        )
         outlets.append(solution.volumes[f"cell {n - 1}"])
     exact = 450.0 - 90.0 * math.exp(-900.0 * 0.04 / RATE)
     errors = exact - np.array(outlets)
@@ -196,7 +199,7 @@ def test_bad_networks_are_refused(bad: StreamNetwork, message: str) -> None:
 def test_a_volume_without_a_heat_path_is_named(slab: NamedMesh) -> None:
     lost = StreamNetwork(specific_heat=1.0, volumes=(Volume(name="pocket", power=3.0),))
     with pytest.raises(ConditionError, match=r"no way for the heat of volume pocket: .*no supply reaches it"):
-        solve_steady(slab, {"box": 40.0}, [*oiled(passage(plug=True)), lost])
+        solve_steady(ConductionSetup(slab, {"box": 40.0}), [*oiled(passage(plug=True)), lost])
 
 
 def test_a_body_that_only_feels_a_lost_volume_is_named(slab: NamedMesh) -> None:
@@ -207,13 +210,13 @@ def test_a_body_that_only_feels_a_lost_volume_is_named(slab: NamedMesh) -> None:
     )
     closed = [Adiabatic(surface=name) for name in slab.surfaces if name != "x_max"]
     with pytest.raises(ConditionError, match="no way for the heat of body box and volume pocket"):
-        solve_steady(slab, {"box": 40.0}, [lost, *closed])
+        solve_steady(ConductionSetup(slab, {"box": 40.0}), [lost, *closed])
 
 
 def test_a_volume_may_not_have_the_name_of_a_body(slab: NamedMesh) -> None:
     named = StreamNetwork(specific_heat=1.0, volumes=(Volume(name="box"),))
     with pytest.raises(ConditionError, match="'box' has the name of a surface or body"):
-        solve_steady(slab, {"box": 40.0}, [*oiled(passage(plug=True)), named])
+        solve_steady(ConductionSetup(slab, {"box": 40.0}), [*oiled(passage(plug=True)), named])
 
 
 def test_a_film_may_feel_its_supply_in_part() -> None:
@@ -236,7 +239,7 @@ def test_a_film_may_feel_its_supply_in_part() -> None:
         *(Adiabatic(surface=name) for name in ("y_min", "y_max", "z_min", "z_max")),
         network,
     ]
-    solution = solve_steady(mesh, {"box": 50.0}, conditions)
+    solution = solve_steady(ConductionSetup(mesh, {"box": 50.0}), conditions)
     conductance = 1.0 / (1.0 / 5.0 + 1.0 / 4.0)
     power = 100.0 / (1.0 / conductance + 0.5 / 2.0)
     assert solution.volumes["oil"] == pytest.approx(300.0 + power / 2.0, abs=1e-6)

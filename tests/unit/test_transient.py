@@ -19,7 +19,15 @@ from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.errors import ThermalNotConverged
 from thermal.fe.mesh import box_mesh, disjoint_union
 from thermal.films.law import FilmCoefficient
-from thermal.transient.history import ThermalStage, TransientSolution, settling_time, solve_transient
+from thermal.transient.history import (
+    InitialState,
+    Observed,
+    StepControl,
+    ThermalStage,
+    TransientSolution,
+    settling_time,
+    solve_transient,
+)
 from thermal.transient.probes import Probe
 
 VARIABLE: dict[str, Conductivity] = {
@@ -49,7 +57,7 @@ def off() -> list[Condition]:
     ]  # fmt: skip
 
 
-def run(setup: ConductionSetup, **options: object) -> TransientSolution:
+def run(setup: ConductionSetup, observed: Observed = Observed()) -> TransientSolution:  # noqa: B008
     stages = [
         ThermalStage(name="run", duration=6000.0, conditions=conditions()),
         ThermalStage(name="stop", duration=900.0, conditions=off()),
@@ -60,15 +68,12 @@ def run(setup: ConductionSetup, **options: object) -> TransientSolution:
         for name, place in places.items()
     ]
     return solve_transient(
-        setup.mesh,
-        VARIABLE,
+        setup,
         CAPACITY,
         stages,
         300.0,
-        probes=probes,
-        reuse=setup,
-        tolerance=0.2,
-        **options,  # type: ignore[arg-type]
+        observed=replace(observed, probes=probes),
+        steps=StepControl(tolerance=0.2),
     )
 
 
@@ -76,9 +81,12 @@ def run(setup: ConductionSetup, **options: object) -> TransientSolution:
 def ran(setup: ConductionSetup) -> tuple[TransientSolution, dict[float, np.ndarray]]:
     seen: dict[float, np.ndarray] = {}
     solution = run(
-        setup, observe_at=[0.0, 1234.5, 6000.0, 6900.0],
-        observer=lambda time, field, volumes: seen.__setitem__(time, field),
-    )  # fmt: skip
+        setup,
+        Observed(
+            at=[0.0, 1234.5, 6000.0, 6900.0],
+            observer=lambda time, field, volumes: seen.__setitem__(time, field),
+        ),
+    )
     return solution, seen
 
 
@@ -109,11 +117,11 @@ def test_heat_that_is_stored_wrongly_is_no_solution(
     monkeypatch.setattr(Storage, "heat_out", lambda self, field: share * right(self, field))
     stage = ThermalStage(name="run", duration=60.0, conditions=conditions())
     with pytest.raises(ThermalNotConverged):
-        solve_transient(setup.mesh, VARIABLE, CAPACITY, [stage], 300.0, reuse=setup, tolerance=1.0)
+        solve_transient(setup, CAPACITY, [stage], 300.0, steps=StepControl(tolerance=1.0))
 
 
 def test_a_long_stage_ends_in_the_steady_state(setup, ran) -> None:
-    steady = solve_steady(setup.mesh, VARIABLE, conditions(), reuse=setup)
+    steady = solve_steady(setup, conditions())
     assert_allclose(ran[1][6000.0], steady.temperature, atol=0.05)
     last = np.flatnonzero(ran[0].stages == 0)[-1]
     assert ran[0].times[last] == 6000.0
@@ -140,9 +148,13 @@ def test_two_runs_are_equal_and_an_observer_changes_nothing_but_the_steps(setup)
 
     def short(at: float) -> TransientSolution:
         return solve_transient(
-            setup.mesh, VARIABLE, CAPACITY, [stage], 300.0, reuse=setup, tolerance=0.2,
-            observe_at=[at], observer=lambda time, field, volumes: field.fill(0.0),
-        )  # fmt: skip
+            setup,
+            CAPACITY,
+            [stage],
+            300.0,
+            observed=Observed(at=[at], observer=lambda time, field, volumes: field.fill(0.0)),
+            steps=StepControl(tolerance=0.2),
+        )
 
     first, second, other = short(60.0), short(60.0), short(7.0)
     assert first.temperature.tobytes() == second.temperature.tobytes()
@@ -169,10 +181,12 @@ def test_the_housing_gets_warmer_after_the_stop() -> None:
         return ThermalStage(name=name, duration=4000.0, conditions=listed)
 
     solution = solve_transient(
-        mesh, {"gear": 45.0, "box": 45.0}, {"gear": 3.6e6, "box": 3.6e6},
-        [stage("run", 150.0, 400.0), stage("stop", 0.0, 0.0)], 300.0,
-        probes=[Probe(name="gear", place="gear"), Probe(name="box", place="box")],
-    )  # fmt: skip
+        ConductionSetup(mesh, {"gear": 45.0, "box": 45.0}),
+        {"gear": 3.6e6, "box": 3.6e6},
+        [stage("run", 150.0, 400.0), stage("stop", 0.0, 0.0)],
+        300.0,
+        observed=Observed(probes=[Probe(name="gear", place="gear"), Probe(name="box", place="box")]),
+    )
     stop = int(np.flatnonzero(solution.times == 4000.0)[0])
     box_course, gear_course = solution.probes["box"], solution.probes["gear"]
     peak = stop + int(box_course[stop:].argmax())
@@ -190,7 +204,9 @@ def test_a_prescribed_temperature_that_jumps_is_booked() -> None:
         held = PrescribedTemperature(surface="x_min", temperature=temperature)
         return ThermalStage(name=f"{temperature:g} K", duration=3000.0, conditions=[held, *sides])
 
-    solution = solve_transient(mesh, {"box": 40.0}, {"box": 3.6e6}, [stage(400.0), stage(350.0)], 300.0)
+    solution = solve_transient(
+        ConductionSetup(mesh, {"box": 40.0}), {"box": 3.6e6}, [stage(400.0), stage(350.0)], 300.0
+    )
     content = 3.6e6 * 4e-5 * 50.0
     assert solution.temperature == pytest.approx(350.0, abs=0.2)
     given = solution.energy.rows["x_min", "prescribed_temperature"]
@@ -202,8 +218,7 @@ def test_nothing_happens_at_rest() -> None:
     mesh = box_mesh((0.1, 0.1, 0.1), (1, 1, 1))
     still = [Film(surface=n, kind="air", fluid_temperature=300.0, law=law(5.0, 0.25)) for n in mesh.surfaces]
     solution = solve_transient(
-        mesh,
-        {"box": 40.0},
+        ConductionSetup(mesh, {"box": 40.0}),
         {"box": 3.6e6},
         [ThermalStage(name="rest", duration=3600.0, conditions=still)],
         300.0,
@@ -218,7 +233,7 @@ def test_a_stage_without_any_way_for_the_heat_only_warms() -> None:
     closed: list[Condition] = [BodySource(body="box", power=100.0, kind="loss")]
     closed += [Adiabatic(surface=name) for name in mesh.surfaces]
     stage = ThermalStage(name="warm", duration=360.0, conditions=closed)
-    solution = solve_transient(mesh, {"box": 40.0}, {"box": 3.6e6}, [stage], 300.0)
+    solution = solve_transient(ConductionSetup(mesh, {"box": 40.0}), {"box": 3.6e6}, [stage], 300.0)
     assert_allclose(solution.temperature, 300.0 + 100.0 * 360.0 / 3600.0, rtol=1e-9)
 
 
@@ -229,7 +244,7 @@ def test_warnings_of_film_laws_are_kept_once() -> None:
         for n in mesh.surfaces
     ]
     stage = ThermalStage(name="run", duration=100.0, conditions=said)
-    assert solve_transient(mesh, {"box": 40.0}, {"box": 3.6e6}, [stage], 300.0).warnings == (
+    assert solve_transient(ConductionSetup(mesh, {"box": 40.0}), {"box": 3.6e6}, [stage], 300.0).warnings == (
         "Ra = 3 is below 1e4",
     )
 
@@ -258,12 +273,15 @@ BAD = [
     ({"capacity": {"box": 1.0, "bx": 1.0}}, "unknown body bx"),
     ({"capacity": {"box": 0.0}}, r"heat capacity of body 'box' is 0.0 J/\(m3 K\); it must be positive"),
     ({"initial": -1.0}, "initial temperature must be finite and above 0 K"),
-    ({"tolerance": 0.0}, "tolerance = 0.0 must be above 0"),
-    ({"largest_step": -1.0}, "largest_step = -1.0 must be above 0"),
-    ({"observe_at": [101.0]}, "outside of 0 to 100 s, the end of the schedule"),
-    ({"probes": [Probe(name="p", place="roof")]}, "probe 'p': 'roof' is no surface, body or volume"),
+    ({"steps": StepControl(tolerance=0.0)}, "tolerance = 0.0 must be above 0"),
+    ({"steps": StepControl(largest=-1.0)}, "largest step = -1.0 must be above 0"),
+    ({"observed": Observed(at=[101.0])}, "outside of 0 to 100 s, the end of the schedule"),
     (
-        {"probes": [Probe(name="p", place="box"), Probe(name="p", place="x_min")]},
+        {"observed": Observed(probes=[Probe(name="p", place="roof")])},
+        "probe 'p': 'roof' is no surface, body or volume",
+    ),
+    (
+        {"observed": Observed(probes=[Probe(name="p", place="box"), Probe(name="p", place="x_min")])},
         "two probes have the same name",
     ),
 ]
@@ -272,14 +290,13 @@ BAD = [
 @pytest.mark.parametrize(("changes", "message"), BAD, ids=[message[:40] for _, message in BAD])
 def test_bad_input_is_refused(changes: dict[str, object], message: str) -> None:
     arguments: dict[str, object] = {
-        "mesh": box_mesh((0.1, 0.1, 0.1), (1, 1, 1)),
-        "conductivity": {"box": 40.0},
+        "setup": ConductionSetup(box_mesh((0.1, 0.1, 0.1), (1, 1, 1)), {"box": 40.0}),
         "capacity": {"box": 3.6e6},
         "stages": [plain()],
         "initial": 300.0,
     }
     with pytest.raises(ConditionError, match=message):
-        solve_transient(**(arguments | changes))  # type: ignore[arg-type]
+        solve_transient(**arguments | changes)  # type: ignore[arg-type]
 
 
 def test_a_volume_that_nothing_reaches_is_refused_unless_it_stores_heat(setup: ConductionSetup) -> None:
@@ -288,12 +305,12 @@ def test_a_volume_that_nothing_reaches_is_refused_unless_it_stores_heat(setup: C
     lost = [replace(closed, volumes=volumes) if isinstance(c, StreamNetwork) else c for c in conditions()]
     stage = ThermalStage(name="run", duration=10.0, conditions=lost)
     with pytest.raises(ConditionError, match="no way for the heat of volume collector"):
-        solve_transient(setup.mesh, VARIABLE, CAPACITY, [stage], 300.0, reuse=setup)
+        solve_transient(setup, CAPACITY, [stage], 300.0)
     kept = tuple(replace(volume, heat_capacity=10.0) for volume in volumes)
     stored = [replace(closed, volumes=kept) if isinstance(c, StreamNetwork) else c for c in conditions()]
     stage = ThermalStage(name="run", duration=10.0, conditions=stored)
     solution = solve_transient(
-        setup.mesh, VARIABLE, CAPACITY, [stage], 300.0, reuse=setup, initial_volumes={"collector": 333.0}
+        setup, CAPACITY, [stage], InitialState(temperature=300.0, volumes={"collector": 333.0})
     )
     assert solution.volumes["collector"] == pytest.approx(333.0, rel=1e-9)
 
@@ -309,4 +326,4 @@ def test_a_film_that_jumps_with_the_wall_temperature_is_not_stepped_over() -> No
     jumping.append(BodySource(body="box", power=1000.0, kind="loss"))
     stage = ThermalStage(name="run", duration=400.0, conditions=jumping)
     with pytest.raises(ThermalNotConverged):
-        solve_transient(mesh, {"box": 40.0}, {"box": 3.6e6}, [stage], 300.0)
+        solve_transient(ConductionSetup(mesh, {"box": 40.0}), {"box": 3.6e6}, [stage], 300.0)

@@ -46,13 +46,13 @@ def test_one_body_in_one_bath_warms_by_its_time_constant(setup: ConductionSetup)
         volume = capacity.stored(np.ones(len(setup.mesh.points)), body) / CAPACITY
         area = sum(a for name, a in areas.items() if name.startswith(body))
         tau = CAPACITY * volume / (film * area)
-        field = solve_steady(setup.mesh, CONDUCTIVITY, [*films, stored(setup, tau)], reuse=setup)
+        field = solve_steady(setup, [*films, stored(setup, tau)])
         share = (setup.elements.body_mean(field.temperature, body) - START) / (bath - START)
         assert share == pytest.approx(0.5, abs=2e-3)
 
 
 def test_balance_closes_with_the_stored_heat_in_it(setup: ConductionSetup) -> None:
-    field = solve_steady(setup.mesh, CONDUCTIVITY, [*conditions(), stored(setup, 600.0)], reuse=setup)
+    field = solve_steady(setup, [*conditions(), stored(setup, 600.0)])
     rows = {row.surface: row for row in field.balance.rows if row.kind == "stored"}
     assert set(rows) == set(setup.mesh.bodies)
     assert field.balance.closure <= CLOSURE
@@ -66,12 +66,10 @@ def test_balance_closes_with_the_stored_heat_in_it(setup: ConductionSetup) -> No
 
 def test_no_time_is_the_start_and_long_is_steady(setup: ConductionSetup) -> None:
     films = bathed(setup, 50.0, 393.15)
-    at_once = solve_steady(setup.mesh, CONDUCTIVITY, [*films, stored(setup, 1e-3)], reuse=setup).temperature
+    at_once = solve_steady(setup, [*films, stored(setup, 1e-3)]).temperature
     assert np.abs(at_once - START).max() < 1e-2
-    steady = solve_steady(setup.mesh, CONDUCTIVITY, conditions(), reuse=setup).temperature
-    late = solve_steady(
-        setup.mesh, CONDUCTIVITY, [*conditions(), stored(setup, 1e10)], reuse=setup
-    ).temperature
+    steady = solve_steady(setup, conditions()).temperature
+    late = solve_steady(setup, [*conditions(), stored(setup, 1e10)]).temperature
     assert np.abs(late - steady).max() < 1e-3
 
 

@@ -65,7 +65,7 @@ def shell_error(divisions: int) -> float:
         BodySource(body="box", power=q * setup.elements.volume("box"), kind="source"),
         *adiabatic("x_min", "x_max", "y_min", "y_max"),
     ]
-    solution = solve_steady(mesh, {"box": k}, conditions, reuse=setup)
+    solution = solve_steady(setup, conditions)
     values, volumes = setup.elements.at_points(solution.temperature)
     places, _ = setup.elements.at_points(mesh.points)
     error = values - exact(np.linalg.norm(places, axis=1))
@@ -90,7 +90,9 @@ def test_two_bars_through_a_gap_have_the_resistances_of_a_wall() -> None:
         Exchange(surface_a="x_max", surface_b="r_x_min", kind="gap", law=fixed_film(500.0)),
         *adiabatic(*sides, *(f"r_{name}" for name in sides)),
     ]
-    solution = solve_steady(disjoint_union(left, right), {"left": 40.0, "right": 160.0}, conditions)
+    solution = solve_steady(
+        ConductionSetup(disjoint_union(left, right), {"left": 40.0, "right": 160.0}), conditions
+    )
     heat = 100.0 * 4e-4 / (0.1 / 40.0 + 1.0 / 500.0 + 0.2 / 160.0)
     rows = {row.surface: row.power for row in solution.balance.rows}
     expected = {"x_min": heat, "x_max": -heat, "r_x_min": heat, "r_x_max": -heat}

@@ -11,6 +11,7 @@ from tests.two_blocks import law, renamed
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature
 from thermal.conditions.contact import Contact
 from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh, disjoint_union
 
@@ -36,7 +37,9 @@ def bar_conditions(joint: Contact) -> list[Condition]:
 def test_uniform_flux_through_a_joint_is_exact_at_every_node(cell: CellName) -> None:
     mesh = bars(cell)
     joint = Contact(surface_a="left_x_max", surface_b="right_x_min", kind="joint", law=law(2500.0))
-    solution = solve_steady(mesh, {"left": 40.0, "right": 160.0}, bar_conditions(joint), tolerance=1e-12)
+    solution = solve_steady(
+        ConductionSetup(mesh, {"left": 40.0, "right": 160.0}), bar_conditions(joint), tolerance=1e-12
+    )
     flux = 100.0 / (0.1 / 40.0 + 1.0 / 2500.0 + 0.2 / 160.0)
     x = mesh.points[:, 0]
     left = np.unique(mesh.cells[mesh.bodies["left"]])
@@ -54,8 +57,8 @@ def test_sides_may_be_swapped() -> None:
     joint = Contact(surface_a="left_x_max", surface_b="right_x_min", kind="joint", law=law(2500.0))
     swapped = replace(joint, surface_a=joint.surface_b, surface_b=joint.surface_a)
     conductivity = {"left": 40.0, "right": 160.0}
-    one = solve_steady(mesh, conductivity, bar_conditions(joint), tolerance=1e-12)
-    other = solve_steady(mesh, conductivity, bar_conditions(swapped), tolerance=1e-12)
+    one = solve_steady(ConductionSetup(mesh, conductivity), bar_conditions(joint), tolerance=1e-12)
+    other = solve_steady(ConductionSetup(mesh, conductivity), bar_conditions(swapped), tolerance=1e-12)
     assert_allclose(other.temperature, one.temperature, rtol=0.0, atol=1e-8)
 
 
@@ -71,7 +74,9 @@ def test_shrink_fit_has_the_resistances_of_a_hollow_cylinder(cell: CellName) -> 
         Contact(surface_a="gear_inner", surface_b="shaft_outer", kind="fit", law=law(conductance)),
         *(Adiabatic(surface=f"{body}_{end}") for body in ("shaft", "gear") for end in ends),
     ]
-    solution = solve_steady(disjoint_union(shaft, gear), {"shaft": 42.0, "gear": 48.0}, conditions)
+    solution = solve_steady(
+        ConductionSetup(disjoint_union(shaft, gear), {"shaft": 42.0, "gear": 48.0}), conditions
+    )
     resistance = np.log(2.0) / 42.0 + 1.0 / (conductance * 0.04) + np.log(2.5) / 48.0
     heat = 0.5 * np.pi * 0.1 * 60.0 / resistance
     rows = {row.surface: row.power for row in solution.balance.rows}
@@ -96,7 +101,7 @@ def test_a_foot_on_a_field_spreads_its_heat() -> None:
             *(Adiabatic(surface=side) for side in sides),
         ]
         mesh = disjoint_union(field, renamed(part, "foot"))
-        solution = solve_steady(mesh, {"field": 50.0, "foot": 50.0}, conditions)
+        solution = solve_steady(ConductionSetup(mesh, {"field": 50.0, "foot": 50.0}), conditions)
         heats[name] = next(r.power for r in solution.balance.rows if r.surface == "foot_z_max")
     assert heats["other mesh"] == pytest.approx(heats["same mesh"], rel=5e-3)
 
@@ -112,6 +117,8 @@ def test_a_film_on_a_surface_that_touches_is_said() -> None:
         Film(surface="field_z_max", kind="air", fluid_temperature=293.0, law=law(5.0)),
         *(Adiabatic(surface=side) for side in sides),
     ]
-    solution = solve_steady(disjoint_union(field, foot), {"field": 50.0, "foot": 50.0}, conditions)
+    solution = solve_steady(
+        ConductionSetup(disjoint_union(field, foot), {"field": 50.0, "foot": 50.0}), conditions
+    )
     assert len(solution.warnings) == 1
     assert solution.warnings[0].startswith("field_z_max: 11.1 % touches (foot), above 2 %")

@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 from thermal.expansion.elastic import ElasticError, ElasticSetup, rigid_motion, three_two_one
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import NamedMesh, box_mesh, disjoint_union
-from thermal.fe.solver import TwoLevelMultigrid, conjugate_gradient, constrain
+from thermal.fe.solver import HeldMatrix, TwoLevelMultigrid, conjugate_gradient, constrain
 
 STEEL = (210e9, 0.3, 11.5e-6)
 WAVES = np.array([2.0, 1.5, 1.0])
@@ -49,14 +49,14 @@ def displacement_error(divisions: int) -> float:
     fixed = np.zeros((len(points), 3), dtype=bool)
     for surface in elements.surfaces.values():
         fixed[surface.nodes] = True
-    blocks = [elements.elasticity(young, nu, level) for level in (elements.fine, elements.coarse)]
+    blocks = [level.elasticity(young, nu) for level in (elements.fine, elements.coarse)]
     matrix = elements.fine.block_matrix(blocks[0])
     flat, held = fixed.ravel(), fixed[elements.corners].ravel()
     inner = constrain(matrix, flat)
     coarse = constrain(elements.coarse.block_matrix(blocks[1]), held)
     lift = np.where(fixed, potential_slope(points), 0.0).ravel()
-    load = elements.expansion_load(alpha * young / (1.0 - 2.0 * nu), excess(points)).ravel()
-    multigrid = TwoLevelMultigrid(inner, coarse, elements.prolongation, flat, held)
+    load = elements.fine.expansion_load(alpha * young / (1.0 - 2.0 * nu), excess(points)).ravel()
+    multigrid = TwoLevelMultigrid(HeldMatrix(inner, flat), HeldMatrix(coarse, held), elements.prolongation)
     right = np.where(flat, 0.0, load - matrix @ lift)
     solution = lift + conjugate_gradient(inner, right, multigrid, tolerance=1e-12).values
     values, volumes = elements.at_points(solution.reshape(-1, 3))

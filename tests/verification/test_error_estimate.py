@@ -16,11 +16,11 @@ def solved(
     """-lap u = source, k = 1, with u given on all surfaces but the ``insulated`` ones."""
     elements = FiniteElements(mesh)
     level = elements.fine
-    matrix = level.matrix(elements.conduction(np.ones(len(mesh.cells)), level))
+    matrix = level.matrix(level.conduction(np.ones(len(mesh.cells))))
     values, weights = elements.at_points(source)
     per_point = values.reshape(len(mesh.cells), -1) * weights.reshape(len(mesh.cells), -1)
     load = np.zeros(len(mesh.points))
-    np.add.at(load, mesh.cells, per_point @ elements.shape.values(elements._load_rule.points))
+    np.add.at(load, mesh.cells, per_point @ elements.shape.values(elements.shape.load_rule.points))
     held = np.zeros(len(mesh.points), dtype=bool)
     for name, nodes in mesh.surfaces.items():
         held[nodes] |= name not in insulated

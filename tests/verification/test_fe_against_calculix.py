@@ -15,6 +15,7 @@ import pytest
 import tests.calculix as calculix
 from tests.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, Film, Radiation
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.expansion.elastic import ElasticSetup, three_two_one
 from thermal.fe.elements import FiniteElements
@@ -50,7 +51,7 @@ def test_temperatures(elements: FiniteElements, tmp_path: Path) -> None:
     mesh = elements.mesh
     assert 9_000 < len(mesh.points) < 12_000
     given = conditions(mesh)
-    ours = solve_steady(mesh, {"box": CONDUCTIVITY}, given).temperature
+    ours = solve_steady(ConductionSetup(mesh, {"box": CONDUCTIVITY}), given).temperature
     lines = calculix.heat_lines(mesh, given, CONDUCTIVITY, COLD, "")
     theirs = calculix.run(lines, tmp_path, "NDTEMP", 1, len(mesh.points)).values[:, 0]
     assert np.ptp(ours) > 50.0

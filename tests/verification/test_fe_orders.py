@@ -12,10 +12,10 @@ import pytest
 
 from tests.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, Film, SurfaceSource
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
-from thermal.fe.reference import rules_of
 from thermal.fe.solver import constrain, solve_direct
 
 CELLS = ("tetra10", "hexahedron20", "hexahedron27")
@@ -41,13 +41,12 @@ def slope(at: np.ndarray) -> np.ndarray:
 def error(mesh: NamedMesh, linear: bool) -> float:
     """L2 error of the second-order space or of its linear sub-space."""
     elements = FiniteElements(mesh)
-    rule = rules_of(mesh.shape).load
     places, volumes = elements.at_points(mesh.points)
     source = K * (4.0 + 1.0 - 0.25) * exact(places) * volumes
-    parts = source.reshape(len(mesh.cells), -1) @ mesh.shape.values(rule.points)
+    parts = source.reshape(len(mesh.cells), -1) @ mesh.shape.values(mesh.shape.load_rule.points)
     load = np.bincount(mesh.cells.ravel(), parts.ravel())
     level = elements.coarse if linear else elements.fine
-    values = elements.conduction(np.full(len(mesh.cells), K), level)
+    values = level.conduction(np.full(len(mesh.cells), K))
     for side in elements.surfaces.values():
         film = np.full_like(side.weights, H)
         (side.add_coarse_mass if linear else side.add_mass)(values, film)
@@ -96,9 +95,7 @@ def test_patch(cell: CellName) -> None:
     # Irons and Razzaque 1972: displacements linear on the boundary are linear inside, whatever the cells
     elements = FiniteElements(distorted(cell))
     points, n = elements.mesh.points, len(elements.mesh.cells)
-    matrix = elements.fine.block_matrix(
-        elements.elasticity(np.full(n, 210e9), np.full(n, 0.3), elements.fine)
-    )
+    matrix = elements.fine.block_matrix(elements.fine.elasticity(np.full(n, 210e9), np.full(n, 0.3)))
     fixed = np.zeros((len(points), 3), dtype=bool)
     for side in elements.surfaces.values():
         fixed[side.nodes] = True
@@ -120,7 +117,7 @@ def test_reciprocity(cell: CellName) -> None:
             SurfaceSource(surface=heated, power=40.0, kind="loss"),
             *(Adiabatic(surface=name) for name in mesh.surfaces if name not in ("z_min", heated)),
         ]
-        return solve_steady(mesh, {"box": K}, given).temperature - 300.0
+        return solve_steady(ConductionSetup(mesh, {"box": K}), given).temperature - 300.0
 
     surfaces = FiniteElements(mesh).surfaces
     there = surfaces["y_max"].mean(warmed_by("x_max"))

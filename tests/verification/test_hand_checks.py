@@ -74,10 +74,8 @@ def test_a_bearing_opens_with_its_end_wall_not_with_its_bore() -> None:
         assert abs(computed - by_hand) < 0.6 * abs(computed - own)
 
     def expanded(temperature: NDArray[np.float64]) -> dict[str, float]:
-        shape = expand(
-            rig.models["test"], temperature, 293.15, setup.elastic.elastic, reuse=setup, tolerance=1e-6
-        )
-        return {key: bearing.bore_growth for key, bearing in shape.bearings.items()}
+        shape = expand(setup, temperature, 293.15, tolerance=1e-6)
+        return {key: bearing.bore_expansion for key, bearing in shape.bearings.items()}
 
     even = field.temperature.copy()
     even[nodes] = 325.0

@@ -13,6 +13,7 @@ from tests.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature
 from thermal.conditions.enclosure import Enclosure
 from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import CellName, box_mesh, disjoint_union
@@ -34,7 +35,7 @@ def test_wall_between_two_films(cell: CellName) -> None:
         Film(surface="x_max", kind="air", fluid_temperature=293.15, law=law(8.0)),
         *insulated("y_min", "y_max", "z_min", "z_max"),
     ]
-    solution = solve_steady(mesh, {"box": 45.0}, conditions)
+    solution = solve_steady(ConductionSetup(mesh, {"box": 45.0}), conditions)
     flux = 140.0 / (1.0 / 300.0 + 0.02 / 45.0 + 1.0 / 8.0)
     exact = 433.15 - flux * (1.0 / 300.0 + mesh.points[:, 0] / 45.0)
     assert solution.temperature == pytest.approx(exact, abs=1e-6)
@@ -51,7 +52,7 @@ def test_fin_with_insulated_tip(cell: CellName) -> None:
         *(Film(surface=s, kind="air", fluid_temperature=300.0, law=law(h)) for s in ("z_min", "z_max")),
         *insulated("x_max", "y_min", "y_max"),
     ]
-    solution = solve_steady(mesh, {"box": k}, conditions)
+    solution = solve_steady(ConductionSetup(mesh, {"box": k}), conditions)
     m = np.sqrt(2.0 * h / (k * thickness))
     exact = 300.0 + 100.0 * np.cosh(m * (length - mesh.points[:, 0])) / np.cosh(m * length)
     assert solution.temperature == pytest.approx(exact, abs=0.05)
@@ -83,7 +84,7 @@ def test_concentric_grey_cylinders(cell: CellName) -> None:
             *(f"{body}_{end}" for body in ("inner", "outer") for end in ("z_min", "z_max", "start", "end"))
         ),
     ]
-    solution = solve_steady(mesh, {"inner": k, "outer": k}, conditions)
+    solution = solve_steady(ConductionSetup(mesh, {"inner": k, "outer": k}), conditions)
     wall = [np.log(r[1] / r[0]) / (2.0 * np.pi * k * 0.1) for r in radii]
     area = 2.0 * np.pi * radii[0][1] * 0.1
 

@@ -22,7 +22,7 @@ from thermal.conduction.steady import ConductionSetup
 from thermal.conduction.terms import ConductionProblem
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh
 from thermal.films.law import STEFAN_BOLTZMANN
-from thermal.transient.history import ThermalStage, solve_transient
+from thermal.transient.history import InitialState, Observed, StepControl, ThermalStage, solve_transient
 from thermal.transient.probes import Probe
 from thermal.transient.time_steps import Stepper
 
@@ -50,10 +50,13 @@ def test_a_lumped_body_cools_exponentially_and_the_tolerance_rules_the_error() -
     errors = []
     for tolerance in (0.1, 0.01, 0.001):
         solution = solve_transient(
-            cube(), {"box": 4e4}, {"box": 4e6},
-            [ThermalStage(name="cool", duration=2000.0, conditions=cooled())], 400.0,
-            probes=[Probe(name="mean", place="box")], tolerance=tolerance,
-        )  # fmt: skip
+            ConductionSetup(cube(), {"box": 4e4}),
+            {"box": 4e6},
+            [ThermalStage(name="cool", duration=2000.0, conditions=cooled())],
+            400.0,
+            observed=Observed(probes=[Probe(name="mean", place="box")]),
+            steps=StepControl(tolerance=tolerance),
+        )
         exact = 300.0 + 100.0 * np.exp(-solution.times / TAU)
         errors.append(float(np.abs(solution.probes["mean"] - exact).max()))
         assert solution.errors.max() <= tolerance
@@ -67,9 +70,13 @@ def test_a_lumped_body_that_radiates_to_cold_space() -> None:
         Radiation(surface=n, emissivity=0.9, surroundings_temperature=1e-3) for n in cube().surfaces
     ]
     solution = solve_transient(
-        cube(), {"box": 4e4}, {"box": 4e6}, [ThermalStage(name="cool", duration=3000.0, conditions=dark)], 1000.0,
-        probes=[Probe(name="mean", place="box")], tolerance=0.02,
-    )  # fmt: skip
+        ConductionSetup(cube(), {"box": 4e4}),
+        {"box": 4e6},
+        [ThermalStage(name="cool", duration=3000.0, conditions=dark)],
+        1000.0,
+        observed=Observed(probes=[Probe(name="mean", place="box")]),
+        steps=StepControl(tolerance=0.02),
+    )
     growth = 3.0 * 0.9 * STEFAN_BOLTZMANN * 6.0 / (4e6 * 0.01)
     exact = (1e-9 + growth * solution.times) ** (-1.0 / 3.0)
     assert solution.probes["mean"] == pytest.approx(exact, abs=0.3)
@@ -93,9 +100,13 @@ def test_a_plate_follows_its_series(cell: CellName) -> None:
     film = Film(surface="x_max", kind="oil", fluid_temperature=400.0, law=law(800.0))
     stage = ThermalStage(name="warm", duration=1500.0, conditions=[film, *adiabatic(["x_min", *SIDES])])
     solution = solve_transient(
-        mesh, {"box": 40.0}, {"box": 3.6e6}, [stage], 300.0,
-        probes=[Probe(name="far", place="x_min")], tolerance=0.01,
-    )  # fmt: skip
+        ConductionSetup(mesh, {"box": 40.0}),
+        {"box": 3.6e6},
+        [stage],
+        300.0,
+        observed=Observed(probes=[Probe(name="far", place="x_min")]),
+        steps=StepControl(tolerance=0.01),
+    )
     later = solution.times > 20.0
     exact = 400.0 - 100.0 * plate_centre(solution.times[later], 800.0 * 0.1 / 40.0, 40.0 / 3.6e6 / 0.01)
     assert solution.probes["far"][later] == pytest.approx(exact, abs=0.06)
@@ -109,9 +120,15 @@ def test_a_thick_wall_warms_like_a_semi_infinite_solid() -> None:
     film = Film(surface="x_min", kind="oil", fluid_temperature=400.0, law=law(h))
     stage = ThermalStage(name="warm", duration=600.0, conditions=[film, *adiabatic(["x_max", *SIDES])])
     solution = solve_transient(
-        mesh, {"box": k}, {"box": capacity}, [stage], 300.0,
-        probes=[Probe(name="wall", place="x_min"), Probe(name="depth", place=(0.04, 0.01, 0.01))], tolerance=0.01,
-    )  # fmt: skip
+        ConductionSetup(mesh, {"box": k}),
+        {"box": capacity},
+        [stage],
+        300.0,
+        observed=Observed(
+            probes=[Probe(name="wall", place="x_min"), Probe(name="depth", place=(0.04, 0.01, 0.01))]
+        ),
+        steps=StepControl(tolerance=0.01),
+    )
     later = solution.times > 60.0
     t = solution.times[later]
     for name, depth in (("wall", 0.0), ("depth", 0.04)):
@@ -190,9 +207,13 @@ def test_a_volume_with_heat_capacity_follows_its_exponential() -> None:
     )
     conditions: list[Condition] = [network, *adiabatic(["x_max", *SIDES])]
     solution = solve_transient(
-        cube(), {"box": 40.0}, {"box": 4e6}, [ThermalStage(name="run", duration=600.0, conditions=conditions)],
-        300.0, probes=[Probe(name="sump", place="sump")], initial_volumes={"sump": 310.0}, tolerance=0.005,
-    )  # fmt: skip
+        ConductionSetup(cube(), {"box": 40.0}),
+        {"box": 4e6},
+        [ThermalStage(name="run", duration=600.0, conditions=conditions)],
+        InitialState(temperature=300.0, volumes={"sump": 310.0}),
+        observed=Observed(probes=[Probe(name="sump", place="sump")]),
+        steps=StepControl(tolerance=0.005),
+    )
     exact = 360.0 - 50.0 * np.exp(-solution.times / 200.0)
     assert solution.probes["sump"] == pytest.approx(exact, abs=0.03)
     assert solution.energy.stored["sump"] == pytest.approx(8000.0 * (solution.volumes["sump"] - 310.0))

@@ -65,7 +65,7 @@ def shell_error(divisions: int, cell: CellName) -> tuple[float, int]:
         BodySource(body="shell", power=q * setup.elements.volume("shell"), kind="source"),
         *(Adiabatic(surface=name) for name in ("x_min", "x_max", "y_min", "y_max")),
     ]  # fmt: skip
-    solution = solve_steady(mesh, {"shell": conductivity}, conditions, reuse=setup)
+    solution = solve_steady(setup, conditions)
     values, volumes = setup.elements.at_points(solution.temperature)
     places, _ = setup.elements.at_points(mesh.points)
     error = values - exact(np.linalg.norm(places, axis=1))
@@ -100,7 +100,9 @@ def test_bar_of_two_materials_with_laws(other: Callable[[np.ndarray], np.ndarray
         PrescribedTemperature(surface="x_max", temperature=300.0),
         *(Adiabatic(surface=f"{axis}_{end}") for axis in "yz" for end in ("min", "max")),
     ]
-    solution = solve_steady(halves, {"left": conductivity, "right": other}, conditions, tolerance=1e-11)
+    solution = solve_steady(
+        ConductionSetup(halves, {"left": conductivity, "right": other}), conditions, tolerance=1e-11
+    )
     joint = float(solution.temperature[np.isclose(mesh.points[:, 0], 0.1)].mean())
 
     def through(k: Callable[[np.ndarray], np.ndarray], hot: float, cold: float) -> float:

@@ -16,6 +16,7 @@ from thermal.conditions.boundary import Adiabatic, ConditionError, PrescribedTem
 from thermal.conditions.enclosure import Enclosure, EnclosureError, close_view_factors
 from thermal.conditions.view_factors import view_factors
 from thermal.conduction.condition_checks import Condition
+from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh, disjoint_union
 from thermal.films.law import STEFAN_BOLTZMANN
@@ -148,7 +149,9 @@ def test_two_grey_surfaces_exchange_what_the_network_says() -> None:
         emissivities=(e1, e2),
         view_factors=((0.0, f12), (f21, 1.0 - f21)),
     )
-    solution = solve_steady(wide, {"hot": 30.0, "cold": 30.0}, slab_conditions(enclosure), tolerance=1e-11)
+    solution = solve_steady(
+        ConductionSetup(wide, {"hot": 30.0, "cold": 30.0}), slab_conditions(enclosure), tolerance=1e-11
+    )
     rows = {row.surface: row for row in solution.balance.rows if row.kind == "enclosure"}
     hot, cold = rows["hot_x_max"], rows["cold_x_min"]
     resistance = (1.0 - e1) / (e1 * hot.area) + 1.0 / (hot.area * f12) + (1.0 - e2) / (e2 * cold.area)
@@ -166,7 +169,9 @@ def test_a_surface_that_sees_only_the_opening_radiates_to_surroundings() -> None
         view_factors=((0.0, 0.0), (0.0, 0.0)),
         opening_temperature=350.0,
     )
-    solution = solve_steady(slabs(), {"hot": 30.0, "cold": 30.0}, slab_conditions(enclosure), tolerance=1e-11)
+    solution = solve_steady(
+        ConductionSetup(slabs(), {"hot": 30.0, "cold": 30.0}), slab_conditions(enclosure), tolerance=1e-11
+    )
     for row in solution.balance.rows:
         if row.kind == "enclosure":
             emissivity = 0.7 if row.surface == "hot_x_max" else 1.0

@@ -19,10 +19,10 @@ from scipy.spatial import cKDTree
 
 from thermal.conditions.boundary import ConditionError
 from thermal.conditions.clipping import cross, fan, intersect
-from thermal.conditions.facet_triangles import SIDES, FacetTriangles
+from thermal.conditions.facet_triangles import FacetTriangles
 from thermal.fe.elements import FiniteElements, SurfaceElements
 from thermal.fe.mesh import FloatArray, IndexArray
-from thermal.fe.reference import TRIANGLE_7
+from thermal.fe.reference_elements import SIDES, TRIANGLE_6
 from thermal.films.law import ExchangeLaw
 
 OPPOSED = -0.5
@@ -160,7 +160,7 @@ def _common_points(
     owner = np.repeat(np.arange(len(pairs)), len(parts) // max(len(pairs), 1))
     kept = area > SLIVER * first.area[i[owner]]
     parts, area, owner = parts[kept], area[kept], owner[kept]
-    rule = TRIANGLE_7
+    rule = TRIANGLE_6.load_rule
     inner = np.column_stack([1.0 - rule.points.sum(axis=1), rule.points])
     places = np.einsum("qc,ncd->nqd", inner, parts).reshape(-1, 2)
     weights = (2.0 * area[:, None] * rule.weights).ravel()

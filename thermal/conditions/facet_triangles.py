@@ -6,10 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from thermal.fe.mesh import FloatArray, IndexArray
-from thermal.fe.shapes import QUAD_8, QUAD_9, TRIANGLE_6, Shape
-
-SIDES: dict[int, Shape] = {shape.n_nodes: shape for shape in (TRIANGLE_6, QUAD_8, QUAD_9)}
-"""Number of nodes of a facet -> its shape functions."""
+from thermal.fe.reference_elements import SIDES
 
 
 @dataclass(frozen=True)

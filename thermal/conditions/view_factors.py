@@ -20,7 +20,7 @@ from thermal.conditions.boundary import ConditionError
 from thermal.conditions.clipping import clip
 from thermal.conditions.facet_triangles import FacetTriangles
 from thermal.fe.mesh import FloatArray, NamedMesh
-from thermal.fe.reference import TRIANGLE_7
+from thermal.fe.reference_elements import TRIANGLE_6
 
 MOST_TRIANGLES = 3000
 """Greatest number of triangles of an enclosure."""
@@ -72,7 +72,7 @@ def _triangles(mesh: NamedMesh, surfaces: Sequence[str]) -> FacetTriangles:
 
 def _from_triangle(seen: FacetTriangles, walls: "Walls", i: int) -> FloatArray:
     """(n,) view factors from triangle ``i`` to every triangle, what is hidden left out."""
-    rule = TRIANGLE_7
+    rule = TRIANGLE_6.load_rule
     inner = np.column_stack([1.0 - rule.points.sum(axis=1), rule.points])
     places = inner @ seen.corners[i]
     size = float(seen.radius[i])

@@ -11,6 +11,9 @@ from thermal.conduction.condition_checks import Condition
 from thermal.films.inputs import not_negative, positive
 from thermal.films.law import STEFAN_BOLTZMANN, FilmCoefficient, FilmLaw
 
+ROUNDING = 1e-3
+"""Relative shortfall of radiation that is taken for rounding of printed numbers."""
+
 
 def least_radiation(emissivity: float, ambient: float, film: float, convection: float) -> float:
     """Least heat [W] that a surface radiates while it gives off ``convection`` [W] through its film.
@@ -36,16 +39,12 @@ def radiation_too_small(
     emissivity: float,
     film: float,
     ambient: float,
-    tolerance: float = 1e-3,
 ) -> str | None:
-    """Whether a surface radiates less than any temperature field allows; heats [W] positive to the room.
-
-    tolerance : relative shortfall that is taken for rounding
-    """
+    """Whether a surface radiates less than any temperature field allows; heats [W] positive to the room."""
     if convection <= 0.0:
         return None
     least = least_radiation(emissivity, ambient, film, convection)
-    if radiation >= least * (1.0 - tolerance):
+    if radiation >= least * (1.0 - ROUNDING):
         return None
     area = f" ({least / radiation:.3g} times the radiating one would explain it)" if radiation > 0.0 else ""
     return (

@@ -7,13 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from thermal.conditions.boundary import ConditionError
-from thermal.fe import assembly
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray
-from thermal.fe.reference import rules_of
-
-CHUNK = 20_000
-"""Cells taken at once."""
+from thermal.forms import heat_capacity
 
 
 class HeatCapacity:
@@ -27,19 +23,17 @@ class HeatCapacity:
         check_capacity(elements.mesh.bodies, capacity)
         self.elements = elements
         self.capacity = dict(capacity)
-        self.fine, self.coarse = _assembled(elements, elements.per_cell(self.capacity))
-        """(nnz,) values of both matrices [J/K]."""
+        per_cell = elements.per_cell(self.capacity)
+        self.fine = elements.assemble(heat_capacity, elements.fine, capacity=per_cell)
+        """(nnz,) values of the second-order matrix [J/K]."""
+        self.coarse = elements.assemble(heat_capacity, elements.coarse, capacity=per_cell)
+        """Values of the linear matrix [J/K]."""
         self.matrix = elements.fine.matrix(self.fine)
 
     def stored(self, rise: FloatArray, body: str) -> float:
         """Heat [J] that a body takes up when its nodes warm by ``rise`` (n_nodes,) [K]."""
         values, volumes = self.elements.at_points(rise, self.elements.mesh.bodies[body])
         return self.capacity[body] * float(values @ volumes)
-
-    def root_mean_square(self, values: FloatArray, body: str) -> float:
-        """Root of the mean square of a nodal field over a body."""
-        at, volumes = self.elements.at_points(values, self.elements.mesh.bodies[body])
-        return float(np.sqrt(at**2 @ volumes / volumes.sum()))
 
 
 @dataclass(frozen=True)
@@ -67,7 +61,7 @@ class StoredHeat:
 
     Every body takes up rho c (T - start)/time per volume: the whole warm-up as one implicit step. The field lies
     between the start (no time) and the steady one (long time), with tau/(tau + time) of a rise still missing for a
-    time constant tau; the true course, exp(-time/tau), is nearer to steady. Raises ConditionError for a time that is
+    time constant tau; the true history, exp(-time/tau), is nearer to steady. Raises ConditionError for a time that is
     not positive.
     """
 
@@ -100,24 +94,3 @@ def check_capacity(bodies: Collection[str], capacity: Mapping[str, float]) -> No
     for name, value in capacity.items():
         if not (math.isfinite(value) and value > 0.0):
             raise ConditionError(f"heat capacity of body {name!r} is {value} J/(m3 K); it must be positive")
-
-
-def _assembled(elements: FiniteElements, per_cell: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Values of the second-order and the linear capacity matrix, by the rule for loads (degree 5)."""
-    points = rules_of(elements.shape).load.points
-    shape = elements.shape
-    _, volumes = elements.at_points(np.zeros(len(elements.mesh.points)))
-    weights = volumes.reshape(len(per_cell), len(points)) * per_cell[:, None]
-    spaces = (
-        (elements.fine, shape.values(points)),
-        (elements.coarse, shape.corner_values(points)),
-    )
-    found = []
-    for level, values in spaces:
-        data = np.zeros(len(level.indices))
-        for start in range(0, len(weights), CHUNK):
-            part = slice(start, start + CHUNK)
-            slots = level.indptr[level.cells[part]][:, :, None] + level.offsets[part].astype(np.int32)
-            assembly.add_facet_mass(data, slots, values, weights[part])
-        found.append(data)
-    return found[0], found[1]

@@ -75,7 +75,7 @@ class VariableConduction:
         level = self._elements.coarse if coarse else self._elements.fine
         conductivity = np.zeros(level.volumes.shape)
         conductivity[self._cells] = self.value(level.at_points(temperature, self._cells))
-        return self._elements.conduction(conductivity, level)
+        return level.conduction(conductivity)
 
     def slope(self, temperature: FloatArray) -> Operator:
         """The operator x -> int k' x grad T . grad N_a."""

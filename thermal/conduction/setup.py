@@ -17,7 +17,7 @@ USUAL = 293.15
 
 
 class ConductionSetup:
-    """Conduction matrices of a mesh, assembled once and used for every stage and coupling pass.
+    """Conduction matrices of a mesh, assembled once and used for every stage and iteration of the coupling.
 
     conductivity : body -> k [W/(m K)], a number or a law of the temperature
     elements : share the spaces of an earlier setup on the same mesh
@@ -37,9 +37,9 @@ class ConductionSetup:
         laws = {name: k for name, k in self.conductivity.items() if callable(k)}
         constant = {name: 0.0 if callable(k) else float(k) for name, k in self.conductivity.items()}
         per_cell = self.elements.per_cell(constant)
-        self.fine = self.elements.conduction(per_cell, self.elements.fine)
+        self.fine = self.elements.fine.conduction(per_cell)
         """(nnz,) values of the second-order matrix [W/K], bodies with a law left out."""
-        self.coarse = self.elements.conduction(per_cell, self.elements.coarse)
+        self.coarse = self.elements.coarse.conduction(per_cell)
         """Values of the linear matrix [W/K], bodies with a law left out."""
         self.variable = VariableConduction(self.elements, laws) if laws else None
         """The bodies with a law."""
@@ -51,10 +51,6 @@ class ConductionSetup:
         """(n_nodes,) sum of the sizes of each row's entries [W/K], for the rounding error of the residual."""
         self._capacities: dict[tuple[tuple[str, float], ...], HeatCapacity] = {}
         self._joints: dict[tuple[str, str, float | None, float], SurfaceJoint] = {}
-
-    def matches(self, mesh: NamedMesh, conductivity: Mapping[str, Conductivity]) -> bool:
-        """Whether the setup was made for this mesh and these conductivities."""
-        return self.mesh is mesh and self.conductivity == dict(conductivity)
 
     def notes(self, conditions: Sequence[Condition]) -> tuple[str, ...]:
         """What is to be said of the joints among ``conditions``: surfaces that touch and give heat to others."""

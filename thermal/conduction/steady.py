@@ -4,17 +4,16 @@
 the heat balance of thermal.conduction.balance, which closes to 1e-8 of the heat turned over or is no solution.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from thermal.conduction.balance import HeatBalance, heat_balance
-from thermal.conduction.condition_checks import Condition, ConditionError, check_conditions
-from thermal.conduction.conductivity import Conductivity
+from thermal.conduction.condition_checks import Condition, check_conditions
 from thermal.conduction.newton import linear_start, newton
 from thermal.conduction.setup import ConductionSetup as ConductionSetup
 from thermal.conduction.terms import ConductionProblem, Preconditioner
 from thermal.errors import ThermalNotConverged
-from thermal.fe.mesh import FloatArray, NamedMesh
+from thermal.fe.mesh import FloatArray
 
 CLOSURE = 1e-8
 """Greatest allowed gap of the heat balance relative to the heat turned over."""
@@ -40,35 +39,27 @@ class TemperatureSolution:
 
 
 def solve_steady(
-    mesh: NamedMesh,
-    conductivity: Mapping[str, Conductivity],
+    setup: ConductionSetup,
     conditions: Sequence[Condition],
     initial: FloatArray | float | None = None,
     *,
     near: TemperatureSolution | None = None,
-    reuse: ConductionSetup | None = None,
     tolerance: float = 1e-9,
     max_steps: int = 30,
 ) -> TemperatureSolution:
-    """Solve for the steady temperature of all bodies of ``mesh`` and of the volumes of stream networks.
+    """Solve for the steady temperature of all bodies of a mesh and of the volumes of stream networks.
 
-    conductivity : body -> k [W/(m K)], a number or a law of the temperature
+    setup : mesh and conductivities, with what does not depend on the conditions at hand
     conditions : at least one for every surface on the boundary, see thermal.conditions.boundary, contact, enclosure,
         streams
     initial : (n_nodes,) field or one value [K] to start from; the mean of all given temperatures if None. From
         one value the problem is solved on the linear space first
     near : solution on this mesh under conditions not far off, to start from in field and preconditioner
-    reuse : setup of the same mesh and conductivities; all but the boundary terms is then at hand
     tolerance : of the nodal residuals' sum relative to the heat turned over; the balance closes to ten times it
 
     Raises ConditionError (a ValueError) for conditions or values that cannot be computed, ThermalNotConverged (a
     RuntimeError with its history) if Newton's method or a linear solve stalls.
     """
-    setup = ConductionSetup(mesh, conductivity) if reuse is None else reuse
-    if not setup.matches(mesh, conductivity):
-        raise ConditionError(
-            "the setup to reuse belongs to another mesh or other conductivities; make a new one"
-        )
     check_conditions(setup.elements, conditions)
     problem = ConductionProblem(setup, conditions)
     start = problem.start(initial if near is None else near.temperature)

@@ -42,7 +42,7 @@ from thermal.conduction.surface_terms import SurfaceTerms
 from thermal.fe.direct_factor import MOST_NODES, DirectFactor
 from thermal.fe.low_rank import Column, stack
 from thermal.fe.mesh import FloatArray
-from thermal.fe.solver import BoolArray, LowRank, Operator, Product, TwoLevelMultigrid, constrain
+from thermal.fe.solver import BoolArray, HeldMatrix, LowRank, Operator, Product, TwoLevelMultigrid, constrain
 
 EXCHANGE_SHIFT = 1e-4
 """Share of its exchange coefficient that a body without any film gets in the coarse factor."""
@@ -358,7 +358,9 @@ class ConductionProblem:
         """Preconditioner around one linearisation."""
         fixed = self.fixed[self.elements.corners]
         return TwoLevelMultigrid(
-            linear.matrix, self.linear_matrix(field), self.elements.prolongation, self.fixed, fixed
+            HeldMatrix(linear.matrix, self.fixed),
+            HeldMatrix(self.linear_matrix(field), fixed),
+            self.elements.prolongation,
         )
 
     def linear_matrix(self, field: FloatArray) -> sparse.csr_array:

@@ -16,7 +16,7 @@ Across = tuple[float, float]
 
 @dataclass(frozen=True, kw_only=True)
 class ShaftAxis:
-    """Hot axis of a shaft: the straight line through its bearing bores, relative to its cold place.
+    """Hot axis of a shaft: the straight line through its bearing bores, relative to its undeformed place.
 
     The bow of the shaft itself is not part of it: a turning shaft is heated evenly round its axis.
     """
@@ -57,7 +57,7 @@ def shaft_axis(name: str, places: Sequence[float], shifts: Sequence[Across]) -> 
 
 @dataclass(frozen=True, kw_only=True)
 class Roundness:
-    """How far a hot bore is out of round; its mean growth and the shift of its centre are taken out."""
+    """How far a hot bore is out of round; its mean expansion and the shift of its centre are taken out."""
 
     peak_to_valley: float
     """Largest minus smallest radius about the least-squares circle [m], the worst of the sections."""
@@ -115,7 +115,7 @@ def shaft_pair(
 ) -> ShaftPair:
     """Alignment of two shaft ends.
 
-    first, second : displacement [m] and slope [rad] of each axis at its end, from its cold place
+    first, second : displacement [m] and slope [rad] of each axis at its end, from its undeformed place
     cold : offset at which the first was set against the second [m]
     """
     shift, slope = np.subtract(first[0], second[0]) + cold, np.subtract(first[1], second[1])

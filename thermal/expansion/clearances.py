@@ -10,13 +10,13 @@ from thermal.fe.mesh import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
-class BearingGrowth:
+class BearingExpansion:
     """Bore and journal of one bearing."""
 
     name: str
     bore_shift: tuple[float, float, float]
     """Displacement of the bore centre [m]."""
-    bore_growth: float
+    bore_expansion: float
     """Of the mean bore diameter [m]."""
     bore_ovality: float
     """Largest minus smallest hot bore diameter of the ellipse [m], mean over the length."""
@@ -26,13 +26,13 @@ class BearingGrowth:
     """Slope of the bore's axis in y and z [rad]."""
     misalignment: tuple[float, float]
     """Tilt of the shaft axis in the bore in y and z [rad]."""
-    journal_growth: float
+    journal_expansion: float
     """Of the mean journal diameter [m]."""
 
     @property
     def clearance_change(self) -> float:
         """Change of the diametral clearance [m]: bore minus journal."""
-        return self.bore_growth - self.journal_growth
+        return self.bore_expansion - self.journal_expansion
 
     @property
     def tilt(self) -> float:
@@ -41,11 +41,11 @@ class BearingGrowth:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SealGrowth:
+class SealExpansion:
     """Radial gap of one seal around the circumference, shaft axis through the hot bearing centres."""
 
     name: str
-    cold_gap: float
+    undeformed_gap: float
     """[m]"""
     angles: FloatArray
     """(n,) [rad] from +y towards +z."""
@@ -78,7 +78,7 @@ class SealGrowth:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShaftGrowth:
+class ShaftExpansion:
     """Lengthening of one shaft relative to its locating bearing [m]."""
 
     name: str
@@ -103,13 +103,13 @@ class ShaftGrowth:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GearGrowth:
+class GearExpansion:
     """One gear body."""
 
     name: str
     bulk_temperature: float
     """Volume mean [K]."""
-    rim_growth: float
+    rim_expansion: float
     """Of the mean rim radius [m]."""
 
 
@@ -119,7 +119,7 @@ class CentreDistance:
 
     gear_a: str
     gear_b: str
-    cold: float
+    undeformed: float
     """[m]"""
     hot: float
     inclination: float
@@ -130,10 +130,10 @@ class CentreDistance:
     @property
     def change(self) -> float:
         """[m]"""
-        return self.hot - self.cold
+        return self.hot - self.undeformed
 
 
-def free_growth(expansion: float, length: float, mean_temperature: float, reference: float) -> float:
+def free_expansion(expansion: float, length: float, mean_temperature: float, reference: float) -> float:
     """Free lengthening [m]: dL = alpha L (Tm - T0), Tm the length mean [K]."""
     return expansion * length * (mean_temperature - reference)
 
@@ -148,8 +148,8 @@ def concentric_gap_change(
 
     housing, shaft : expansion coefficient [1/K] and temperature [K]; reference : T0 [K].
     """
-    hot, cold = housing[0] * (housing[1] - reference), shaft[0] * (shaft[1] - reference)
-    return radius * (hot - cold)
+    outer, inner = housing[0] * (housing[1] - reference), shaft[0] * (shaft[1] - reference)
+    return radius * (outer - inner)
 
 
 def length_mean(
@@ -157,7 +157,7 @@ def length_mean(
 ) -> float:
     """Mean over x from ``start`` to ``end`` [m] of the section mean of a body's temperature [K].
 
-    The mean that free axial growth needs: a thick section counts no more than a thin one.
+    The mean that free axial expansion needs: a thick section counts no more than a thin one.
     """
     cells = elements.mesh.bodies[body]
     x, volume = elements.at_points(elements.mesh.points[:, 0], cells)

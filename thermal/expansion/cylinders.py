@@ -1,7 +1,7 @@
-"""How cylinders about an axis along x move and swell: bores, journals, seals, gear rims.
+"""How cylinders about an axis along x move and expand: bores, journals, seals, gear rims.
 
 Facets of a coarse mesh may lie off the cylinder they stand for. The displacement read there is carried to the
-cylinder with the free strain, so uniform heating gives the same growth on every mesh.
+cylinder with the free strain, so uniform heating gives the same expansion on every mesh.
 """
 
 from dataclasses import dataclass
@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from thermal.fe.elements import SurfaceElements
-from thermal.fe.mesh import FloatArray
-from thermal.fe.reference import triangle_values
-from thermal.fe.shapes import IndexArray
+from thermal.fe.mesh import FloatArray, IndexArray
+from thermal.fe.reference_elements import TRIANGLE_6
 from thermal.housing.stations import Point
 
 
@@ -26,8 +25,8 @@ class CylinderMotion:
 
     shift: tuple[float, float, float]
     """Of the centre [m]: u_x, and the first harmonic of u_r in y and z."""
-    radius_growth: float
-    """Growth of the mean radius, a0 [m]."""
+    radius_expansion: float
+    """Expansion of the mean radius, a0 [m]."""
     ovality: float
     """Largest minus smallest diameter of the second harmonic [m]."""
     tilt: tuple[float, float]
@@ -55,7 +54,7 @@ class Cylinder:
 
     @classmethod
     def of(cls, surface: SurfaceElements, points: FloatArray, centre: Point) -> "Cylinder":
-        """Prepare the fit about the x-line through ``centre``; points : (n_nodes, 3) [m] cold coordinates."""
+        """Prepare the fit about the x-line through ``centre``; points : (n_nodes, 3) [m] undeformed coordinates."""
         area = surface.weights.ravel()
         along, *rest = (surface.at_points(points) - np.array(centre)).reshape(-1, 3).T
         across = np.column_stack(rest)
@@ -83,7 +82,7 @@ class Cylinder:
         tangential = moved[:, 2] * self.cos - moved[:, 1] * self.sin
         return CylinderMotion(
             shift=(float(self.axial[0] @ moved[:, 0]), a1, b1),
-            radius_growth=a0,
+            radius_expansion=a0,
             ovality=4.0 * float(np.hypot(a2, b2)),
             tilt=(tilt_y, tilt_z),
             turn=float(self.turn @ tangential),
@@ -137,7 +136,7 @@ class CylinderSection:
         eta = (to_2 * edge_1[:, 0] - to_1 * edge_1[:, 1]) / det
         best = np.argmax(np.minimum(np.minimum(xi, eta), 1.0 - xi - eta), axis=1)
         rows = np.arange(len(angles))
-        shapes = triangle_values(np.column_stack([xi[rows, best], eta[rows, best]]))
+        shapes = TRIANGLE_6.values(np.column_stack([xi[rows, best], eta[rows, best]]))
         nodes = surface.facets[best]
         place = np.einsum("na,nai->ni", shapes, points[nodes] - np.array(centre))
         off = radius - np.hypot(place[:, 1], place[:, 2])
@@ -146,8 +145,8 @@ class CylinderSection:
     def radial(self, displacement: FloatArray, strain: FloatArray) -> FloatArray:
         """Radial displacement (n,) [m] from that of the nodes (n_nodes, 3) [m] and their free strain (n_nodes,)."""
         moved = np.einsum("na,nai->ni", self.shapes, displacement[self.nodes])
-        swell = np.einsum("na,na->n", self.shapes, strain[self.nodes]) * self.off
-        return np.asarray(moved[:, 1] * self.cos + moved[:, 2] * self.sin + swell)
+        widened = np.einsum("na,na->n", self.shapes, strain[self.nodes]) * self.off
+        return np.asarray(moved[:, 1] * self.cos + moved[:, 2] * self.sin + widened)
 
 
 def _radius(surface: SurfaceElements, points: FloatArray, centre: Point) -> float:

@@ -6,13 +6,13 @@ import numpy as np
 
 from thermal.expansion.alignment import ShaftAxis, misalignment, roundness, shaft_axis
 from thermal.expansion.clearances import (
-    BearingGrowth,
+    BearingExpansion,
     CentreDistance,
-    GearGrowth,
-    SealGrowth,
-    ShaftGrowth,
+    GearExpansion,
+    SealExpansion,
+    ShaftExpansion,
     concentric_gap_change,
-    free_growth,
+    free_expansion,
     length_mean,
 )
 from thermal.expansion.cylinders import CylinderMotion, axial_range
@@ -22,7 +22,7 @@ from thermal.fe.mesh import FloatArray
 from thermal.housing.stations import BearingStation, GearStation, Point, SealStation, ShaftStation
 
 
-class HotShape:
+class DeformedGeometry:
     """Places the shafts and reads clearances from one displacement field."""
 
     def __init__(
@@ -87,21 +87,21 @@ class HotShape:
         rotation = np.array([-turn, -gap.slope[1], gap.slope[0]])
         self._move(self.setup.piece[shaft.name], np.array(locating.centre), shift, rotation)
 
-    def bearing(self, station: BearingStation) -> BearingGrowth:
+    def bearing(self, station: BearingStation) -> BearingExpansion:
         """Read one bearing."""
         bore = self.bores[station.name]
         journal = self._motion(station.journal_surface, station.centre)
         first, last = axial_range(self.surfaces[station.bore_surface], self.points)
         places = (first, 0.5 * (first + last), last)
-        return BearingGrowth(
+        return BearingExpansion(
             name=station.name,
             bore_shift=bore.shift,
-            bore_growth=2.0 * bore.radius_growth,
+            bore_expansion=2.0 * bore.radius_expansion,
             bore_ovality=bore.ovality,
             bore_roundness=roundness(ROUND, self._radial(station.bore_surface, station.centre, *places)),
             bore_tilt=bore.tilt,
             misalignment=misalignment(self.axes[station.shaft], bore.tilt),
-            journal_growth=2.0 * journal.radius_growth,
+            journal_expansion=2.0 * journal.radius_expansion,
         )
 
     def _radial(self, surface: str, centre: Point, *places: float) -> FloatArray:
@@ -109,7 +109,7 @@ class HotShape:
         sections = (self.setup.section(surface, centre, x) for x in places)
         return np.array([section.radial(self.displacement, self.strain) for section in sections])
 
-    def seal(self, station: SealStation) -> SealGrowth:
+    def seal(self, station: SealStation) -> SealExpansion:
         """Read one seal: bore minus shaft at fixed angles in three sections."""
         bore, shaft = self.surfaces[station.bore_surface], self.surfaces[station.shaft_surface]
         ranges = np.array([axial_range(bore, self.points), axial_range(shaft, self.points)])
@@ -134,16 +134,16 @@ class HotShape:
             (self.setup.expansion_of(station.shaft_surface), shaft.mean(self.temperature)),
             self.reference,
         )
-        return SealGrowth(
+        return SealExpansion(
             name=station.name,
-            cold_gap=station.radial_gap,
+            undeformed_gap=station.radial_gap,
             angles=ROUND,
             gaps=gaps,
             axial_shift=axial,
             gap_by_hand=station.radial_gap + by_hand,
         )
 
-    def shaft(self, station: ShaftStation) -> ShaftGrowth:
+    def shaft(self, station: ShaftStation) -> ShaftExpansion:
         """Read the lengthening of one shaft."""
         locating = self.setup.locating[station.name]
         datum = self._motion(locating.journal_surface, locating.centre).shift[0]
@@ -158,8 +158,8 @@ class HotShape:
         by_hand = []
         for end in (station.start, station.end):
             mean = length_mean(self.setup.elements, self.temperature, station.body, locating.centre[0], end)
-            by_hand.append(free_growth(alpha, abs(end - locating.centre[0]), mean, self.reference))
-        return ShaftGrowth(
+            by_hand.append(free_expansion(alpha, abs(end - locating.centre[0]), mean, self.reference))
+        return ShaftExpansion(
             name=station.name,
             start=datum - self._axial(station.start_surface),
             end=self._axial(station.end_surface) - datum,
@@ -170,12 +170,12 @@ class HotShape:
             housing_between_bearings=housing,
         )
 
-    def gear(self, station: GearStation) -> GearGrowth:
+    def gear(self, station: GearStation) -> GearExpansion:
         """Read one gear body."""
-        return GearGrowth(
+        return GearExpansion(
             name=station.name,
             bulk_temperature=self.setup.elements.body_mean(self.temperature, station.body),
-            rim_growth=self._motion(station.rim_surface, station.centre).radius_growth,
+            rim_expansion=self._motion(station.rim_surface, station.centre).radius_expansion,
         )
 
     def centre_distances(self) -> tuple[CentreDistance, ...]:
@@ -190,16 +190,16 @@ class HotShape:
     def _centre_distance(self, a: GearStation, b: GearStation) -> CentreDistance:
         plane = 0.5 * (a.centre[0] + b.centre[0])
         axis_a, axis_b = self.axes[a.shaft], self.axes[b.shaft]
-        cold = np.subtract(b.centre, a.centre)[1:]
-        distance = float(np.hypot(*cold))
-        along = cold / distance
+        undeformed = np.subtract(b.centre, a.centre)[1:]
+        distance = float(np.hypot(*undeformed))
+        along = undeformed / distance
         opening = np.subtract(axis_b.slope, axis_a.slope)
         apart = np.subtract(axis_b.shift(plane), axis_a.shift(plane))
         return CentreDistance(
             gear_a=a.name,
             gear_b=b.name,
-            cold=distance,
-            hot=float(np.hypot(*(cold + apart))),
+            undeformed=distance,
+            hot=float(np.hypot(*(undeformed + apart))),
             inclination=float(opening @ along),
             skew=float(along[0] * opening[1] - along[1] * opening[0]),
         )

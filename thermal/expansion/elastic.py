@@ -1,7 +1,7 @@
 """Thermo-elastic displacement of a mesh: K u = int B^T D alpha (T - T0).
 
 Every connected piece must be supported; `three_two_one` gives a statically determinate support, under which a
-piece swells freely: the supports carry nothing whatever its temperature field. Such a piece is solved without
+piece expands freely: the supports carry nothing whatever its temperature field. Such a piece is solved without
 its supports, which would strain the three nodes they hold, and then moved as a rigid body onto them.
 """
 
@@ -20,7 +20,14 @@ from thermal.fe.curved import linear_stiffness
 from thermal.fe.direct import solve_direct
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray, IndexArray
-from thermal.fe.solver import BoolArray, LinearSolution, TwoLevelMultigrid, conjugate_gradient, constrain
+from thermal.fe.solver import (
+    BoolArray,
+    HeldMatrix,
+    LinearSolution,
+    TwoLevelMultigrid,
+    conjugate_gradient,
+    constrain,
+)
 
 __all__ = [
     "Displacement",
@@ -43,7 +50,7 @@ class Elastic(NamedTuple):
     """[Pa]"""
     poisson: float
     expansion: float
-    """Mean coefficient of linear expansion between cold and hot [1/K]."""
+    """Mean coefficient of linear expansion between the reference temperature and the hot one [1/K]."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +90,7 @@ class ElasticSetup:
         self._alpha = np.empty(len(elements.mesh.points))
         self._alpha[elements.mesh.cells] = alpha[:, None]
         self._factor = alpha * young / (1.0 - 2.0 * poisson)
-        fine = elements.elasticity(young, poisson, elements.fine)
+        fine = elements.fine.elasticity(young, poisson)
         self.free = FreePieces.of(elements, fixed)
         """Pieces on six determinate supports, solved without them."""
         held = fixed & ~self.free.nodes[:, None]
@@ -94,12 +101,15 @@ class ElasticSetup:
         coarse_matrix = constrain(linear_stiffness(elements, young, poisson), held_corners, overwrite=True)
         modes = rigid_modes(elements.mesh.points[elements.corners])
         self.multigrid = TwoLevelMultigrid(
-            self.matrix, coarse_matrix, elements.prolongation, self._held, held_corners, modes
+            HeldMatrix(self.matrix, self._held),
+            HeldMatrix(coarse_matrix, held_corners),
+            elements.prolongation,
+            modes,
         )
 
     def load(self, temperature: FloatArray, reference: float) -> FloatArray:
         """Nodal forces (n_nodes, 3) [N] that free expansion from ``reference`` [K] calls for."""
-        return self.elements.expansion_load(self._factor, temperature - reference)
+        return self.elements.fine.expansion_load(self._factor, temperature - reference)
 
     def free_strain(self, temperature: FloatArray, reference: float) -> FloatArray:
         """(n_nodes,) alpha (T - T0); a node between bodies takes one of their alphas."""

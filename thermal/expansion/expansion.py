@@ -8,34 +8,38 @@ its locating journal sits axially in its bore. Bearing clearance and film positi
 axis runs through the middle of the bores.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from thermal.expansion.alignment import ShaftAxis
-from thermal.expansion.clearances import BearingGrowth, CentreDistance, GearGrowth, SealGrowth, ShaftGrowth
-from thermal.expansion.deformed_geometry import HotShape
+from thermal.expansion.clearances import (
+    BearingExpansion,
+    CentreDistance,
+    GearExpansion,
+    SealExpansion,
+    ShaftExpansion,
+)
+from thermal.expansion.deformed_geometry import DeformedGeometry
 from thermal.expansion.elastic import ElasticError
 from thermal.expansion.setup import ExpansionSetup
 from thermal.fe.mesh import FloatArray
-from thermal.housing.stations import GearboxModel
 
 __all__ = ["Expansion", "ExpansionSetup", "expand"]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Expansion:
-    """Hot shape of a gearbox."""
+    """Deformed geometry of a gearbox."""
 
     displacement: FloatArray
     """(n_nodes, 3) [m], relative to the foot, shafts placed in their bearings."""
     supported: FloatArray
     """(n_nodes, 3) [m] on the supports of the solve, every piece for itself; a start for the next solve."""
-    bearings: dict[str, BearingGrowth]
-    seals: dict[str, SealGrowth]
-    shafts: dict[str, ShaftGrowth]
-    gears: dict[str, GearGrowth]
+    bearings: dict[str, BearingExpansion]
+    seals: dict[str, SealExpansion]
+    shafts: dict[str, ShaftExpansion]
+    gears: dict[str, GearExpansion]
     axes: dict[str, ShaftAxis]
     """Hot axis of every shaft, through its bearing bores."""
     centre_distances: tuple[CentreDistance, ...]
@@ -46,32 +50,26 @@ class Expansion:
 
 
 def expand(
-    model: GearboxModel,
+    setup: ExpansionSetup,
     temperature: FloatArray,
     reference_temperature: float,
-    elastic: Mapping[str, tuple[float, float, float]],
     *,
-    reuse: ExpansionSetup | None = None,
     tolerance: float = 1e-8,
     start: Expansion | None = None,
 ) -> Expansion:
     """Expand a gearbox from ``reference_temperature`` [K], at which the model's dimensions hold.
 
-    temperature : (n_nodes,) [K]
-    elastic : body -> (Young's modulus [Pa], Poisson's ratio, expansion coefficient [1/K])
-    reuse : setup of the same model and materials; tolerance : of the linear solve's residual
-    start : hot shape of a neighbouring temperature field, which saves iterations
+    setup : gearbox and materials; temperature : (n_nodes,) [K]
+    tolerance : of the linear solve's residual
+    start : expansion under a neighbouring temperature field, which saves iterations
 
     Raises ElasticError (a ValueError) for input that cannot be computed, NotConverged (a RuntimeError with
     its residuals) if the linear solve stalls.
     """
-    setup = ExpansionSetup(model, elastic) if reuse is None else reuse
-    if not setup.matches(model, elastic):
-        raise ElasticError("the setup to reuse belongs to another model or other materials; make a new one")
-    if temperature.shape != (len(model.mesh.points),) or not np.isfinite(temperature).all():
+    n_nodes = len(setup.model.mesh.points)
+    if temperature.shape != (n_nodes,) or not np.isfinite(temperature).all():
         raise ElasticError(
-            f"temperature of shape {temperature.shape}: need one finite value per node, "
-            f"({len(model.mesh.points)},)"
+            f"temperature of shape {temperature.shape}: need one finite value per node, ({n_nodes},)"
         )
     solution = setup.elastic.solve(
         temperature, reference_temperature, tolerance, None if start is None else start.supported
@@ -100,7 +98,7 @@ def read_expansion(
     temperature : (n_nodes,) [K]; supported : (n_nodes, 3) [m], of this temperature
     """
     model = setup.model
-    shape = HotShape(setup, temperature, reference_temperature, supported)
+    shape = DeformedGeometry(setup, temperature, reference_temperature, supported)
     return Expansion(
         displacement=shape.displacement,
         supported=supported,

@@ -1,7 +1,7 @@
-"""Hot shapes of many temperature fields for the price of a few solves.
+"""Deformed geometries of many temperature fields for the price of a few solves.
 
 Displacement is linear in temperature. The fields of a time run differ by few patterns: the leading ones are
-found from the fields themselves, each is expanded once, and the shape of any field is their sum. What the
+found from the fields themselves, each is expanded once, and the expansion under any field is their sum. What the
 patterns miss of a temperature is measured and kept below a limit.
 Source of the patterns (snapshots): Sirovich, Quart. Appl. Math. 45 (1987) 561.
 """
@@ -60,7 +60,7 @@ class ExpansionBasis:
         return cls(setup, reference, patterns, np.array(shapes).reshape(*patterns.shape, 3), left)
 
     def shape(self, temperature: FloatArray) -> Expansion:
-        """Hot shape at a field (n_nodes,) [K] among or between those the course was made of."""
+        """Expansion under a field (n_nodes,) [K] among or between those the basis was made of."""
         shares = self.patterns @ (temperature - self.reference)
         supported = np.tensordot(shares, self.displacements, axes=1)
         return read_expansion(self.setup, temperature, self.reference, supported)

@@ -103,11 +103,6 @@ class ExpansionSetup:
                 fixed[node, list(directions)] = True
         return fixed
 
-    def matches(self, model: GearboxModel, elastic: Mapping[str, tuple[float, float, float]]) -> bool:
-        """Whether the setup was made for this model and these materials."""
-        same = {name: tuple(values) for name, values in elastic.items()}
-        return self.model is model and same == {n: tuple(m) for n, m in self.elastic.elastic.items()}
-
 
 def _locating(model: GearboxModel, shaft: ShaftStation) -> BearingStation:
     found = [b for b in model.bearings if b.shaft == shaft.name and b.locating]

@@ -1,9 +1,13 @@
 """Stress from a displacement field, cell by cell at the cell's own nodes."""
 
 import numpy as np
+from skfem.helpers import eye, sym_grad
 
 from thermal.expansion.elastic import ElasticSetup
-from thermal.fe.shapes import FloatArray, IndexArray
+from thermal.fe.arrays import FloatArray, IndexArray
+from thermal.fe.bases import VECTOR
+from thermal.fe.reference_elements import QuadratureRule
+from thermal.forms import lame, stress
 
 
 def stress_at_nodes(
@@ -20,23 +24,15 @@ def stress_at_nodes(
     sigma = lambda tr(e) 1 + 2 mu e with e the strain less the free one, alpha (T - T0). At nodes the stress of
     a second-order cell is one order less accurate than inside, but what surfaces and corners are judged by.
     """
-    mesh, shape = setup.elements.mesh, setup.elements.shape
-    chosen = np.arange(len(mesh.cells)) if cells is None else cells
-    nodes = mesh.cells[chosen]
-    slopes = shape.gradients(shape.nodes)
-    jacobian = np.einsum("abj,ebi->eaij", slopes, mesh.points[nodes], optimize=True)
-    reference_gradient = np.einsum("abj,ebi->eaij", slopes, displacement[nodes], optimize=True)
-    gradient = reference_gradient @ np.linalg.inv(jacobian)
-    material = {name: np.array(values) for name, values in setup.elastic.items()}
-    young, poisson, alpha = (
-        setup.elements.per_cell({name: float(values[k]) for name, values in material.items()})[chosen]
-        for k in range(3)
+    elements = setup.elements
+    chosen = np.arange(len(elements.mesh.cells), dtype=np.int32) if cells is None else cells
+    nodes = elements.shape.nodes
+    basis = elements.bases.cells(chosen, VECTOR, QuadratureRule(nodes, np.ones(len(nodes))))
+    material = {name: lame(m.young, m.poisson) for name, m in setup.elastic.items()}
+    lam, mu = (
+        elements.per_cell({name: v[k] for name, v in material.items()})[chosen, None] for k in range(2)
     )
-    lam = young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
-    mu = 0.5 * young / (1.0 + poisson)
-    free = alpha[:, None] * (temperature[nodes] - reference)
-    strain = 0.5 * (gradient + np.swapaxes(gradient, 2, 3)) - free[:, :, None, None] * np.eye(3)
-    trace = np.einsum("eaii->ea", strain)
-    return np.asarray(
-        (lam[:, None] * trace)[:, :, None, None] * np.eye(3) + 2.0 * mu[:, None, None, None] * strain
-    )
+    alpha = elements.per_cell({name: m.expansion for name, m in setup.elastic.items()})[chosen, None]
+    free = alpha * (temperature[elements.mesh.cells[chosen]] - reference)
+    strain = sym_grad(basis.interpolate(displacement.ravel())) - eye(free, 3)
+    return np.asarray(np.moveaxis(stress(strain, lam, mu), (0, 1), (2, 3)))

@@ -1,6 +1,6 @@
 """Supports of elastic bodies, and the pieces that could do without them.
 
-Six supports that let a piece swell freely carry nothing under a load in equilibrium, as free expansion is.
+Six supports that let a piece expand freely carry nothing under a load in equilibrium, as free expansion is.
 Held at three nodes, though, a fine mesh is so soft there that an iteration wastes its steps on it. So such a
 piece is solved floating, in the space its rigid motions leave, and afterwards moved onto its supports.
 """

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from thermal.fe import kernels
-from thermal.fe.shapes import FloatArray, IndexArray
+from thermal.fe.arrays import FloatArray, IndexArray
 
 STRONG = 0.08
 """An entry couples two nodes if its size is above this share of the root of their diagonals' product; half of

@@ -10,10 +10,9 @@ Source: Briggs, Henson, McCormick, A Multigrid Tutorial, 2nd ed., ch. 10 (variat
 import numpy as np
 from scipy import sparse
 
+from thermal.fe.arrays import FloatArray, IndexArray
 from thermal.fe.elements import FiniteElements
 from thermal.fe.levels import Level
-from thermal.fe.reference import rules_of
-from thermal.fe.shapes import FloatArray, IndexArray
 
 BENT = 0.5
 """Distance of a node from the middle of its corners, relative to the thickness of its cell, above which the
@@ -35,8 +34,6 @@ def bent_cells(elements: FiniteElements) -> IndexArray:
     slope = np.linalg.norm(inverse, axis=3).max(axis=(1, 2))
     if shape.n_corners == 4:
         slope = np.maximum(slope, np.linalg.norm(inverse.sum(axis=2), axis=2).max(axis=1))
-    else:
-        slope *= 0.5
     return np.flatnonzero(off * slope > BENT).astype(np.int32)
 
 
@@ -52,13 +49,10 @@ def linear_stiffness(elements: FiniteElements, young: FloatArray, poisson: Float
     if not len(bent):
         return matrix
     nodes, packed = np.unique(elements.mesh.cells[bent], return_inverse=True)
-    rule = rules_of(elements.shape).stiffness
     level = Level.of(
         np.ascontiguousarray(elements.mesh.points[nodes]),
         packed.reshape(len(bent), -1).astype(np.int32),
-        elements.shape.values(rule.points),
-        elements.shape.gradients(rule.points),
-        rule,
+        elements.shape,
     )
     stiffness = level.block_matrix(level.elasticity(young[bent], poisson[bent]))
     way = sparse.kron(sparse.csr_array(elements.prolongation)[nodes], np.eye(3), format="csr")

@@ -13,7 +13,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from thermal.errors import ThermalInputError
-from thermal.fe.shapes import FloatArray
+from thermal.fe.arrays import FloatArray
 
 Backend = Literal["pardiso", "superlu"]
 

@@ -1,16 +1,17 @@
 """The second-order finite-element space on a named mesh and its linear sub-space, ready to assemble."""
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy import sparse
 
 from thermal.fe import assembly
-from thermal.fe.levels import Level, linear_level, prolongation
+from thermal.fe.arrays import FloatArray, IndexArray
+from thermal.fe.bases import LINEAR, SCALAR, Bases
+from thermal.fe.levels import Level, prolongation
 from thermal.fe.mesh import NamedMesh
 from thermal.fe.mesh_checks import check_topology, check_volumes
-from thermal.fe.reference import rules_of
-from thermal.fe.shapes import FloatArray, IndexArray
 from thermal.fe.surfaces import SurfaceElements, gather
 
 __all__ = ["FiniteElements", "Level", "SurfaceElements"]
@@ -19,7 +20,7 @@ __all__ = ["FiniteElements", "Level", "SurfaceElements"]
 class FiniteElements:
     """Quadrature, matrix patterns and prolongation of one mesh: built once, used for every field on it.
 
-    Geometry is isoparametric; thermal.fe.reference says which rule serves stiffness, loads and surfaces. The
+    Geometry is isoparametric; reference_elements says which rule serves stiffness, loads and surfaces. The
     linear sub-space stands on the straight-sided cells between the corners.
     Raises MeshError for a mesh that thermal.fe.mesh_checks refuses.
     """
@@ -29,18 +30,11 @@ class FiniteElements:
         self.interfaces = check_topology(mesh)
         """Names of the surfaces that lie inside, between two cells."""
         self.shape = mesh.shape
-        rules = rules_of(self.shape)
-        self._load_rule = rules.load
-        rule = rules.stiffness
-        self.fine = Level.of(
-            mesh.points,
-            mesh.cells,
-            self.shape.values(rule.points),
-            self.shape.gradients(rule.points),
-            rule,
-        )
+        self.fine = Level.of(mesh.points, mesh.cells, self.shape)
+        places, weights = self.shape.load_rule
+        self._load_values = self.shape.values(places)
         self._load_volumes = assembly.cell_volumes(
-            mesh.points, mesh.cells, self.shape.gradients(rules.load.points), rules.load.weights
+            mesh.points, mesh.cells, self.shape.gradients(places), weights
         )
         check_volumes(mesh, np.minimum(self.fine.volumes.min(axis=1), self._load_volumes.min(axis=1)))
         corner_cells = mesh.cells[:, : self.shape.n_corners]
@@ -49,11 +43,16 @@ class FiniteElements:
         self.corners = np.flatnonzero(is_corner).astype(np.int32)
         """(n_corners,) nodes of the linear space."""
         number = (np.cumsum(is_corner) - 1).astype(np.int32)
-        self.coarse = linear_level(
-            mesh.points[self.corners], np.ascontiguousarray(number[corner_cells]), self.shape, rules.linear
+        self.coarse = Level.linear(
+            mesh.points[self.corners], np.ascontiguousarray(number[corner_cells]), self.shape
         )
         self.prolongation = prolongation(mesh.points, mesh.cells, self.corners, self.coarse, self.shape)
         """(n_nodes, n_corners): a linear field at the nodes of the second-order space."""
+
+    @cached_property
+    def bases(self) -> Bases:
+        """scikit-fem's bases in our numbering, for any weak form."""
+        return Bases(self.mesh, self.corners)
 
     @cached_property
     def surfaces(self) -> dict[str, SurfaceElements]:
@@ -88,21 +87,18 @@ class FiniteElements:
             result[cells] = values[name]
         return result
 
-    def conduction(self, conductivity: FloatArray, level: Level) -> FloatArray:
-        """Matrix values (nnz,) [W/K] of the integral of k grad u . grad v; see Level.conduction."""
-        return level.conduction(conductivity)
+    def assemble(self, form: Any, level: Level, **by_cell: FloatArray) -> FloatArray:
+        """Matrix values (nnz,) of a bilinear form of scikit-fem on curved cells, by the rule of loads.
 
-    def elasticity(self, young: FloatArray, poisson: FloatArray, level: Level) -> FloatArray:
-        """Matrix blocks (nnz, 3, 3) [N/m]; young [Pa] and poisson [-] : (n_cells,)."""
-        return level.elasticity(young, poisson)
-
-    def expansion_load(self, factor: FloatArray, excess: FloatArray) -> FloatArray:
-        """Load (n_nodes, 3) [N] of free expansion, by the rule of the stiffness: a free body has no stress.
-
-        factor : (n_cells,) alpha E / (1 - 2 nu) [Pa/K]
-        excess : (n_nodes,) temperature above the cold one [K]
+        by_cell : parameters of the form, (n_cells,) each
         """
-        return self.fine.expansion_load(factor, excess)
+        values = np.zeros(len(level.indices))
+        local_order = np.array(self.shape.order[: level.cells.shape[1]])
+        for basis in self.bases.in_blocks(LINEAR if level is self.coarse else SCALAR):
+            parameters = {name: value[basis.tind, None] for name, value in by_cell.items()}
+            local = form.elemental(basis, **parameters).tolocal()  # (k, n_local of u, n_local of v)
+            level.add_local(values, basis.tind, local[:, local_order[None, :], local_order[:, None]])
+        return values
 
     def at_points(self, field: FloatArray, cells: IndexArray | None = None) -> tuple[FloatArray, FloatArray]:
         """Values (k, ...) of a nodal ``field`` (n_nodes, ...) and volume weights (k,) [m3].
@@ -111,7 +107,7 @@ class FiniteElements:
         """
         chosen = slice(None) if cells is None else np.unique(cells)
         nodal = field[self.mesh.cells[chosen]]
-        values = np.einsum("qb,eb...->eq...", self.shape.values(self._load_rule.points), nodal)
+        values = np.einsum("qb,eb...->eq...", self._load_values, nodal)
         return values.reshape(-1, *field.shape[1:]), self._load_volumes[chosen].ravel()
 
     def volume(self, body: str) -> float:
@@ -126,5 +122,5 @@ class FiniteElements:
     def body_load(self, body: str) -> FloatArray:
         """(n_nodes,) integral of each shape function over a body [m3]."""
         cells = np.unique(self.mesh.bodies[body])
-        parts = self._load_volumes[cells] @ self.shape.values(self._load_rule.points)
+        parts = self._load_volumes[cells] @ self._load_values
         return gather(self.mesh.cells[cells], parts, len(self.mesh.points))

@@ -6,8 +6,8 @@ import numpy as np
 from scipy import sparse
 
 from thermal.fe import assembly, kernels
-from thermal.fe.reference import QuadratureRule
-from thermal.fe.shapes import CellShape, FloatArray, IndexArray
+from thermal.fe.arrays import FloatArray, IndexArray
+from thermal.fe.reference_elements import CellElement
 
 STRAIGHT = 1e-9
 """A node counts as centred if it is off the middle of its corners by less than this share of the cell."""
@@ -25,38 +25,61 @@ class Level:
     """(n_cells, n_local)"""
     values: FloatArray
     """(n_q, n_local) shape functions at the quadrature points of a cell."""
-    slopes: FloatArray
-    """(n_q, 3, n_local) their reference gradients."""
-    inverse: FloatArray
-    """(n_cells, n_q, 3, 3) derivatives of reference by physical coordinates [1/m]."""
-    volumes: FloatArray
-    """(n_cells, n_q) volume weights [m3]."""
-    start: IndexArray
-    around: IndexArray
-    offsets: kernels.Offsets
-    indptr: IndexArray
+    tables: assembly.CellTables
+    """Gradients and geometry at the quadrature points."""
+    pattern: assembly.RowPattern
+    """Rows of the matrix and the cells they gather from."""
     indices: IndexArray
+    """(nnz,) columns of the matrix."""
 
     @classmethod
-    def of(
+    def of(cls, points: FloatArray, cells: IndexArray, shape: CellElement) -> "Level":
+        """The second-order space on isoparametric cells; points : (n_nodes, 3) [m]."""
+        rule = shape.stiffness_rule
+        return cls._of(points, cells, shape.values(rule.points), shape.gradients(rule.points), rule.weights)
+
+    @classmethod
+    def linear(cls, points: FloatArray, cells: IndexArray, shape: CellElement) -> "Level":
+        """The linear space on straight-sided cells; points : (n_corners, 3), cells : (n_cells, n_corners).
+
+        A cell whose corners alone are inverted or flat carries nothing.
+        """
+        places, weights = shape.linear_rule
+        level = cls._of(points, cells, shape.corner_values(places), shape.corner_gradients(places), weights)
+        np.maximum(level.volumes, 0.0, out=level.volumes)
+        return level
+
+    @classmethod
+    def _of(
         cls,
         points: FloatArray,
         cells: IndexArray,
         values: FloatArray,
         gradients: FloatArray,
-        rule: QuadratureRule,
+        weights: FloatArray,
     ) -> "Level":
-        """Work out geometry and which nodes are coupled.
-
-        points : (n_nodes, 3) [m]; values, gradients : (n_q, n_local) and (n_q, n_local, 3) of ``rule``
-        """
-        inverse, volumes = assembly.cell_geometry(points, cells, gradients, rule.weights)
+        inverse, volumes = assembly.cell_geometry(points, cells, gradients, weights)
         start, around = kernels.cells_of_nodes(cells, len(points))
         indptr, indices, offsets = kernels.pattern(cells, start, around)
         slopes = np.ascontiguousarray(np.swapaxes(gradients, 1, 2))
-        return cls(
-            len(points), cells, values, slopes, inverse, volumes, start, around, offsets, indptr, indices
-        )
+        tables = assembly.CellTables(slopes, inverse, volumes)
+        pattern = assembly.RowPattern(indptr, start, around, offsets)
+        return cls(len(points), cells, values, tables, pattern, indices)
+
+    @property
+    def volumes(self) -> FloatArray:
+        """(n_cells, n_q) volume weights [m3]."""
+        return self.tables.volumes
+
+    @property
+    def inverse(self) -> FloatArray:
+        """(n_cells, n_q, 3, 3) derivatives of reference by physical coordinates [1/m]."""
+        return self.tables.inverse
+
+    @property
+    def indptr(self) -> IndexArray:
+        """(n_nodes + 1,) start of every row in the matrix values."""
+        return self.pattern.indptr
 
     def matrix(self, values: FloatArray) -> sparse.csr_array:
         """Sparse matrix from its (nnz,) values."""
@@ -71,9 +94,10 @@ class Level:
         size = 3 * self.n_nodes
         return sparse.bsr_array((blocks, self.indices, self.indptr), shape=(size, size))
 
-    def gradients(self, cells: Cells = ALL) -> FloatArray:
-        """(k, n_q, n_local, 3) physical gradients [1/m] of the shape functions of k ``cells``."""
-        return np.asarray(np.einsum("qjb,eqji->eqbi", self.slopes, self.inverse[cells], optimize=True))
+    def add_local(self, values: FloatArray, cells: Cells, local: FloatArray) -> None:
+        """Add cell matrices (k, n_local, n_local) of k ``cells``, rows first, to matrix values (nnz,)."""
+        rows = self.indptr[self.cells[cells]]
+        np.add.at(values, rows[:, :, None] + self.pattern.offsets[cells], local)
 
     def at_points(self, field: FloatArray, cells: Cells = ALL) -> FloatArray:
         """(k, n_q, ...) values of a nodal ``field`` (n_nodes, ...) at the quadrature points of ``cells``."""
@@ -81,14 +105,14 @@ class Level:
 
     def gradient(self, field: FloatArray, cells: Cells = ALL) -> FloatArray:
         """(k, n_q, 3) physical gradient of a nodal ``field`` (n_nodes,) at the points of ``cells``."""
-        reference = np.einsum("qjb,eb->eqj", self.slopes, field[self.cells[cells]], optimize=True)
+        reference = np.einsum("qjb,eb->eqj", self.tables.slopes, field[self.cells[cells]], optimize=True)
         return np.asarray(np.einsum("eqj,eqji->eqi", reference, self.inverse[cells], optimize=True))
 
     def flux_load(self, flux: FloatArray, cells: Cells = ALL) -> FloatArray:
         """(n_nodes,) integral over ``cells`` of grad N_a . flux; flux : (k, n_q, 3) at their points."""
         scaled = self.volumes[cells][:, :, None] * flux
         reference = np.einsum("eqji,eqi->eqj", self.inverse[cells], scaled, optimize=True)
-        parts = np.einsum("qjb,eqj->eb", self.slopes, reference, optimize=True)
+        parts = np.einsum("qjb,eqj->eb", self.tables.slopes, reference, optimize=True)
         nodes = self.cells[cells].ravel()
         return np.asarray(np.bincount(nodes, parts.ravel(), minlength=self.n_nodes), dtype=np.float64)
 
@@ -99,42 +123,26 @@ class Level:
         """
         at_points = conductivity if conductivity.ndim == 2 else conductivity[:, None]
         at_points = np.array(np.broadcast_to(at_points, self.volumes.shape))
-        return assembly.conduction_rows(
-            self.indptr, self.start, self.around, self.offsets,
-            self.slopes, self.inverse, self.volumes, at_points,
-        )  # fmt: skip
+        return assembly.conduction_rows(self.pattern, self.tables, at_points)
 
     def elasticity(self, young: FloatArray, poisson: FloatArray) -> FloatArray:
         """Matrix blocks (nnz, 3, 3) [N/m]; young [Pa] and poisson [-] : (n_cells,)."""
         lame = np.column_stack(
             [young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)), 0.5 * young / (1.0 + poisson)]
         )
-        return assembly.elasticity_rows(
-            self.indptr, self.start, self.around, self.offsets,
-            self.slopes, self.inverse, self.volumes, lame,
-        )  # fmt: skip
+        return assembly.elasticity_rows(self.pattern, self.tables, lame)
 
     def expansion_load(self, factor: FloatArray, excess: FloatArray) -> FloatArray:
-        """Load (n_nodes, 3) [N] of free expansion; see FiniteElements.expansion_load."""
-        return assembly.expansion_load(
-            self.cells, self.values, self.slopes, self.inverse, self.volumes, factor, excess
-        )
+        """Load (n_nodes, 3) [N] of free expansion, by the rule of the stiffness: a free body has no stress.
 
-
-def linear_level(points: FloatArray, cells: IndexArray, shape: CellShape, rule: QuadratureRule) -> Level:
-    """The linear space on straight-sided cells; points : (n_corners, 3), cells : (n_cells, n_corners).
-
-    A cell whose corners alone are inverted or flat carries nothing.
-    """
-    level = Level.of(
-        points, cells, shape.corner_values(rule.points), shape.corner_gradients(rule.points), rule
-    )
-    np.maximum(level.volumes, 0.0, out=level.volumes)
-    return level
+        factor : (n_cells,) alpha E / (1 - 2 nu) [Pa/K]
+        excess : (n_nodes,) temperature above the reference [K]
+        """
+        return assembly.expansion_load(self.cells, self.values, self.tables, factor, excess)
 
 
 def prolongation(
-    points: FloatArray, cells: IndexArray, corners: IndexArray, coarse: Level, shape: CellShape
+    points: FloatArray, cells: IndexArray, corners: IndexArray, coarse: Level, shape: CellElement
 ) -> sparse.csr_array:
     """(n_nodes, n_corners) matrix that takes a linear field to the nodes of the second-order space.
 
@@ -163,7 +171,7 @@ def prolongation(
 
 
 def _largest_cell_around(
-    cells: IndexArray, volumes: FloatArray, shape: CellShape
+    cells: IndexArray, volumes: FloatArray, shape: CellElement
 ) -> tuple[IndexArray, IndexArray, IndexArray]:
     """Nodes that are no corners, the largest cell around each, and their local number in it."""
     order = np.argsort(volumes, kind="stable")

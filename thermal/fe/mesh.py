@@ -4,26 +4,19 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import permutations
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from thermal.errors import ThermalInputError
+from thermal.fe.arrays import FloatArray, IndexArray
 from thermal.fe.numbering import Numbering
-from thermal.fe.shapes import (
-    CELLS,
-    HEXAHEDRON_20,
-    HEXAHEDRON_27,
-    TETRAHEDRON_10,
-    CellShape,
-    FloatArray,
-    IndexArray,
-)
+
+if TYPE_CHECKING:
+    from thermal.fe.reference_elements import CellElement
 
 __all__ = [
-    "CELL_EDGES",
-    "GMSH_NODE_ORDER",
     "FacetTable",
     "FloatArray",
     "IndexArray",
@@ -40,12 +33,6 @@ __all__ = [
     "whole_surfaces",
 ]
 
-CELL_EDGES = TETRAHEDRON_10.edges
-"""Corner pairs of the mid-side nodes 4 to 9 of a tetrahedron."""
-
-GMSH_NODE_ORDER = TETRAHEDRON_10.gmsh_order
-"""``gmsh_cells[:, GMSH_NODE_ORDER]`` is the node order of NamedMesh for tetrahedra."""
-
 CellName = Literal["tetra10", "hexahedron20", "hexahedron27"]
 
 
@@ -58,7 +45,7 @@ class NamedMesh:
     """A mesh of one kind of second-order cell (VTK node order) with named bodies and surfaces.
 
     points : (n_nodes, 3) coordinates [m]
-    cells : (n_cells, 10, 20 or 27) node indices of tetrahedra or hexahedra, see thermal.fe.shapes
+    cells : (n_cells, 10, 20 or 27) node indices of tetrahedra or hexahedra, see reference_elements
     bodies : name -> (k,) cell indices; every cell belongs to exactly one body
     surfaces : name -> (k, 6, 8 or 9) node indices of second-order triangles or quadrilaterals, corners first,
         normal pointing out of the body they bound; every facet on the boundary of the mesh belongs to exactly
@@ -73,7 +60,7 @@ class NamedMesh:
     numbering: Numbering | None = None
 
     @property
-    def shape(self) -> CellShape:
+    def shape(self) -> "CellElement":
         """The kind of cell. Raises MeshError for a number of nodes that no cell has."""
         return cell_shape(self.cells)
 
@@ -83,8 +70,13 @@ class NamedMesh:
         return facet_table(self.cells, len(self.points))
 
 
-def cell_shape(cells: IndexArray) -> CellShape:
-    """The element with as many nodes as ``cells`` (n, n_local) has columns."""
+def cell_shape(cells: IndexArray) -> "CellElement":
+    """The element with as many nodes as ``cells`` (n, n_local) has columns.
+
+    scikit-fem is imported here, at the first mesh: a case that cannot be read answers without it.
+    """
+    from thermal.fe.reference_elements import CELLS
+
     if cells.ndim != 2 or cells.shape[1] not in CELLS:
         names = ", ".join(f"{n} ({shape.name})" for n, shape in CELLS.items())
         raise MeshError(f"cells of shape {cells.shape}: need (n_cells, n) with n of {names}")
@@ -155,7 +147,7 @@ def named_mesh(
 ) -> NamedMesh:
     """Make a mesh from second-order cells and surfaces of which only corner nodes are known.
 
-    points : (n_nodes, 3) [m]; cells : (n_cells, n_local) in NamedMesh order (see CellShape.gmsh_order)
+    points : (n_nodes, 3) [m]; cells : (n_cells, n_local) in NamedMesh order (see CellElement.gmsh_order)
     bodies : name -> (k,) cell indices
     surface_corners : name -> (k, >= n_corners) node indices, corners first, in any orientation
 
@@ -183,6 +175,12 @@ def whole_surfaces(mesh: NamedMesh, surface_corners: Mapping[str, IndexArray]) -
     return surfaces
 
 
+def _named(cell: CellName) -> "CellElement":
+    from thermal.fe.reference_elements import CELLS
+
+    return next(shape for shape in CELLS.values() if shape.name == cell)
+
+
 def second_order(
     points: FloatArray,
     linear_cells: IndexArray,
@@ -194,7 +192,7 @@ def second_order(
     points : (n, 3) [m]; linear_cells : (n_cells, 4 or 8) in any orientation; bodies and surface_corners as in
     named_mesh. The corner nodes keep their numbers, mid-side nodes follow. Hexahedra get 20 nodes.
     """
-    shape = TETRAHEDRON_10 if linear_cells.shape[1] == 4 else HEXAHEDRON_20
+    shape = _named("tetra10" if linear_cells.shape[1] == 4 else "hexahedron20")
     linear_cells = _turned(points, linear_cells, shape)
     edges = np.sort(linear_cells[:, np.array(shape.edges)].reshape(-1, 2), axis=1)
     unique, which = np.unique(edges, axis=0, return_inverse=True)
@@ -218,17 +216,16 @@ def from_scikit_fem(mesh: Any) -> NamedMesh:
     if len(rest := np.setdiff1d(mesh.boundary_facets(), np.concatenate([*facets.values(), []]))):
         facets["rest"] = rest
     corners = {name: mesh.facets[:, ix].T for name, ix in facets.items()}
-    local = np.array(mesh.elem.doflocs)
-    shape = {4: TETRAHEDRON_10, 8: HEXAHEDRON_20, 10: TETRAHEDRON_10, 27: HEXAHEDRON_27}[len(local)]
-    wanted = (shape.nodes if shape.n_corners == 4 else 0.5 * (shape.nodes + 1.0))[: len(local)]
-    order = [int(np.argmin(np.linalg.norm(local - place, axis=1))) for place in wanted]
-    cells = mesh.dofs.element_dofs[order].T
-    if len(local) == shape.n_corners:
+    names: dict[int, CellName] = {4: "tetra10", 8: "hexahedron20", 10: "tetra10", 27: "hexahedron27"}
+    n_local = len(mesh.elem.doflocs)
+    shape = _named(names[n_local])
+    cells = mesh.dofs.element_dofs[list(shape.order[:n_local])].T
+    if n_local == shape.n_corners:
         return second_order(mesh.doflocs.T, cells, bodies, corners)
     return named_mesh(mesh.doflocs.T, _turned(mesh.doflocs.T, cells, shape), bodies, corners)
 
 
-def _turned(points: FloatArray, cells: IndexArray, shape: CellShape) -> IndexArray:
+def _turned(points: FloatArray, cells: IndexArray, shape: "CellElement") -> IndexArray:
     """Cells with the nodes of left-handed ones mirrored; cells : (n, n_corners or n_nodes)."""
     apexes = (1, 2, 3) if shape.n_corners == 4 else (1, 3, 4)
     edges = points[cells[:, apexes]] - points[cells[:, :1]]
@@ -276,9 +273,9 @@ def _brick_cells(divisions: tuple[int, int, int], cell: CellName) -> IndexArray:
 
 def _nodes_in_brick(cell: CellName) -> list[IndexArray]:
     """Places (n_local, 3) of the nodes of every cell in a brick of edge 2; tetrahedra are Kuhn's six."""
-    if cell != "tetra10":
-        shape = HEXAHEDRON_20 if cell == "hexahedron20" else HEXAHEDRON_27
-        return [(shape.nodes + 1.0).astype(np.int32)]
+    shape = _named(cell)
+    if shape.n_corners == 8:
+        return [(2.0 * shape.nodes).astype(np.int32)]
     places = []
     for order in permutations(range(3)):
         path = np.zeros((4, 3), dtype=np.int32)
@@ -286,7 +283,7 @@ def _nodes_in_brick(cell: CellName) -> list[IndexArray]:
             path[i + 1 :, axis] = 2
         if np.linalg.det(path[1:] - path[0]) < 0.0:
             path = path[[0, 2, 1, 3]]
-        places.append(np.vstack([path, *((path[a] + path[b]) // 2 for a, b in CELL_EDGES)]))
+        places.append(np.vstack([path, *((path[a] + path[b]) // 2 for a, b in shape.edges)]))
     return places
 
 

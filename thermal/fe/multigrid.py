@@ -10,14 +10,15 @@ Methods for Sparse Linear Systems, 2nd ed., ch. 13 for cycles.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
 from scipy.linalg import cho_factor, cho_solve
 
 from thermal.fe.aggregation import as_blocks, coarsen, inverse_points
+from thermal.fe.arrays import FloatArray
 from thermal.fe.products import BoolArray, LowRank, Matrix, Numbers, Product, WithLowRank
-from thermal.fe.shapes import FloatArray
 from thermal.fe.smoothing import Smoother, chebyshev, largest_eigenvalue
 
 DENSE = 600
@@ -156,13 +157,19 @@ def _in_single(cycle: Callable[[Numbers], Numbers], residual: FloatArray) -> Flo
     return np.asarray(size * cycle((residual / size).astype(np.float32)).astype(np.float64))
 
 
+class HeldMatrix(NamedTuple):
+    """A matrix whose rows and columns of held unknowns are their diagonal, see thermal.fe.solver.constrain."""
+
+    matrix: Matrix
+    fixed: BoolArray
+    """(n,) unknowns held at zero."""
+
+
 class TwoLevelMultigrid:
     """One symmetric cycle between a second-order matrix and the matrix of its linear sub-space.
 
-    fine, coarse : constrained matrices (see thermal.fe.solver.constrain), 1 or 3 unknowns per node; they may
-        be singular by the ``modes`` on a piece
+    fine, coarse : of the two spaces, 1 or 3 unknowns per node; they may be singular by the ``modes`` on a piece
     prolongation : (n_nodes, n_corners) from FiniteElements
-    fixed, fixed_coarse : unknowns held at zero in the two spaces
     modes : (n_coarse, m) that cost no energy but for supports: the constant for heat (the shifts if None),
         thermal.fe.aggregation.rigid_modes for elasticity
     degree : of the smoothing polynomial, before and after the linear space
@@ -172,23 +179,23 @@ class TwoLevelMultigrid:
 
     def __init__(
         self,
-        fine: Matrix,
-        coarse: Matrix,
+        fine: HeldMatrix,
+        coarse: HeldMatrix,
         prolongation: sparse.csr_array,
-        fixed: BoolArray,
-        fixed_coarse: BoolArray,
         modes: FloatArray | None = None,
         degree: int = 3,
     ) -> None:
-        self._block = fine.shape[0] // prolongation.shape[0]
+        self._block = fine.matrix.shape[0] // prolongation.shape[0]
         if modes is None:
             modes = np.tile(np.eye(self._block), (prolongation.shape[1], 1))
-        self._coarse = LinearSpace(coarse, fixed_coarse, modes)  # first: it needs most room while it is made
-        self._fine = Product(fine, np.float32)
-        self._smooth = Smoother(fine, self._fine, degree)
+        self._coarse = LinearSpace(
+            coarse.matrix, coarse.fixed, modes
+        )  # first: it needs most room while it is made
+        self._fine = Product(fine.matrix, np.float32)
+        self._smooth = Smoother(fine.matrix, self._fine, degree)
         self._down = sparse.csr_array(prolongation.T).astype(np.float32)
         self._up = prolongation.astype(np.float32)
-        self._free = (~fixed).astype(np.float32)
+        self._free = (~fine.fixed).astype(np.float32)
         self._low_rank: LowRank | None = None
         self._inverted: LowRank | None = None
 

@@ -14,7 +14,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from thermal.fe.shapes import FloatArray, IndexArray
+from thermal.fe.arrays import FloatArray, IndexArray
 
 T = TypeVar("T", bound=np.generic)
 

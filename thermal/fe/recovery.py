@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
+from thermal.fe.arrays import FloatArray, IndexArray
 from thermal.fe.elements import FiniteElements
-from thermal.fe.shapes import FloatArray, IndexArray
 
 TERMS = 10
 """Monomials of the polynomial of a patch, up to the second degree, the constant first."""

@@ -16,8 +16,8 @@ from scipy import sparse
 
 from thermal.fe import kernels
 from thermal.fe.aggregation import inverse_points
+from thermal.fe.arrays import FloatArray, IndexArray
 from thermal.fe.products import Matrix, Numbers, Product, WithLowRank
-from thermal.fe.shapes import FloatArray, IndexArray
 
 SMOOTHED_RANGE = 10.0
 """Largest eigenvalue over the smallest one that the smoother damps; iterations hardly depend on it."""

@@ -12,13 +12,14 @@ from scipy import sparse
 
 from thermal.errors import ThermalNotConverged
 from thermal.fe import kernels
+from thermal.fe.arrays import FloatArray
 from thermal.fe.direct import solve_direct
-from thermal.fe.multigrid import LinearSpace, TwoLevelMultigrid
+from thermal.fe.multigrid import HeldMatrix, LinearSpace, TwoLevelMultigrid
 from thermal.fe.products import BoolArray, LowRank, Matrix, Product
-from thermal.fe.shapes import FloatArray
 
 __all__ = [
     "BoolArray",
+    "HeldMatrix",
     "LinearSolution",
     "LinearSpace",
     "LowRank",

@@ -5,9 +5,9 @@ from functools import cached_property
 import numpy as np
 
 from thermal.fe import assembly
+from thermal.fe.arrays import FloatArray, IndexArray
 from thermal.fe.levels import Level
-from thermal.fe.reference import rules_of
-from thermal.fe.shapes import CellShape, FloatArray, IndexArray
+from thermal.fe.reference_elements import CellElement
 
 
 class SurfaceElements:
@@ -22,7 +22,7 @@ class SurfaceElements:
         self,
         points: FloatArray,
         facets: IndexArray,
-        shape: CellShape,
+        shape: CellElement,
         spaces: tuple[Level, Level],
         corners: IndexArray,
         pieces: IndexArray,
@@ -31,7 +31,7 @@ class SurfaceElements:
         """(n_f, n_local) nodes."""
         self.shape = shape.side
         self._spaces, self._corners = spaces, corners
-        rule = rules_of(shape).side
+        rule = self.shape.load_rule
         self.weights, self.normals = assembly.facet_geometry(
             points, self.facets, self.shape.gradients(rule.points), rule.weights
         )

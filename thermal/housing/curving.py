@@ -11,7 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from thermal.fe.mesh import CELL_EDGES, FloatArray, IndexArray, MeshError
+from thermal.fe.mesh import FloatArray, IndexArray, MeshError
+from thermal.fe.reference_elements import TETRAHEDRON_10
 
 LEAST_JACOBIAN = 0.1
 """Least ratio of the smallest to the mean Jacobian of an element before its edges are straightened."""
@@ -32,7 +33,7 @@ def bend_round_axes(
     stay straight.
     """
     points = points.copy()
-    for middle, (first, second) in enumerate(CELL_EDGES, start=4):
+    for middle, (first, second) in enumerate(TETRAHEDRON_10.edges, start=4):
         nodes, where = np.unique(cells[:, middle], return_index=True)
         where, nodes = where[free[nodes]], nodes[free[nodes]]
         start, end = points[cells[where, first], 1:], points[cells[where, second], 1:]
@@ -68,7 +69,7 @@ def straighten_inverted(points: FloatArray, cells: IndexArray, name: str = "mesh
             )
         straight[bad] = True
         chosen = cells[bad]
-        for middle, (first, second) in enumerate(CELL_EDGES, start=4):
+        for middle, (first, second) in enumerate(TETRAHEDRON_10.edges, start=4):
             points[chosen[:, middle]] = 0.5 * (points[chosen[:, first]] + points[chosen[:, second]])
         moved = np.zeros(len(points), dtype=bool)
         moved[chosen[:, 4:]] = True
@@ -83,7 +84,7 @@ def jacobian_ratio(points: FloatArray, cells: IndexArray) -> FloatArray:
     nodes = points[cells]
     mean = _determinants(nodes[:, 1:4] - nodes[:, :1])
     least = np.full(len(cells), np.inf)
-    for gradients in _NODE_GRADIENTS:
+    for gradients in TETRAHEDRON_10.gradients(TETRAHEDRON_10.nodes):
         least = np.minimum(least, _determinants(gradients.T @ nodes))
     ratio = np.full(len(cells), -np.inf)
     np.divide(least, mean, out=ratio, where=mean > 0.0)
@@ -94,20 +95,3 @@ def _determinants(matrices: FloatArray) -> FloatArray:
     """Determinants of (n, 3, 3) by the triple product."""
     (a, b, c), (d, e, f), (g, h, i) = matrices.transpose(1, 2, 0)
     return np.asarray(a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g))
-
-
-def _node_gradients() -> FloatArray:
-    """Gradients of the ten shape functions at the ten nodes: (10 nodes, 10 functions, 3) in r, s, t."""
-    corner = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    nodes = np.concatenate([corner, [(corner[a] + corner[b]) / 2.0 for a, b in CELL_EDGES]])
-    slope = np.array([[-1.0, -1.0, -1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    share = np.column_stack([1.0 - nodes.sum(axis=1), nodes])
-    gradients = np.empty((10, 10, 3))
-    for i in range(4):
-        gradients[:, i] = (4.0 * share[:, i, None] - 1.0) * slope[i]
-    for k, (a, b) in enumerate(CELL_EDGES, start=4):
-        gradients[:, k] = 4.0 * (share[:, a, None] * slope[b] + share[:, b, None] * slope[a])
-    return gradients
-
-
-_NODE_GRADIENTS = _node_gradients()

@@ -11,12 +11,12 @@ from types import ModuleType
 import numpy as np
 from scipy import sparse
 
-from thermal.fe.mesh import IndexArray, MeshError, NamedMesh, facet_keys, whole_surfaces
+from thermal.fe.mesh import FloatArray, IndexArray, MeshError, NamedMesh, facet_keys, whole_surfaces
 from thermal.fe.numbering import along_curve, inverse
-from thermal.fe.shapes import HEXAHEDRON_20, HEXAHEDRON_27, TETRAHEDRON_10, CellShape, FloatArray
+from thermal.fe.reference_elements import HEXAHEDRON_20, HEXAHEDRON_27, TETRAHEDRON_10, CellElement
 from thermal.housing.meshing import gmsh_session
 
-KINDS: dict[int, CellShape] = {11: TETRAHEDRON_10, 17: HEXAHEDRON_20, 12: HEXAHEDRON_27}
+KINDS: dict[int, CellElement] = {11: TETRAHEDRON_10, 17: HEXAHEDRON_20, 12: HEXAHEDRON_27}
 """gmsh's number of a volume element -> the element that is computed with."""
 
 LARGEST = 30.0
@@ -115,7 +115,7 @@ def _collected(gmsh: ModuleType, name: str) -> NamedMesh:
     return mesh
 
 
-def _cell_kind(gmsh: ModuleType, name: str) -> tuple[CellShape, int]:
+def _cell_kind(gmsh: ModuleType, name: str) -> tuple[CellElement, int]:
     """The one kind of volume element of the file."""
     found = [int(kind) for kind in gmsh.model.mesh.getElementTypes(3)]
     if len(found) == 1 and found[0] in KINDS:

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from thermal.fe import reference_elements
 from thermal.fe.mesh import (
-    GMSH_NODE_ORDER,
     FloatArray,
     IndexArray,
     MeshError,
@@ -149,7 +149,7 @@ def _collect(
     start = 0
     for body, volumes in bodies.items():
         block = np.concatenate([_elements(gmsh, TETRAHEDRON_10, volume, index) for volume in volumes])
-        blocks.append(block[:, GMSH_NODE_ORDER])
+        blocks.append(block[:, reference_elements.TETRAHEDRON_10.gmsh_order])
         named_bodies[body] = np.arange(start, start + len(block), dtype=np.int32)
         start += len(block)
     cells = np.concatenate(blocks)

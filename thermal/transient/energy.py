@@ -9,6 +9,9 @@ from thermal.conduction.balance import HeatBalance
 from thermal.fe.elements import FiniteElements
 from thermal.fe.mesh import FloatArray
 
+ROUNDING = 1e-12
+"""Share of the heat content above 0 K up to which energies are rounding."""
+
 Place = int | str
 """A connected piece of the mesh by number, a volume by name."""
 
@@ -23,6 +26,8 @@ class EnergyBalance:
     """Body or volume -> energy taken up."""
     gaps: Mapping[Place, float]
     """What came in less what was stored, for each connected piece and each volume."""
+    rounding: float
+    """Turnover up to which no heat flows but by rounding."""
 
     @property
     def turnover(self) -> float:
@@ -32,20 +37,25 @@ class EnergyBalance:
 
     @property
     def closure(self) -> float:
-        """Greatest gap relative to the turnover [-]; 0 where no heat flows."""
+        """Greatest gap relative to the turnover [-]; 0 where no heat flows but by rounding."""
         worst = max((abs(gap) for gap in self.gaps.values()), default=0.0)
-        return worst / self.turnover if self.turnover > 0.0 else 0.0
+        return worst / self.turnover if self.turnover > self.rounding else 0.0
 
 
 class EnergyAccount:
-    """Adds up energies step by step."""
+    """Adds up energies step by step.
 
-    def __init__(self, elements: FiniteElements, capacity: Mapping[str, float]) -> None:
+    capacity : body -> density times specific heat [J/(m3 K)]; level : of the temperatures [K]
+    """
+
+    def __init__(self, elements: FiniteElements, capacity: Mapping[str, float], level: float) -> None:
         self._elements = elements
         self._capacity = capacity
         self._rows: dict[tuple[str, str], float] = {}
         self._stored: dict[str, float] = {}
         self._gaps: dict[Place, float] = {}
+        content = sum(capacity[body] * elements.volume(body) * level for body in elements.mesh.bodies)
+        self._rounding = ROUNDING * content
         self._piece = {body: elements.components[cells] for body, cells in elements.mesh.bodies.items()}
 
     def book(self, balance: HeatBalance, duration: float) -> None:
@@ -81,4 +91,4 @@ class EnergyAccount:
     @property
     def balance(self) -> EnergyBalance:
         """What was added up so far."""
-        return EnergyBalance(dict(self._rows), dict(self._stored), dict(self._gaps))
+        return EnergyBalance(dict(self._rows), dict(self._stored), dict(self._gaps), self._rounding)

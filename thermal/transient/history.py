@@ -13,11 +13,10 @@ import numpy as np
 from thermal.conduction.balance import held_by
 from thermal.conduction.capacity import HeatCapacity
 from thermal.conduction.condition_checks import Condition, ConditionError, check_conditions
-from thermal.conduction.conductivity import Conductivity
 from thermal.conduction.steady import CLOSURE, ConductionSetup
 from thermal.conduction.terms import OFF_REST, ConductionProblem
 from thermal.errors import ThermalNotConverged
-from thermal.fe.mesh import FloatArray, IndexArray, NamedMesh
+from thermal.fe.mesh import FloatArray, IndexArray
 from thermal.transient.energy import EnergyAccount, EnergyBalance
 from thermal.transient.probes import Probe, Reader, reader
 from thermal.transient.time_steps import STAGE_WEIGHTS, ProblemAt, Stepper, TimeStep, landing, next_length
@@ -72,59 +71,73 @@ class TransientSolution:
     """What is to be said of joints, and what the film laws said about their range; each sentence once."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class InitialState:
+    """Temperatures at the start."""
+
+    temperature: FloatArray | float
+    """(n_nodes,) field or one value [K]."""
+    volumes: Mapping[str, float] | None = None
+    """Volume -> temperature [K]; others start 1 K below the mean of the field they meet."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Observed:
+    """What is kept or handed out of a run."""
+
+    probes: Sequence[Probe] = ()
+    """Where temperatures are kept for every step."""
+    at: Sequence[float] | None = ()
+    """Times [s] that are met exactly, and at which the observer is called; None calls it after every step."""
+    observer: Observer | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepControl:
+    """How long time steps are, and how far their equations are solved."""
+
+    tolerance: float = 0.05
+    """Local error of a step [K], root mean square over any body."""
+    first: float | None = None
+    """First step of every stage [s]; a hundredth of it if None."""
+    largest: float | None = None
+    """[s]; a tenth of each stage if None."""
+    newton: float = 1e-9
+    """Tolerance of Newton's method, see `thermal.conduction.steady.solve_steady`."""
+
+
 def solve_transient(
-    mesh: NamedMesh,
-    conductivity: Mapping[str, Conductivity],
+    setup: ConductionSetup,
     capacity: Mapping[str, float],
     stages: Sequence[ThermalStage],
-    initial: FloatArray | float,
+    initial: InitialState | FloatArray | float,
     *,
-    probes: Sequence[Probe] = (),
-    observe_at: Sequence[float] | None = (),
-    observer: Observer | None = None,
-    initial_volumes: Mapping[str, float] | None = None,
-    tolerance: float = 0.05,
-    first_step: float | None = None,
-    largest_step: float | None = None,
-    newton_tolerance: float = 1e-9,
-    reuse: ConductionSetup | None = None,
+    observed: Observed = Observed(),
+    steps: StepControl = StepControl(),
 ) -> TransientSolution:
-    """Run through ``stages`` from an initial field.
+    """Run through ``stages`` from an initial state.
 
-    conductivity : body -> k [W/(m K)], a number or a law
+    setup : mesh and conductivities
     capacity : body -> density times specific heat [J/(m3 K)]
-    initial : (n_nodes,) field or one value [K]
-    probes : where temperatures are kept for every step
-    observe_at, observer : times [s] that are met exactly, and what is then called with the full field; None
-        calls it at the start and after every step
-    initial_volumes : volume -> temperature [K]; others start 1 K below the mean of the field they meet
-    tolerance : local error of a step [K], root mean square over any body
-    first_step : of every stage [s]; a hundredth of it if None
-    largest_step : [s]; a tenth of each stage if None
-    reuse : setup of the same mesh and conductivities
+    initial : (n_nodes,) field or one value [K], with volumes if these are given
 
     Raises ConditionError for input that cannot be computed, ThermalNotConverged if a step fails however short it is or
     the energy does not close.
     """
-    setup = ConductionSetup(mesh, conductivity) if reuse is None else reuse
-    if not setup.matches(mesh, conductivity):
-        raise ConditionError(
-            "the setup to reuse belongs to another mesh or other conductivities; make a new one"
-        )
-    _check(stages, observe_at or (), tolerance=tolerance, first_step=first_step, largest_step=largest_step)
-    run = _Run(
-        setup, HeatCapacity(setup.elements, capacity), initial, initial_volumes or {}, newton_tolerance
-    )
-    run.watch(probes, observe_at, observer)
+    _check(stages, observed.at or (), steps)
+    if not isinstance(initial, InitialState):
+        initial = InitialState(temperature=initial)
+    run = _Run(setup, setup.heat_capacity(capacity), initial, steps)
+    run.watch(observed)
     for number, stage in enumerate(stages):
-        run.stage(number, stage, tolerance, first_step, largest_step)
+        run.stage(number, stage)
     return run.solution()
 
 
 def settling_time(times: FloatArray, values: FloatArray, final: float, band: float) -> float | None:
     """Time [s] from which ``values`` stay within ``band`` of ``final``; None if they are outside at the end.
 
-    times, values : (n,); between the last point outside and the next the course is taken straight
+    times, values : (n,); between the last point outside and the next the history is taken straight
     """
     outside = np.flatnonzero(np.abs(values - final) > band)
     if not len(outside):
@@ -137,12 +150,13 @@ def settling_time(times: FloatArray, values: FloatArray, final: float, band: flo
     return float(times[last] + min(share, 1.0) * (times[last + 1] - times[last]))
 
 
-def _check(stages: Sequence[ThermalStage], observe_at: Sequence[float], **positive: float | None) -> None:
+def _check(stages: Sequence[ThermalStage], observe_at: Sequence[float], steps: StepControl) -> None:
     if not stages:
         raise ConditionError("schedule without a stage; give at least one")
     for stage in stages:
         if not (math.isfinite(stage.duration) and stage.duration > 0.0):
             raise ConditionError(f"stage {stage.name!r}: duration = {stage.duration} s must be above 0 s")
+    positive = {"tolerance": steps.tolerance, "first step": steps.first, "largest step": steps.largest}
     for name, value in positive.items():
         if value is not None and not value > 0.0:
             raise ConditionError(f"{name} = {value} must be above 0")
@@ -155,23 +169,19 @@ class _Run:
     """State of a run: time, field, account, histories."""
 
     def __init__(
-        self,
-        setup: ConductionSetup,
-        capacity: HeatCapacity,
-        initial: FloatArray | float,
-        volumes: Mapping[str, float],
-        newton_tolerance: float,
+        self, setup: ConductionSetup, capacity: HeatCapacity, initial: InitialState, steps: StepControl
     ) -> None:
-        self._setup = setup
-        self._stepper = Stepper(capacity, newton_tolerance)
-        self._account = EnergyAccount(setup.elements, capacity.capacity)
+        self._setup, self._steps = setup, steps
+        self._stepper = Stepper(capacity, steps.newton)
         shape = (len(setup.mesh.points),)
-        self._temperature = np.broadcast_to(np.asarray(initial, dtype=np.float64), shape).copy()
+        self._temperature = np.broadcast_to(np.asarray(initial.temperature, dtype=np.float64), shape).copy()
         if not (np.isfinite(self._temperature).all() and self._temperature.min() > 0.0):
             raise ConditionError(
                 "initial temperature must be finite and above 0 K at every node; give kelvin"
             )
-        self._volumes = dict(volumes)
+        level = float(self._temperature.mean())
+        self._account = EnergyAccount(setup.elements, capacity.capacity, level)
+        self._volumes = dict(initial.volumes or {})
         self._time = self._begin = 0.0
         self._readers: dict[str, Reader] = {}
         self._due: list[float] = []
@@ -184,20 +194,20 @@ class _Run:
         self._rejected = self._iterations = 0
         self._warnings: dict[str, None] = {}
 
-    def watch(self, probes: Sequence[Probe], at: Sequence[float] | None, observer: Observer | None) -> None:
+    def watch(self, observed: Observed) -> None:
         """Set what is kept and called."""
+        probes = observed.probes
         self._readers = {probe.name: reader(self._setup.elements, probe) for probe in probes}
         if len(self._readers) < len(probes):
             raise ConditionError("two probes have the same name; give each its own")
         self._read = {name: [] for name in self._readers}
-        self._due = sorted(set(at or ())) if observer is not None else []
-        self._always = at is None
-        self._observer = observer
+        self._due = sorted(set(observed.at or ())) if observed.observer is not None else []
+        self._always = observed.at is None
+        self._observer = observed.observer
 
-    def stage(
-        self, number: int, stage: ThermalStage, tolerance: float, first: float | None, largest: float | None
-    ) -> None:
+    def stage(self, number: int, stage: ThermalStage) -> None:
         """Run through one stage."""
+        tolerance, first, largest = self._steps.tolerance, self._steps.first, self._steps.largest
         problems = _Problems(self._setup, stage, self._begin)
         problem = problems(self._begin)
         self._enter(problem)

@@ -31,7 +31,7 @@ ERROR_WEIGHTS = (2.0 / 3.0 * (1.0 - GAMMA), -2.0 / 3.0, 2.0 / 3.0 * GAMMA)
 """Weights of k0, k1, k2 in the local error over dt, exact to third order for a linear problem."""
 
 SAFETY = 0.9
-GROWTH = (0.2, 2.5)
+RATIO = (0.2, 2.5)
 """Least and greatest ratio of a step to the one before."""
 
 KEPT = (0.9, 1.3)
@@ -153,10 +153,10 @@ class Stepper:
 
 def next_length(dt: float, error: float, tolerance: float) -> float:
     """Length of the next step [s] from the error of a step of length ``dt`` (order 2)."""
-    ratio = SAFETY * (tolerance / error) ** (1.0 / 3.0) if error > 0.0 else GROWTH[1]
+    ratio = SAFETY * (tolerance / error) ** (1.0 / 3.0) if error > 0.0 else RATIO[1]
     if KEPT[0] <= ratio <= KEPT[1]:
         return dt
-    return dt * min(max(ratio, GROWTH[0]), GROWTH[1])
+    return dt * min(max(ratio, RATIO[0]), RATIO[1])
 
 
 def landing(dt: float, remaining: float) -> float:
