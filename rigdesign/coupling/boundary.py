@@ -9,6 +9,7 @@ from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of, partner_of
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.films import plate_film, shaft_film
 from rigdesign.rig.joints import behind_shell, foot_joint
@@ -115,10 +116,7 @@ class _Context:
 def boundary_conditions(
     rig: Rig,
     name: str,
-    point: OperatingPoint,
-    coupling_state: CouplingState,
-    bearings: Mapping[str, BearingState],
-    losses: Sequence[PlacedLoss],
+    losses: PointLosses,
     *,
     radiation_included: bool,
 ) -> list[Condition]:
@@ -126,7 +124,7 @@ def boundary_conditions(
 
     radiation_included : leave out explicit radiation where the film to room air contains it already
     """
-    context = _Context(rig, name, point, coupling_state, bearings)
+    context = _Context(rig, name, losses.point, losses.coupling_state, losses.bearings)
     housing = context.box.housing
     assert housing is not None
     rows = conditions_of(housing, rig.surface_names(name))
@@ -141,7 +139,7 @@ def boundary_conditions(
         if isinstance(found, Film):
             found = replace(found, law=behind_shell(rig, name, surface, found.law))
         conditions.append(found)
-    return [*conditions, *_sources(context, losses), *_stored(rig, name)]
+    return [*conditions, *_sources(context, losses.losses), *_stored(rig, name)]
 
 
 def _stored(rig: Rig, name: str) -> Iterator[StoredHeat]:

@@ -322,6 +322,17 @@ def brace_initial(
     return BracingState(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
 
 
+@dataclass(frozen=True)
+class BracedLoop:
+    """The warm meshes of a braced power circuit at an operating point, and the torques that brake it."""
+
+    point: OperatingPoint
+    models: tuple[MeshModel, ...]
+    drags: Mapping[str, float]
+    """By place of the drivetrain [N m]."""
+    bracing: BracingState
+
+
 def respond(
     rig: Rig,
     point: OperatingPoint,

@@ -16,13 +16,14 @@ from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.checks import alignment, thermal
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.expansion import expand_housing
-from rigdesign.coupling.iteration import IterationResult, next_state
+from rigdesign.coupling.convergence import Residual
+from rigdesign.coupling.iteration import HousingResult, IterationResult, solve_housings
 from rigdesign.coupling.loads import mesh_models
-from rigdesign.coupling.loop import PointResult, Residual
+from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.oil import oil_streams
-from rigdesign.coupling.state import CouplingState, length_change, temperature_change
-from rigdesign.coupling.temperatures import HousingField, heat_into_films, heat_into_oil, solve_housing
+from rigdesign.coupling.relaxation import next_state
+from rigdesign.coupling.state import CouplingState
+from rigdesign.coupling.temperatures import HousingField
 from rigdesign.records import heat
 from rigdesign.records.heat_split import split_as_solved
 from rigdesign.records.solved_rig import SolvedRig
@@ -89,7 +90,7 @@ def _meshed(rig: Rig, fidelity: Fidelity, *, needed: bool) -> dict[str, GearboxM
         return None
 
 
-def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
+def on_mesh(rig: Rig, converged: PointResult, source: Rig) -> PointResult:
     """One more iteration of a settled point on the mesh of ``rig``: fields, thermal expansion, oil, warm gears and
     bearings.
 
@@ -103,37 +104,25 @@ def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
     NotConverged
         A solve stalls on that mesh.
     """
-    last = settled.last
-    fields, expansion = {}, {}
-    for name, field in last.fields.items():
-        meshes = source.models[name].mesh, rig.models[name].mesh
-        same = meshes[0] is meshes[1]
-        guess = field if same and rig is source else _carried(field, *meshes)
-        fields[name] = solve_housing(
-            rig, name, last.point, last.coupling_state, last.bearings, last.losses, guess
-        )
-        if name in last.expansion:
-            expansion[name] = expand_housing(rig, fields[name], last.expansion[name] if same else None)
-    bearing_heat = dict(last.bearing_heat)
-    wall_heat = dict(last.wall_heat)
-    for field in fields.values():
-        bearing_heat |= heat_into_films(field)
-        wall_heat |= heat_into_oil(field)
-    done = replace(
-        last,
-        fields=fields,
-        expansion=expansion,
-        bearing_heat=bearing_heat,
-        wall_heat=wall_heat,
-        streams=tuple(oil_streams(rig, last.losses, bearing_heat, wall_heat)),
-    )
+    last = converged.last
+    housings = solve_housings(rig, last, _carried_over(last, source, rig))
+    streams = oil_streams(rig, last.losses, housings.bearing_heat, housings.wall_heat)
+    done = replace(last, **vars(housings), streams=tuple(streams))
     after = next_state(rig, done)
-    change = Residual(
-        temperature=temperature_change(done.coupling_state, after),
-        length=length_change(done.coupling_state, after),
-        torque=0.0,
-    )
-    return replace(settled, last=_warmed(rig, done, after), residuals=(*settled.residuals, change))
+    change = replace(Residual.between(done.coupling_state, after), torque=0.0)
+    return replace(converged, last=_warmed(rig, done, after), residuals=(*converged.residuals, change))
+
+
+def _carried_over(last: IterationResult, source: Rig, rig: Rig) -> HousingResult:
+    """First guess on the meshes of ``rig`` from an iteration on those of ``source``."""
+    meshes = {name: (source.models[name].mesh, rig.models[name].mesh) for name in last.fields}
+    same = {name for name, (old, new) in meshes.items() if old is new}
+    fields = {
+        name: field if name in same and rig is source else _carried(field, *meshes[name])
+        for name, field in last.fields.items()
+    }
+    expansion = {name: own for name, own in last.expansion.items() if name in same}
+    return replace(last, fields=fields, expansion=expansion)
 
 
 def _carried(field: HousingField, old: NamedMesh, new: NamedMesh) -> HousingField:

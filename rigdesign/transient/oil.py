@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
 from rigdesign.coupling.losses import PlacedLoss
-from rigdesign.coupling.stage_losses import StageLosses
+from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, injected_flow, wall_flow
 from rigdesign.transient.still_air import at_least, still
@@ -45,7 +45,7 @@ class _Stream:
     supplies: tuple[Supply, ...]
 
 
-def oil_conditions(rig: Rig, name: str, state: StageLosses, *, oil: bool) -> tuple[Condition, ...]:
+def oil_conditions(rig: Rig, name: str, state: PointLosses, *, oil: bool) -> tuple[Condition, ...]:
     """Conditions of the housing of gearbox ``name`` at one speed and torque.
 
     oil : whether the rig is fed
@@ -75,17 +75,15 @@ def oil_conditions(rig: Rig, name: str, state: StageLosses, *, oil: bool) -> tup
     )
 
 
-def _steady(rig: Rig, name: str, state: StageLosses, losses: Sequence[PlacedLoss]) -> list[Condition]:
+def _steady(rig: Rig, name: str, state: PointLosses, losses: Sequence[PlacedLoss]) -> list[Condition]:
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
-    conditions = boundary_conditions(
-        rig, name, state.point, state.coupling_state, state.bearings, losses,
-        radiation_included=housing.radiation_included,
-    )  # fmt: skip
+    heated = replace(state, losses=tuple(losses))
+    conditions = boundary_conditions(rig, name, heated, radiation_included=housing.radiation_included)
     return [condition for condition in conditions if not isinstance(condition, StoredHeat)]
 
 
-def _warmer(state: StageLosses) -> StageLosses:
+def _warmer(state: PointLosses) -> PointLosses:
     """The same state with every oil outlet and film one step warmer."""
     outlets = {stream: value + MOVED for stream, value in state.coupling_state.oil_outlet.items()}
     films = {
@@ -111,7 +109,7 @@ def _floored(film: Film, floor: float) -> Film:
 def _gear_network(
     rig: Rig,
     name: str,
-    state: StageLosses,
+    state: PointLosses,
     losses: Sequence[PlacedLoss],
     wetted: Sequence[tuple[Film, float]],
     oil: bool,
@@ -144,7 +142,7 @@ def _gear_network(
 def _bearing_network(
     rig: Rig,
     name: str,
-    state: StageLosses,
+    state: PointLosses,
     losses: Sequence[PlacedLoss],
     wetted: Sequence[tuple[Film, float]],
     oil: bool,
@@ -184,7 +182,7 @@ def _bearing_network(
     )
 
 
-def _leak(rig: Rig, name: str, state: StageLosses, specific_heat: float) -> tuple[float, float] | None:
+def _leak(rig: Rig, name: str, state: PointLosses, specific_heat: float) -> tuple[float, float] | None:
     """Gear oil that leaks to the bearings: temperature [K] at the held stage, and flow [kg/s] of bearing oil alike."""
     box = rig.case.gearboxes[name]
     share = box.oil_paths.leak_warm_cold
@@ -216,7 +214,7 @@ def _bearing_streams(feed: str, flows: dict[str, float], each: float, leak: floa
     return (*streams, Stream(source=BEARING_OIL, target=None, mass_flow=total))
 
 
-def cooling_flow(box: Gearbox, part: str, state: StageLosses, name: str) -> float:
+def cooling_flow(box: Gearbox, part: str, state: PointLosses, name: str) -> float:
     """Oil that passes the film of a bearing [m3/s] (see dynamics.bearing.journal.JournalBearing)."""
     film = state.bearings[f"{name}.{part}"]
     return min(film.flow, max(box.bearings[part].feed_share * film.flow, film.side_flow))
