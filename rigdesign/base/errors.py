@@ -6,7 +6,7 @@
     │   └── MeasurementError    5   measured data cannot be used
     ├── UsageError              2   a wrong call
     │   └── OutputError         2   an output folder that cannot be written
-    ├── NotConvergedError       3   an iteration did not settle, a speed was not reached
+    ├── NotConvergedError       3   an iteration did not converge, a speed was not reached
     │   └── NonFiniteResultError 3  a result is NaN or infinite
     └── MissingLibraryError     4   a system library is missing
 
@@ -112,7 +112,7 @@ class OutputError(UsageError):
 
 
 class NotConvergedError(RigdesignError):
-    """An iteration that did not settle within its limit.
+    """An iteration that did not converge within its limit.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_f
 """Kinds of films: what takes the heat up, as the heat balance names it."""
 
 STORED = "stored"
-"""Kind of the rows of the bodies that still warm up."""
+"""Kind of the rows of the bodies that are warming up."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def boundary_conditions(
     for entry, surface, stood_for in rows:
         condition = housing.boundary[entry]
         if radiation_included and isinstance(condition, laws.ThermalRadiation) and surface in covered:
-            conditions += _radiation_beside(context, condition, surface)
+            conditions += _excess_radiation(context, condition, surface)
             continue
         found = _condition(context, condition, surface, stood_for)
         if isinstance(found, Film):
@@ -143,7 +143,7 @@ def boundary_conditions(
 
 
 def _stored(rig: Rig, name: str) -> Iterator[StoredHeat]:
-    """What the bodies still take up where the case says that its points were not steady."""
+    """What the bodies take up where the case says that its points were not steady."""
     room = rig.case.ambient
     if room.warming_time is not None:
         capacity = {body: m.density * m.heat_capacity for body, m in rig.body_materials(name).items()}
@@ -196,7 +196,7 @@ def _radiation(
     return Radiation(surface=surface, emissivity=emissivity, surroundings_temperature=walls)
 
 
-def _radiation_beside(
+def _excess_radiation(
     context: _Context, condition: laws.ThermalRadiation, surface: str
 ) -> list[BoundaryCondition]:
     """What a surface radiates beyond the radiation that its film to room air holds already."""
@@ -248,7 +248,7 @@ def _exchange_law(
 
 
 def _bearing_film(context: _Context, condition: laws.BearingFilm, surface: str) -> Film:
-    """Conductance of the film from its mean temperature; the sink is that temperature, no source beside it."""
+    """Conductance of the film from its mean temperature; the sink is that temperature, no source in addition."""
     shaft = context.shaft(surface).name
     side = "front" if surface.endswith("front") else "rear"
     entry = bearing_on(context.box, shaft, side)

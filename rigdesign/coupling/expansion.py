@@ -76,7 +76,7 @@ def axes_of(rig: Rig, name: str, shape: Expansion, shafts: tuple[str, str]) -> C
 
 
 def bearing_expansion(rig: Rig, name: str, shape: Expansion, entry: JournalBearingInput) -> BearingGrowth:
-    """Growth of the bearing of the case at one end of a shaft."""
+    """Thermal expansion at the bearing of the case at one end of a shaft."""
     surface = f"bearing_bore_{entry.shaft}_{entry.side}"
     station = next(b for b in rig.models[name].bearings if b.bore_surface == surface)
     return shape.bearings[station.name]
@@ -98,7 +98,7 @@ def hot_clearances(rig: Rig, speed: float, expansion: Mapping[str, HousingExpans
 
 
 def centrifugal_expansion(rig: Rig, entry: JournalBearingInput, speed: float) -> float:
-    """Growth of the journal diameter by rotation [m]: solid disc, rho w^2 R^3 (1 - nu) / (4 E) on the radius.
+    """Expansion of the journal diameter by rotation [m]: solid disc, rho w^2 R^3 (1 - nu) / (4 E) on the radius.
 
     Source: Timoshenko and Goodier, Theory of Elasticity, section 32.
     """

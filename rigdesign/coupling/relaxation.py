@@ -41,11 +41,11 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
         centre_distance=centre_distance,
         bearing_clearance=clearance,
         bearing_heat={
-            name: relaxed(old.bearing_heat[name], heat, 0.5 * _film_slope(rig, done, name))
+            name: relaxed(old.bearing_heat[name], heat, 0.5 * _film_gain(rig, done, name))
             for name, heat in done.bearing_heat.items()
         },
         wall_heat={
-            name: relaxed(old.wall_heat[name], heat, _stream_slope(rig, done, name))
+            name: relaxed(old.wall_heat[name], heat, _stream_gain(rig, done, name))
             for name, heat in done.wall_heat.items()
         },
         oil_outlet={stream.name: stream.chamber for stream in done.streams},
@@ -59,13 +59,13 @@ def unrelaxed(after: CouplingState, done: IterationResult) -> CouplingState:
     return replace(after, bearing_heat=done.bearing_heat, wall_heat=done.wall_heat)
 
 
-def relaxed(old: float, new: float, slope: float) -> float:
+def relaxed(old: float, new: float, gain: float) -> float:
     """Heat after a step that stays stable however little oil flows.
 
-    slope : film conductance over heat capacity flow, h A / (rho c Q): how strongly the heat of one iteration
-        answers the oil temperature it caused. The step 1 / (1 + slope) damps at most that answer.
+    gain : film conductance over heat capacity flow, h A / (rho c Q): change of the heat per heat of the iteration
+        before, by the oil temperature this caused; the step is 1 / (1 + gain)
     """
-    return old + (new - old) / (1.0 + slope)
+    return old + (new - old) / (1.0 + gain)
 
 
 def heat_residual(problem: PointProblem, done: IterationResult) -> float:
@@ -101,12 +101,12 @@ def _stream_capacity(rig: Rig, name: str) -> float:
     return replace(feed, flow=feed.flow * len(box.bearings)).capacity_rate
 
 
-def _film_slope(rig: Rig, done: IterationResult, name: str) -> float:
+def _film_gain(rig: Rig, done: IterationResult, name: str) -> float:
     box, part = name.split(".")
     return _conductance(done, box, f"bearing_film:{part}") / _bearing_capacity(rig, name)
 
 
-def _stream_slope(rig: Rig, done: IterationResult, name: str) -> float:
+def _stream_gain(rig: Rig, done: IterationResult, name: str) -> float:
     box, kind = name.split(".")
     return _conductance(done, box, kind) / _stream_capacity(rig, name)
 

@@ -35,20 +35,20 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic:
         jets = tuple(oil_jets(rig, point, rig.pairs))
         return PointLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=jets)
     models = mesh_models(rig, point, coupling_state)
-    turning = rotating_losses(rig, point, coupling_state, models, bearings)
-    response = _response(rig, point, models, turning) if dynamic and rig.system is not None else None
+    rotating = rotating_losses(rig, point, coupling_state, models, bearings)
+    response = _response(rig, point, models, rotating) if dynamic and rig.system is not None else None
     meshes = mesh_losses(rig, point, models, response, coupling_state)
     if dynamic and rig.system is not None and response is None:
         meshes = [_without_response(placed) for placed in meshes]
-    losses = (*turning, *meshes)
+    losses = (*rotating, *meshes)
     return PointLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=losses)
 
 
 def _response(
-    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], turning: Sequence[PlacedLoss]
+    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], rotating: Sequence[PlacedLoss]
 ) -> CurvePoint | None:
     """Periodic response with the bracing that makes the torque of this point; None where none is found."""
-    drags = drag_torques(turning, rig, point.speed)
+    drags = drag_torques(rotating, rig, point.speed)
     try:
         return respond(rig, point, models, drags, BracingState(mode="torque_controlled"))
     except DynamicsNotConverged:

@@ -67,7 +67,7 @@ def standing_values(rig: Rig, channels: Iterable[Channel]) -> list[float]:
 
 
 def check_names(settings: Sequence[OperatingCondition], channels: Sequence[Channel]) -> None:
-    """Check that settings and channels can be told apart by name (UsageError)."""
+    """Check that settings and channels differ by name (UsageError)."""
     for kind, names in (("settings", [s.name for s in settings]), ("channels", [c.name for c in channels])):
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:

@@ -79,8 +79,8 @@ class ReducedHousings:
     ) -> "ReducedHousings":
         """The housings of the same rig from their numbers."""
         made = cls(rig, {}, {})
-        for name, (shapes, sizes, error, expansion, start) in numbers.items():
-            made.bases[name] = Basis(ReducedConduction(rig.conduction[name], shapes), sizes, error)
+        for name, (vectors, sizes, error, expansion, start) in numbers.items():
+            made.bases[name] = Basis(ReducedConduction(rig.conduction[name], vectors), sizes, error)
             made._start[name] = start
             if expansion is not None:
                 made.expansions[name] = expansion

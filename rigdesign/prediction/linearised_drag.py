@@ -1,7 +1,7 @@
 """A converged point whose loop changes in nothing but what brakes it: drags and the friction of its teeth.
 
-Those move torques by a per cent or less, so that the answer of the periodic response to each of them, found once, adds
-up. What leaves loop, bracing and flanks alone (losses, oil, flows, films) then needs no response of its own.
+Those move torques by a per cent or less, so that the changes of the periodic response with each of them, found once,
+add up. What leaves loop, bracing and flanks alone (losses, oil, flows, films) then needs no response of its own.
 """
 
 from collections.abc import Mapping, Sequence
@@ -21,9 +21,9 @@ from rigdesign.rig.model import Rig
 from thermal.fe.mesh import FloatArray
 
 DRAG_STEP = 1.0
-"""Drag from which an answer is taken [N m]."""
+"""Drag torque over which a difference is taken [N m]."""
 FRICTION_STEP = 0.4
-"""Share of a friction coefficient from which its answer is taken, to both sides, with its curvature."""
+"""Share of a friction coefficient over which differences are taken, to both sides, for both derivatives."""
 SAME_BRACING = 1e-9
 """Relative difference of twists or shifts that are the same."""
 LEAST_FRICTION = 0.01

@@ -4,38 +4,31 @@ A `Predictor` converges all operating points once with the reduced thermal model
 use. A changed case starts from there with the same iterations; what a change leaves alone is not computed twice.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.case.model import Case
 from rigdesign.prediction.changes import Changes, changed_case
-from rigdesign.prediction.condition_steps import moved_conditions
-from rigdesign.prediction.converged_point import TOLERANCE, ConvergedPoint, converge_point
+from rigdesign.prediction.converged_point import TOLERANCE, converge_point
+from rigdesign.prediction.first_order import FirstOrderModel
 from rigdesign.prediction.full import check_names, standing_values
-from rigdesign.prediction.housing_sensitivities import (
-    HousingSensitivities,
-    field_derivatives,
-    stream_sources,
-)
-from rigdesign.prediction.housings import ReducedField
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel, OperatingCondition, features_of
 from rigdesign.prediction.operating import like, rig_at
 from rigdesign.prediction.oscillation import OscillatingPart
 from rigdesign.prediction.reduced_rig import ReducedRig
-from rigdesign.prediction.sensitivities import PointSensitivities, SensitivityNumbers
 from rigdesign.prediction.static_tests import standing_modes
 from rigdesign.rig.model import Rig
 from rigdesign.run.solver_errors import solver_errors
 from thermal.fe.kernels import one_thread
 from thermal.fe.mesh import FloatArray
+
+K = TypeVar("K")
 
 NEAR = 0.1
 """Last step of the loop, in units of `state_vector.SCALES`, that is corrected to first order: 0.1 K, 0.1 um, 1 W."""
@@ -54,7 +47,7 @@ class Predictor:
     features : the numbers in their order
     base : (n_features,) prediction for the case as it stands
     error : largest error of a temperature of the reduced model against the full one [K], found on changed
-        conditions that did not shape it
+        conditions that did not enter its basis
 
     Raises
     ------
@@ -85,8 +78,7 @@ class Predictor:
     def _start(self) -> None:
         """What is made when it is first asked for."""
         self.error = self._reduced.housings.error
-        self._known: list[PointSensitivities] | None = None
-        self._housings: list[list[HousingSensitivities]] | None = None
+        self._first_order = FirstOrderModel(self._reduced, self._points)
         self._oscillating = [
             OscillatingPart(
                 point,
@@ -112,7 +104,7 @@ class Predictor:
         """
         made = self._changed_rigs(changes)
         with self._solving():
-            known = self._known
+            known = self._first_order.points if self._first_order.known else None
             problems = [
                 self._reduced.problem(rig_at(rig, setting), setting)
                 for rig, setting in zip(made, self.settings)
@@ -149,7 +141,7 @@ class Predictor:
         with self._solving():
             changed = [
                 point.changed(self._reduced.changed_problem(rig, setting))
-                for point, rig, setting in zip(self._sensitivities(), made, self.settings)
+                for point, rig, setting in zip(self._first_order.points, made, self.settings)
             ]
             numbers = [found.readings for found in changed]
             rest = sum(map(len, numbers))
@@ -177,7 +169,7 @@ class Predictor:
     def prepare(self) -> None:
         """Make what first-order predictions of all points need; on all cores."""
         with self._solving():
-            self._sensitivities()
+            self._first_order.prepare()
             if any(channel.quantity in ORDER_QUANTITIES for channel in self.channels):
                 for part in self._oscillating:
                     part.base()
@@ -198,9 +190,7 @@ class Predictor:
         if not self._reduced.housings.bases:
             return {}
         with self._solving():
-            return self._joined(
-                [_merged(part.links() for part in housings) for housings in self._housing_sensitivities()]
-            )
+            return self._joined(self._first_order.links())
 
     def sources(self) -> dict[str, FloatArray]:
         """Name -> (n_features,) response per watt [1/W] put in at all operating points.
@@ -210,13 +200,7 @@ class Predictor:
         gives it, `motor_watt` comes on top.
         """
         with self._solving():
-            points = zip(self._sensitivities(), self._housing_sensitivities())
-            return self._joined(
-                [
-                    _merged(part.sources(self._reduced.reads) for part in housings) | stream_sources(point)
-                    for point, housings in points
-                ]
-            )
+            return self._joined(self._first_order.sources())
 
     def inputs(self) -> dict[tuple[str, str], FloatArray]:
         """(kind, place) -> (n_features,) derivative by each value of the settings, SI.
@@ -225,15 +209,8 @@ class Predictor:
         this one where ``feature.setting`` is that point and zero elsewhere. Kinds: ``speed``, ``torque``,
         ``inlet_temperature``, ``flow``, ``ambient_temperature``; place is the oil stream or empty.
         """
-        found: dict[tuple[str, str], list[FloatArray]] = {}
         with self._solving():
-            for point, setting in zip(self._sensitivities(), self.settings):
-                for key, (moved, step) in moved_conditions(self.case, setting).items():
-                    problem = self._reduced.changed_problem(self._reduced.stated, moved)
-                    there = point.changed(problem).readings
-                    found.setdefault(key, []).append((there - point.readings) / step)
-        standing = np.zeros(len(self.base) - sum(len(part) for part in next(iter(found.values()), [])))
-        return {key: np.concatenate([*parts, standing]) for key, parts in found.items()}
+            return self._joined(self._first_order.inputs(self.case))
 
     def motor_watt(self) -> FloatArray:
         """(n_features,) what one watt more of the motor changes: its power and torque."""
@@ -252,10 +229,10 @@ class Predictor:
             numbers.append(per_watt)
         return np.array(numbers)
 
-    def _joined(self, parts: Sequence[Mapping[str, FloatArray]]) -> dict[str, FloatArray]:
+    def _joined(self, parts: Sequence[Mapping[K, FloatArray]]) -> dict[K, FloatArray]:
         """Numbers of all operating points behind each other, zeros for a name one of them lacks and at rest."""
         names = dict.fromkeys(name for part in parts for name in part)
-        sizes = [len(point.readings) for point in self._sensitivities()]
+        sizes = [len(point.readings) for point in self._first_order.points]
         standing = np.zeros(len(self.base) - sum(sizes))
         return {
             name: np.concatenate(
@@ -263,34 +240,6 @@ class Predictor:
             )
             for name in names
         }
-
-    def _sensitivities(self) -> list[PointSensitivities]:
-        """First-order response of all points, made when it is first asked for."""
-        if self._known is None:
-            made = partial(PointSensitivities, reads=self._reduced.reads)
-            with BackgroundTasks([partial(_numbers_at, made, point) for point in self._points]) as tasks:
-                numbers = tasks.results()
-            self._known = [made(point, known=known) for point, known in zip(self._points, numbers)]
-        return self._known
-
-    def _housing_sensitivities(self) -> list[list[HousingSensitivities]]:
-        """Of all points, one for each of their housings."""
-        if self._housings is None:
-            reduced, points = self._reduced, self._sensitivities()
-            derivatives = (
-                field_derivatives(self._points[0], reduced.housings, reduced.reads) if points else {}
-            )
-            self._housings = [
-                [
-                    HousingSensitivities(
-                        point, field, reduced.housings.bases[name].reduced, derivatives[name]
-                    )
-                    for name, field in point.last.fields.items()
-                    if isinstance(field, ReducedField)
-                ]
-                for point in points
-            ]
-        return self._housings
 
     def __getstate__(self) -> dict[str, object]:
         """What a worker needs to make the same predictor again: laws of films cannot be sent, numbers can."""
@@ -335,14 +284,3 @@ class Predictor:
         """Errors of the tool, linear algebra on one thread."""
         with solver_errors(self.case), threadpool_limits(limits=1), one_thread():
             yield
-
-
-def _numbers_at(
-    made: Callable[[ConvergedPoint], PointSensitivities], point: ConvergedPoint
-) -> SensitivityNumbers:
-    return made(point).numbers
-
-
-def _merged(parts: Iterable[dict[str, FloatArray]]) -> dict[str, FloatArray]:
-    """The entries of all housings of a point."""
-    return {name: values for part in parts for name, values in part.items()}

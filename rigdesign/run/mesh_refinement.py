@@ -1,6 +1,6 @@
-"""A settled operating point on another mesh: one more iteration, with the loads and losses it settled on.
+"""A converged operating point on another mesh: one more iteration, with its loads and losses.
 
-At reference the loop runs on the standard mesh and this iteration on the fine one ends it. The same iteration on
+At reference the loop runs on the standard mesh and this iteration on the final one ends it. The same iteration on
 coarser meshes tells how far mesh and result hang together (`rigdesign.run.mesh_convergence`).
 """
 
@@ -37,7 +37,7 @@ COARSER: dict[Fidelity, tuple[Fidelity, ...]] = {
     "standard": ("quick",),
     "reference": ("quick", "standard"),
 }
-"""Meshes beside that of a fidelity which tell its errors, from coarse to fine."""
+"""Meshes from which the errors of a fidelity follow, in addition to its own, from coarse to fine."""
 
 
 def looping_rig(rig: Rig) -> Rig:
@@ -91,13 +91,13 @@ def _meshed(rig: Rig, fidelity: Fidelity, *, needed: bool) -> dict[str, GearboxM
 
 
 def on_mesh(rig: Rig, converged: PointResult, source: Rig) -> PointResult:
-    """One more iteration of a settled point on the mesh of ``rig``: fields, thermal expansion, oil, warm gears and
+    """One more iteration of a converged point on the mesh of ``rig``: fields, thermal expansion, oil, warm gears and
     bearings.
 
-    The periodic response and the losses are those the point settled on. The residual that is added is the
+    The periodic response and the losses are those the point converged with. The residual that is added is the
     change of this iteration: the shift from mesh to mesh.
 
-    source : the rig on which the point settled
+    source : the rig on which the point converged
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The rig with one input at one end of its range: from the settled stated rig, only what the input touches again."""
+"""The rig with one input at one end of its range: from the converged stated rig, only what the input touches again."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -63,7 +63,7 @@ class EndResult:
 
 @dataclass(frozen=True, kw_only=True)
 class Reference:
-    """The settled stated rig, small enough to be handed to worker processes; they make the rest again from it."""
+    """The converged stated rig, small enough to be sent to worker processes; they make the rest again from it."""
 
     case: Case
     states: tuple[CouplingState, ...]
@@ -76,8 +76,8 @@ class Reference:
     key: str
 
 
-def settle(case: Case) -> tuple[Reference, EndResult]:
-    """Solve the stated rig and say what its checks are."""
+def solve_stated(case: Case) -> tuple[Reference, EndResult]:
+    """Solve the stated rig, and its checks."""
     with solver_errors(case), threadpool_limits(limits=1):
         solved = solve_case(case, FIDELITY)
         outcome = _outcome(solved, ())
@@ -126,7 +126,7 @@ def _stated(reference: Reference) -> SolvedRig:
 
 
 def _restored(reference: Reference) -> SolvedRig:
-    """The stated rig with its fields, from its settled coupling state."""
+    """The stated rig with its fields, from its converged coupling state."""
     rig = build_rig(reference.case, FIDELITY)
     points = [
         solve_point(rig, point, start=coupling_state)

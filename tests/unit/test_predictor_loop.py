@@ -48,7 +48,7 @@ def _off(predictor, answer, wanted):
 
 def _solved_again(predictor, changes):
     """The same first-order answer with a response and orders of its own at every point."""
-    drags = [point.drag for point in predictor._sensitivities()]
+    drags = [point.drag for point in predictor._first_order.points]
     for drag in drags:
         drag.causes = lambda *_: None
     try:
@@ -70,7 +70,7 @@ def test_drags_and_friction_answer_as_a_loop_solved_again(predictor, changes):
     assert all(
         point.changed(predictor._reduced.changed_problem(rig, setting)).same_loop
         for point, rig, setting in zip(
-            predictor._sensitivities(), predictor._changed_rigs(changes), predictor.settings
+            predictor._first_order.points, predictor._changed_rigs(changes), predictor.settings
         )
     )
     answer = predictor.response(changes) - predictor.base

@@ -12,7 +12,7 @@ from rigdesign.case import Case
 from rigdesign.results.result import Check
 from rigdesign.uncertainty import point as ranges_point
 from rigdesign.uncertainty.plan import PARTS, Part, RangeEnd, parts_of, plan
-from rigdesign.uncertainty.point import EndResult, Reference, settle, solve_end
+from rigdesign.uncertainty.point import EndResult, Reference, solve_end, solve_stated
 from rigdesign.uncertainty.run import with_ranges
 
 PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
@@ -54,7 +54,7 @@ def written(folder: Path, text: str) -> Case:
 @pytest.fixture(scope="module")
 def loop(tmp_path_factory: pytest.TempPathFactory) -> tuple[Reference, EndResult]:
     """Reference and stated checks of the power loop, settled."""
-    return settle(written(tmp_path_factory.mktemp("loop"), LOOP))
+    return solve_stated(written(tmp_path_factory.mktemp("loop"), LOOP))
 
 
 def end(case: Case, path: str, value: str, *more: Part) -> RangeEnd:

@@ -23,7 +23,7 @@ from rigdesign.case.paths import Slot, known_paths, slot_at
 from rigdesign.case.provenance import item_name, take_off
 from rigdesign.checks.assumptions import depends, with_assumptions
 from rigdesign.uncertainty.plan import ALIKE, PARTS, Part, RangeEnd, parts_of, plan
-from rigdesign.uncertainty.point import EndResult, Reference, settle, solve_end
+from rigdesign.uncertainty.point import EndResult, Reference, solve_end, solve_stated
 from rigdesign.uncertainty.verdicts import LEAST_MOVE
 from tests.unit.test_check_assumptions import EXPECTED, check, limit_of
 
@@ -90,7 +90,7 @@ def settled(name: str) -> tuple[Reference, EndResult]:
     if name == "uhcf_prototype":
         for path, value in SHORTER.items():
             case = case.with_value(path, value)
-    return settle(case)
+    return solve_stated(case)
 
 
 def value_at(tree: Any, keys: list[str]) -> Any:
