@@ -56,16 +56,14 @@ class Differences:
     @classmethod
     def of(cls, states: Sequence[FloatArray], proposals: Sequence[FloatArray], size: int) -> "Differences":
         """From vectors (n,), n = ``size``."""
-        none = np.empty((size, 0))
-        return cls(
-            np.array(states).T if states else none, np.array(proposals).T if proposals else none.copy()
-        )
+        columns = [np.array(part).T if part else np.empty((size, 0)) for part in (states, proposals)]
+        return cls(*columns)
 
 
 class Anderson:
     """Anderson acceleration, a multi-secant quasi-Newton method; with a known inverse on top of Newton's method.
 
-    Differences of a neighbouring case serve as well as own ones, so that a changed case needs two or three iterations
+    Differences of a neighbouring case serve as well as its own, so that a changed case needs two or three iterations
     from the point it is near to.
 
     start : coupling state of the first iteration
