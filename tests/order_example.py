@@ -1,4 +1,4 @@
-"""Shipped loops with deviations, settled without heat, for the tests of orders."""
+"""Shipped loops with deviations, braced without heat, for the tests of orders."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -7,7 +7,7 @@ from math import pi
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import BracingState, MeshModel, brace_initial, mesh_models
+from rigdesign.coupling.loads import BracedLoop, BracingState, MeshModel, brace_initial, mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig, build_rig
@@ -29,7 +29,7 @@ def changed(name: str, **values: object) -> Case:
 
 
 @dataclass(frozen=True)
-class Settled:
+class BracedCase:
     rig: Rig
     point: OperatingPoint
     models: tuple[MeshModel, ...]
@@ -37,14 +37,14 @@ class Settled:
 
     @property
     def arguments(self):
-        return self.rig, self.point, self.models, DRAGS, self.setting
+        return self.rig, BracedLoop(self.point, self.models, DRAGS, self.setting)
 
 
-def settled(case: Case, rpm: float, torque: float) -> Settled:
+def settled(case: Case, rpm: float, torque: float) -> BracedCase:
     rig = build_rig(case, "quick")
     point = OperatingPoint(stage="test", speed=rpm * pi / 30.0, torque=torque)
     cold = initial_state(rig, point)
-    return Settled(rig, point, mesh_models(rig, point, cold), brace_initial(rig, point, cold))
+    return BracedCase(rig, point, mesh_models(rig, point, cold), brace_initial(rig, point, cold))
 
 
 def channels(*orders: float) -> tuple[Channel, ...]:

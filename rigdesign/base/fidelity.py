@@ -1,4 +1,4 @@
-"""How fine the models of a run are."""
+"""Fidelity of the models of a run."""
 
 from typing import Literal
 

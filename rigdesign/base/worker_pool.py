@@ -43,19 +43,19 @@ def compute_all(
     """Compute every task in a pool of processes and give (index, outcome) as they finish.
 
     The outcome is None for a task whose process died (killed, out of memory, crash in a compiled library).
-    Tasks start in their order, so one of the first ``workers`` open tasks did it: they are computed again
+    Tasks start in their order, so one of the first ``workers`` unfinished ones did it: they are computed again
     alone, one by one, and the pool goes on with the rest.
     ``work`` and the tasks must be picklable; ``work`` must not raise.
     """
     with _one_thread_each():
-        open_tasks = list(range(len(tasks)))
-        while open_tasks:
+        unfinished = list(range(len(tasks)))
+        while unfinished:
             try:
-                for index, outcome in _pool(work, tasks, tuple(open_tasks), workers):
-                    open_tasks.remove(index)
+                for index, outcome in _pool(work, tasks, tuple(unfinished), workers):
+                    unfinished.remove(index)
                     yield index, outcome
             except BrokenProcessPool:
-                under_way, open_tasks = open_tasks[:workers], open_tasks[workers:]
+                under_way, unfinished = unfinished[:workers], unfinished[workers:]
                 for index in under_way:
                     yield index, _alone(work, tasks, index)
 

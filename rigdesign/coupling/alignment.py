@@ -18,8 +18,8 @@ ALIGNMENT: tuple[AlignmentQuantity, ...] = get_args(AlignmentQuantity)
 Alignment = Mapping[AlignmentQuantity, Mapping[str, float]]
 """Quantity -> place -> size: tilt of a shaft in its bore [rad], out of round of a bore as a share of the radial
 clearance, deviation of the axes of a mesh over the face width [m]."""
-COLD: tuple[Across, Across] = ((0.0, 0.0), (0.0, 0.0))
-"""Shift and slope of an axis at its cold place."""
+UNDEFORMED: tuple[Across, Across] = ((0.0, 0.0), (0.0, 0.0))
+"""Shift and slope of an axis at the reference temperature."""
 
 
 def alignment(rig: Rig, name: str, shape: Expansion, clearances: Mapping[str, float]) -> Alignment:
@@ -103,7 +103,7 @@ class CouplingEnd:
 
     shaft: str
     gearbox: str | None
-    """Whose housing carries it; None where nothing is known of it: it stays at its cold place."""
+    """Whose housing carries it; None where nothing is known of it: it does not move."""
     x: float = 0.0
     """Of its end face in the model of that housing [m]."""
     outward: float = 1.0
@@ -117,8 +117,8 @@ class CouplingPlace:
     name: str
     first: CouplingEnd
     second: CouplingEnd
-    cold: Across
-    """Offset in y and z at which the first is set against the second when cold [m]."""
+    offset: Across
+    """In y and z, at which the first is set against the second at the reference temperature [m]."""
 
     @property
     def gearbox(self) -> str:
@@ -134,8 +134,8 @@ def coupling_places(rig: Rig) -> Iterator[CouplingPlace]:
     for name, coupling in () if train is None else train.couplings.items():
         first, second = (_end(rig, coupling, side) for side in (0, 1))
         if first.gearbox or second.gearbox:
-            cold = coupling.cold_offset_lateral, coupling.cold_offset_vertical
-            yield CouplingPlace(name=name, first=first, second=second, cold=cold)
+            offset = coupling.cold_offset_lateral, coupling.cold_offset_vertical
+            yield CouplingPlace(name=name, first=first, second=second, offset=offset)
 
 
 def _end(rig: Rig, coupling: CouplingInput, side: int) -> CouplingEnd:
@@ -151,14 +151,14 @@ def _end(rig: Rig, coupling: CouplingInput, side: int) -> CouplingEnd:
 def end_motion(end: CouplingEnd, axes: Mapping[str, Mapping[str, ShaftAxis]]) -> tuple[Across, Across]:
     """Shift [m] and slope [rad] of a shaft end; axes : gearbox -> shaft -> hot axis."""
     if end.gearbox is None or end.gearbox not in axes:
-        return COLD
+        return UNDEFORMED
     axis = axes[end.gearbox][end.shaft]
     return axis.shift(end.x), axis.slope
 
 
 def coupled_ends(place: CouplingPlace, axes: Mapping[str, Mapping[str, ShaftAxis]]) -> ShaftPair:
-    """Alignment at a coupling, the cold offset included; axes : gearbox -> shaft -> hot axis."""
-    return shaft_pair(end_motion(place.first, axes), end_motion(place.second, axes), place.cold)
+    """Alignment at a coupling, its offset included; axes : gearbox -> shaft -> hot axis."""
+    return shaft_pair(end_motion(place.first, axes), end_motion(place.second, axes), place.offset)
 
 
 def axial_closing(place: CouplingPlace, shapes: Mapping[str, Expansion]) -> float:

@@ -12,6 +12,7 @@ from rigdesign.case.housing import Housing
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.coupling.losses import PlacedLoss
+from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
@@ -35,7 +36,7 @@ GEAR_OIL, BEARING_OIL, BEARING_FILM, AIR = "gear_oil", "bearing_oil", "bearing_f
 """Kinds of films: what takes the heat up, as the heat balance names it."""
 
 STORED = "stored"
-"""Kind of the rows of the bodies that still warm up."""
+"""Kind of the rows of the bodies that are warming up."""
 
 
 @dataclass(frozen=True)
@@ -129,10 +130,7 @@ class _Context:
 def boundary_conditions(
     rig: Rig,
     name: str,
-    point: OperatingPoint,
-    coupling_state: CouplingState,
-    bearings: Mapping[str, BearingState],
-    losses: Sequence[PlacedLoss],
+    losses: PointLosses,
     *,
     radiation_included: bool,
 ) -> list[Condition]:
@@ -140,7 +138,7 @@ def boundary_conditions(
 
     radiation_included : leave out explicit radiation where the film to room air contains it already
     """
-    context = _Context(rig, name, point, coupling_state, bearings)
+    context = _Context(rig, name, losses.point, losses.coupling_state, losses.bearings)
     housing = context.box.housing
     assert housing is not None
     rows = conditions_of(housing, rig.surface_names(name))
@@ -149,13 +147,13 @@ def boundary_conditions(
     for entry, surface, stood_for in rows:
         condition = housing.boundary[entry]
         if radiation_included and isinstance(condition, laws.ThermalRadiation) and surface in covered:
-            conditions += _radiation_beyond_film(context, condition, surface)
+            conditions += _excess_radiation(context, condition, surface)
             continue
         found = _condition(context, condition, surface, stood_for)
         if isinstance(found, Film):
             found = replace(found, law=behind_shell(rig, name, surface, found.law))
         conditions.append(found)
-    return [*conditions, *_sources(context, losses), *_stored(rig, name)]
+    return [*conditions, *_sources(context, losses.losses), *_stored(rig, name)]
 
 
 def _radiation_in_film(context: _Context, entry: str, surface: str) -> bool:
@@ -169,7 +167,7 @@ def _radiation_in_film(context: _Context, entry: str, surface: str) -> bool:
 
 
 def _stored(rig: Rig, name: str) -> Iterator[StoredHeat]:
-    """What the bodies still take up where the case says that its points were not steady."""
+    """What the bodies take up where the case says that its points were not steady."""
     room = rig.case.ambient
     if room.warming_time is not None:
         capacity = {body: m.density * m.heat_capacity for body, m in rig.body_materials(name).items()}
@@ -229,7 +227,7 @@ def _radiation(
     return Radiation(surface=surface, emissivity=emissivity, surroundings_temperature=walls)
 
 
-def _radiation_beyond_film(
+def _excess_radiation(
     context: _Context, condition: laws.ThermalRadiation, surface: str
 ) -> list[BoundaryCondition]:
     """What a surface radiates beyond the radiation that its film to room air holds already."""
@@ -239,7 +237,7 @@ def _radiation_beyond_film(
 
 
 def _bearing_film(context: _Context, condition: laws.BearingFilm, surface: str) -> Film:
-    """Conductance of the film from its mean temperature; the sink is that temperature, no source beside it."""
+    """Conductance of the film from its mean temperature; the sink is that temperature, no source in addition."""
     shaft = context.shaft(surface).name
     side = "front" if surface.endswith("front") else "rear"
     entry = bearing_on(context.box, shaft, side)

@@ -1,4 +1,4 @@
-"""Where the coupling loop starts: the cold rig at its oil inlet temperatures."""
+"""Where the coupling loop starts: all of the rig at room temperature, its oil as it is fed."""
 
 from rigdesign.coupling.expansion import uniform_expansion
 from rigdesign.coupling.loads import first_torques

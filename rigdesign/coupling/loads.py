@@ -146,13 +146,13 @@ def _slices(rig: Rig, pair: GearPair, micro: tuple[Microgeometry, Microgeometry]
     return math.ceil((stated or default_slices(pair, micro)) / rig.coarsening.slices)
 
 
-def flank_expansion(cold: GearPair, warm: GearPair) -> float:
-    """Approach by which the front flanks of a warm pair touch earlier than cold [m].
+def flank_expansion(reference: GearPair, warm: GearPair) -> float:
+    """Approach by which the front flanks of a warm pair touch earlier than at the reference temperature [m].
 
     Teeth grow on both sides of their middle, so half of the lost backlash comes off each flank; in a held
     bracing mode it winds up the loop. A pair that jams has lost no more than the backlash it had.
     """
-    return 0.5 * (max(cold.backlash_along_path, 0.0) - max(warm.backlash_along_path, 0.0))
+    return 0.5 * (max(reference.backlash_along_path, 0.0) - max(warm.backlash_along_path, 0.0))
 
 
 def mesh_friction(
@@ -310,22 +310,33 @@ def shifted_gear(rig: Rig) -> ShiftedGear | None:
 
 
 def brace_initial(
-    rig: Rig, point: OperatingPoint, cold: CouplingState, models: Sequence[MeshModel] | None = None
+    rig: Rig, point: OperatingPoint, initial: CouplingState, models: Sequence[MeshModel] | None = None
 ) -> BracingState:
-    """BracingState that makes the asked torque in the cold loop; held ever after in the held modes.
+    """Bracing that makes the demanded torque in the initial state; kept from then on in the held modes.
 
     The torque is the mean over all places where teeth that are not alike may come to rest.
 
-    models : the meshes at ``cold``, where they are known
+    models : the meshes in that state, where they are known
     """
     assert rig.case.drivetrain is not None and rig.system is not None
     mode = rig.case.drivetrain.bracing.mode
     if mode == "torque_controlled":
         return BracingState(mode=mode)
-    met = mesh_models(rig, point, cold) if models is None else models
+    met = mesh_models(rig, point, initial) if models is None else models
     laws = [alike_teeth(law) for law in laws_of(met)]
     state = brace(rig.system, laws, signed_torque(rig, point), LoopBracing(mode=mode, gear=shifted_gear(rig)))
     return BracingState(mode=mode, twist=state.twist if mode == "twist_held" else 0.0, shift=state.shift)
+
+
+@dataclass(frozen=True)
+class BracedLoop:
+    """The warm meshes of a braced power circuit at an operating point, and the torques that brake it."""
+
+    point: OperatingPoint
+    models: tuple[MeshModel, ...]
+    drags: Mapping[str, float]
+    """By place of the drivetrain [N m]."""
+    bracing: BracingState
 
 
 def respond(
@@ -340,7 +351,7 @@ def respond(
     Raises
     ------
     DynamicsNotConverged
-        Neither harmonic balance nor time integration settles.
+        Neither harmonic balance nor time integration converges.
     """
     assert rig.system is not None
     controlled = setting.mode == "torque_controlled"

@@ -49,7 +49,7 @@ class PlacedLoss:
     """Of a mesh loss, the way into its two gears."""
     given: bool = False
     end_share: float = 0.0
-    """Of a seal loss, the share that arises where the shaft leaves the housing: beside the bearings, in their oil."""
+    """Of a seal loss, the share that arises where the shaft leaves the housing: next to the bearings, in their oil."""
 
     @property
     def name(self) -> str:

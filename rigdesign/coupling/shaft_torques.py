@@ -13,7 +13,7 @@ from dynamics.response.periodic_response import period_length
 from rigdesign.rig.model import Rig
 
 
-class SwingingTorque(NamedTuple):
+class HarmonicTorque(NamedTuple):
     """Torque Re(amplitude exp(i order phi)) on one freedom of ``rig.system`` [N m].
 
     order, phi : of the gear at which the case counts, phi zero where its tooth 0 stands at the pitch point
@@ -24,7 +24,7 @@ class SwingingTorque(NamedTuple):
     amplitude: complex
 
 
-def swinging_torques(rig: Rig, laws: Sequence[MeshLaw]) -> tuple[SwingingTorque, ...]:
+def harmonic_torques(rig: Rig, laws: Sequence[MeshLaw]) -> tuple[HarmonicTorque, ...]:
     """What the case states of motor and couplings, on the freedoms it acts on; empty for a case that states none.
 
     laws : of the meshes, in the order of the drivetrain
@@ -44,14 +44,14 @@ def swinging_torques(rig: Rig, laws: Sequence[MeshLaw]) -> tuple[SwingingTorque,
             order = part.order * float(ratios[torques.dof]) / turns
             value = part.torque * np.exp(-1j * (part.phase + order * ahead))
             found += [
-                SwingingTorque(int(freedom), order, complex(value * torques.load[freedom]))
+                HarmonicTorque(int(freedom), order, complex(value * torques.load[freedom]))
                 for freedom in np.flatnonzero(torques.load)
             ]
     return tuple(found)
 
 
 def torques_left_out(rig: Rig, laws: Sequence[MeshLaw]) -> list[str]:
-    """Part and order of every swinging torque that the period of the response cannot hold."""
+    """Part and order of every oscillating torque that the period of the response cannot hold."""
     if rig.system is None or not rig.system.shaft_torques:
         return []
     ratios = pinion_ratios(rig.system, laws)

@@ -1,9 +1,8 @@
 """Losses at any operating point with the warm rig of a held stage: no coupling."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
-from dynamics.bearing.protocol import BearingState
 from dynamics.errors import DynamicsNotConverged
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.coupling.bearing_films import solve_bearings
@@ -11,21 +10,12 @@ from rigdesign.coupling.drag_torques import drag_torques
 from rigdesign.coupling.loads import BracingState, MeshModel, mesh_models, respond
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import PlacedLoss, mesh_losses, oil_jets, rotating_losses
-from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 
 
-@dataclass(frozen=True, kw_only=True)
-class StageLosses:
-    """What heats a rig at an operating point, and the state it follows from."""
-
-    point: OperatingPoint
-    coupling_state: CouplingState
-    bearings: Mapping[str, BearingState]
-    losses: tuple[PlacedLoss, ...]
-
-
-def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic: bool) -> StageLosses:
+def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic: bool) -> PointLosses:
     """Losses at ``point`` with the geometry and temperatures of the held stage ``test``.
 
     Tooth forces follow the torque; the bearing films get no heat from the bodies. At standstill
@@ -43,22 +33,22 @@ def stage_losses(rig: Rig, point: OperatingPoint, test: PointResult, *, dynamic:
     bearings = solve_bearings(rig, point, coupling_state)
     if point.speed == 0.0:
         jets = tuple(oil_jets(rig, point, rig.pairs))
-        return StageLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=jets)
+        return PointLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=jets)
     models = mesh_models(rig, point, coupling_state)
-    turning = rotating_losses(rig, point, coupling_state, models, bearings)
-    response = _response(rig, point, models, turning) if dynamic and rig.system is not None else None
+    rotating = rotating_losses(rig, point, coupling_state, models, bearings)
+    response = _response(rig, point, models, rotating) if dynamic and rig.system is not None else None
     meshes = mesh_losses(rig, point, models, response, coupling_state)
     if dynamic and rig.system is not None and response is None:
         meshes = [_without_response(placed) for placed in meshes]
-    losses = (*turning, *meshes)
-    return StageLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=losses)
+    losses = (*rotating, *meshes)
+    return PointLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=losses)
 
 
 def _response(
-    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], turning: Sequence[PlacedLoss]
+    rig: Rig, point: OperatingPoint, models: Sequence[MeshModel], rotating: Sequence[PlacedLoss]
 ) -> CurvePoint | None:
     """Periodic response with the bracing that makes the torque of this point; None where none is found."""
-    drags = drag_torques(turning, rig, point.speed)
+    drags = drag_torques(rotating, rig, point.speed)
     try:
         return respond(rig, point, models, drags, BracingState(mode="torque_controlled"))
     except DynamicsNotConverged:

@@ -40,8 +40,8 @@ class CouplingState:
     axial_expansion: Values
     """Axial expansion that shifts a helical gear against its partner, by mesh [m]: it changes the bracing."""
 
-    def freeze(self, arrows: frozenset[str], cold: "CouplingState") -> "CouplingState":
-        """This coupling state with the named arrows cut: those fields stay as in ``cold``.
+    def freeze(self, arrows: frozenset[str], initial: "CouplingState") -> "CouplingState":
+        """This coupling state with the named arrows cut: those fields stay as in ``initial``.
 
         Raises KeyError for a name that is no field.
         """
@@ -50,7 +50,7 @@ class CouplingState:
             raise KeyError(f"no such arrow: {', '.join(sorted(unknown))}")
         return CouplingState(
             **{
-                entry.name: getattr(cold if entry.name in arrows else self, entry.name)
+                entry.name: getattr(initial if entry.name in arrows else self, entry.name)
                 for entry in fields(self)
             }
         )

@@ -1,16 +1,13 @@
 """Steady temperature fields of the housings at one operating point, and the heat they give to the oil."""
 
 import math
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.bearing.protocol import BearingState
 from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, STORED, boundary_conditions
-from rigdesign.coupling.losses import PlacedLoss
-from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
 from thermal.conduction.condition_checks import Condition
 from thermal.conduction.steady import TemperatureSolution, solve_steady
@@ -36,10 +33,7 @@ class HousingField:
 def solve_housing(
     rig: Rig,
     name: str,
-    point: OperatingPoint,
-    coupling_state: CouplingState,
-    bearings: Mapping[str, BearingState],
-    losses: Sequence[PlacedLoss],
+    losses: PointLosses,
     start: HousingField | None = None,
     *,
     radiation_included: bool | None = None,
@@ -61,9 +55,7 @@ def solve_housing(
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
     included = housing.radiation_included if radiation_included is None else radiation_included
-    conditions = boundary_conditions(
-        rig, name, point, coupling_state, bearings, losses, radiation_included=included
-    )
+    conditions = boundary_conditions(rig, name, losses, radiation_included=included)
     setup = rig.conduction[name]
     solution = solve_steady(
         setup, conditions, near=None if start is None else start.solution, tolerance=tolerance

@@ -1,8 +1,9 @@
 """The motion over the whole hunting cycle, all contacts opening and closing: what the fast way is held to."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +17,7 @@ from dynamics.orders.deviation_response import OrderLoads
 from dynamics.response.harmonic_walk import mesh_cells
 from dynamics.response.periodic_response import TimeSettings, periodic_by_time
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from rigdesign.coupling.loads import BracingState, signed_torque
-from rigdesign.coupling.state import OperatingPoint
+from rigdesign.coupling.loads import BracedLoop, signed_torque
 from rigdesign.rig.model import Rig
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ Integers = NDArray[np.int64]
 MOST_CELLS = 1000
 """Mesh periods in a cycle up to which the harmonic balance is used; beyond it the loop is marched."""
 LONGEST_MARCH = 20.0
-"""Simulated time after which a march that does not settle ends [s]."""
+"""Simulated time after which a march that does not converge ends [s]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,19 +58,18 @@ class ExactMotion:
 
 def exact_motion(
     rig: Rig,
-    point: OperatingPoint,
+    loop: BracedLoop,
     laws: Sequence[MeshLaw],
-    drags: Mapping[str, float],
-    setting: BracingState,
     *,
     march: bool | None = None,
 ) -> ExactMotion:
     """Solve over the hunting cycle: harmonic balance up to MOST_CELLS mesh periods, else the march in time.
 
-    march : take the one or the other
-    Raises DynamicsNotConverged if neither settles.
+    laws : of the meshes of ``loop`` as they are braced; march : take the one or the other
+    Raises DynamicsNotConverged if neither converges.
     """
     assert rig.system is not None
+    point, setting = loop.point, loop.bracing
     controlled = setting.mode == "torque_controlled"
     torque, twist = (signed_torque(rig, point), None) if controlled else (None, setting.twist)
     speed = rig.pinion_speed(point.speed)
@@ -82,7 +81,7 @@ def exact_motion(
             laws,
             [speed],
             LoopLoad(torque=torque, twist=twist),
-            drag_torques=drags,
+            drag_torques=loop.drags,
             settings=SweepSettings(
                 period="hunting_cycle", cutoff=rig.highest_mode, methods=("harmonic_balance",)
             ),
@@ -90,15 +89,13 @@ def exact_motion(
         if curve.points:
             found = curve.points[0]
             wave = found.wave
-            return _over_cycle(
-                rig, laws, speed, wave.time, (wave.angle, wave.approach, wave.omega_1, wave.omega_2),
-                twist=found.twist, drive=found.drive_torque,
-            )  # fmt: skip
+            motion = _MeshMotion(wave.time, wave.angle, wave.approach, wave.omega_1, wave.omega_2)
+            return _over_cycle(rig, laws, speed, motion, (found.twist, found.drive_torque))
     marched = periodic_by_time(
         rig.system,
         laws,
         speed=speed,
-        drag_torques=drags,
+        drag_torques=loop.drags,
         load=LoopLoad(torque=torque, twist=twist),
         settings=TimeSettings(period="hunting_cycle", longest_time=LONGEST_MARCH, cutoff=rig.highest_mode),
     )
@@ -108,26 +105,40 @@ def exact_motion(
         )
     radius_1, radius_2 = np.array([(law.base_radius_1, law.base_radius_2) for law in laws]).T[..., None]
     omega_2 = (radius_1 * marched.omega_1 - marched.approach_rate) / radius_2
-    return _over_cycle(
-        rig, laws, speed, marched.time, (marched.angle_1, marched.approach, marched.omega_1, omega_2),
-        twist=marched.twist, drive=marched.drive_torque,
-    )  # fmt: skip
+    motion = _MeshMotion(marched.time, marched.angle_1, marched.approach, marched.omega_1, omega_2)
+    return _over_cycle(rig, laws, speed, motion, (marched.twist, marched.drive_torque))
+
+
+class _MeshMotion(NamedTuple):
+    """Motion of all meshes over one cycle that begins anywhere; time (n,) [s], all others (n_meshes, n)."""
+
+    time: Array
+    angle: Array
+    """Of the pinion [rad]."""
+    approach: Array
+    """[m]"""
+    omega_1: Array
+    """[rad/s]"""
+    omega_2: Array
 
 
 def _over_cycle(
-    rig: Rig, laws: Sequence[MeshLaw], speed: float, time: Array, motion: tuple[Array, Array, Array, Array], *,
-    twist: float, drive: float,
-) -> ExactMotion:  # fmt: skip
-    """Torques on the gear bodies along a motion (each (n_meshes, n)) that begins anywhere."""
+    rig: Rig, laws: Sequence[MeshLaw], speed: float, motion: _MeshMotion, held: tuple[float, float]
+) -> ExactMotion:
+    """Torques on the gear bodies along a motion.
+
+    held : bracing twist [rad] and motor torque [N m]
+    """
     assert rig.system is not None
     torque: dict[int, Array] = {}
     for m, (law, ports) in enumerate(zip(laws, rig.system.mesh_ports.tolist())):
-        reaction = evaluate_mesh(law, *(values[m] for values in motion))
+        reaction = evaluate_mesh(law, *(values[m] for values in motion[1:]))
         for dof, wave in zip(ports, (reaction.torque_1, reaction.torque_2)):
             torque[dof] = torque[dof] + wave if dof in torque else wave
-    start = float(np.mean(motion[0][0] - speed * time))
+    time = motion.time
+    start = float(np.mean(motion.angle[0] - speed * time))
     step = float(time[1] - time[0])
     return ExactMotion(
         speed=speed, turns=speed * step * time.size / (2.0 * pi), phi=start + speed * time,
-        dofs=np.array(list(torque), np.int64), torque=np.array(list(torque.values())), twist=twist, drive=drive,
+        dofs=np.array(list(torque), np.int64), torque=np.array(list(torque.values())), twist=held[0], drive=held[1],
     )  # fmt: skip

@@ -1,7 +1,7 @@
-"""Growth of a housing as a linear map of its temperature shapes: clearances without an elastic solve.
+"""Thermal expansion of a housing as a linear map of its reduced basis: clearances without an elastic solve.
 
 Expansion is linear in the temperature and the clearances are read from displacements a thousand times smaller than
-the rig, so that a clearance follows each shape in proportion to nanometres. Each shape is expanded once.
+the rig, so that a clearance follows each basis vector in proportion to nanometres. Each is expanded once.
 """
 
 from dataclasses import replace
@@ -16,49 +16,49 @@ from thermal.expansion.expansion import read_expansion
 from thermal.fe.mesh import FloatArray
 
 AMPLITUDE = 10.0
-"""Temperature [K] with which a shape is expanded."""
+"""Temperature [K] with which a basis vector is expanded."""
 EXACT = 1e-8
 """Relative residual of the expansion of the field the map starts from."""
 ENOUGH = 1e-3
-"""Relative residual of the expansion of a shape that reaches 1 K: ten nanometres of a clearance."""
+"""Relative residual of the expansion of a basis vector that reaches 1 K: ten nanometres of a clearance."""
 LEAST = 0.1
-"""Temperature [K] a shape has to reach to be expanded: 0.1 K moves a clearance by a tenth of a micrometre."""
+"""Temperature [K] a basis vector has to reach to be expanded: 0.1 K moves a clearance by a tenth of a micrometre."""
 
 
 class ExpansionMap:
-    """Clearances of one housing by the coefficients of its temperature shapes.
+    """Clearances of one housing by the coefficients of its reduced basis.
 
-    shapes : (n_nodes, m); sizes : (m,) temperature [K] that each reaches, strongest first; base : (m,)
+    basis : (n_nodes, m); sizes : (m,) temperature [K] that each reaches, strongest first; base : (m,)
         coefficients of a warm field near which the map is made
     """
 
-    def __init__(self, rig: Rig, name: str, shapes: FloatArray, sizes: FloatArray, base: FloatArray) -> None:
-        setup, cold = rig.expansion[name], rig.case.ambient.reference_temperature
+    def __init__(self, rig: Rig, name: str, basis: FloatArray, sizes: FloatArray, base: FloatArray) -> None:
+        setup, reference = rig.expansion[name], rig.case.ambient.reference_temperature
         self._base = base
-        field = shapes @ base
-        start = setup.elastic.solve(field, cold, EXACT, None).values
+        field = basis @ base
+        start = setup.elastic.solve(field, reference, EXACT, None).values
 
         def read(temperature: FloatArray, supported: FloatArray) -> HousingExpansion:
-            return named_expansion(rig, name, read_expansion(setup, temperature, cold, supported))
+            return named_expansion(rig, name, read_expansion(setup, temperature, reference, supported))
 
         self.expansion = read(field, start)
         """At the base."""
         first = numbers_of(self.expansion)
 
-        def follows(shape: FloatArray, size: float) -> FloatArray:
+        def derivative(vector: FloatArray, size: float) -> FloatArray:
             if size < LEAST:
                 return np.zeros_like(first)
-            bent = setup.elastic.solve(AMPLITUDE * shape, 0.0, min(1e-2, ENOUGH / size), None).values
-            moved = read(field + AMPLITUDE * shape, start + bent)
+            bent = setup.elastic.solve(AMPLITUDE * vector, 0.0, min(1e-2, ENOUGH / size), None).values
+            moved = read(field + AMPLITUDE * vector, start + bent)
             return np.asarray((numbers_of(moved) - first) / AMPLITUDE)
 
-        works = [partial(follows, shape, size) for shape, size in zip(shapes.T, sizes.tolist())]
-        self.first, self.slope = first, np.array(fields_in_parallel(len(field), works)).T
+        works = [partial(derivative, vector, size) for vector, size in zip(basis.T, sizes.tolist())]
+        self.first, self.derivative = first, np.array(fields_in_parallel(len(field), works)).T
         """Numbers of the thermal expansion at the base, and (k, m) how they follow the coefficients [m/K]."""
 
     def at(self, coefficients: FloatArray) -> HousingExpansion:
-        """Growth of the field with these coefficients (m,)."""
-        return with_numbers(self.expansion, self.first + self.slope @ (coefficients - self._base))
+        """Thermal expansion of the field with these coefficients (m,)."""
+        return with_numbers(self.expansion, self.first + self.derivative @ (coefficients - self._base))
 
 
 def numbers_of(expansion: HousingExpansion) -> FloatArray:
@@ -72,11 +72,11 @@ def numbers_of(expansion: HousingExpansion) -> FloatArray:
 
 def with_numbers(expansion: HousingExpansion, numbers: FloatArray) -> HousingExpansion:
     """The thermal expansion with other numbers; displacements and what else depends on them stay those of the base."""
-    left = numbers
+    remaining = numbers
 
     def take(count: int) -> FloatArray:
-        nonlocal left
-        taken, left = left[:count], left[count:]
+        nonlocal remaining
+        taken, remaining = remaining[:count], remaining[count:]
         return taken
 
     bearings = {}

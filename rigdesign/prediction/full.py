@@ -18,7 +18,7 @@ from rigdesign.prediction.model import (
     features_of,
 )
 from rigdesign.prediction.operating import operating_point, rig_at
-from rigdesign.prediction.readings import Settled, readings
+from rigdesign.prediction.readings import readings
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.mesh_refinement import looping_rig, on_mesh
 from rigdesign.run.solver_errors import solver_errors
@@ -49,9 +49,8 @@ def _at_points(rig: Rig, settings: Sequence[OperatingCondition], channels: Seque
         if looping is not rig:
             here, source = rig_at(rig, setting), here
             result = on_mesh(here, result, source)
-        settled = Settled(result.point, result.last, result.setting)
         for _, read in reads:
-            values += read(here, settled)
+            values += read(here, result.last)
     return values
 
 
@@ -62,13 +61,13 @@ def standing_values(rig: Rig, channels: Iterable[Channel]) -> list[float]:
         return []
     from rigdesign.prediction.static_tests import standing_modes, standing_value
 
-    swinging = any(channel.quantity == "natural_frequency" for channel in standing)
-    modes = standing_modes(rig) if swinging else ()
+    oscillating = any(channel.quantity == "natural_frequency" for channel in standing)
+    modes = standing_modes(rig) if oscillating else ()
     return [standing_value(rig, channel, modes) for channel in standing]
 
 
 def check_names(settings: Sequence[OperatingCondition], channels: Sequence[Channel]) -> None:
-    """Check that settings and channels can be told apart by name (UsageError)."""
+    """Check that settings and channels differ by name (UsageError)."""
     for kind, names in (("settings", [s.name for s in settings]), ("channels", [c.name for c in channels])):
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:

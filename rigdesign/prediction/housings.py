@@ -6,12 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.bearing.protocol import BearingState
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.expansion import HousingExpansion
 from rigdesign.coupling.iteration import IterationParts
-from rigdesign.coupling.losses import PlacedLoss
-from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.prediction.expansion_map import ExpansionMap
 from rigdesign.prediction.places import Weights
@@ -21,6 +19,9 @@ from thermal.conduction.condition_checks import Condition
 from thermal.conduction.reduced import Factor, ReducedConduction
 from thermal.conduction.steady import TemperatureSolution
 from thermal.fe.mesh import FloatArray
+
+HousingNumbers = tuple[FloatArray, FloatArray, float, ExpansionMap | None, FloatArray]
+"""Basis vectors, their sizes, error, thermal expansion and start of a housing, for another process."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,7 @@ class ReducedField(HousingField):
 
 
 class ReducedHousings:
-    """Shapes and thermal expansion of every housing of a rig; good for every case that leaves its housings as they are.
+    """Reduced basis and thermal expansion of every housing of a rig; valid for every case with these housings.
 
     states : by gearbox, conditions of some operating points among which those wanted lie
     readers : by gearbox, sensors at points
@@ -57,8 +58,8 @@ class ReducedHousings:
             if not rig.models[name].no_expansion:
                 self.expansions[name] = ExpansionMap(rig, name, basis.reduced.shapes, basis.sizes, start)
 
-    def numbers(self) -> dict[str, tuple[FloatArray, FloatArray, float, ExpansionMap | None, FloatArray]]:
-        """Shapes, their sizes, error, thermal expansion and start by gearbox: what another process needs."""
+    def numbers(self) -> dict[str, HousingNumbers]:
+        """Basis vectors, their sizes, error, thermal expansion and start by gearbox: what another process needs."""
         return {
             name: (
                 basis.reduced.shapes,
@@ -74,12 +75,12 @@ class ReducedHousings:
     def of_numbers(
         cls,
         rig: Rig,
-        numbers: Mapping[str, tuple[FloatArray, FloatArray, float, ExpansionMap | None, FloatArray]],
+        numbers: Mapping[str, HousingNumbers],
     ) -> "ReducedHousings":
         """The housings of the same rig from their numbers."""
         made = cls(rig, {}, {})
-        for name, (shapes, sizes, error, expansion, start) in numbers.items():
-            made.bases[name] = Basis(ReducedConduction(rig.conduction[name], shapes), sizes, error)
+        for name, (vectors, sizes, error, expansion, start) in numbers.items():
+            made.bases[name] = Basis(ReducedConduction(rig.conduction[name], vectors), sizes, error)
             made._start[name] = start
             if expansion is not None:
                 made.expansions[name] = expansion
@@ -94,10 +95,7 @@ class ReducedHousings:
         self,
         rig: Rig,
         name: str,
-        point: OperatingPoint,
-        coupling_state: CouplingState,
-        bearings: Mapping[str, BearingState],
-        losses: Sequence[PlacedLoss],
+        losses: PointLosses,
         start: HousingField | None = None,
         **_: Any,
     ) -> ReducedField:
@@ -105,15 +103,7 @@ class ReducedHousings:
         housing = rig.case.gearboxes[name].housing
         assert housing is not None
         conditions = tuple(
-            boundary_conditions(
-                rig,
-                name,
-                point,
-                coupling_state,
-                bearings,
-                losses,
-                radiation_included=housing.radiation_included,
-            )
+            boundary_conditions(rig, name, losses, radiation_included=housing.radiation_included)
         )
         return self.solved(name, conditions, start if isinstance(start, ReducedField) else None)
 
@@ -140,7 +130,7 @@ class ReducedHousings:
     def expansion(
         self, _: Rig, field: HousingField, start: HousingExpansion | None = None
     ) -> HousingExpansion:
-        """Growth of a projected field; ``start`` is not needed."""
+        """Thermal expansion of a projected field; ``start`` is not needed."""
         assert isinstance(field, ReducedField)
         return self.expansions[field.gearbox].at(field.coefficients)
 

@@ -1,7 +1,7 @@
-"""A settled point whose loop changes in nothing but what brakes it: drags and the friction of its teeth.
+"""A converged point whose loop changes in nothing but what brakes it: drags and the friction of its teeth.
 
-Those move torques by a per cent or less, so that the answer of the periodic response to each of them, found once, adds
-up. What leaves loop, bracing and flanks alone (losses, oil, flows, films) then needs no response of its own.
+Those move torques by a per cent or less, so that the changes of the periodic response with each of them, found once,
+add up. What leaves loop, bracing and flanks alone (losses, oil, flows, films) then needs no response of its own.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,18 +12,18 @@ import numpy as np
 
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.speed_sweep import CurvePoint
-from rigdesign.coupling.iteration import IterationParts
+from rigdesign.coupling.iteration import IterationResult, PointProblem
 from rigdesign.coupling.loads import BracingState, MeshModel, signed_torque
 from rigdesign.coupling.state import OperatingPoint
-from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
-from rigdesign.prediction.readings import Reading, Settled
+from rigdesign.prediction.model import ORDER_QUANTITIES
+from rigdesign.prediction.readings import Readings
 from rigdesign.rig.model import Rig
 from thermal.fe.mesh import FloatArray
 
 DRAG_STEP = 1.0
-"""Drag from which an answer is taken [N m]."""
+"""Drag torque over which a difference is taken [N m]."""
 FRICTION_STEP = 0.4
-"""Share of a friction coefficient from which its answer is taken, to both sides, with its curvature."""
+"""Share of a friction coefficient over which differences are taken, to both sides, for both derivatives."""
 SAME_BRACING = 1e-9
 """Relative difference of twists or shifts that are the same."""
 LEAST_FRICTION = 0.01
@@ -34,23 +34,22 @@ Cause = tuple[str, str]
 
 
 class LinearisedDrag:
-    """Torques, losses and orders of a settled point under other drags and frictions.
+    """Torques, losses and orders of a converged point under other drag torques and frictions.
 
-    orders : channels of orders with their readings; slopes : answers by cause that are known
+    last : iteration of the point; reads : readings of the channels; sensitivities : by cause, those that are known
     already, (2, n) per size and per its square
     """
 
     def __init__(
         self,
-        rig: Rig,
-        settled: Settled,
-        parts: IterationParts,
-        reads: Sequence[tuple[Channel, Reading]],
-        slopes: Mapping[Cause, FloatArray] | None = None,
+        problem: PointProblem,
+        last: IterationResult,
+        reads: Readings,
+        sensitivities: Mapping[Cause, FloatArray] | None = None,
     ) -> None:
-        self.rig, self.settled, self._parts = rig, settled, parts
+        self.problem, self.last = problem, last
         self._orders = [reading for channel, reading in reads if channel.quantity in ORDER_QUANTITIES]
-        self.slopes = dict(slopes or {})
+        self.sensitivities = dict(sensitivities or {})
 
     def causes(
         self,
@@ -61,12 +60,12 @@ class LinearisedDrag:
         setting: BracingState,
     ) -> dict[Cause, float] | None:
         """By how much drags [N m] and frictions differ; None where more than they do."""
-        last = self.settled.last
+        own_rig, last = self.problem.rig, self.last
         if (
-            rig.system is not self.rig.system
-            or not _same_bracing(setting, self.settled.bracing)
-            or rig.pinion_speed(point.speed) != self.rig.pinion_speed(last.point.speed)
-            or signed_torque(rig, point) != signed_torque(self.rig, last.point)
+            rig.system is not own_rig.system
+            or not _same_bracing(setting, self.problem.bracing)
+            or rig.pinion_speed(point.speed) != own_rig.pinion_speed(last.point.speed)
+            or signed_torque(rig, point) != signed_torque(own_rig, last.point)
             or not all(_alike(model.law, own.law) for model, own in zip(models, last.models))
         ):
             return None
@@ -79,7 +78,7 @@ class LinearisedDrag:
 
     def response(self, causes: Mapping[Cause, float]) -> CurvePoint:
         """The response with causes; its motion is that without."""
-        base = self.settled.last.response
+        base = self.last.response
         assert base is not None
         if not causes:
             return base
@@ -99,29 +98,29 @@ class LinearisedDrag:
 
     @cached_property
     def _base(self) -> FloatArray:
-        return self._numbers(self.settled)
+        return self._numbers(self.last)
 
     @property
     def _first(self) -> int:
         """Place of the first number of orders, behind those of the response."""
-        return 3 * len(self.settled.last.models) + 1
+        return 3 * len(self.last.models) + 1
 
     def _moved(self, causes: Mapping[Cause, float]) -> FloatArray:
         moved = np.zeros(self._base.size)
         for cause, size in causes.items():
-            if cause not in self.slopes:
-                self.slopes[cause] = self._slope(*cause)
-            slope, curvature = self.slopes[cause]
-            moved += size * (slope + size * curvature)
+            if cause not in self.sensitivities:
+                self.sensitivities[cause] = self._sensitivity(*cause)
+            first, second = self.sensitivities[cause]
+            moved += size * (first + size * second)
         return moved
 
-    def _slope(self, kind: str, place: str) -> FloatArray:
-        """(2, n) answer to one newton metre of a drag or to a friction coefficient of one, and half its slope."""
-        last = self.settled.last
+    def _sensitivity(self, kind: str, place: str) -> FloatArray:
+        """(2, n) first derivative by a drag [N m] or a friction coefficient, and half the second."""
+        last = self.last
         if kind == "drag":
             more = {**last.drags, place: last.drags.get(place, 0.0) + DRAG_STEP}
-            slope = (self._solved(last.models, more) - self._base) / DRAG_STEP
-            return np.stack([slope, np.zeros_like(slope)])
+            first = (self._solved(last.models, more) - self._base) / DRAG_STEP
+            return np.stack([first, np.zeros_like(first)])
         number = [model.name for model in last.models].index(place)
         stated = last.models[number].law.friction
         step = FRICTION_STEP * max(stated, LEAST_FRICTION)
@@ -133,16 +132,15 @@ class LinearisedDrag:
         return np.linalg.solve(np.stack([sizes, sizes**2], axis=1), np.array(moved))
 
     def _solved(self, models: tuple[MeshModel, ...], drags: Mapping[str, float]) -> FloatArray:
-        last, bracing = self.settled.last, self.settled.bracing
-        response = self._parts.response(self.rig, last.point, models, drags, bracing)
-        done = replace(last, models=models, drags=drags, response=response)
-        return self._numbers(Settled(last.point, done, bracing))
+        problem, last = self.problem, self.last
+        response = problem.parts.response(problem.rig, last.point, models, drags, problem.bracing)
+        return self._numbers(replace(last, models=models, drags=drags, response=response))
 
-    def _numbers(self, settled: Settled) -> FloatArray:
+    def _numbers(self, done: IterationResult) -> FloatArray:
         """Mean torques, losses, drive torque and orders."""
-        response = settled.last.response
+        response = done.response
         assert response is not None
-        read = [number for reading in self._orders for number in reading(self.rig, settled)]
+        read = [number for reading in self._orders for number in reading(self.problem.rig, done)]
         loop = (response.mean, response.friction_power, response.damping_power, [response.drive_torque])
         return np.concatenate([*loop, read])
 
@@ -155,7 +153,7 @@ def _rubbed(models: tuple[MeshModel, ...], number: int, friction: float) -> tupl
 
 
 def _same_bracing(setting: BracingState, own: BracingState | None) -> bool:
-    """Whether two settings are the same but for rounding."""
+    """Whether two bracings are the same but for rounding."""
     if own is None or setting.mode != own.mode:
         return False
     pairs = (setting.twist, own.twist), (setting.shift, own.shift)
@@ -163,7 +161,7 @@ def _same_bracing(setting: BracingState, own: BracingState | None) -> bool:
 
 
 def _alike(law: MeshLaw, own: MeshLaw) -> bool:
-    """Whether laws of a `Memory` differ in friction alone: arrays that are alike are the same ones."""
+    """Whether laws of a `Memoisation` differ in friction alone: arrays that are alike are the same ones."""
     return all(
         one is other or (not isinstance(one, np.ndarray) and one == other)
         for one, other in zip(law, own._replace(friction=law.friction))

@@ -1,6 +1,6 @@
-"""Parts of an iteration that remember: bearing films, meshes, responses and bracing whose inputs were met before.
+"""Memoised parts of an iteration: bearing films, meshes, responses and bracing whose inputs were met before.
 
-A remembered part is the same numbers, only not computed twice. Each is known by all numbers that enter it and by
+A memoised part is the same numbers, only not computed twice. Each is known by all numbers that enter it and by
 nothing else of the case, so that a change finds again whatever it leaves alone. Gaps of the teeth count as the same
 within a tenth of a picometre: the mean over teeth that deviate is zero only to rounding.
 """
@@ -50,7 +50,7 @@ class Memoisation:
 
     @property
     def parts(self) -> IterationParts:
-        """The parts of an iteration that remember."""
+        """The memoised parts of an iteration."""
         return IterationParts(models=self.models, bearings=self.bearings, response=self.response)
 
     def bearings(
@@ -91,9 +91,9 @@ class Memoisation:
         """As `brace_initial`; None without a drivetrain."""
         if rig.case.drivetrain is None:
             return None
-        cold = initial_state(rig, point)
+        initial = initial_state(rig, point)
         assert rig.system is not None
-        models = self.models(rig, point, cold)
+        models = self.models(rig, point, initial)
         at_rest = [alike_teeth(law)._replace(friction=0.0, damping=0.0) for law in laws_of(models)]
         key = (
             rig.system.stiffness.tobytes(),
@@ -104,7 +104,7 @@ class Memoisation:
         )
         known = self._room("bracings")
         if key not in known:
-            known[key] = brace_initial(rig, point, cold, models)
+            known[key] = brace_initial(rig, point, initial, models)
         found: BracingState = known[key]
         return found
 

@@ -21,10 +21,10 @@ Quantity = Literal[
 Part = Literal["value", "real", "imaginary"]
 
 ORDER_QUANTITIES = frozenset({"torque", "angle"})
-"""Quantities that are read as a mean and complex orders of the turning shaft."""
+"""Quantities that are read as a mean and complex orders of the rotating shaft."""
 
 STANDING_QUANTITIES = frozenset({"natural_frequency", "backlash"})
-"""Quantities of the rig at rest and cold: one number, whatever the operating points."""
+"""Quantities of the rig at rest at the reference temperature: one number, whatever the operating points."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -95,7 +95,7 @@ def _same_housings(rig: Rig, stated: Rig) -> bool:
 
 
 def _made_of(box: Gearbox) -> tuple[object, ...]:
-    """What a housing is meshed from beside its geometry, and its materials with those of shafts and gears."""
+    """What a housing is meshed from in addition to its geometry, and its materials with those of shafts and gears."""
     housing = box.housing
     assert housing is not None
     shafts = [shaft.material for shaft in housing.shafts.values()]

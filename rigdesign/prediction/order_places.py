@@ -18,8 +18,8 @@ Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Swing:
-    """Torque of a motor or coupling that swings with a shaft: Re(amplitude load exp(i order phi)) on all freedoms.
+class OscillatingTorque:
+    """Torque of a motor or coupling that oscillates with a shaft: Re(amplitude load exp(i order phi)) on all freedoms.
 
     name : of its part; order : per turn of the pinion of the first mesh; load : (n,) per unit
     """
@@ -42,14 +42,14 @@ class InCoupling:
         turned = float(windup[self.joint.dof_a] - windup[self.joint.dof_b])
         return self.joint.stiffness * (turned - (twist if self.twisted else 0.0))
 
-    def amplitude(self, motion: Complex, omega: float, swings: Sequence[Swing]) -> complex:
+    def amplitude(self, motion: Complex, omega: float, torques: Sequence[OscillatingTorque]) -> complex:
         """Complex torque [N m] from the angles of all freedoms (n,) [rad] at a frequency [rad/s].
 
         What the coupling itself adds between its ends is transmitted too.
         """
         turned = motion[self.joint.dof_a] - motion[self.joint.dof_b]
         sprung = (self.joint.stiffness + 1j * omega * self.joint.damping) * turned
-        return complex(sprung - sum(swing.amplitude for swing in swings if swing.name == self.joint.name))
+        return complex(sprung - sum(torque.amplitude for torque in torques if torque.name == self.joint.name))
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class OfShaft:
         """Zero: an encoder counts from where it stands."""
         return 0.0
 
-    def amplitude(self, motion: Complex, omega: float, swings: Sequence[Swing]) -> complex:
+    def amplitude(self, motion: Complex, omega: float, torques: Sequence[OscillatingTorque]) -> complex:
         """Complex angle [rad]."""
         return complex(motion[self.dof])
 

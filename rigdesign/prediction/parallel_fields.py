@@ -13,5 +13,5 @@ def fields_in_parallel(nodes: int, works: Sequence[Callable[[], T]]) -> list[T]:
     """Results of works on fields of so many nodes, in their order; the same bits on any number of cores."""
     if nodes >= THREADED:
         return [work() for work in works]
-    with BackgroundTasks(works) as beside:
-        return beside.results()
+    with BackgroundTasks(works) as tasks:
+        return tasks.results()

@@ -10,7 +10,7 @@ from rigdesign.prediction.model import Channel, OperatingCondition, Prediction
 from rigdesign.prediction.predictor import Predictor
 
 Thermal = Literal["full", "reduced"]
-"""Temperature fields by the finite-element model of a check, or by its projection on a few shapes."""
+"""Temperature fields by the finite-element model of a check, or by its projection on a reduced basis."""
 
 
 def predict(

@@ -1,45 +1,24 @@
-"""What the channels of a rig read at a settled operating point."""
+"""What the channels of a rig read of an iteration, the last one of a converged operating point above all."""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from rigdesign.base.errors import UsageError
 from rigdesign.coupling.iteration import IterationResult
-from rigdesign.coupling.loads import BracingState as Bracing
-from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Channel
-from rigdesign.prediction.orders import is_ideal, shaft_orders
+from rigdesign.prediction.order_motion import is_ideal
+from rigdesign.prediction.orders import shaft_orders
 from rigdesign.prediction.places import place_weights
 from rigdesign.rig.joints import bearing_of_bore, shell_temperature
 from rigdesign.rig.model import Rig
 from thermal.expansion.clearances import SealExpansion
-from thermal.fe.mesh import FloatArray
-
-
-@dataclass(frozen=True)
-class Settled:
-    """What channels read: a settled operating point."""
-
-    point: OperatingPoint
-    last: IterationResult
-    bracing: Bracing | None
-    """How the loop is braced; None without a drivetrain."""
-
-    def temperature(self, gearbox: str) -> FloatArray:
-        """(n_nodes,) field of a housing [K]."""
-        return self.last.fields[gearbox].temperature
-
-    def seals(self, gearbox: str) -> Mapping[str, SealExpansion]:
-        """Hot seals of a housing."""
-        return self.last.expansion[gearbox].deformed.seals
-
 
 Numbers = tuple[float, ...]
 """Numbers of one channel at one point, in the order of its features."""
-Reading = Callable[[Rig, Settled], Numbers]
+Reading = Callable[[Rig, IterationResult], Numbers]
+Readings = Sequence[tuple[Channel, Reading]]
 
 
 def readings(rig: Rig, channels: Iterable[Channel]) -> list[tuple[Channel, Reading]]:
@@ -53,6 +32,11 @@ def readings(rig: Rig, channels: Iterable[Channel]) -> list[tuple[Channel, Readi
     moving = [channel for channel in channels if channel.quantity not in STANDING_QUANTITIES]
     orders = _Orders([channel for channel in moving if channel.quantity in ORDER_QUANTITIES])
     return [(channel, _reading(rig, channel, orders)) for channel in moving]
+
+
+def count_of(channel: Channel) -> int:
+    """How many numbers a channel gives at a point."""
+    return sum(2 if order else 1 for order in channel.orders) if channel.orders else 1
 
 
 def _reading(rig: Rig, channel: Channel, orders: "_Orders") -> Reading:
@@ -74,12 +58,12 @@ def _temperature(rig: Rig, channel: Channel) -> Reading:
     name, (nodes, weights) = place_weights(rig, channel.place, channel.at)
     surface = channel.place.partition(".")[2]
 
-    def body(_: Rig, settled: Settled) -> Numbers:
-        return (float(weights @ settled.temperature(name)[nodes]),)
+    def body(_: Rig, done: IterationResult) -> Numbers:
+        return (float(weights @ done.fields[name].temperature[nodes]),)
 
-    def shell(rig: Rig, settled: Settled) -> Numbers:
-        (bore,) = body(rig, settled)
-        return (shell_temperature(surface, bore, settled.last.fields[name].conditions),)
+    def shell(rig: Rig, done: IterationResult) -> Numbers:
+        (bore,) = body(rig, done)
+        return (shell_temperature(surface, bore, done.fields[name].conditions),)
 
     return body if bearing_of_bore(rig.case.gearboxes[name], surface) is None else shell
 
@@ -90,7 +74,7 @@ def _outlet(rig: Rig, channel: Channel) -> Reading:
         raise UsageError(
             f"channel {channel.name!r}: {channel.place!r} is no oil stream of this case; it has {', '.join(known)}"
         )
-    return lambda _, settled: (next(s.outlet for s in settled.last.streams if s.name == channel.place),)
+    return lambda _, done: (next(s.outlet for s in done.streams if s.name == channel.place),)
 
 
 def _drive(rig: Rig, channel: Channel) -> Reading:
@@ -99,12 +83,12 @@ def _drive(rig: Rig, channel: Channel) -> Reading:
             f"channel {channel.name!r}: {channel.quantity} needs the drivetrain, which this case leaves out"
         )
 
-    def read(here: Rig, settled: Settled) -> Numbers:
-        assert settled.last.response is not None
-        torque = settled.last.response.drive_torque
+    def read(here: Rig, done: IterationResult) -> Numbers:
+        assert done.response is not None
+        torque = done.response.drive_torque
         if channel.quantity == "drive_torque":
             return (torque,)
-        return (torque * here.drive_speed(settled.point.speed),)
+        return (torque * here.drive_speed(done.point.speed),)
 
     return read
 
@@ -125,39 +109,34 @@ def _seal_gap(rig: Rig, channel: Channel) -> Reading:
         )
     box, own = found[0].split(".", 1)
     if channel.at is None:
-        return lambda _, settled: (settled.seals(box)[own].mean,)
+        return lambda _, done: (_seals(done, box)[own].mean,)
     centre = stations[found[0]].centre
     angle = math.atan2(channel.at[2] - centre[2], channel.at[1] - centre[1])
 
-    def read(_: Rig, settled: Settled) -> Numbers:
-        seal = settled.seals(box)[own]
+    def read(_: Rig, done: IterationResult) -> Numbers:
+        seal = _seals(done, box)[own]
         return (float(np.interp(angle, seal.angles, seal.gap, period=2.0 * math.pi)),)
 
     return read
 
 
+def _seals(done: IterationResult, gearbox: str) -> Mapping[str, SealExpansion]:
+    """Hot seals of a housing."""
+    return done.expansion[gearbox].deformed.seals
+
+
 class _Orders:
-    """Complex orders of all channels that want them, found together for one settled point after the other."""
+    """Complex orders of all channels that want them, found together for one iteration after the other."""
 
     def __init__(self, channels: Sequence[Channel]) -> None:
         self._channels = channels
-        self._known: tuple[Settled, Mapping[tuple[str, float], complex]] | None = None
+        self._known: tuple[IterationResult, Mapping[tuple[str, float], complex]] | None = None
 
-    def at(self, rig: Rig, settled: Settled) -> Mapping[tuple[str, float], complex]:
+    def at(self, rig: Rig, done: IterationResult) -> Mapping[tuple[str, float], complex]:
         """(channel, order) -> amplitude."""
-        if self._known is None or self._known[0] is not settled:
-            last = settled.last
-            assert settled.bracing is not None
-            found = shaft_orders(
-                rig,
-                settled.point,
-                last.models,
-                last.drags,
-                settled.bracing,
-                list(self._channels),
-                base=last.response if is_ideal(rig) else None,
-            )
-            self._known = settled, found
+        if self._known is None or self._known[0] is not done:
+            base = done.response if is_ideal(rig) else None
+            self._known = done, shaft_orders(rig, done.loop, self._channels, base=base)
         return self._known[1]
 
 
@@ -169,8 +148,8 @@ def _in_orders(rig: Rig, channel: Channel, orders: _Orders) -> Reading:
     if not channel.orders:
         raise UsageError(f"channel {channel.name!r}: {channel.quantity} is read by orders, and none is given")
 
-    def read(here: Rig, settled: Settled) -> Numbers:
-        found = orders.at(here, settled)
+    def read(here: Rig, done: IterationResult) -> Numbers:
+        found = orders.at(here, done)
         numbers: list[float] = []
         for order in channel.orders:
             value = complex(found[channel.name, order])

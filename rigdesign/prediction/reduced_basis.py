@@ -1,8 +1,8 @@
-"""Temperature shapes of a housing for the reduced model, and how far the model with them is off.
+"""Reduced basis of the temperatures of a housing, and the error of the model with it.
 
-Shapes are fields the full model answers with: fields under the conditions of some operating points, what each
-film, joint and source does to them (the Jacobian's answers), and fields under changed conditions. Changed
-conditions are drawn at random (see `drawn`); those the model misses most become shapes, until it stays within
+Basis vectors are fields of the full model: fields under the conditions of some operating points, what each
+film, joint and source does to them (solutions with the Jacobian), and fields under changed conditions. Changed
+conditions are drawn at random (see `drawn`); those the model misses most join the basis, until it stays within
 `WANTED` on draws it has not seen. The largest miss on those last draws is the stated error.
 """
 
@@ -36,11 +36,11 @@ from thermal.fe.solver import LowRank
 from thermal.films import convection
 
 WANTED = 0.08
-"""Error [K] of what is read under which no further shapes are sought."""
-SHAPES_LEAST = 4e-3
+"""Error [K] of what is read under which no further basis vectors are sought."""
+LEAST_DIRECTION = 4e-3
 """Root mean square [K] below which a direction of the sampled fields is left out."""
 DRAWS = 10
-"""Changed conditions per round that may become shapes."""
+"""Changed conditions per round that may join the basis."""
 UNSEEN = 8
 """Changed conditions per round that only tell the error."""
 ROUNDS = 4
@@ -54,9 +54,9 @@ LITTLE = 1.2
 SHIFT = 15.0
 """Largest change of a fluid temperature in a draw [K]."""
 FLUX_RISE = 20.0
-"""Temperature difference [K] that gives the size of the answer to a uniform heat flux."""
+"""Temperature difference [K] that gives the size of the response to a uniform heat flux."""
 TOLERANCE = 1e-6
-"""Heat left over in a full field that becomes a shape, relative to the heat turned over."""
+"""Heat left over in a full field that joins the basis, relative to the heat turned over."""
 
 
 @dataclass(frozen=True)
@@ -65,9 +65,9 @@ class Basis:
 
     reduced: ReducedConduction
     sizes: FloatArray
-    """(m,) temperature that each shape reaches [K], strongest first."""
+    """(m,) temperature that each basis vector reaches [K], strongest first."""
     error: float
-    """Largest error of a surface or body mean or a sensor in draws that made no shape [K]."""
+    """Largest error of a surface or body mean or a sensor in draws that did not join the basis [K]."""
 
 
 class _Kept:
@@ -109,7 +109,7 @@ class FullField:
         )
         return found.field[: problem.n_nodes]
 
-    def answers(self, conditions: Sequence[Condition], field: FloatArray) -> FloatArray:
+    def responses(self, conditions: Sequence[Condition], field: FloatArray) -> FloatArray:
         """(n_nodes, k) changes of a field by each film, joint and source, about as large as they may be.
 
         They only have to point the right way, so that the preconditioner does.
@@ -159,24 +159,24 @@ def build_basis(
     readers: Sequence[Weights] = (),
     seed: int = 5,
 ) -> Basis:
-    """Shapes for one housing from its conditions at some operating points.
+    """The basis of one housing from its conditions at some operating points.
 
     readers : sensors at points; the error is that of theirs and of the means of all surfaces and bodies
     seed : of the draws, which are the same for the same seed
     """
     fields: list[FloatArray] = []
-    answers: list[FloatArray] = []
+    responses: list[FloatArray] = []
     full = FullField(setup, states[0])
     for conditions in states:
         fields.append(full.solve(conditions, fields[-1] if fields else None))
         full = FullField(setup, conditions, fields[-1])
-        answers.append(full.answers(conditions, fields[-1]))
-    snapshots = np.hstack([np.array(fields).T, *answers])
+        responses.append(full.responses(conditions, fields[-1]))
+    snapshots = np.hstack([np.array(fields).T, *responses])
     read = _readers(setup, readers)
     random = np.random.default_rng(seed)
     for last in [False] * (ROUNDS - 1) + [True]:
-        shapes, sizes = shapes_of(snapshots, SHAPES_LEAST)
-        reduced = ReducedConduction(setup, shapes)
+        vectors, sizes = shapes_of(snapshots, LEAST_DIRECTION)
+        reduced = ReducedConduction(setup, vectors)
         missed = _missed(full, reduced, read, states, random, UNSEEN)
         error = max(gap for gap, _ in missed)
         if error <= WANTED or last:

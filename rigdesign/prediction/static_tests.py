@@ -1,6 +1,6 @@
-"""What is measured on the cold rig at rest: natural frequencies by hammer, backlash by hand.
+"""What is measured on the rig at rest, at the reference temperature: natural frequencies by hammer, backlash by hand.
 
-The loop stands braced with its first torque, its journals on the shells: no film, no friction of turning. The teeth
+The loop stands braced with its first torque, its journals on the shells: no film, no friction of rotation. The teeth
 carry by that torque alone, so that the mesh is as stiff as the pairs it presses together, mean over the places where
 the teeth may have come to rest.
 """
@@ -28,7 +28,7 @@ HIGHEST_FREQUENCY = 20e3
 
 
 def standing_value(rig: Rig, channel: Channel, modes: Sequence[LoopMode] | None = None) -> float:
-    """Natural frequency [Hz] or circumferential backlash on the working pitch circle [m] of the cold rig at rest.
+    """Natural frequency [Hz] or circumferential backlash on the working pitch circle [m] of the rig at rest.
 
     modes : `standing_modes`, where they are known
 
@@ -40,7 +40,7 @@ def standing_value(rig: Rig, channel: Channel, modes: Sequence[LoopMode] | None 
         The standstill torque leaves the flanks open.
     """
     if channel.quantity == "backlash":
-        return cold_backlash(rig, channel.place)
+        return assembly_backlash(rig, channel.place)
     if channel.quantity != "natural_frequency":
         raise UsageError(f"channel {channel.name!r}: {channel.quantity} is not measured on the rig at rest")
     modes = standing_modes(rig) if modes is None else modes
@@ -53,7 +53,7 @@ def standing_value(rig: Rig, channel: Channel, modes: Sequence[LoopMode] | None 
     return modes[number - 1].frequency
 
 
-def cold_backlash(rig: Rig, mesh: str) -> float:
+def assembly_backlash(rig: Rig, mesh: str) -> float:
     """Circumferential backlash of a mesh at the temperature of the drawings [m]; UsageError for an unknown mesh."""
     if mesh not in rig.pairs:
         raise UsageError(f"backlash of {mesh!r}: no such mesh; the case has {', '.join(rig.pairs)}")
@@ -76,13 +76,13 @@ def standing_modes(rig: Rig) -> tuple[LoopMode, ...]:
 
 
 def standing_laws(rig: Rig) -> list[MeshLaw]:
-    """Mesh laws of the cold rig with the mean stiffness that the standstill torque makes, all teeth alike."""
+    """Mesh laws of the rig at rest with the mean stiffness that the standstill torque makes, all teeth alike."""
     assert rig.system is not None
     point = OperatingPoint(stage="standstill", speed=0.0, torque=standstill_torque(rig))
-    cold = initial_state(rig, point)
+    initial = initial_state(rig, point)
     laws = [
         alike_teeth(law)
-        for law in shifted_laws(rig, mesh_models(rig, point, cold), brace_initial(rig, point, cold))
+        for law in shifted_laws(rig, mesh_models(rig, point, initial), brace_initial(rig, point, initial))
     ]
     loop = port_model(rig.system, laws)
     state = solve_static(loop, LoopLoad(torque=signed_torque(rig, point)))

@@ -48,7 +48,7 @@ def compared_temperatures(rig: Rig, result: PointResult, field: HousingField) ->
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
     other = solve_housing(
-        rig, name, result.point, last.coupling_state, last.bearings, last.losses, field,
+        rig, name, last, field,
         radiation_included=not housing.radiation_included, tolerance=COMPARED,
     )  # fmt: skip
     readings = {housing.radiation_included: field, not housing.radiation_included: other}

@@ -1,4 +1,4 @@
-"""Response over speed and time run over the schedule of a settled rig, on other cores while heat is computed here."""
+"""Response over speed and time run over the schedule of a converged rig, in parallel with its heat."""
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
@@ -19,7 +19,7 @@ from thermal.fe.kernels import one_thread
 class DynamicWork:
     """Starts at once; `result` waits for it. None of it needs more of the points than their warm gears.
 
-    rig : the one on which the loop settled; one without a drivetrain has no dynamics
+    rig : the one on which the loop converged; one without a drivetrain has no dynamics
     points : every held point
     """
 

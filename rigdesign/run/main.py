@@ -77,23 +77,23 @@ def solve_case(
         say(f"meshed {name}: {len(rig.models[name].mesh.points)} nodes")
     lap("rig_and_mesh")
     with BackgroundMeshing(wanted, rig) as meshing, one_thread():
-        settled = _settled(rig, say)
+        converged = _converged(rig, say)
         lap("coupling")
         rigs = meshing.rigs()
         lap("other_meshes")
     wanted = rigs[-1]
     say("response over speed, time run over the schedule")
-    with DynamicWork(rig, settled) as dynamics:
-        points = settled
+    with DynamicWork(rig, converged) as dynamics:
+        points = converged
         if wanted is not rig:
             say(f"last iteration on the {fidelity} mesh")
             with dynamics.sharing():
-                points = [on_mesh(wanted, point, rig) for point in settled]
+                points = [on_mesh(wanted, point, rig) for point in converged]
             lap("last_pass")
             dynamics.result()
             lap("dynamics")
         with dynamics.sharing():
-            meshes = discretisation(rigs, rig, settled, points)
+            meshes = discretisation(rigs, rig, converged, points)
             lap("discretisation")
             temperatures = [compared_temperatures(wanted, *found) for found in housing_fields(points)]
             lap("alternatives")
@@ -112,14 +112,14 @@ def solve_case(
     return solved
 
 
-def _settled(rig: Rig, say: Progress) -> list[PointResult]:
+def _converged(rig: Rig, say: Progress) -> list[PointResult]:
     """Every held point, each from the one before."""
-    settled: list[PointResult] = []
+    points: list[PointResult] = []
     for point in held_points(rig):
         say(f"coupling loads, losses, temperatures and thermal expansion at stage {point.stage}")
-        start = settled[-1].last.coupling_state if settled else None
-        settled.append(solve_point(rig, point, start=start))
-    return settled
+        start = points[-1].last.coupling_state if points else None
+        points.append(solve_point(rig, point, start=start))
+    return points
 
 
 def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
@@ -171,7 +171,7 @@ def _doubts(case: Case) -> list[Finding]:
 
 
 def losses_by_stage(rig: Rig, points: list[PointResult]) -> dict[str, Sequence[PlacedLoss]]:
-    """Losses at the end of every turning stage: coupled at the held ones, with their warm rig at the others."""
+    """Losses at the end of every rotating stage: coupled at the held ones, with their warm rig at the others."""
     held = {point.point.stage: point for point in points}
     test = governing_point(points)
     losses: dict[str, Sequence[PlacedLoss]] = {}

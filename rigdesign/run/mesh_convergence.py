@@ -1,7 +1,7 @@
 """How far the numbers the checks use are from those of an infinitely fine mesh.
 
-The settled point is solved once more, same losses, films and oil, on meshes of another fidelity: quick beside
-standard; quick and standard beside reference. From three meshes the error follows by Richardson extrapolation
+The converged point is solved once more, same losses, films and oil, on meshes of another fidelity: quick for
+standard; quick and standard for reference. From three meshes the error follows by Richardson extrapolation
 with the order observed, from two with the order of a field at re-entrant edges. At quick there is nothing
 coarser, only the energy norm of the recovered gradient is given. The values of the checks are taken on every
 mesh as they are, the worst place of all; a verdict that depends on the mesh says so
@@ -46,7 +46,7 @@ class MeshErrors:
     rows: tuple[DiscretisationRow, ...]
     """One for each quantity of the governing point, the energy norm of each housing first, then the checks."""
     shifts: tuple[MeshShift, ...]
-    """At reference, from the standard to the fine mesh."""
+    """At reference, from the standard to the final mesh."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +59,12 @@ class Numbers:
 
 
 def discretisation(
-    rigs: Sequence[Rig], source: Rig, settled: Sequence[PointResult], points: Sequence[PointResult]
+    rigs: Sequence[Rig], source: Rig, converged: Sequence[PointResult], points: Sequence[PointResult]
 ) -> MeshErrors:
     """Errors of all numbers of the governing held point and of the checks.
 
     rigs : from coarse to fine meshes; the errors are those of the last
-    source : the rig on which the loop ran; settled : held points as the loop left them
+    source : the rig on which the loop ran; converged : held points as the loop left them
     points : the same on the mesh of the last rig
     """
     *coarser, rig = rigs
@@ -76,11 +76,11 @@ def discretisation(
         if _nodes(other) == _nodes(rig):
             continue
         try:
-            meshes.append(numbers(other, [on_mesh(other, point, source) for point in settled], governing))
+            meshes.append(numbers(other, [on_mesh(other, point, source) for point in converged], governing))
         except (ThermalError, DynamicsError, RigdesignError) as error:
             lost = f"; no result on the mesh of {other.fidelity} fidelity: {error}"
     # after a last iteration on a finer mesh the points come from one more iteration, as those of the coarser meshes do
-    ours = points if rig is not source or not meshes else [on_mesh(rig, point, rig) for point in settled]
+    ours = points if rig is not source or not meshes else [on_mesh(rig, point, rig) for point in converged]
     rows = [_energy_row(rig, field, last.point.stage, lost) for field in last.last.fields.values()]
     meshes.append(numbers(rig, ours, governing))
     if len(meshes) == 1:

@@ -1,6 +1,6 @@
-"""A settled operating point on another mesh: one more iteration, with the loads and losses it settled on.
+"""A converged operating point on another mesh: one more iteration, with its loads and losses.
 
-At reference the loop runs on the standard mesh and this iteration on the fine one ends it. The same iteration on
+At reference the loop runs on the standard mesh and this iteration on the final one ends it. The same iteration on
 coarser meshes tells how far mesh and result hang together (`rigdesign.run.mesh_convergence`).
 """
 
@@ -16,13 +16,14 @@ from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.checks import mesh_checks
 from rigdesign.coupling.bearing_films import solve_bearings
-from rigdesign.coupling.expansion import expand_housing
-from rigdesign.coupling.iteration import IterationResult, next_state
+from rigdesign.coupling.convergence import Residual
+from rigdesign.coupling.iteration import HousingResult, IterationResult, solve_housings
 from rigdesign.coupling.loads import mesh_models
-from rigdesign.coupling.loop import PointResult, Residual
+from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.oil import oil_streams
-from rigdesign.coupling.state import CouplingState, length_change, temperature_change
-from rigdesign.coupling.temperatures import HousingField, heat_into_films, heat_into_oil, solve_housing
+from rigdesign.coupling.relaxation import next_state
+from rigdesign.coupling.state import CouplingState
+from rigdesign.coupling.temperatures import HousingField
 from rigdesign.records.heat_split import split_as_solved
 from rigdesign.records.housing import housing_temperatures
 from rigdesign.records.solved_rig import housing_fields, solved_rig
@@ -37,7 +38,7 @@ COARSER: dict[Fidelity, tuple[Fidelity, ...]] = {
     "standard": ("quick",),
     "reference": ("quick", "standard"),
 }
-"""Meshes beside that of a fidelity which tell its errors, from coarse to fine."""
+"""Meshes from which the errors of a fidelity follow, in addition to its own, from coarse to fine."""
 
 
 def looping_rig(rig: Rig) -> Rig:
@@ -90,51 +91,39 @@ def _meshed(rig: Rig, fidelity: Fidelity, *, needed: bool) -> dict[str, GearboxM
         return None
 
 
-def on_mesh(rig: Rig, settled: PointResult, source: Rig) -> PointResult:
-    """One more iteration of a settled point on the mesh of ``rig``: fields, thermal expansion, oil, warm gears and
+def on_mesh(rig: Rig, converged: PointResult, source: Rig) -> PointResult:
+    """One more iteration of a converged point on the mesh of ``rig``: fields, thermal expansion, oil, warm gears and
     bearings.
 
-    The periodic response and the losses are those the point settled on. The residual that is added is the
+    The periodic response and the losses are those the point converged with. The residual that is added is the
     change of this iteration: the shift from mesh to mesh.
 
-    source : the rig on which the point settled
+    source : the rig on which the point converged
 
     Raises
     ------
     NotConverged
         A solve stalls on that mesh.
     """
-    last = settled.last
-    fields, expansion = {}, {}
-    for name, field in last.fields.items():
-        meshes = source.models[name].mesh, rig.models[name].mesh
-        same = meshes[0] is meshes[1]
-        guess = field if same and rig is source else _carried(field, *meshes)
-        fields[name] = solve_housing(
-            rig, name, last.point, last.coupling_state, last.bearings, last.losses, guess
-        )
-        if name in last.expansion:
-            expansion[name] = expand_housing(rig, fields[name], last.expansion[name] if same else None)
-    bearing_heat = dict(last.bearing_heat)
-    wall_heat = dict(last.wall_heat)
-    for field in fields.values():
-        bearing_heat |= heat_into_films(field)
-        wall_heat |= heat_into_oil(field)
-    done = replace(
-        last,
-        fields=fields,
-        expansion=expansion,
-        bearing_heat=bearing_heat,
-        wall_heat=wall_heat,
-        streams=tuple(oil_streams(rig, last.losses, bearing_heat, wall_heat)),
-    )
+    last = converged.last
+    housings = solve_housings(rig, last, _carried_over(last, source, rig))
+    streams = oil_streams(rig, last.losses, housings.bearing_heat, housings.wall_heat)
+    done = replace(last, **vars(housings), streams=tuple(streams))
     after = next_state(rig, done)
-    change = Residual(
-        temperature=temperature_change(done.coupling_state, after),
-        length=length_change(done.coupling_state, after),
-        torque=0.0,
-    )
-    return replace(settled, last=_warmed(rig, done, after), residuals=(*settled.residuals, change))
+    change = replace(Residual.between(done.coupling_state, after), torque=0.0)
+    return replace(converged, last=_warmed(rig, done, after), residuals=(*converged.residuals, change))
+
+
+def _carried_over(last: IterationResult, source: Rig, rig: Rig) -> HousingResult:
+    """First guess on the meshes of ``rig`` from an iteration on those of ``source``."""
+    meshes = {name: (source.models[name].mesh, rig.models[name].mesh) for name in last.fields}
+    same = {name for name, (old, new) in meshes.items() if old is new}
+    fields = {
+        name: field if name in same and rig is source else _carried(field, *meshes[name])
+        for name, field in last.fields.items()
+    }
+    expansion = {name: own for name, own in last.expansion.items() if name in same}
+    return replace(last, fields=fields, expansion=expansion)
 
 
 def _carried(field: HousingField, old: NamedMesh, new: NamedMesh) -> HousingField:

@@ -55,7 +55,7 @@ def misalignments(
 def _coupling(place: CouplingPlace, branch: Branch, branches: Sequence[Branch]) -> FloatArray:
     """(n, 4) offset in y and z [m] and angle in y and z [rad] at the times of a branch."""
     motion = _end(place.first, branch, branches) - _end(place.second, branch, branches)
-    motion[:, :2] += place.cold
+    motion[:, :2] += place.offset
     return motion
 
 

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 
 from rigdesign.coupling.loop import PointResult, governing_point
-from rigdesign.coupling.stage_losses import StageLosses, stage_losses
+from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.transient.blend import blended
@@ -19,8 +20,8 @@ class Heating:
     def __init__(self, rig: Rig, points: Sequence[PointResult]) -> None:
         self._rig = rig
         self._test = governing_point(points)
-        self._states: dict[OperatingPoint, StageLosses] = {
-            held.point: StageLosses(
+        self._states: dict[OperatingPoint, PointLosses] = {
+            held.point: PointLosses(
                 point=held.point,
                 coupling_state=held.last.coupling_state,
                 bearings=held.last.bearings,
@@ -37,7 +38,7 @@ class Heating:
             self._conditions[key] = oil_conditions(self._rig, name, self.state(point), oil=oil)
         return self._conditions[key]
 
-    def state(self, point: OperatingPoint) -> StageLosses:
+    def state(self, point: OperatingPoint) -> PointLosses:
         """What heats the rig at an operating point."""
         if point not in self._states:
             heats = self._rig.case.losses.mesh_damping_heats_oil

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
 from rigdesign.coupling.losses import PlacedLoss
-from rigdesign.coupling.stage_losses import StageLosses
+from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, injected_flow, wall_flow
 from rigdesign.transient.still_air import at_least, still
@@ -44,7 +44,7 @@ class _Stream:
     supplies: tuple[Supply, ...]
 
 
-def oil_conditions(rig: Rig, name: str, state: StageLosses, *, oil: bool) -> tuple[Condition, ...]:
+def oil_conditions(rig: Rig, name: str, state: PointLosses, *, oil: bool) -> tuple[Condition, ...]:
     """Conditions of the housing of gearbox ``name`` at one speed and torque.
 
     oil : whether the rig is fed
@@ -74,17 +74,15 @@ def oil_conditions(rig: Rig, name: str, state: StageLosses, *, oil: bool) -> tup
     )
 
 
-def _steady(rig: Rig, name: str, state: StageLosses, losses: Sequence[PlacedLoss]) -> list[Condition]:
+def _steady(rig: Rig, name: str, state: PointLosses, losses: Sequence[PlacedLoss]) -> list[Condition]:
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
-    conditions = boundary_conditions(
-        rig, name, state.point, state.coupling_state, state.bearings, losses,
-        radiation_included=housing.radiation_included,
-    )  # fmt: skip
+    heated = replace(state, losses=tuple(losses))
+    conditions = boundary_conditions(rig, name, heated, radiation_included=housing.radiation_included)
     return [condition for condition in conditions if not isinstance(condition, StoredHeat)]
 
 
-def _warmer(state: StageLosses) -> StageLosses:
+def _warmer(state: PointLosses) -> PointLosses:
     """The same state with every oil outlet and film one step warmer."""
     outlets = {stream: value + MOVED for stream, value in state.coupling_state.oil_outlet.items()}
     films = {
@@ -110,7 +108,7 @@ def _floored(film: Film, floor: float) -> Film:
 def _gear_network(
     rig: Rig,
     name: str,
-    state: StageLosses,
+    state: PointLosses,
     losses: Sequence[PlacedLoss],
     wetted: Sequence[tuple[Film, float]],
     oil: bool,
@@ -143,7 +141,7 @@ def _gear_network(
 def _bearing_network(
     rig: Rig,
     name: str,
-    state: StageLosses,
+    state: PointLosses,
     losses: Sequence[PlacedLoss],
     wetted: Sequence[tuple[Film, float]],
     oil: bool,
@@ -183,7 +181,7 @@ def _bearing_network(
     )
 
 
-def _leak(rig: Rig, name: str, state: StageLosses, specific_heat: float) -> tuple[float, float] | None:
+def _leak(rig: Rig, name: str, state: PointLosses, specific_heat: float) -> tuple[float, float] | None:
     """Gear oil that leaks to the bearings: temperature [K] at the held stage, and flow [kg/s] of bearing oil alike."""
     box = rig.case.gearboxes[name]
     share = box.oil_paths.leak_warm_cold

@@ -1,5 +1,4 @@
-"""The rig with one input at one end of its range: from the converged stated rig, only what the input touches
-is solved again."""
+"""The rig with one input at one end of its range: from the converged stated rig, only what the input touches again."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -66,7 +65,7 @@ class EndResult:
 
 @dataclass(frozen=True, kw_only=True)
 class Reference:
-    """The converged stated rig, small enough to be handed to worker processes; they make the rest again from it."""
+    """The converged stated rig, small enough to be sent to worker processes; they make the rest again from it."""
 
     case: Case
     states: tuple[CouplingState, ...]
@@ -80,7 +79,7 @@ class Reference:
 
 
 def solve_stated(case: Case) -> tuple[Reference, EndResult]:
-    """Solve the stated rig and say what its checks are."""
+    """Solve the stated rig, and its checks."""
     with solver_errors(case), threadpool_limits(limits=1):
         solved = solve_case(case, FIDELITY)
         outcome = _outcome(solved, ())

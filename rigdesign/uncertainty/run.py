@@ -1,6 +1,6 @@
 """`check --ranges`: every assumed input with a range at its two ends, one at a time, and what the verdicts are worth.
 
-Every end starts from the settled stated rig and solves again what its input touches (`ranges_plan`): nothing but the
+Every end starts from the converged stated rig and solves again what its input touches (`ranges_plan`): nothing but the
 checks for a limit, the coupling loop for heat and oil, the whole for what the loop is made of. Ends run in worker
 processes like the points of a study.
 """
@@ -44,7 +44,7 @@ def with_ranges(
     """The result of a run with its verdicts over the ranges of the assumed inputs.
 
     A check passes only if it holds at both ends of every range, else it warns and says which assumption decides
-    it. An end without a result (an invalid case, an iteration that does not settle) makes the checks that depend on
+    it. An end without a result (an invalid case, an iteration that does not converge) makes the checks that depend on
     its input warn.
 
     Parameters
@@ -59,7 +59,7 @@ def with_ranges(
     UsageError
         ``workers`` below 1.
     NotConvergedError
-        The stated rig does not settle at quick fidelity.
+        The stated rig does not converge at quick fidelity.
     """
     processes, began = worker_count(workers), time.perf_counter()
     ends, left = plan(case, result.checks)
@@ -188,6 +188,6 @@ def _method(ends: list[tuple[RangeEnd, EndResult]]) -> str:
     words = ", ".join(f"{number} {kind}" for kind, number in sorted(kinds.items()))
     return (
         f"{len(ends)} ends of {len(ends) // 2} ranges, one input at a time, solved at {FIDELITY} fidelity from the "
-        f"settled stated rig; solved again: {words or 'none'}; {same} ends are the stated value, {failed} have no "
+        f"converged stated rig; solved again: {words or 'none'}; {same} ends are the stated value, {failed} have no "
         "result. Between the ends nothing is solved: a margin that is least inside a range is not seen"
     )

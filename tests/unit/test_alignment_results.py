@@ -133,7 +133,7 @@ def test_the_rise_of_a_shaft_is_that_by_hand_where_all_is_evenly_warm(rig: Rig, 
 def test_the_recommended_cold_offset_makes_the_hot_one_zero(rig: Rig, shape: Expansion) -> None:
     for place in coupling_places(rig):
         hot = coupled_ends(place, {"test": shape.axes})
-        reset = replace(place, cold=(-hot.offset[0], -hot.offset[1]))
+        reset = replace(place, offset=(-hot.offset[0], -hot.offset[1]))
         assert coupled_ends(reset, {"test": shape.axes}).radial_offset == pytest.approx(0.0, abs=1e-15)
         assert coupled_ends(reset, {}).radial_offset == pytest.approx(hot.radial_offset)
 
@@ -256,7 +256,7 @@ def branch(gearbox: str, times: list[float], lift: list[float]) -> Any:
 def between(monkeypatch: pytest.MonkeyPatch) -> None:
     """One coupling between the shafts of gearboxes a and b, the first set 0.05 mm low when cold."""
     ends = (CouplingEnd(shaft=name, gearbox=name) for name in ("a", "b"))
-    place = CouplingPlace(name="pinion_side", first=next(ends), second=next(ends), cold=(0.0, -5e-5))
+    place = CouplingPlace(name="pinion_side", first=next(ends), second=next(ends), offset=(0.0, -5e-5))
     monkeypatch.setattr(transient_alignment, "coupling_places", lambda rig: iter([place]))
 
 

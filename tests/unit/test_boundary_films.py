@@ -13,6 +13,7 @@ from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.losses import PlacedLoss, rotating_losses
 from rigdesign.coupling.oil import oil_streams
+from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from thermal.conditions.boundary import Exchange, Film, SurfaceSource
@@ -45,9 +46,8 @@ def conditions_of(case: Case) -> tuple[list[object], list[PlacedLoss]]:
     coupling_state = initial_state(rig, point)
     bearings = solve_bearings(rig, point, coupling_state)
     losses = rotating_losses(rig, point, coupling_state, mesh_models(rig, point, coupling_state), bearings)
-    return list(
-        boundary_conditions(rig, "test", point, coupling_state, bearings, losses, radiation_included=True)
-    ), losses
+    heated = PointLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=tuple(losses))
+    return list(boundary_conditions(rig, "test", heated, radiation_included=True)), losses
 
 
 def test_rotating_films_take_air_at_the_film_temperature(case: Case) -> None:

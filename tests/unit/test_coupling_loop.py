@@ -1,4 +1,4 @@
-"""The coupling loop ends when temperatures, lengths and torques have all settled, on passes made up here."""
+"""The coupling loop ends when temperatures, lengths and torques have all converged, on iterations made up here."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from rigdesign.base.errors import NotConvergedError
-from rigdesign.coupling import loop as coupling
-from rigdesign.coupling.iteration import next_state
+from rigdesign.coupling import acceleration, fixed_point, iteration, loop
+from rigdesign.coupling.relaxation import next_state
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.oil_supply import gear_oil
 from tests.warm_prototype import base
@@ -16,7 +16,7 @@ from tests.warm_prototype import base
 POINT = OperatingPoint(stage="x", speed=1.0, torque=1.0)
 TOLERANCE = {"temperature": 0.05, "length": 0.5e-6, "torque": 1e-3}
 SIZE = {"temperature": 4.0, "length": 300e-6, "torque": 0.5}
-"""How far each is from its end at first [K, m, relative]; every pass halves it."""
+"""How far each is from its end at first [K, m, relative]; every iteration halves it."""
 
 
 def state(open_at: dict[str, float]) -> CouplingState:
@@ -29,14 +29,14 @@ def state(open_at: dict[str, float]) -> CouplingState:
     )  # fmt: skip
 
 
-def loop(monkeypatch: pytest.MonkeyPatch, slow: str, passes: int = 40) -> coupling.PointResult:
+def solved(monkeypatch: pytest.MonkeyPatch, slow: str, most: int = 40) -> loop.PointResult:
     """Solve a point where only one quantity is still on its way."""
 
     def after(count: int) -> dict[str, float]:
         return {name: SIZE[name] * 0.5**count if name == slow else 0.0 for name in SIZE}
 
     numerics = SimpleNamespace(
-        coupling_passes=passes, temperature_tolerance=TOLERANCE["temperature"], growth_tolerance=TOLERANCE["length"],
+        coupling_passes=most, temperature_tolerance=TOLERANCE["temperature"], growth_tolerance=TOLERANCE["length"],
         torque_tolerance=TOLERANCE["torque"],
     )  # fmt: skip
     rig: Any = SimpleNamespace(case=SimpleNamespace(numerics=numerics, drivetrain=None))
@@ -46,27 +46,27 @@ def loop(monkeypatch: pytest.MonkeyPatch, slow: str, passes: int = 40) -> coupli
         done.append(len(done) + 1)
         return done[-1]
 
-    monkeypatch.setattr(coupling, "initial_state", lambda *_: state(after(0)))
-    monkeypatch.setattr(coupling, "run_iteration", run_iteration)
-    monkeypatch.setattr(coupling, "next_state", lambda _, count: state(after(count)))
-    monkeypatch.setattr(coupling, "heat_residual", lambda *_: 0.0)
-    return coupling.solve_point(rig, POINT)
+    monkeypatch.setattr(iteration, "initial_state", lambda *_: state(after(0)))
+    monkeypatch.setattr(fixed_point, "run_iteration", run_iteration)
+    monkeypatch.setattr(acceleration, "next_state", lambda _, count, __: state(after(count)))
+    monkeypatch.setattr(fixed_point, "heat_residual", lambda *_: 0.0)
+    return loop.solve_point(rig, POINT)
 
 
-@pytest.mark.parametrize(("slow", "passes"), [("temperature", 7), ("length", 10), ("torque", 9)])
-def test_the_loop_goes_on_until_the_slowest_has_settled(
-    slow: str, passes: int, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("slow", "count"), [("temperature", 7), ("length", 10), ("torque", 9)])
+def test_the_loop_goes_on_until_the_slowest_has_converged(
+    slow: str, count: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The n-th pass moves by size / 2^n: 4 K fall below 0.05 K in the 7th, 300 um below 0.5 um in the 10th, half of
-    the torque below 1e-3 in the 9th."""
-    assert SIZE[slow] * 0.5**passes <= TOLERANCE[slow] < SIZE[slow] * 0.5 ** (passes - 1)
-    assert len(loop(monkeypatch, slow).residuals) == passes
+    """The n-th iteration moves by size / 2^n: 4 K fall below 0.05 K in the 7th, 300 um below 0.5 um in the 10th, half
+    of the torque below 1e-3 in the 9th."""
+    assert SIZE[slow] * 0.5**count <= TOLERANCE[slow] < SIZE[slow] * 0.5 ** (count - 1)
+    assert len(solved(monkeypatch, slow).residuals) == count
 
 
 @pytest.mark.parametrize("slow", ["temperature", "length", "torque"])
-def test_a_loop_that_runs_out_of_passes_says_so(slow: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_loop_that_runs_out_of_iterations_says_so(slow: str, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(NotConvergedError, match="did not converge in 5 iterations"):
-        loop(monkeypatch, slow, passes=5)
+        solved(monkeypatch, slow, most=5)
 
 
 def test_gears_without_a_housing_are_no_colder_than_the_oil_that_leaves_them() -> None:

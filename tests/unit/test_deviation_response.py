@@ -10,7 +10,8 @@ from dynamics.orders.tooth_excitation import Motion, excitation, pair_sensitivit
 from rigdesign.base.errors import UsageError
 from rigdesign.prediction.exact_orders import ExactMotion
 from rigdesign.prediction.model import Channel
-from rigdesign.prediction.orders import PointOrders, ideal_response, shaft_orders
+from rigdesign.prediction.order_motion import ideal_response
+from rigdesign.prediction.orders import PointOrders, shaft_orders
 from rigdesign.prediction.static_tests import standing_modes, standing_value
 from tests.order_example import DRAGS, changed, channels, settled
 

@@ -20,17 +20,8 @@ def coefficients(changes: tuple[tuple[str, object], ...] = ()) -> dict[tuple[str
     """(surface, kind) -> coefficient of every film and exchange at fixed temperatures."""
     rig, result = base()
     changed = build_rig(case_with(changes), "quick").with_models(rig.models) if changes else rig
-    last = result.last
     found = {}
-    for condition in boundary_conditions(
-        changed,
-        "test",
-        result.point,
-        last.coupling_state,
-        last.bearings,
-        last.losses,
-        radiation_included=False,
-    ):
+    for condition in boundary_conditions(changed, "test", result.last, radiation_included=False):
         if isinstance(condition, Film):
             found[condition.surface, condition.kind] = condition.law(350.0, 345.0).value
         elif isinstance(condition, Exchange):
@@ -82,16 +73,7 @@ def test_factors_multiply_and_show_as_one() -> None:
         ("gearboxes.test.housing.ambient_film_factor", 0.75),
     )
     changed = build_rig(case_with(changes), "quick").with_models(rig.models)
-    last = result.last
-    films = boundary_conditions(
-        changed,
-        "test",
-        result.point,
-        last.coupling_state,
-        last.bearings,
-        last.losses,
-        radiation_included=True,
-    )
+    films = boundary_conditions(changed, "test", result.last, radiation_included=True)
     shown = {
         film.law(350.0, 300.0).inputs.get("film_factor")
         for film in films

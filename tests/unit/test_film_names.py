@@ -13,6 +13,7 @@ from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import build_rig
 from thermal.conditions.boundary import Exchange, Film
@@ -47,9 +48,8 @@ def film_at(case: Case, surface: str) -> FilmCoefficient:
     rig = build_rig(case, "quick")
     point = held_points(rig)[0]
     coupling_state = initial_state(rig, point)
-    rows = boundary_conditions(
-        rig, "test", point, coupling_state, shipped_bearings(), [], radiation_included=True
-    )
+    heated = PointLosses(point=point, coupling_state=coupling_state, bearings=shipped_bearings(), losses=())
+    rows = boundary_conditions(rig, "test", heated, radiation_included=True)
     films = [c for c in rows if isinstance(c, Film) and c.surface == surface]
     gaps = [c for c in rows if isinstance(c, Exchange) and c.surface_a == surface]
     (own,) = [*films, *gaps]

@@ -12,7 +12,7 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.flank_heat import gear_flanks, mesh_split, pinion_share, tooth_ring
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.iteration import IterationResult, run_iteration
+from rigdesign.coupling.iteration import IterationResult, PointProblem, run_iteration
 from rigdesign.coupling.loads import mesh_models
 from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.losses import mesh_losses
@@ -56,7 +56,8 @@ def rig(case: Case) -> Rig:
 @pytest.fixture(scope="module")
 def done(rig: Rig) -> IterationResult:
     point = held_points(rig)[-1]
-    return run_iteration(rig, point, initial_state(rig, point), None)
+    initial = initial_state(rig, point)
+    return run_iteration(PointProblem(rig=rig, point=point, initial=initial, bracing=None), initial)
 
 
 def equal_gears() -> GearPair:

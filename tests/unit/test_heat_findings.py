@@ -14,6 +14,7 @@ from rigdesign.case import Case
 from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.time_run import held_points
 from rigdesign.report import results_document
 from rigdesign.results.result import RunResult
@@ -128,10 +129,11 @@ def test_only_a_film_that_holds_radiation_takes_it_off(tmp_path: Path, law: str,
     text = PUBLISHED.replace('law = "niemann_winter"', f'law = "{law}"')
     rig = build_rig(load(tmp_path, text), "quick")
     point = held_points(rig)[-1]
-    cold = initial_state(rig, point)
-    conditions = boundary_conditions(
-        rig, "test", point, cold, solve_bearings(rig, point, cold), (), radiation_included=True
+    initial = initial_state(rig, point)
+    heated = PointLosses(
+        point=point, coupling_state=initial, bearings=solve_bearings(rig, point, initial), losses=()
     )
+    conditions = boundary_conditions(rig, "test", heated, radiation_included=True)
     radiating = {condition.surface for condition in conditions if isinstance(condition, Radiation)}
     assert ("outer_warm" in radiating) is kept
     assert "field_top" in radiating

@@ -11,9 +11,11 @@ from rigdesign.base.errors import CaseError
 from rigdesign.coupling.bearing_films import bearing_loads, solve_bearings
 from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.iteration import next_state, run_iteration
-from rigdesign.coupling.loads import brace_initial, mesh_models, shifted_gear
+from rigdesign.coupling.iteration import PointProblem, run_iteration
+from rigdesign.coupling.loads import mesh_models, shifted_gear
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
+from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.relaxation import next_state
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.loop_forces import loop_forces
@@ -88,9 +90,8 @@ def test_heat_of_both_meshes_enters_the_rim_of_the_idler_once(
     bearings = solve_bearings(built, point, coupling_state)
     turning = rotating_losses(built, point, coupling_state, models, bearings)
     losses = [*turning, *mesh_losses(built, point, models)]
-    conditions = boundary_conditions(
-        built, "test", point, coupling_state, bearings, losses, radiation_included=True
-    )
+    heated = PointLosses(point=point, coupling_state=coupling_state, bearings=bearings, losses=tuple(losses))
+    conditions = boundary_conditions(built, "test", heated, radiation_included=True)
     rims = {c.surface: c.power for c in conditions if getattr(c, "kind", "") == "mesh_loss"}  # type: ignore[union-attr]
     left, right = (p.into_body for p in losses if p.gearbox == "test" and p.loss.kind == "mesh")
     assert rims == pytest.approx(
@@ -124,10 +125,10 @@ def _windage(built: Rig, point: OperatingPoint, coupling_state: CouplingState) -
     return sum(p.loss.power for p in losses if p.name == "reference.pinion" and p.loss.kind == "windage")
 
 
-def test_one_pass_hands_signed_torques_on(bare: tuple[Rig, OperatingPoint, CouplingState]) -> None:
+def test_one_iteration_hands_signed_torques_on(bare: tuple[Rig, OperatingPoint, CouplingState]) -> None:
     """Losses of the shafts between come off the torque on the way round from the motor."""
     built, point, coupling_state = bare
-    done = run_iteration(built, point, coupling_state, brace_initial(built, point, coupling_state))
+    done = run_iteration(PointProblem.braced(built, point), coupling_state)
     torque = next_state(built, done).mesh_torque
     assert [math.copysign(1.0, t) for t in torque.values()] == [1.0, -1.0, -1.0, 1.0]
     assert torque["test.left"] == pytest.approx(TORQUE, rel=1e-4)

@@ -9,7 +9,7 @@ from rigdesign.case.surface_conditions import FlankFilm
 from rigdesign.coupling.flank_heat import gear_flanks
 from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.oil import OilStream, oil_streams
-from rigdesign.coupling.stage_losses import StageLosses
+from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.properties.oil import FVA_3, MIL_PRF_23699
 from rigdesign.properties.oil_mixing import Portion, mixed
 from rigdesign.rig.model import Rig, build_rig
@@ -159,7 +159,7 @@ def test_flanks_past_blocked_jets_stay_dry() -> None:
 def test_the_course_over_time_ends_at_the_same_state() -> None:
     """The networks of the transient with leak, bypass and short circuit solve to the settled field."""
     rig, last = settled((LEAK, 0.1), (BYPASS, 0.2), (SHORT, 0.1))
-    state = StageLosses(
+    state = PointLosses(
         point=last.point, coupling_state=last.coupling_state, bearings=last.bearings, losses=last.losses
     )
     conditions = oil_conditions(rig, "test", state, oil=True)

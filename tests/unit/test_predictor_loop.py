@@ -1,4 +1,4 @@
-"""First-order answers of a power circuit: what is not solved again is the same as if it were."""
+"""First-order response of a power circuit: what is not solved again is the same as if it were."""
 
 from pathlib import Path
 
@@ -48,14 +48,14 @@ def _off(predictor, answer, wanted):
 
 def _solved_again(predictor, changes):
     """The same first-order answer with a response and orders of its own at every point."""
-    nears = [slopes.near for slopes in predictor._slopes()]
-    for near in nears:
-        near.causes = lambda *_: None
+    drags = [point.drag for point in predictor._first_order.points]
+    for drag in drags:
+        drag.causes = lambda *_: None
     try:
         return predictor.response(changes) - predictor.base
     finally:
-        for near in nears:
-            del near.causes
+        for drag in drags:
+            del drag.causes
 
 
 @pytest.mark.parametrize(
@@ -68,9 +68,9 @@ def _solved_again(predictor, changes):
 )
 def test_drags_and_friction_answer_as_a_loop_solved_again(predictor, changes):
     assert all(
-        slopes.changed(*predictor._posed(rig, setting)).same_loop
-        for slopes, rig, setting in zip(
-            predictor._slopes(), predictor._changed_rigs(changes), predictor.settings
+        point.changed(predictor._reduced.changed_problem(rig, setting)).same_loop
+        for point, rig, setting in zip(
+            predictor._first_order.points, predictor._changed_rigs(changes), predictor.settings
         )
     )
     answer = predictor.response(changes) - predictor.base
@@ -79,21 +79,21 @@ def test_drags_and_friction_answer_as_a_loop_solved_again(predictor, changes):
     assert max(off[place] for place in (("torque", 28.0), ("angle", 28.0))) < 0.02
 
 
-def test_what_only_swings_moves_its_orders_alone(predictor):
+def test_what_only_oscillates_moves_its_orders_alone(predictor):
     changes = {f"{FLANK}.run_out": 4e-6}
-    swings = predictor.swinging(changes) - predictor.base
+    oscillating = predictor.oscillating(changes) - predictor.base
     whole = predictor.response(changes) - predictor.base
-    off = _off(predictor, swings, whole)
+    off = _off(predictor, oscillating, whole)
     assert max(off["torque", 1.0], off["torque", 29.0], off["angle", 1.0]) < 0.01
-    assert swings[[f.channel in ("first", "oil", "power") for f in predictor.features]] == pytest.approx(
+    assert oscillating[[f.channel in ("first", "oil", "power") for f in predictor.features]] == pytest.approx(
         0.0, abs=0.0
     )
-    assert np.abs(swings).max() > 0.1
+    assert np.abs(oscillating).max() > 0.1
 
 
-def test_a_swinging_motor_is_answered_in_proportion(predictor):
+def test_an_oscillating_motor_is_answered_in_proportion(predictor):
     one, two = (
-        predictor.swinging(
+        predictor.oscillating(
             {"drivetrain.motor.ripple": [{"order": 1.0, "torque": f"{torque} N m", "phase": "0 rad"}]}
         )
         - predictor.base
@@ -103,16 +103,16 @@ def test_a_swinging_motor_is_answered_in_proportion(predictor):
     assert np.abs(one).max() > 0.01
 
 
-def test_memory_finds_again_what_a_change_leaves_alone(predictor):
-    memory, stated = Memoisation(), predictor._rig
+def test_memoisation_finds_again_what_a_change_leaves_alone(predictor):
+    memoisation, stated = Memoisation(), predictor._reduced.stated
     setting, point = SETTINGS[0], operating_point(SETTINGS[0])
     coupling_state = predictor._points[0].last.coupling_state
-    own = memory.models(rig_at(stated, setting), point, coupling_state)
-    bracing = memory.bracing(rig_at(stated, setting), point)
+    own = memoisation.models(rig_at(stated, setting), point, coupling_state)
+    bracing = memoisation.bracing(rig_at(stated, setting), point)
 
     def met(changes):
         rig = rig_at(like(stated, changed_case(CASE, changes)), setting)
-        return memory.models(rig, point, coupling_state), memory.bracing(rig, point)
+        return memoisation.models(rig, point, coupling_state), memoisation.bracing(rig, point)
 
     models, braced = met({"gearboxes.test.gears.pinion.inertia_factor": 1.2})
     assert all(one is other for one, other in zip(models, own)) and braced is bracing

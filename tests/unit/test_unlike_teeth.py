@@ -16,7 +16,7 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, laws_of, locked_share, mesh_models, signed_torque
-from rigdesign.coupling.shaft_torques import swinging_torques, torques_left_out
+from rigdesign.coupling.shaft_torques import harmonic_torques, torques_left_out
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.tooth_deviations import averaged_gears, periodic_laws
 from rigdesign.rig.model import Rig, build_rig
@@ -47,7 +47,7 @@ def test_defaults_leave_all_teeth_alike() -> None:
         assert model.law.tooth_offset_2 == 0
     assert locked_share(rig) == 1.0
     assert rig.system is not None and rig.system.shaft_torques == ()
-    assert swinging_torques(rig, laws_of(models)) == ()
+    assert harmonic_torques(rig, laws_of(models)) == ()
 
 
 def test_profile_slope_takes_from_the_root_what_it_adds_to_the_tip() -> None:
@@ -224,14 +224,14 @@ def test_teeth_that_do_not_come_back_in_the_period_are_averaged(
     assert bool(law.deviation_2.any()) == ("test.wheel" not in averaged)
 
 
-def test_swinging_torques_count_turns_of_the_gear_that_counts() -> None:
+def test_harmonic_torques_count_turns_of_the_gear_that_counts() -> None:
     """In the hunting loop the wheel line turns 16/25 as fast; a coupling pulls its ends against each other."""
     case = shipped("loop_hunting").with_value(
         "drivetrain.couplings.wheel_side.excitation", [{"order": 2, "torque": "4 N m", "phase": "90 deg"}]
     )
     case = case.with_value("drivetrain.motor.ripple", [{"order": 6, "torque": "0.5 N m"}])
     rig, models = built(case)
-    motor, *ends = swinging_torques(rig, laws_of(models))
+    motor, *ends = harmonic_torques(rig, laws_of(models))
     assert rig.system is not None
     assert motor == (rig.system.drive_dof, pytest.approx(6.0), pytest.approx(0.5))
     assert [end.order for end in ends] == [pytest.approx(2.0 * 16.0 / 25.0)] * 2

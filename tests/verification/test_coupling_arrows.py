@@ -301,7 +301,7 @@ locating = false
 """
 
 
-def test_tooth_growth_winds_up_a_helical_loop(tmp_path: Path) -> None:
+def test_axial_expansion_winds_up_a_helical_loop(tmp_path: Path) -> None:
     """Shafts that grow from opposite ends carry their gears past each other by s.
 
     The flanks approach by s tan(beta_b), tan(beta_b) = tan(beta) cos(alpha_t); the loop turns by that over r_b
@@ -420,7 +420,7 @@ def test_friction_brakes_the_motor_as_much_as_it_heats(tmp_path: Path) -> None:
     assert driven > CLEAR * TORQUE * base.last.response.drive_torque
 
 
-def test_passes_settle_to_the_tolerances() -> None:
+def test_iterations_converge_to_the_tolerances() -> None:
     """The first pass moves by more than 100 K, the last by less than the tolerance.
 
     Growth follows only once temperatures stand, which moves them once more: over five passes, such a step
@@ -437,7 +437,7 @@ def test_passes_settle_to_the_tolerances() -> None:
         assert all(later < earlier / 3.0 for earlier, later in zip(steps, steps[5:]))
 
 
-def test_too_few_passes_show_their_residuals() -> None:
+def test_too_few_iterations_show_their_residuals() -> None:
     rig = build_rig(shipped().with_value("numerics.coupling_passes", 1), "quick")
     with pytest.raises(
         NotConvergedError, match=r"did not converge in 1 iterations.*iteration 1: [\d.]+ K, [\d.]+ um"

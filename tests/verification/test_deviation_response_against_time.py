@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from rigdesign.prediction.exact_orders import exact_motion
-from rigdesign.prediction.orders import PointOrders, _Exact, ideal_response
-from tests.order_example import DRAGS, changed, channels, settled
+from rigdesign.prediction.order_motion import CycleMotion, ideal_response
+from rigdesign.prediction.orders import PointOrders
+from tests.order_example import changed, channels, settled
 
 PINION = "gearboxes__test__gears__pinion__flank__"
 WHEEL = "gearboxes__test__gears__wheel__flank__"
@@ -31,8 +32,8 @@ def errors(name, values, rpm, torque, orders, *, march, steps=(0, 30)):
     """Error by order of each number of corrections at most."""
     case = settled(changed(name, **values), rpm, torque)
     exact = PointOrders(*case.arguments)
-    motion = exact_motion(case.rig, case.point, exact.laws, DRAGS, case.setting, march=march)
-    exact.__dict__["solved"] = _Exact(motion)
+    motion = exact_motion(case.rig, exact.loop, exact.laws, march=march)
+    exact.__dict__["solved"] = CycleMotion(motion)
     places = [channel for channel in channels(*orders) if channel.quantity == "torque"]
     known = {channel.name: exact.read(channel) for channel in places}
     base = ideal_response(*case.arguments)

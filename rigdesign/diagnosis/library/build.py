@@ -149,7 +149,7 @@ class _Runs:
                 continue
             changes = effect.changes(self._case, tuple(float(value) for value in place))
             try:
-                run = self._predictor.swinging if effect.swings else self._predictor.response
+                run = self._predictor.oscillating if effect.swings else self._predictor.response
                 answers.append(run(changes) - base)
                 coordinates.append(place)
             except RigdesignError:
