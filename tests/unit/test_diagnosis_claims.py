@@ -224,7 +224,7 @@ def test_effects_present_apart_from_a_group_are_reported():
         assert len(picked.case_patch.values) >= 2
     again = outcome(told.result, pick="single_pitch:test.pinion")
     assert [one.name for one in again.applied] == ["single_pitch:test.pinion"]
-    assert again.case_patch is not None and again.case_patch.title.count("pitch of one tooth") == 1
+    assert again.case_patch is not None and again.case_patch.title.count("single pitch deviation") == 1
 
 
 def traces(columns, *, noise=None, assembly=None):
