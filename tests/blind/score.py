@@ -43,9 +43,9 @@ from rigdesign.measurement import load_measurement
 from tests.blind.ablations import ABLATIONS
 from tests.blind.metrics import SIZES, Row, canonical, table
 from tests.blind.splits import RIGS, SENSORS, Spec, specs
+from tests.builders.paths import ROOT
 from tests.virtual_rig.generate import make_set
 
-ROOT = Path(__file__).resolve().parents[2]
 FIXED = frozenset({"sensor", "input", "inflation"})
 """Amplitudes that are what the measurement states."""
 

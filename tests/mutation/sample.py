@@ -11,14 +11,14 @@ from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 from cosmic_ray import plugins
 from cosmic_ray.ast import ast_nodes, get_ast
 from cosmic_ray.mutating import mutate_code
 from parso.tree import NodeOrLeaf
 
-ROOT = Path(__file__).parents[2]
+from tests.builders.paths import ROOT
+
 PACKAGES = ("rigdesign", "thermal", "dynamics")
 ARITHMETIC = "(Add_Sub|Sub_Add|Mul_Div|Div_Mul|Mul_Add|Pow_Mul)"
 ORDER = "(Eq|NotEq|Lt|LtE|Gt|GtE)"

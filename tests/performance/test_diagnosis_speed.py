@@ -1,15 +1,14 @@
 """Time of a diagnosis: the library of a rig, and the next sets it serves; printed, never a reason to fail."""
 
 import time
-from pathlib import Path
 
 import pytest
 
 from rigdesign.case import load_case
 from rigdesign.diagnosis.run import diagnose_measurement
 from rigdesign.prediction.predict import predict
+from tests.builders.paths import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 RIGS = {"uhcf_prototype": ("set_2", "set_3"), "loop_1to1": ("set_1",)}
 
 

@@ -24,8 +24,8 @@ from dynamics.rating.iso_rating import mesh_stiffness
 from dynamics.response.initial_state import wound_state
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.time_march import TimeMarch
-from tests.mesh_example import wavy_law
-from tests.rig_example import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, prototype
+from tests.builders.mesh import wavy_law
+from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, prototype
 
 pytestmark = pytest.mark.performance
 

@@ -23,8 +23,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests import calculix
-from tests.msh_file import write_msh
+from tests.builders import calculix
+from tests.builders.msh_file import write_msh
 from tests.performance import fe_process
 from tests.performance.ribbed_box import write_ribbed_box
 from thermal.conditions.boundary import BoundaryCondition

@@ -12,7 +12,6 @@ Run it by hand, a quarter of an hour and 4 GB:
 import math
 import time
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -22,9 +21,9 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.mesh_convergence import EDGE_ORDER, Numbers, numbers, richardson
 from rigdesign.run.mesh_refinement import on_mesh
+from tests.builders.paths import CASES
 from thermal.housing.gearbox import MeshSizes, build_gearbox, mesh_sizes
 
-CASES = Path(__file__).parents[2] / "cases"
 FACTORS = (2.0, 1.4, 1.0, 0.8)
 SHOWN = (
     "max_temperature", "heat.air", "heat.radiation", "heat.gear_oil", "heat.bearing_oil", ".seal_gap", ".growth",

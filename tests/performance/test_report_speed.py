@@ -5,7 +5,7 @@ import time
 import pytest
 
 from rigdesign.report.pages.report import report_html
-from tests.report_example import make_result
+from tests.builders.report import make_result
 
 
 @pytest.mark.performance

@@ -5,20 +5,19 @@
 from the root of the project runs the named cases (all four without a name), carries over every verdict, and every
 utilisation outside its tolerance, with ``--all`` every one; the reasons stay. What it changed is printed, and the
 diff is to be read: a commit that moves a utilisation says why, and a reason that no longer holds is written anew. A
-check that is new gets an empty reason, which tests/test_cases.py refuses until it is written.
+check that is new gets an empty reason, which tests/regression/test_cases.py refuses until it is written.
 """
 
 import argparse
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from rigdesign import load_case, run_case
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
+from tests.builders.paths import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 NAMES = ("uhcf_prototype", "uhcf_main", "loop_1to1", "loop_hunting")
 UTILISATION_TOLERANCE = 0.005
 """Relative. A wrong formula among many seldom moves a check by more than a few per cent."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.ledger_damage import DAMAGE, POINTS, copy_ledger, harm_file, resumed, write_ledger
+from tests.builders.ledger_damage import DAMAGE, POINTS, copy_ledger, harm_file, resumed, write_ledger
 
 PER_KIND = 150
 

@@ -21,8 +21,8 @@ from rigdesign.base.errors import RigdesignError
 from rigdesign.case import load_case
 from rigdesign.report import write_results
 from rigdesign.run.main import run_case
-from tests.fuzz_example import broken_texts, shortened
-from tests.mutant_example import mutations
+from tests.builders.fuzz import broken_texts, shortened
+from tests.builders.mutant import mutations
 
 LOADS, MANY_LOADS = 300, 10_000
 LOAD_TIME, RUN_TIME = 5.0, 300.0

@@ -18,10 +18,11 @@ import pytest
 
 from rigdesign.base.errors import OutputError
 from rigdesign.report import write_results
-from tests.unit.test_cli import SMALL
-from tests.unit.test_killed_writers import attempts, held_against, published
-from tests.unit.test_report_files import small_result
-from tests.unit.test_study import DRIVER, POINTS, ROOT, _events, _stored
+from tests.builders.commands import SMALL
+from tests.builders.output import attempts, held_against, published
+from tests.builders.paths import ROOT
+from tests.builders.report import small_result
+from tests.builders.study import DRIVER, POINTS, _events, _stored
 
 CHECKS, STUDIES = 20, 25
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": str(ROOT)}

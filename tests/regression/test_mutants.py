@@ -15,7 +15,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import islice
-from pathlib import Path
 
 import pytest
 
@@ -23,9 +22,10 @@ from rigdesign.base.errors import CaseError, NotConvergedError, RigdesignError
 from rigdesign.case import Case, load_case
 from rigdesign.report import results_document
 from rigdesign.run.main import run_case
-from tests.mutant_example import mutations
+from tests.builders.mutant import mutations
+from tests.builders.paths import CASES
 
-PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
+PROTOTYPE = CASES / "uhcf_prototype"
 CHUNKS, PER_CHUNK = 6, 10
 MANY = 1000
 SHORTENED = {

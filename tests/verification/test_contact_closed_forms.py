@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tests.curved_blocks import cylinder_sector
-from tests.two_blocks import law, renamed
+from tests.builders.curved_blocks import cylinder_sector
+from tests.builders.two_blocks import law, renamed
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature
 from thermal.conditions.contact import Contact
 from thermal.conduction.condition_checks import Condition

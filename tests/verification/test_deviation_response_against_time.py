@@ -10,7 +10,7 @@ import pytest
 from rigdesign.prediction.exact_orders import exact_motion
 from rigdesign.prediction.order_motion import CycleMotion, ideal_response
 from rigdesign.prediction.orders import PointOrders
-from tests.order_example import changed, channels, settled
+from tests.builders.order import changed, channels, settled
 
 PINION = "gearboxes__test__gears__pinion__flank__"
 WHEEL = "gearboxes__test__gears__wheel__flank__"

@@ -12,7 +12,7 @@ import scipy.linalg
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.response.march_inputs import DragTables, DriveLoads, DriveState, MarchSettings
 from dynamics.response.time_march import TimeMarch
-from tests.mesh_example import spur_law
+from tests.builders.mesh import spur_law
 
 OPEN = spur_law(backlash=1e9, offset=-5e8)
 INERTIA = np.array([4e-4, 6e-4, 1e-3])

@@ -14,7 +14,7 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.periodic_response import PeriodicResponse, TimeSettings, periodic_by_time
-from tests.rig_example import prototype, prototype_laws
+from tests.builders.rig import prototype, prototype_laws
 
 RPM = np.pi / 30.0
 

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import tests.calculix as calculix
-from tests.two_blocks import law
+import tests.builders.calculix as calculix
+from tests.builders.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, Film, Radiation
 from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady

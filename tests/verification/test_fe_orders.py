@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.two_blocks import law
+from tests.builders.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, Film, SurfaceSource
 from thermal.conduction.setup import ConductionSetup
 from thermal.conduction.steady import solve_steady

@@ -11,7 +11,7 @@ from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.warnings import _thin_rim_films
-from tests.fzg_case import RIM_FILM, fzg_case
+from tests.builders.fzg_case import RIM_FILM, fzg_case
 
 MICHAELIS = 126.0
 """Dip lubricated C-type gears, 372.6 N m, 2250 rpm, FVA 3 at 90 degC, by hand after Michaelis [degC]."""

@@ -1,6 +1,5 @@
 """Numbers by hand stand near the computed ones, and on the same side."""
 
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -18,10 +17,11 @@ from rigdesign.coupling.losses import rotating_losses
 from rigdesign.coupling.time_run import held_points
 from rigdesign.records.hand import _losses, end_wall_clearance, mean_gap, partition_gap
 from rigdesign.rig.model import build_rig
-from tests.warm_prototype import base
+from tests.builders.paths import CASES
+from tests.builders.warm_prototype import base
 from thermal.expansion.expansion import expand
 
-PROTOTYPE = Path(__file__).parents[2] / "cases" / "uhcf_prototype"
+PROTOTYPE = CASES / "uhcf_prototype"
 
 
 def test_crowning_belongs_to_the_mean_deflection() -> None:

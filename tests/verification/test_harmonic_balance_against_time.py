@@ -17,7 +17,7 @@ from dynamics.drivetrain.loop_load import LoopLoad
 from dynamics.mesh.law import DampedRate
 from dynamics.response.periodic_response import TimeSettings, periodic_by_time
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from tests.rig_example import prototype, prototype_laws
+from tests.builders.rig import prototype, prototype_laws
 
 RPM = math.pi / 30.0
 

@@ -14,7 +14,7 @@ from dynamics.mesh.law import MeshLaw
 from dynamics.response.harmonic_walk import mesh_cells
 from dynamics.response.periodic_response import periodic_by_time
 from dynamics.response.speed_sweep import SweepSettings, periodic_response
-from tests.idler_example import COUPLING_STIFFNESS, RADIUS, SPLINE_STIFFNESS, idler_laws, idler_rig
+from tests.builders.idler import COUPLING_STIFFNESS, RADIUS, SPLINE_STIFFNESS, idler_laws, idler_rig
 
 RPM = math.pi / 30.0
 TORQUE = 400.0

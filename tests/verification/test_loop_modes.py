@@ -17,7 +17,7 @@ from dynamics.drivetrain.graph import Drivetrain, assemble
 from dynamics.drivetrain.loop_crossings import loop_crossings
 from dynamics.drivetrain.modes import closed_matrices, loop_modes
 from dynamics.mesh.law import MeshLaw
-from tests.rig_example import prototype, prototype_laws
+from tests.builders.rig import prototype, prototype_laws
 
 HIGHEST = 6e3
 RPM = math.pi / 30.0

@@ -14,7 +14,15 @@ from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import DampedRate, MeshLaw
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.time_march import TimeMarch
-from tests.mesh_example import BASE_RADIUS_1, BASE_RADIUS_2, TEETH, ramped_law, spur_law, two_bodies, wavy_law
+from tests.builders.mesh import (
+    BASE_RADIUS_1,
+    BASE_RADIUS_2,
+    TEETH,
+    ramped_law,
+    spur_law,
+    two_bodies,
+    wavy_law,
+)
 
 TORQUE = 180.0
 

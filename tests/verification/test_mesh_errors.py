@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,11 +12,12 @@ from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.mesh_convergence import Numbers, discretisation, numbers, richardson
 from rigdesign.run.mesh_refinement import on_mesh
+from tests.builders.paths import CASES
+from tests.builders.poisson import solved
 from tests.performance.test_mesh_study import sized
-from tests.verification.test_error_estimate import solved
 from thermal.fe.mesh import FloatArray, NamedMesh, box_mesh, facet_table, named_mesh
 
-GIVEN = Path(__file__).parents[2] / "cases" / "uhcf_prototype" / "given_losses.toml"
+GIVEN = CASES / "uhcf_prototype" / "given_losses.toml"
 
 
 def l_shape(n: int) -> NamedMesh:

@@ -12,7 +12,7 @@ from dynamics.mesh.law import MeshLaw
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.time_march import TimeMarch
 from rigdesign.validation.oscillator import DOWN, FORCE, MEAN_FORCE, UP, ZETA
-from tests.mesh_example import two_bodies
+from tests.builders.mesh import two_bodies
 
 FREQUENCIES = tuple(sorted(UP))
 STEPS = 200

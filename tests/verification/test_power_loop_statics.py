@@ -13,7 +13,7 @@ from dynamics.drivetrain.static_loop import SlowRotation, port_model, solve_stat
 from dynamics.mesh.force import evaluate_mesh
 from dynamics.mesh.law import MeshLaw
 from dynamics.response.initial_state import wound_state
-from tests.rig_example import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, SHAFTS, prototype, prototype_laws
+from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, SHAFTS, prototype, prototype_laws
 
 
 def constant(law: MeshLaw) -> MeshLaw:

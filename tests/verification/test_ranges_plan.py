@@ -25,9 +25,9 @@ from rigdesign.checks.assumptions import depends, with_assumptions
 from rigdesign.uncertainty.plan import ALIKE, PARTS, Part, RangeEnd, parts_of, plan
 from rigdesign.uncertainty.point import EndResult, Reference, solve_end, solve_stated
 from rigdesign.uncertainty.verdicts import LEAST_MOVE
-from tests.unit.test_check_assumptions import EXPECTED, check, limit_of
+from tests.builders.checks import EXPECTED, check, limit_of
+from tests.builders.paths import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 MORE = """
 [ambient]
 surroundings_temperature = "20 degC"

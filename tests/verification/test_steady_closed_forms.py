@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from tests.curved_blocks import cylinder_sector
-from tests.two_blocks import law
+from tests.builders.curved_blocks import cylinder_sector
+from tests.builders.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature
 from thermal.conditions.enclosure import Enclosure
 from thermal.conduction.condition_checks import Condition

@@ -11,7 +11,7 @@ from dynamics.response.periodic_response import (
     period_length,
     periodic_by_time,
 )
-from tests.mesh_example import BASE_RADIUS_1, BASE_RADIUS_2, chain, spur_law
+from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, chain, spur_law
 
 TEETH = 20
 """Few teeth keep the turn short."""

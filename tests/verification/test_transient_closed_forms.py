@@ -13,7 +13,7 @@ import pytest
 from scipy.optimize import brentq
 from scipy.special import erfc, erfcx
 
-from tests.two_blocks import law
+from tests.builders.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, BodySource, Film, Radiation
 from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
 from thermal.conduction.capacity import HeatCapacity

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.two_blocks import law
+from tests.builders.two_blocks import law
 from thermal.conditions.boundary import Adiabatic, BodySource, Film, PrescribedTemperature, Radiation
 from thermal.conduction.steady import ConductionSetup, solve_steady
 from thermal.fe.mesh import CellName, NamedMesh, box_mesh

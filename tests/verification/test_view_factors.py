@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tests.curved_blocks import cylinder_sector
-from tests.two_blocks import renamed
+from tests.builders.curved_blocks import cylinder_sector
+from tests.builders.two_blocks import renamed
 from thermal.conditions.boundary import Adiabatic, ConditionError, PrescribedTemperature
 from thermal.conditions.enclosure import Enclosure, EnclosureError, close_view_factors
 from thermal.conditions.view_factors import view_factors

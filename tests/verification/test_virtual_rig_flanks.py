@@ -7,11 +7,11 @@ body: they go with an eccentric centre and with a tooth that stands ahead, which
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.builders.paths import CASES
 from tests.virtual_rig import loop_march as kernel
 from tests.virtual_rig.case_reader import read_case
 from tests.virtual_rig.loop import LoopTruth, Point
@@ -19,7 +19,6 @@ from tests.virtual_rig.loop_changes import LoopConstants
 from tests.virtual_rig.loop_model import read_circuit
 from tests.virtual_rig.teeth import ToothErrors, corner_gap, path_gaps, read_teeth
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
 TEETH = range(-3, 4)
 
 

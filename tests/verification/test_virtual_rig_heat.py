@@ -4,11 +4,11 @@ import ast
 import math
 from functools import cache
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from tests.builders.paths import ROOT
 from tests.virtual_rig import losses_parts
 from tests.virtual_rig.case_reader import plain_tree, quantity, read_case
 from tests.virtual_rig.heat_constants import CONSTANTS, draw_constants, nominal, sigma
@@ -22,7 +22,6 @@ from tests.virtual_rig.losses_rig import LossModel
 from tests.virtual_rig.losses_vibration import VibratingMesh, vibrating_mesh, vibration_power
 from tests.virtual_rig.oil_data import OILS
 
-ROOT = Path(__file__).parents[2]
 PROTOTYPE = ROOT / "cases" / "uhcf_prototype" / "case.toml"
 FULL = {"speed": 2.0 * math.pi * 200.0, "torque": 180.0}
 PART = {

@@ -3,11 +3,11 @@
 import math
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from tests.builders.paths import CASES
 from tests.virtual_rig import loop_changes
 from tests.virtual_rig.case_reader import read_case
 from tests.virtual_rig.generate_plans import STREAMS, Sensor, TruePoint
@@ -17,8 +17,6 @@ from tests.virtual_rig.heat_effects import EFFECTS
 from tests.virtual_rig.heat_truth import HeatTruth, boxes_of
 from tests.virtual_rig.loop import LoopTruth, Point
 from tests.virtual_rig.loop_changes import CHANGES, LoopConstants
-
-CASES = Path(__file__).resolve().parents[2] / "cases"
 
 
 class Reading(NamedTuple):

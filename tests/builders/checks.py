@@ -1,0 +1,31 @@
+"""Checks of the shipped prototype by id."""
+
+import json
+
+from rigdesign.results.check import Check
+from rigdesign.results.verdict import Verdict
+from tests.builders.paths import CASES
+
+PROTOTYPE = CASES / "uhcf_prototype"
+EXPECTED = json.loads((PROTOTYPE / "expected.json").read_text(encoding="utf-8"))
+
+
+def check(identity: str, source: str = "", verdict: Verdict = "pass") -> Check:
+    return Check(
+        id=identity, title="", value=1.0, limit=2.0, unit="-", comparison="<=", margin=1.0, utilisation=0.5,
+        verdict=verdict, source=source, role="rig",
+    )  # fmt: skip
+
+
+def limit_of(identity: str) -> str:
+    """The limit that the checks name as their source."""
+    parts = identity.split(".")
+    return {
+        "dynamics": f"limits.dynamics.{parts[1]}_minimum; limits.dynamics.{parts[1]}_maximum",
+        "temperature": f"limits.temperatures.{parts[1]}_maximum; limits.temperatures.tempering_distance_minimum",
+        "clearance": f"limits.clearances.{parts[1]}_minimum; gearboxes.test.seals.{parts[-1]}.axial_travel",
+        "bearing": "limits.bearing.film_thickness_minimum; limits.bearing.specific_load_maximum",
+        "alignment": f"limits.alignment.{parts[1]}_maximum; drivetrain.couplings.{parts[-1]}.radial_offset_maximum; "
+        f"drivetrain.couplings.{parts[-1]}.angle_maximum",
+        "oil": f"limits.oil.{parts[1]}_maximum; limits.oil.{parts[1]}_power_maximum; limits.oil.room_heat_maximum",
+    }.get(parts[0], "")

@@ -1,0 +1,69 @@
+"""Twelve frozen sets of two rigs, six operating points each: the diagnosis is right, or silent.
+
+The sets were made once by the virtual rig (`tests/virtual_rig`); `tests/blind/frozen/answers.json` says what is hidden
+in them, which the diagnosis does not read. The library of each rig is made here.
+"""
+
+import json
+from functools import cache
+
+import pytest
+
+from rigdesign.case import load_case
+from rigdesign.diagnosis.run import diagnose_measurement
+from tests.blind.metrics import canonical
+from tests.builders.paths import ROOT
+
+FROZEN = ROOT / "tests" / "blind" / "frozen"
+ANSWERS = json.loads((FROZEN / "answers.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("RIGDESIGN_CACHE_DIR", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@cache
+def diagnosed(name):
+    return diagnose_measurement(load_case(ROOT / "cases" / ANSWERS[name]["rig"]), FROZEN / name).diagnosis
+
+
+def hidden(name):
+    return {canonical(effect["effect"], ANSWERS[name]["rig"]) for effect in ANSWERS[name]["effects"]}
+
+
+VERDICTS = {
+    "set_00": "within_noise",
+    "set_01": "named",
+    "set_02": "alias_group",
+    "set_03": "named",
+    "set_04": "unknown_located",
+    "set_05": "within_noise",
+    "set_06": "within_noise",
+    "set_07": "alias_group",
+    "set_08": "alias_group",
+    "set_09": "unknown_located",
+    "set_10": "input_error_suspected",
+    "set_11": "within_noise",
+}
+
+
+@pytest.mark.parametrize(("name", "verdict"), VERDICTS.items())
+def test_every_set_ends_as_it_should(name, verdict):
+    found = diagnosed(name)
+    assert found.decision.verdict == verdict, found.decision.reason
+    if verdict in ("named", "alias_group", "input_error_suspected"):
+        assert hidden(name) <= set(found.named)
+
+
+@pytest.mark.parametrize("name", [name for name, verdict in VERDICTS.items() if verdict == "named"])
+def test_nothing_is_named_that_is_not_hidden(name):
+    assert set(diagnosed(name).named) <= hidden(name)
+
+
+def test_an_alias_group_is_small():
+    assert all(
+        len(diagnosed(name).named) <= 3 for name, verdict in VERDICTS.items() if verdict == "alias_group"
+    )

@@ -1,0 +1,58 @@
+import numpy as np
+import pytest
+
+from dynamics.drivetrain.graph import assemble
+from dynamics.drivetrain.linear_system import LinearSystem
+from dynamics.drivetrain.modal_form import modal_form
+from dynamics.drivetrain.modes import closed_matrices
+from tests.builders.rig import prototype, prototype_laws
+
+
+def direct(system: LinearSystem, omega: float, dofs: np.ndarray) -> np.ndarray:
+    matrix = -(omega**2) * np.diag(system.inertia) + 1j * omega * system.damping + system.stiffness
+    return np.linalg.inv(matrix)[np.ix_(dofs, dofs)]
+
+
+@pytest.mark.parametrize("linear_drag", [0.0, 7e-4])
+def test_receptance_equals_the_inverse_of_the_dynamic_stiffness(linear_drag: float) -> None:
+    """Rigid modes, splines with real poles of 5e7 1/s and grounded drag included."""
+    system = assemble(prototype(linear_drag=linear_drag))
+    form = modal_form(system.inertia, system.damping, system.stiffness, system.lines)
+    assert np.abs(form.poles).max() > 1e7
+    dofs = system.mesh_ports.ravel()
+    omega = 2.0 * np.pi * np.array([50.0, 825.0, 4022.7, 19.8e3, 49.5e3])
+    found = form.receptance(omega, dofs)
+    for i, w in enumerate(omega):
+        exact = direct(system, w, dofs)
+        assert np.abs(found[i] - exact).max() < 1e-9 * np.abs(exact).max()
+
+
+def test_free_lines_are_rigid_modes_with_mass_one() -> None:
+    system = assemble(prototype())
+    form = modal_form(system.inertia, system.damping, system.stiffness, system.lines)
+    assert form.rigid.shape == (len(system.dofs), 2)
+    assert form.rigid.T @ (system.inertia[:, None] * form.rigid) == pytest.approx(np.eye(2), abs=1e-12)
+
+
+def test_closed_loop_has_one_rigid_mode_with_the_ratio_of_the_gears() -> None:
+    system = assemble(prototype())
+    form = modal_form(*closed_matrices(system, prototype_laws()), system.lines)
+    assert form.rigid.shape[1] == 1
+    pinion, wheel = system.mesh_ports[0]
+    assert form.rigid[pinion, 0] / form.rigid[wheel, 0] == pytest.approx(102 / 99, rel=1e-12)
+    slow = np.abs(form.poles[np.argsort(np.abs(form.poles))[:2]])
+    assert slow[0] < 1e-6
+    assert slow[1] > 100.0
+
+
+def test_single_oscillator_has_its_textbook_pole() -> None:
+    form = modal_form(np.array([2.0]), np.array([[0.4]]), np.array([[50.0]]), np.array([0]))
+    assert form.rigid.shape[1] == 0
+    expected = -0.1 + 1j * np.sqrt(25.0 - 0.01)
+    assert sorted(form.poles, key=lambda p: p.imag) == pytest.approx(
+        [expected.conjugate(), expected], rel=1e-12
+    )
+    omega = np.array([3.0])
+    assert form.receptance(omega, np.array([0]))[0, 0, 0] == pytest.approx(
+        1.0 / (50.0 - 18.0 + 1.2j), rel=1e-12
+    )

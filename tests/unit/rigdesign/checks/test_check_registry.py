@@ -1,0 +1,105 @@
+"""Rules register once, each check finds its family, and what a family declares reaches its check."""
+
+from dataclasses import replace
+
+import pytest
+
+from rigdesign.case import Case, load_case
+from rigdesign.checks.assumptions import depends
+from rigdesign.checks.registry import LOADS, REGISTRY, Registry, RigRule, RuleFamily, Topic
+from rigdesign.checks.rules import hold
+from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig
+from rigdesign.results.check import Check
+from rigdesign.results.units import KELVIN, MICROMETRE, DisplayUnit
+from rigdesign.rig.model import build_rig
+from tests.builders.paths import CASES
+
+PROTOTYPE = CASES / "uhcf_prototype"
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    return load_case(PROTOTYPE)
+
+
+@pytest.fixture(scope="module")
+def solved(case: Case) -> SolvedRig:
+    return SolvedRig(rig=build_rig(case, "quick"), points=())
+
+
+def rule(**changes: object) -> RigRule:
+    """A rule on two made-up temperature differences, 3 K and 5 K, below 10 K."""
+    made = RigRule(
+        key="temperature.difference", title="difference", unit=KELVIN, group="temperatures", source="a test",
+        limit=lambda limits: 10.0, values=lambda solved: ((3.0, "first"), (5.0, "second")),
+    )  # fmt: skip
+    return replace(made, **changes)  # type: ignore[arg-type]
+
+
+def test_the_worst_place_governs_by_the_sense_of_the_rule(solved: SolvedRig) -> None:
+    check = rule().check(solved)
+    assert (check.value, check.limit, check.reason, check.verdict) == (5.0, 10.0, "second", "pass")
+    least = rule(comparison=">=").check(solved)
+    assert (least.value, least.reason, least.verdict) == (3.0, "first", "fail")
+
+
+def test_value_and_limit_are_shown_in_the_unit_of_the_rule(solved: SolvedRig) -> None:
+    thin = rule(
+        unit=MICROMETRE, limit=lambda limits: 1e-5, values=lambda solved: [(7e-6, "x")], comparison=">="
+    )
+    check = thin.check(solved)
+    assert (check.value, check.limit, check.unit) == (pytest.approx(7.0), pytest.approx(10.0), "um")
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"needs": LOADS}, NO_LOADS),
+        ({"limit": lambda limits: None}, NO_LIMIT),
+        ({"values": lambda solved: (), "absent": "no such place"}, "no such place"),
+        ({"values": lambda solved: (), "absent": lambda solved: solved.case.name}, "uhcf_prototype"),
+    ],
+)
+def test_what_is_missing_is_the_reason_why_a_rule_does_not_apply(
+    solved: SolvedRig, changes: dict[str, object], reason: str
+) -> None:
+    check = rule(**changes).check(solved)
+    assert (check.verdict, check.reason) == ("not applicable", reason)
+
+
+def test_a_key_is_registered_once() -> None:
+    registry = Registry()
+    registry.register(Topic(order=2, families=(rule(),), checks=lambda solved: ()))
+    with pytest.raises(ValueError, match=r"temperature\.difference is registered twice"):
+        registry.register(Topic(order=1, families=(rule(),), checks=lambda solved: ()))
+    first = registry.register(Topic(order=1, families=(), checks=lambda solved: ()))
+    assert registry.topics()[0] is first
+
+
+def family(key: str) -> RuleFamily:
+    return next(found for found in REGISTRY.families() if found.key == key)
+
+
+def check_of(identity: str) -> Check:
+    return hold(replace(rule().rule(10.0), id=identity), 1.0)
+
+
+def test_a_check_finds_its_family_by_the_beginning_of_its_id(case: Case) -> None:
+    for identity, key in (
+        ("dynamics.lift_off.test.a", "dynamics.lift_off"),
+        ("ramp.start_torque", "ramp"),
+        ("bought_part.motor", f"bought_part.{case.limits.bought_parts['motor'].quantity}"),
+    ):
+        assert REGISTRY.family_of(case, check_of(identity)) is family(key)
+    with pytest.raises(KeyError, match="no rule is registered for check temperature_of_the_moon"):
+        REGISTRY.family_of(case, check_of("temperature_of_the_moon.x"))
+
+
+def test_an_influence_of_one_gearbox_stays_in_it(case: Case) -> None:
+    grade = "gearboxes.reference.gears.pinion.quality_grade"
+    assert depends(case, check_of("strength.root_safety_iso.reference.pinion"), grade)
+    assert not depends(case, check_of("specimen.root_stress_iso.test.pinion"), grade)
+
+
+def test_a_limit_of_zero_degrees_is_shown_as_such() -> None:
+    assert DisplayUnit("degC", zero=273.15).shown(273.15) == 0.0

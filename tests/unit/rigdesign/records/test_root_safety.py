@@ -1,0 +1,96 @@
+"""Factors between nominal stress, stress and strength of a tooth root, against hand numbers."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dynamics.rating.iso_rating import permissible_factors, transverse_load_factor
+from dynamics.standards import iso6336_3_2006 as iso
+from rigdesign.case import load_case
+from rigdesign.checks import strength
+from rigdesign.records.curves import iso_factor
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.loads import DynamicLoads
+from rigdesign.rig.model import Rig, build_rig
+from tests.builders.loads import mesh_loads
+from tests.builders.paths import CASES
+
+
+@pytest.fixture(scope="module")
+def prototype() -> Rig:
+    return build_rig(load_case(CASES / "uhcf_prototype"), "quick")
+
+
+@pytest.mark.parametrize(
+    ("cycles", "factor"), [(1e5, 1.0), (3e6, 1.0), (5e8, 0.9027), (1e10, 0.8503), (1e12, 0.8503)]
+)
+def test_life_factor_falls_from_the_knee_to_1e10_cycles(cycles: float, factor: float) -> None:
+    """ISO 6336-3:2006, clause 12: 1.0 at 3e6 and 0.85 at 1e10 cycles, straight on log scales."""
+    assert iso.Y_NT(cycles) == pytest.approx(factor, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("module", "factor"), [(1.0, 1.0), (5.0, 1.0), (10.0, 0.95), (25.0, 0.8), (40.0, 0.8)]
+)
+def test_size_factor_of_case_hardened_gears(module: float, factor: float) -> None:
+    assert iso.Y_X(module) == pytest.approx(factor)
+
+
+def test_only_a_blunt_notch_lowers_the_strength() -> None:
+    sharp = iso.RootSection(E=0.0, G=0.0, H=0.0, theta=0.5, s_Fn=2.0, rho_F=0.4, y_F=1.0)
+    blunt = iso.RootSection(E=0.0, G=0.0, H=0.0, theta=0.5, s_Fn=2.0, rho_F=0.7, y_F=1.0)
+    assert (iso.Y_deltarelT(sharp), iso.Y_deltarelT(blunt)) == (1.0, 0.95)
+
+
+def test_pitch_errors_load_single_teeth_of_a_lightly_loaded_wide_gear(prototype: Rig) -> None:
+    """c_gamma_alpha f_pb,eff b / F_tH by hand for both gearboxes; 7 mm under 510 N/mm share evenly."""
+    torque, speed = 180.0, 1256.6
+    wide, narrow = (prototype.pairs[name] for name in ("reference.main", "test.main"))
+    rated = iso_factor(prototype, "reference.main", torque, speed)
+    load = torque / wide.gears[0].reference_radius / wide.face_width * 1e-3
+    ratio = wide.total_contact_ratio
+    sharing = 0.9 + 0.4 * np.sqrt(2.0 * (ratio - 1.0) / ratio) * (
+        rated.stiffness.c_gamma_alpha * rated.f_pb_eff / load
+    )
+    assert 1.25 < sharing < 1.5
+    assert transverse_load_factor(wide, rated) == pytest.approx(sharing)
+    assert 1.0 < transverse_load_factor(wide, rated, dynamic=1.2, face_load=1.1) < sharing
+    other = iso_factor(prototype, "test.main", torque, speed)
+    assert transverse_load_factor(narrow, other) == 1.0
+
+
+def rated(rig: Rig, meshes: int) -> SolvedRig:
+    """The rig held at 180 N m with a K_V of 1.1 in every mesh, and made-up histories."""
+    response = SimpleNamespace(dynamic_factor=np.full(meshes, 1.1), mean=np.full(meshes, 180.0))
+    point: Any = SimpleNamespace(
+        point=SimpleNamespace(stage="test", speed=1256.6, torque=180.0),
+        last=SimpleNamespace(response=response),
+    )
+    loads = DynamicLoads(meshes=dict.fromkeys(rig.mesh_labels.values(), mesh_loads()))
+    run: Any = SimpleNamespace()
+    return SolvedRig(rig=rig, points=[point], run=run, loads=loads)
+
+
+def test_safety_of_a_rig_gear_takes_sharing_and_cycles(prototype: Rig) -> None:
+    found = {check.id: check for check in strength.checks(rated(prototype, 2))}
+    check = found["strength.root_safety_iso.reference.pinion"]
+    life = permissible_factors(prototype.pairs["reference.main"], 0, 720.0 * 3600.0 * 200.0)["Y_NT"]
+    nominal = float(check.reason.split("nominal ")[1].split(" MPa")[0])
+    shared = float(check.reason.split("K_Falpha ")[1].split(",")[0])
+    assert shared > 1.2 and life == pytest.approx((3e6 / 5.184e8) ** 0.02)
+    assert check.value == pytest.approx(920.0 * life / (nominal * 1.1 * 1.1 * shared), rel=5e-3)
+
+
+def test_every_mesh_of_a_gearbox_is_rated_and_an_idler_bends_both_ways() -> None:
+    """The pinion of the main rig between its two wheels: two labels, and 0.7 of the strength."""
+    rig = build_rig(load_case(CASES / "uhcf_main"), "quick")
+    labels = [rig.mesh_labels[name] for name in rig.mesh_names]
+    assert {"test.a", "test.b"} <= set(labels)
+    found = {check.id: check for check in strength.checks(rated(rig, len(labels)))}
+    for label in labels:
+        assert any(f".{label}." in identity for identity in found)
+    idler, _ = strength._strength_share(rated(rig, len(labels)), labels.index("test.a"), 0)
+    wheel, _ = strength._strength_share(rated(rig, len(labels)), labels.index("test.a"), 1)
+    assert idler / wheel == pytest.approx(0.7, rel=0.02)

@@ -1,0 +1,237 @@
+"""results.json, junit.xml, curves, fields and the rules of the output folder."""
+
+import csv
+import json
+from xml.etree import ElementTree
+
+import meshio
+import numpy as np
+import pytest
+
+from rigdesign.base.errors import OutputError
+from rigdesign.base.json_text import to_plain, to_text
+from rigdesign.base.output_folder import file_stem, staged
+from rigdesign.report import NonFiniteResultError, prepare_output, results_document, write_results
+from rigdesign.report.csv_text import csv_text
+from tests.builders.report import gearbox_field, make_check, make_result, small_result
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    out = tmp_path_factory.mktemp("report") / "new" / "out"
+    result = make_result()
+    write_results(result, out)
+    return out, result
+
+
+def test_results_json_keeps_the_contract(written):
+    document = json.loads((written[0] / "results.json").read_text(encoding="utf-8"))
+    assert document["schema_version"] == "1"
+    assert set(document["case"]) >= {"name", "path", "hash"}
+    assert document["verdict"] == "fail"
+    assert set(document["checks"][0]) >= {
+        "id", "title", "value", "limit", "unit", "margin", "utilisation", "verdict", "source",
+    }  # fmt: skip
+    gearbox = document["dynamics"]["gearboxes"]["test"]
+    assert set(gearbox["dynamic_factor"][0]) >= {
+        "speed_rpm", "simulated", "simulated_half_peak_to_peak", "iso_6336_1_method_b",
+    }  # fmt: skip
+    assert {"dynamic_torque_peak_Nm", "lift_off", "resonances"} <= set(gearbox)
+    assert set(document["losses"][0]) >= {"place", "stage", "power_W"}
+    assert set(document["thermal"][0]) >= {
+        "gearbox", "stage", "max_temperature_degC", "heat", "closure_relative", "nodes", "elements",
+    }  # fmt: skip
+    assert set(document["thermal"][0]["heat"][0]) >= {"surface", "kind", "power_W"}
+    assert set(document["growth"][0]) >= {"gearbox", "stage", "seal_gaps", "shafts"}
+    assert document["coupling"]["iterations"] == 4
+    assert document["coupling"]["residuals"][1] == {
+        "stage": "dwell", "pass": 2, "temperature_K": 4.0, "growth_um": pytest.approx(300 / 18),
+        "torque_relative": pytest.approx(0.02 / 12),
+    }  # fmt: skip
+    assert document["warnings"][0] == {
+        "id": "iso_6336_range",
+        "text": "stiffness regression outside its range",
+    }
+    assert {"assumptions", "timings_s", "tool_version"} <= set(document)
+
+
+def test_every_listed_file_is_there_and_no_other(written):
+    out = written[0]
+    document = json.loads((out / "results.json").read_text(encoding="utf-8"))
+    found = sorted(path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file())
+    assert document["files"] == found
+    assert {"results.json", "report.html", "junit.xml", "fields/test_dwell.vtu", "curves/ramp.csv"} <= set(
+        found
+    )
+
+
+def test_two_writes_are_the_same_bytes(written, tmp_path):
+    out, result = written
+    write_results(result, tmp_path)
+    for path in out.rglob("*"):
+        if path.is_file():
+            assert path.read_bytes() == (tmp_path / path.relative_to(out)).read_bytes(), path
+
+
+def test_case_without_drivetrain_keeps_the_keys(tmp_path):
+    document = results_document(make_result(dynamics=None, expansion=[], thermal=[], fields=[], coupling=[]))
+    assert document["dynamics"] == {"gearboxes": {}}
+    assert document["coupling"] == {"iterations": 0, "residuals": []}
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), np.float64("nan")])
+def test_numbers_that_do_not_exist_are_named_and_nothing_is_written(value, tmp_path):
+    result = make_result(checks=[make_check("gap", value, 0.3)])
+    with pytest.raises(NonFiniteResultError, match=r"checks\[0\]\.value = (nan|inf)"):
+        write_results(result, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_plain_values():
+    mixed = {"a": np.array([1.0, 2.0]), "b": np.int64(3), "c": (np.bool_(True), None), "d": -0.0}
+    assert to_text(to_plain(mixed)) == to_text({"a": [1.0, 2.0], "b": 3, "c": [True, None], "d": 0.0})
+    assert to_plain(0.1 + 0.2) == 0.3
+    assert to_plain(1.23456789012345e-7) == 1.23456789e-7
+    with pytest.raises(TypeError, match="x: object"):
+        to_plain({"x": object()})
+
+
+def test_junit_has_a_testcase_per_check(written):
+    out, result = written
+    root = ElementTree.parse(out / "junit.xml").getroot()
+    cases = {case.get("name"): case for case in root.iter("testcase")}
+    assert set(cases) == {check.id for check in result.checks}
+    failure = cases["root_stress_window"].find("failure")
+    assert "2180 N/mm², limit ≤ 950 N/mm², margin −1230 N/mm²" in failure.get("message")
+    assert "ISO 6336-3" in failure.text
+    assert cases["bought_part_coupling"].find("skipped").get("message") == "no coupling is fitted"
+    assert "warning: holds" in cases["axial_play"].find("system-out").text
+    assert cases["axial_play"].find("failure") is None
+    assert root.get("failures") == "1"
+    assert root.get("skipped") == "1"
+    assert "margin 9 K" in cases["bearing_film"].find("system-out").text
+
+
+def test_junit_survives_characters_that_xml_lacks(tmp_path):
+    result = small_result(checks=[make_check("gap", 1.0, 0.3, title="bad \x00 <title> & \x1b")])
+    write_results(result, tmp_path)
+    assert len(list(ElementTree.parse(tmp_path / "junit.xml").getroot().iter("testcase"))) == 1
+
+
+def test_field_file_holds_temperature_displacement_and_body(written):
+    out, result = written
+    field = result.fields[0]
+    mesh = meshio.read(out / "fields" / "test_dwell.vtu")
+    np.testing.assert_allclose(mesh.points, field.mesh.points)
+    np.testing.assert_array_equal(mesh.cells_dict["tetra10"], field.mesh.cells)
+    np.testing.assert_allclose(mesh.point_data["temperature_degC"], field.temperature - 273.15)
+    np.testing.assert_allclose(mesh.point_data["displacement_m"], field.displacement)
+    bodies = json.loads((out / "results.json").read_text(encoding="utf-8"))["fields"][0]["bodies"]
+    shaft = field.mesh.bodies["shaft_pinion"]
+    assert set(mesh.cell_data_dict["body"]["tetra10"][shaft]) == {bodies.index("shaft_pinion")}
+
+
+def test_curves_hold_what_the_result_holds(written):
+    out, result = written
+    names = {path.name for path in (out / "curves").iterdir()}
+    assert names == {
+        *("checks.csv", "losses.csv", "oil.csv", "heat.csv", "seal_gaps.csv", "ramp.csv"),
+        *("dynamic_factor_test.csv", "dynamic_factor_reference.csv"),
+        *("root_stress_test_pinion.csv", "root_stress_test_wheel.csv"),
+    }
+    lines = (out / "curves/dynamic_factor_test.csv").read_text(encoding="utf-8").splitlines()
+    rows = list(csv.DictReader(lines))
+    points = result.dynamics.gearboxes["test"].dynamic_factor
+    assert len(rows) == 3 * len(points)
+    assert {row["torque"] for row in rows} == {"180 Nm", "90 Nm"}
+    assert float(rows[7]["max/mean [1]"]) == pytest.approx(points[7].simulated, rel=1e-9)
+    assert {row["variant"] for row in rows} == {"", "unscaled_weber_banaschek_x0.8"}
+    ramp = list(csv.DictReader((out / "curves/ramp.csv").read_text(encoding="utf-8").splitlines()))
+    assert float(ramp[-1]["reference maximum [Nm]"]) == pytest.approx(
+        result.dynamics.ramp.torque["reference"]["maximum"][-1], rel=1e-9
+    )
+    lines = (out / "curves/losses.csv").read_text(encoding="utf-8").splitlines()
+    total = sum(float(row["power [W]"]) for row in csv.DictReader(lines))
+    assert total == pytest.approx(sum(row.power_W for row in result.losses))
+
+
+def test_csv_cells():
+    assert csv_text(("a", "b"), [(1.0, None), (2e-12, 'say "x", y')]) == 'a,b\n1,\n2e-12,"say ""x"", y"\n'
+
+
+def test_file_names_are_safe():
+    assert file_stem("../../etc", "a b/c") == "etc_a_b_c"
+    assert file_stem("..") == "unnamed"
+
+
+def test_files_of_an_earlier_run_go_and_foreign_files_stay(tmp_path):
+    write_results(small_result(dynamics=make_result().dynamics, fields=[gearbox_field(0.05)]), tmp_path)
+    (tmp_path / "notes.txt").write_text("mine")
+    (tmp_path / "fields" / "other.vtu").write_text("mine")
+    write_results(small_result(), tmp_path)
+    assert not (tmp_path / "fields" / "test_dwell.vtu").exists()
+    assert not (tmp_path / "curves" / "ramp.csv").exists()
+    assert (tmp_path / "notes.txt").read_text() == "mine"
+    assert (tmp_path / "fields" / "other.vtu").read_text() == "mine"
+
+
+def test_listed_files_outside_the_folder_are_never_removed(tmp_path):
+    (tmp_path / "precious").write_text("mine")
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "results.json").write_text(json.dumps({"files": ["../precious", 7]}))
+    write_results(small_result(), out)
+    assert (tmp_path / "precious").exists()
+
+
+def test_a_failing_writer_leaves_the_earlier_result(tmp_path, monkeypatch):
+    write_results(small_result(), tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+
+    def fail(result):
+        raise RuntimeError("no picture")
+
+    monkeypatch.setattr("rigdesign.report.pages.report.report_html", fail)
+    with pytest.raises(RuntimeError, match="no picture"):
+        write_results(small_result(verdict="pass"), tmp_path)
+    assert before == {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+
+
+def test_prepare_output_makes_nothing(tmp_path):
+    prepare_output(tmp_path / "a" / "b")
+    assert not (tmp_path / "a").exists()
+
+
+@pytest.mark.parametrize("below", ["", "out", "deeper/out"])
+def test_output_below_a_file_is_refused_before_the_run(below, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match=r"is a file, a folder is needed; give another folder") as error:
+        prepare_output(tmp_path / "file" / below)
+    assert error.value.exit_code == 2
+
+
+def test_a_folder_that_refuses_files_is_refused(tmp_path, monkeypatch):
+    def refuse(**options):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("rigdesign.base.output_folder.tempfile.TemporaryFile", refuse)
+    with pytest.raises(OutputError, match="Permission denied"):
+        prepare_output(tmp_path)
+
+
+def test_results_json_appears_after_everything_else(tmp_path):
+    """A file that cannot take its place keeps results.json away: who finds it finds the rest."""
+    for name in ("a", "zz"):
+        out = tmp_path / name
+        (out / f"{name}.csv").mkdir(parents=True)
+        with pytest.raises(OutputError), staged(out) as scratch:
+            for written in (f"{name}.csv", "results.json"):
+                (scratch / written).write_text("{}")
+        assert not (out / "results.json").exists()
+
+
+def test_staging_reports_a_disk_that_fills_up(tmp_path):
+    with pytest.raises(OutputError, match="No space left"), staged(tmp_path / "out") as scratch:
+        (scratch / "half").write_text("written")
+        raise OSError(28, "No space left on device")
+    assert list((tmp_path / "out").iterdir()) == []
