@@ -69,11 +69,11 @@ class CouplingInput(Part):
     excitation: tuple[HarmonicTorqueInput, ...] = ()
     """Torques between its two ends, drawing the first ahead: what it makes of axes out of line turns up at order 2."""
     radial_offset_maximum: Length | None = None
-    """What its maker allows between the axes, cold and hot."""
+    """What its maker allows between the axes, as set and warm."""
     angle_maximum: Tilt | None = None
-    """What its maker allows between the axes, cold and hot."""
+    """What its maker allows between the axes, as set and warm."""
     cold_offset_lateral: Deviation = 0.0
-    """Axis of the first shaft against that of the second when set up cold, across (y)."""
+    """Axis of the first shaft against that of the second as set up, across (y)."""
     cold_offset_vertical: Deviation = 0.0
     """The same upwards (z)."""
 

@@ -30,8 +30,8 @@ class Ambient(Part):
     reference_temperature: RoomTemperature = 293.15
     """At which drawings and measures of the case hold; 20 degC by ISO 1."""
     warming_time: Time | None = None
-    """How long an operating point had run from a rig as cold as the room; steady when left out. The housings then
-    still take up heat: the whole warm-up as one implicit step, right at its start and at its end."""
+    """How long an operating point had run from a rig at the temperature of the room; steady when left out. The housings
+    then still take up heat: the whole warm-up as one implicit step, right at its start and at its end."""
 
 
 class CustomOil(Part):

@@ -142,11 +142,11 @@ def _states(solved: SolvedRig, name: str) -> Iterator[tuple[ShaftOffset, str]]:
 
 
 def _where(coupling: CouplingAlignment, state: str) -> str:
-    """Shafts and state, with the offset to be set cold that brings the axes together when warm."""
+    """Shafts and state, with the offset to be set that brings the axes together when warm."""
     lateral, vertical = coupling.moved
     return (
         f"{coupling.shown(0)} against {coupling.shown(1)}, {state}; first shaft set {-MM * lateral:+.3f} mm across "
-        f"and {-MM * vertical:+.3f} mm up when cold makes the hot offset zero"
+        f"and {-MM * vertical:+.3f} mm up as set makes the warm offset zero"
     )
 
 

@@ -130,7 +130,7 @@ def _channel_columns(places: Places) -> dict[str, tuple[str, str]]:
 
 
 def _offer(places: Places) -> str:
-    lines = ["# Channels. Places this rig offers, beside those below:"]
+    lines = ["# Channels. Places this rig offers, besides those below:"]
     for quantity in ("temperature", "angle", "seal_gap"):
         offered = places.of(quantity)
         if offered:

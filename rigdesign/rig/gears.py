@@ -1,4 +1,4 @@
-"""Gear pairs of a case: cold geometry from centre distance, tips, shifts and bodies."""
+"""Gear pairs of a case: geometry as drawn from centre distance, tips, shifts and bodies."""
 
 from collections.abc import Mapping
 
@@ -13,7 +13,7 @@ from rigdesign.properties.materials import Material
 
 
 def build_pairs(case: Case, materials: Mapping[str, Material]) -> dict[str, GearPair]:
-    """Cold gear pair of every mesh by ``gearbox.mesh``.
+    """Gear pair as drawn of every mesh by ``gearbox.mesh``.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def build_pairs(case: Case, materials: Mapping[str, Material]) -> dict[str, Gear
 
 
 def build_pair(box: Gearbox, mesh: GearMesh, materials: Mapping[str, Material]) -> GearPair:
-    """Cold gear pair of one mesh."""
+    """Gear pair as drawn of one mesh."""
     pinion, wheel = box.gears[mesh.pinion], box.gears[mesh.wheel]
     solid = [materials[gear.material] for gear in (pinion, wheel)]
     rack = Rack(addendum=mesh.rack.addendum, dedendum=mesh.rack.dedendum, tip_radius=mesh.rack.tip_radius)

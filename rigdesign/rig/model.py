@@ -1,4 +1,4 @@
-"""The rig: a case turned into the inputs of the solvers, cold, SI. Nothing here changes during a run."""
+"""The rig: a case turned into the inputs of the solvers, as drawn, SI. Nothing here changes during a run."""
 
 import math
 from collections.abc import Mapping
@@ -35,7 +35,7 @@ from thermal.housing.surfaces import surface_names
 class Rig:
     """Everything that stays the same over operating points and iterations.
 
-    pairs : cold gear pair by ``gearbox.mesh``; oils, materials : by the name the case uses
+    pairs : gear pair as drawn, by ``gearbox.mesh``; oils, materials : by the name the case uses
     coarsening : of the loop, for estimates of its discretisation error
     """
 

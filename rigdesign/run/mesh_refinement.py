@@ -1,7 +1,7 @@
 """A converged operating point on another mesh: one more iteration, with its loads and losses.
 
 At reference the loop runs on the standard mesh and this iteration on the final one ends it. The same iteration on
-coarser meshes tells how far mesh and result hang together (`rigdesign.run.mesh_convergence`).
+coarser meshes tells how far the result depends on the mesh (`rigdesign.run.mesh_convergence`).
 """
 
 from collections.abc import Sequence

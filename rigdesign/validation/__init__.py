@@ -1,6 +1,6 @@
 """`rigdesign validate`: published numbers against ours, each with the assumption it depends on.
 
-``rows`` says what a row is, ``document`` what becomes of the rows, ``prototype`` and ``courses`` what
+``rows`` says what a row is, ``document`` what becomes of the rows, ``prototype`` and ``speed_sweeps`` what
 several of them share; every other module holds the rows of one topic and names in its docstring what they
 found out about the publication.
 """

@@ -76,7 +76,7 @@ class SpeedSweep:
 
 
 def simulation_models(prototype: Prototype, stiffness: str | None = None) -> tuple[MeshModel, ...]:
-    """Meshes of P2's simulation: cold, 12,000 rpm, 180 N m; ``stiffness`` as in ``mesh_models``."""
+    """Meshes of P2's simulation: as drawn, 12,000 rpm, 180 N m; ``stiffness`` as in ``mesh_models``."""
     rig, point = _point(prototype)
     return mesh_models(rig, point, initial_state(rig, point), stiffness)
 
@@ -90,7 +90,7 @@ def _point(prototype: Prototype) -> tuple[Rig, OperatingPoint]:
     return prototype.simulated, OperatingPoint(stage="P2", speed=TOP_SPEED * RPM, torque=TEST_TORQUE)
 
 
-def course(
+def speed_sweep(
     prototype: Prototype, laws: Sequence[MeshLaw], speeds: Array, methods: tuple[Method, ...] = BOTH
 ) -> SpeedSweep:
     """Periodic response of P2's rig over ``speeds`` [rpm] at 180 N m, without the speeds that find none."""

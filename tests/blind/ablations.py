@@ -25,7 +25,7 @@ MODEL = (
     "series_mesh",
     "series_shaft",
 )
-"""Amplitudes of what a model has wrong beside its constants."""
+"""Amplitudes of what a model has wrong besides its constants."""
 STATED = ("sensor", "input")
 """Those that the measurement states."""
 

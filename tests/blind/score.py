@@ -56,7 +56,7 @@ def folder_of(out: Path, split: str, mode: str, spec: Spec) -> Path:
 
 
 def set_of(folder: Path) -> Path:
-    """The set itself; with a baseline it lies beside it."""
+    """The set itself; with a baseline it lies next to it."""
     return folder / "set_1" if (folder / "set_1").is_dir() else folder
 
 
@@ -262,7 +262,7 @@ def _run(job: tuple[str, str, Path, Spec, Method]) -> Row | None:
 
 
 def shuffled(folder: Path, seed: int) -> Path:
-    """A copy of a set beside it whose readings went to other operating points; it must be refused."""
+    """A copy of a set next to it whose readings went to other operating points; it must be refused."""
     target = folder.with_name(f"{folder.name}_shuffled")
     if target.is_dir():
         return target

@@ -20,7 +20,7 @@ CAPACITY = {"base": 3.6e6, "lid": 2.4e6, "wall": 3.6e6}
 
 
 def coupled_blocks() -> NamedMesh:
-    """A lid on a base with another mesh, and a wall beside that touches nothing."""
+    """A lid on a base with another mesh, and a wall next to it that touches nothing."""
     base = renamed(box_mesh((0.2, 0.1, 0.1), (4, 2, 2), name="base"), "base")
     lid = renamed(box_mesh((0.1, 0.1, 0.05), (3, 3, 1), origin=(0.04, 0.0, 0.1), name="lid"), "lid")
     wall = renamed(box_mesh((0.02, 0.1, 0.1), (1, 2, 2), origin=(0.3, 0.0, 0.0), name="wall"), "wall")

@@ -1,7 +1,7 @@
 """FZG back-to-back rig with C-type gears at load stage 10 (DIN ISO 14635), the test gearbox in a small housing.
 
 The sump is stood for by a weak big jet, rolling bearings by journals with the losses of NU406 by ISO/TR 14179-2 and the
-churning measured on such rigs without load; what cools gears and shafts beside the flanks is small.
+churning measured on such rigs without load; what cools gears and shafts besides the flanks is small.
 """
 
 from pathlib import Path

@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def written_out(page: str, folder: Path) -> None:
-    """Every file the page shows, by the name beside its fence."""
+    """Every file the page shows, by the name after its fence."""
     for name, text in re.findall(r"^```\w+ (\S+)\n(.*?)^```", page, re.DOTALL | re.MULTILINE):
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)

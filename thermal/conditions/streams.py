@@ -203,7 +203,7 @@ def _check_number(
 
 
 def volume_links(networks: Sequence[StreamNetwork]) -> Iterator[tuple[str, str | None]]:
-    """Pairs of volumes that exchange heat by a stream or link; None beside a volume that a supply reaches."""
+    """Pairs of volumes that exchange heat by a stream or link; None for a volume that a supply reaches."""
     for network in networks:
         supplies = {supply.name for supply in network.supplies}
         for stream in network.streams:

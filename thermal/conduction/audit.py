@@ -49,7 +49,7 @@ def radiation_too_small(
     area = f" ({least / radiation:.3g} times the radiating one would explain it)" if radiation > 0.0 else ""
     return (
         f"{surface}: radiation = {radiation:.4g} W is below {least:.4g} W, the least that any temperature "
-        f"field gives beside {convection:.4g} W of convection at h = {film:.4g} W/(m2 K), "
+        f"field gives with {convection:.4g} W of convection at h = {film:.4g} W/(m2 K), "
         f"eps = {emissivity:.3g} and {ambient:.4g} K; check the convective area{area}, emissivity and the "
         "temperature of the surroundings"
     )

@@ -57,7 +57,7 @@ class Storage:
 
 @dataclass(frozen=True, kw_only=True)
 class StoredHeat:
-    """Bodies that have not got steady yet: a condition on all of them beside those of the surfaces.
+    """Bodies that have not got steady yet: a condition on all of them in addition to those of the surfaces.
 
     Every body takes up rho c (T - start)/time per volume: the whole warm-up as one implicit step. The field lies
     between the start (no time) and the steady one (long time), with tau/(tau + time) of a rise still missing for a

@@ -153,7 +153,7 @@ def _check_values(condition: Condition) -> None:
             raise ConditionError(f"{place}: {field} = {value:g} K must be above 0 K; give kelvin")
         if field == "emissivity" and not -1.0 <= value <= 1.0:
             raise ConditionError(
-                f"{place}: emissivity = {value:g} is outside of 0 to 1, or of -1 to 0 beside a film that holds more"
+                f"{place}: emissivity = {value:g} is outside of 0 to 1, or of -1 to 0 with a film that holds more"
             )
     if isinstance(condition, Exchange | Contact) and condition.surface_a == condition.surface_b:
         name = type(condition).__name__.lower()
@@ -161,7 +161,7 @@ def _check_values(condition: Condition) -> None:
 
 
 def _check_combinations(conditions: Sequence[Condition]) -> None:
-    """Refuse a second condition beside `Adiabatic` or a prescribed temperature, and repeated kinds."""
+    """Refuse a second condition in addition to `Adiabatic` or a prescribed temperature, and repeated kinds."""
     on: dict[str, list[Condition]] = {}
     for condition in conditions:
         for name in surfaces_of(condition):
@@ -205,7 +205,7 @@ def _check_open(elements: FiniteElements, conditions: Sequence[Condition]) -> No
     notes = []
     for name in missing:
         near = get_close_matches(name, covered, n=1, cutoff=0.6)
-        notes.append(f"{name} (beside {near[0]}, which has one)" if near else name)
+        notes.append(f"{name} (next to {near[0]}, which has one)" if near else name)
     raise ConditionError(
         f"surfaces without a boundary condition: {'; '.join(notes)}; give each a film, a temperature, "
         "an exchange or Adiabatic"

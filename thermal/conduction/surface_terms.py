@@ -1,7 +1,7 @@
 """Residual and Jacobian of films, radiation to surroundings and exchange between area means.
 
 A film's coefficient follows the area mean of its own surface, an exchange the means of both: each adds one
-rank to the Jacobian beside the local slope of the heat flux.
+rank to the Jacobian in addition to the local slope of the heat flux.
 """
 
 from collections.abc import Sequence

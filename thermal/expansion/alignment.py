@@ -111,14 +111,14 @@ class ShaftPair:
 
 
 def shaft_pair(
-    first: tuple[Across, Across], second: tuple[Across, Across], cold: Across = (0.0, 0.0)
+    first: tuple[Across, Across], second: tuple[Across, Across], as_set: Across = (0.0, 0.0)
 ) -> ShaftPair:
     """Alignment of two shaft ends.
 
     first, second : displacement [m] and slope [rad] of each axis at its end, from its undeformed place
-    cold : offset at which the first was set against the second [m]
+    as_set : offset at which the first was set against the second [m]
     """
-    shift, slope = np.subtract(first[0], second[0]) + cold, np.subtract(first[1], second[1])
+    shift, slope = np.subtract(first[0], second[0]) + as_set, np.subtract(first[1], second[1])
     return ShaftPair(offset=(float(shift[0]), float(shift[1])), angle=(float(slope[0]), float(slope[1])))
 
 

@@ -1,4 +1,4 @@
-"""What an engineer reads from the displacement of a gearbox, and the closed forms beside it. SI units."""
+"""What an engineer reads from the displacement of a gearbox, and the closed forms to compare it with. SI units."""
 
 from dataclasses import dataclass
 

@@ -19,7 +19,7 @@ STRONG = 0.08
 it on every further level."""
 
 DEPENDENT = 1e-8
-"""A mode adds nothing to a group if less than this share of it is left beside the others."""
+"""A mode adds nothing to a group if less than this share of it is left independent of the others."""
 
 NOTHING = 1e-12
 """A diagonal entry below this share of the largest is rounding."""

@@ -1,6 +1,6 @@
 """The linear stiffness of a curved mesh: straight cells where they serve, the curved ones themselves elsewhere.
 
-Where a thin cell lies beside a coarse arc, its mid-side nodes are farther off their chords than the cell is
+Where a thin cell lies next to a coarse arc, its mid-side nodes are farther off their chords than the cell is
 thick. The prolongation then strains it by what the slopes of its neighbours differ, which the stiffness of
 the straight-sided cell does not know, and multigrid stalls. For such cells alone the linear stiffness is
 P^T K P with the prolongation P, which is exact.

@@ -288,7 +288,7 @@ def _nodes_in_brick(cell: CellName) -> list[IndexArray]:
 
 
 def disjoint_union(*meshes: NamedMesh) -> NamedMesh:
-    """Put meshes of one kind of cell beside each other without joining nodes; names must differ.
+    """Combine meshes of one kind of cell without joining nodes; names must differ.
 
     Raises MeshError naming a body or surface that occurs twice, or the kinds of cells that do not go together.
     """

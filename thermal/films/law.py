@@ -9,7 +9,7 @@ STEFAN_BOLTZMANN = 5.670374419e-8
 
 @dataclass(frozen=True, kw_only=True)
 class FilmCoefficient:
-    """A heat transfer coefficient with its provenance; what the report prints beside every film."""
+    """A heat transfer coefficient with its provenance; what the report prints with every film."""
 
     value: float
     """[W/(m2 K)] at the temperatures given in ``inputs``."""

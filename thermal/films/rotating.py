@@ -99,7 +99,7 @@ def rotating_cylinder_etemad(speed: float, diameter: float, density: float | Non
     """Cylinder turning in still air: Nu_D = 0.076 Re^0.7 (Etemad 1955).
 
     speed : w [rad/s]
-    diameter : D [m]. Range 8000 < Re < 6.5e4; further up it stays beside the others (12,000 rpm, 80 mm: 4 %).
+    diameter : D [m]. Range 8000 < Re < 6.5e4; further up it stays close to the others (12,000 rpm, 80 mm: 4 %).
     density : of a mist [kg/m3]; that of air when left out
     """
     return _cylinder(

@@ -11,7 +11,7 @@ cold section, partition with contactless seals, warm chamber with gears, partiti
               ################################ clamping field ################################
 
 x runs along the shafts, y across, z up; y = 0 is the middle of the housing and of the field. All lengths in
-metres, cold. A bearing sits at the inner side of its end wall, the end seal (or, at a blind shaft end, the
+metres, as drawn. A bearing sits at the inner side of its end wall, the end seal (or, at a blind shaft end, the
 cover) outside of it; a bearing wider than the wall leaves room for protrudes into the cold section on a boss.
 """
 
@@ -60,7 +60,7 @@ class ShaftGeometry:
     name: str
     """Lower-case letters, digits and underscores; part of the names of its bodies and surfaces."""
     y: float
-    """Cold position of the axis across the housing."""
+    """Position of the axis as drawn across the housing."""
     journal_diameter: float
     seal_diameter: float
     """Diameter in the partition seals and in the cold sections between partition and bearing."""

@@ -1,6 +1,6 @@
 """Places of a gearbox where an engineer reads a clearance: bearings, seals, shafts, gears.
 
-Coordinates: x along the shafts, y across (from pinion to wheel), z up; metres, cold.
+Coordinates: x along the shafts, y across (from pinion to wheel), z up; metres, as drawn.
 """
 
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ class ShaftStation:
     name: str
     body: str
     axis: Point
-    """Any point on the cold axis (which runs along x)."""
+    """Any point on the axis as drawn (which runs along x)."""
     start: float
     """x of the first end face [m]."""
     end: float

@@ -2,9 +2,9 @@
 
 Every surface is a union of patches. A patch says where its points lie (a box, flat in one direction, or a
 piece of cylinder or ring about a shaft axis), so that a face of the mesh is recognised by its own nodes. The
-closed-form area beside it is what the mesh is checked against.
+closed-form area next to it is what the mesh is checked against.
 
-Shoulders of a shaft belong to its warm or cold zone, never to a journal or seal; shoulders and covers beside
+Shoulders of a shaft belong to its warm or cold zone, never to a journal or seal; shoulders and covers next to
 a bearing belong to ``cold_wall_<side>``, so that every bore and journal is a pure cylinder.
 """
 

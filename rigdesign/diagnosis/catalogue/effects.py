@@ -111,6 +111,6 @@ class Effect:
         return f"{self.kind}.{self.place.partition('.')[2]}" if self.likeness_of_place else self.kind
 
     @property
-    def swings(self) -> bool:
-        """It only swings, with no mean over a turn: waves over the teeth, harmonic torques."""
+    def oscillates(self) -> bool:
+        """It only oscillates, with no mean over a turn: waves over the teeth, harmonic torques."""
         return self.family == EXCITATION and self.linear and not self.any_tooth

@@ -24,7 +24,7 @@ BATCH = 4
 LINEAR_SHARE = 0.1
 """Run of an effect that the numbers answer to in proportion."""
 
-SWING_SHARE = 0.01
+OSCILLATION_SHARE = 0.01
 """The same of an excitation: what grows with its square stays small."""
 
 POWER = Channel(name="losses of the rig", quantity="motor_power", place="motor")
@@ -86,7 +86,7 @@ def build_library(
 
 
 def _reaches(effect: Effect, channels: Sequence[Channel]) -> bool:
-    """Whether an effect can show at all: teeth and swinging torques only where orders or modes are read."""
+    """Whether an effect can show at all: teeth and alternating torques only where orders or modes are read."""
     dynamic = any(channel.quantity in (*ORDER_QUANTITIES, "natural_frequency") for channel in channels)
     return dynamic or not effect.family.dynamic
 
@@ -149,7 +149,7 @@ class _Runs:
                 continue
             changes = effect.changes(self._case, tuple(float(value) for value in place))
             try:
-                run = self._predictor.oscillating if effect.swings else self._predictor.response
+                run = self._predictor.oscillating if effect.oscillates else self._predictor.response
                 answers.append(run(changes) - base)
                 coordinates.append(place)
             except RigdesignError:
@@ -163,7 +163,7 @@ def run_places(effect: Effect) -> list[Array]:
     """Coordinates at which an effect is run."""
     bounds = [parameter.bounds for parameter in effect.parameters]
     if effect.linear or len(bounds) > 1:
-        share = SWING_SHARE if effect.swings else LINEAR_SHARE
+        share = OSCILLATION_SHARE if effect.oscillates else LINEAR_SHARE
         steps = [share * max(abs(low), abs(high)) for low, high in bounds]
         return list(np.diag(steps))
     low, high = bounds[0]

@@ -53,7 +53,7 @@ class Signature:
     order : (n,) places of the numbers sorted by series; starts : (s,) where each begins in it
     trend : (n,) logarithm of the relative speed; errors : kind of effect -> relative error, "" for the others
     own : error of every number by itself, if there is one
-    circuit : effects that change what passes through the circuit
+    circuit : effects that change what goes through the circuit
     """
 
     order: NDArray[np.intp]

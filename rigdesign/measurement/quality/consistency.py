@@ -26,7 +26,7 @@ SAME_SHARE = 0.003
 """Relative difference within which they are the same, too."""
 CONTRADICTION = 5.0
 """Root mean square of the differences of two points of one setting, in standard deviations, that is suspect."""
-SETTLED = 0.01
+STEADY = 0.01
 """Part of a reading (of a temperature in degrees Celsius) that settings alike to ``SAME`` may still move."""
 SCATTER = 3.0
 """Repeats that scatter this many times more than declared are worth a word."""
@@ -128,7 +128,7 @@ def _contradictions(data: "Data") -> Iterator[DataFinding]:
             continue
         a, b = [mine[key] for key in keys], [other[key] for key in keys]
         level = np.array([_size(data, i) for i in a])
-        allowed = np.sqrt(data.noise[a] ** 2 + data.noise[b] ** 2 + (SETTLED * level) ** 2)
+        allowed = np.sqrt(data.noise[a] ** 2 + data.noise[b] ** 2 + (STEADY * level) ** 2)
         apart = (data.values[a] - data.values[b]) / allowed
         rms = float(np.sqrt(np.mean(apart**2)))
         if rms < CONTRADICTION:

@@ -31,7 +31,7 @@ from rigdesign.measurement.reading.table import Table, numbers
 from rigdesign.prediction.model import ORDER_QUANTITIES, STANDING_QUANTITIES, Feature, OperatingCondition
 
 STATIC_TESTS = "standstill"
-"""Name of rows that hold numbers of the rig at rest and cold; they need no settings."""
+"""Name of rows that hold numbers of the rig at rest, at the temperature of the room; they need no settings."""
 KEYS = ("point", "repeat")
 WHOLE = re.compile(r"[0-9]{1,9}")
 """A repeat as the table may have it."""

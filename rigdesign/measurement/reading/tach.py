@@ -98,8 +98,8 @@ def rising_edges(signal: Signal) -> Array:
         raise TachError("the tach signal never changes; look at sensor and cable")
     middle, band = 0.5 * (low + high), HYSTERESIS * (high - low)
     state = np.where(values > middle + band, 1, np.where(values < middle - band, -1, 0))
-    settled = np.flatnonzero(state)
-    rises = settled[1:][(state[settled[1:]] == 1) & (state[settled[:-1]] == -1)]
+    firm = np.flatnonzero(state)
+    rises = firm[1:][(state[firm[1:]] == 1) & (state[firm[:-1]] == -1)]
     crossings = np.flatnonzero((values[:-1] < middle) & (values[1:] >= middle))
     last = crossings[np.searchsorted(crossings, rises - 1, side="right") - 1]
     share = (middle - values[last]) / (values[last + 1] - values[last])

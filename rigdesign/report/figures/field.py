@@ -45,7 +45,7 @@ class MeshViews:
 
     @cached_property
     def outside(self) -> OutsideView:
-        """From outside, cold."""
+        """From outside, as drawn."""
         return view_outside(self.mesh)
 
     @cached_property
@@ -109,7 +109,7 @@ def field_pictures(field: TemperatureField, views: MeshViews) -> Iterator[Pictur
             "Displacement",
             _figure(views, _displacement(field), factor * field.displacement, factor),
             f"Thermal displacement relative to the mean of the foot, shafts placed in their bearings, drawn "
-            f"{number_text(factor)} times as large. Grey in the cut: the cold outlines.",
+            f"{number_text(factor)} times as large. Grey in the cut: the outlines as drawn.",
         )
 
 

@@ -23,7 +23,7 @@ ROWS_APART = 2.85
 
 
 def seal_gap_figure(expansion: list[ExpansionResult]) -> "Figure":
-    """Radial gap of every seal over the angle, hot against cold [mm]."""
+    """Radial gap of every seal over the angle, warm against as drawn [mm]."""
     shown = [item for item in expansion if _seals(item)]
     height = 0.4 + 2.2 * len(shown)
     figure = new_figure(height)
@@ -75,7 +75,9 @@ def _over_angle(axes: "Axes", item: ExpansionResult) -> None:
             angle, gap, color=SERIES[number % len(SERIES)], label=f"{plain(_words(str(seal['seal'])))}, hot"
         )
     for number, cold in enumerate(sorted({seal["cold_mm"] for seal in seals})):
-        axes.axhline(cold, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=None if number else "cold")
+        axes.axhline(
+            cold, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=None if number else "as drawn"
+        )
     axes.set_xlim(0, 360)
     axes.set_xticks(range(0, 361, 45))
 
@@ -89,7 +91,7 @@ def _closed(seal: dict[str, Any]) -> tuple[list[float], list[float]]:
 
 
 def _round(axes: "Axes", seal: dict[str, Any], middle: FloatArray, top: float, limit: float | None) -> None:
-    """One seal: shaft, hot gap as a band between shaft and bore, cold bore dashed, least gap marked."""
+    """One seal: shaft, hot gap as a band between shaft and bore, bore as drawn dashed, least gap marked."""
     from matplotlib.patches import Circle
 
     def radius(gap: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Clearances cold and hot at the held stages."""
+"""Clearances as drawn and warm at the held stages."""
 
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ def _clearances(result: RunResult, draw: Draw) -> Values:
 
     gaps = None
     if any(seal.get("hot_mm") for expansion in result.expansion for seal in expansion.seal_gaps):
-        gaps = draw(seal_gap_figure(result.expansion), "Seal gap over the angle, hot and cold")
+        gaps = draw(seal_gap_figure(result.expansion), "Seal gap over the angle, as drawn and warm")
     return {"seal_gaps": gaps, "seals_round": _seals_round(result, draw)}
 
 
@@ -34,5 +34,5 @@ def _seals_round(result: RunResult, draw: Draw) -> dict[tuple[str, str], "Markup
 
 
 CLEARANCES = ReportSection(
-    id="clearances", title="Clearances cold and hot", template="clearances.html.j2", values=_clearances
+    id="clearances", title="Clearances as drawn and warm", template="clearances.html.j2", values=_clearances
 )

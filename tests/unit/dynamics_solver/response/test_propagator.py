@@ -53,7 +53,7 @@ def first_order_hold(
 @pytest.mark.parametrize("bearing", [0.0, 7e-4])
 @pytest.mark.parametrize("step", [3e-6, 2e-4])
 def test_march_is_the_matrix_exponential(joint: tuple[float, float], bearing: float, step: float) -> None:
-    # a spline of 1e3 N m s/rad has a real pole at 2e6 1/s beside its slow one at 1e3 1/s
+    # a spline of 1e3 N m s/rad has a real pole at 2e6 1/s and its slow one at 1e3 1/s
     system = chain(joint=joint, bearing=bearing)
     rng = np.random.default_rng(3)
     torque = rng.normal(size=41) * 10.0

@@ -14,7 +14,7 @@ from rigdesign.records.housing import cooling_balance
 from rigdesign.results.rows.housing import loss_rows
 from rigdesign.run.main import losses_by_stage
 from rigdesign.validation.prototype import Prototype
-from rigdesign.validation.speed_sweeps import closing, course, simulation_laws
+from rigdesign.validation.speed_sweeps import closing, simulation_laws, speed_sweep
 from tests.builders.warm_prototype import base, drive_power, lost, lost_in_all, open_share, outlet, settled
 
 CLOSING = tuple(
@@ -46,7 +46,7 @@ def test_supercritical_factor_of_p2_simulation_under_both_laws() -> None:
     # an independent integrator found 1.140 with the tip corners damped, 1.054 without
     prototype = Prototype(case_folder())
     laws = simulation_laws(prototype)
-    factors = [course(prototype, law, np.array([12000.0])).factor[0, 0] for law in (laws, closing(laws))]
+    factors = [speed_sweep(prototype, law, np.array([12000.0])).factor[0, 0] for law in (laws, closing(laws))]
     assert factors == pytest.approx([1.054, 1.140], abs=0.002)
 
 

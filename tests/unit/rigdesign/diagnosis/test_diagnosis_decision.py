@@ -1,4 +1,4 @@
-"""From evaluated explanations to a verdict: what a name needs beside its posterior."""
+"""From evaluated explanations to a verdict: what a name needs besides its posterior."""
 
 import numpy as np
 import pytest

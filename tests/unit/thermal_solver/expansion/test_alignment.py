@@ -161,7 +161,7 @@ def test_cold_offset_against_the_hot_one_makes_it_zero() -> None:
     pair = shaft_pair(first, second)
     assert pair.radial_offset == pytest.approx(np.hypot(3e-4, 3e-4))
     assert pair.bend == pytest.approx(np.hypot(1e-4, 2e-4))
-    reset = shaft_pair(first, second, cold=(-pair.offset[0], -pair.offset[1]))
+    reset = shaft_pair(first, second, as_set=(-pair.offset[0], -pair.offset[1]))
     assert reset.radial_offset == pytest.approx(0.0, abs=1e-18)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rigdesign.base import parallel as beside
+from rigdesign.base import parallel
 from rigdesign.base.parallel import BackgroundTasks
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
@@ -23,7 +23,7 @@ def waves(n: int) -> np.ndarray:
 def test_results_come_in_order_and_are_those_computed_here(
     count: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(beside, "cores", lambda: count)
+    monkeypatch.setattr(parallel, "cores", lambda: count)
     with BackgroundTasks([partial(waves, 400_000), os.getpid, partial(waves, 3)]) as works:
         first, process, last = works.results()
     assert np.array_equal(first, waves(400_000)) and np.array_equal(last, waves(3))
@@ -44,7 +44,7 @@ def fails() -> None:
 
 @pytest.mark.parametrize("count", [1, 2])
 def test_an_error_of_a_work_is_raised_here_in_full(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(beside, "cores", lambda: count)
+    monkeypatch.setattr(parallel, "cores", lambda: count)
     with pytest.raises(TwoPartError, match="no result") as caught, BackgroundTasks([fails]) as works:
         works.results()
     assert caught.value.history == (1.0, 0.5)
@@ -52,7 +52,7 @@ def test_an_error_of_a_work_is_raised_here_in_full(count: int, monkeypatch: pyte
 
 @needs_fork
 def test_a_copy_that_dies_is_replaced_by_work_done_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(beside, "cores", lambda: 2)
+    monkeypatch.setattr(parallel, "cores", lambda: 2)
     here = os.getpid()
 
     def dies_elsewhere() -> int:
@@ -66,7 +66,7 @@ def test_a_copy_that_dies_is_replaced_by_work_done_here(monkeypatch: pytest.Monk
 
 @needs_fork
 def test_leaving_early_ends_the_copies(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(beside, "cores", lambda: 2)
+    monkeypatch.setattr(parallel, "cores", lambda: 2)
     trace = tmp_path / "late"
 
     def late() -> None:
