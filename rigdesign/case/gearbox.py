@@ -110,7 +110,8 @@ class JournalBearingInput(Part):
     """Fixes its shaft axially; one per shaft."""
     axial_play: Play = 0.0
     """Free axial travel of the shaft between a stop at this bearing and one at the other, as drawn: the thermal
-    expansion of the shaft against the housing between them uses it up. Left out for a shaft with stops at one end only."""
+    expansion of the shaft against the housing between them uses it up. Left out for a shaft with stops at one end
+    only."""
     position: Gap | None = None
     """Distance of its middle from the start of its shaft in the drivetrain."""
     radial_load: Force | None = None
