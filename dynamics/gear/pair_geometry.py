@@ -189,11 +189,6 @@ class PairGeometry:
         return self.gears[0].root_radius, self.gears[1].root_radius
 
     @property
-    def form_radii(self) -> Pair:
-        """Radii of the generated root form circles [m]."""
-        return self.gears[0].form_radius, self.gears[1].form_radius
-
-    @property
     def transverse_pressure_angle(self) -> float:
         """alpha_t [rad]."""
         return self.gears[0].transverse_pressure_angle

@@ -169,14 +169,6 @@ class DeviationResponse:
         return given
 
 
-def motion_orders(system: LinearSystem, loads: OrderLoads, dofs: Sequence[int]) -> Complex:
-    """One-sided amplitudes of the angles of some freedoms under the loads of an order above 0 (n_dofs,) [rad]."""
-    asked = np.asarray(dofs, np.int64)
-    together = np.concatenate([asked, loads.dofs])
-    receptance = system.form.receptance(np.array([loads.omega]), together)[0]
-    return np.asarray(receptance[: asked.size, asked.size :] @ loads.torque)
-
-
 def mean_windup(
     system: LinearSystem, torque: Mapping[int, float], *, twist: float, drive: float, speed: Array,
     drags: Mapping[str, float],

@@ -1,6 +1,5 @@
 """ISO 6336 ratings of a gear pair: the SI geometry put into the documents' symbols and units."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, degrees, inf, pi
 
@@ -163,13 +162,6 @@ def _exact_reduced_mass(pair: GearPair) -> float:
     return iso6336_1_2006.m_red_exact(
         inertia_1 * MM**2, inertia_2 * MM**2, r_1 * MM, r_2 * MM, pair.face_width * MM
     )
-
-
-def dynamic_factor_curve(
-    pair: GearPair, torque: float, speeds: Sequence[float], options: RatingOptions | None = None
-) -> tuple[DynamicFactor, ...]:
-    """K_V by method B over pinion ``speeds`` [rad/s] at one pinion ``torque`` [N m]."""
-    return tuple(dynamic_factor(pair, torque, float(speed), options) for speed in speeds)
 
 
 def tooth_root(pair: GearPair, index: int) -> ToothRoot:

@@ -288,19 +288,3 @@ def _rule(
         stage=schedule.stages[int(command.stage[worst])].name,
         time=float(command.time[worst]),
     )
-
-
-def load_cycles(schedule: Schedule, repeats: int = 1) -> dict[str, float]:
-    """Turns of the reference shaft in every stage [-]: one load cycle per turn and mesh of a gear on it.
-
-    The mean of the S-function is one half, so a stage turns (start + end) / 2 times its duration / 2 pi.
-    """
-    return {
-        stage.name: repeats * 0.5 * (stage.speed[0] + stage.speed[1]) * stage.duration / (2.0 * math.pi)
-        for stage in schedule.stages
-    }
-
-
-def cycles_in_test(speed: float, test_time: float, meshes_per_turn: int = 1) -> float:
-    """Load cycles of one tooth in a planned test time [s] at a speed [rad/s]: n t per mesh."""
-    return speed / (2.0 * math.pi) * test_time * meshes_per_turn

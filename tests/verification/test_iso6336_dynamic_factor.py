@@ -14,7 +14,7 @@ import pytest
 from dynamics.gear.cylindrical_gear import Rack
 from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
-from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, dynamic_factor_curve, mesh_data
+from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, mesh_data
 from dynamics.standards import iso6336_1_2006 as iso
 
 RPM = pi / 30.0
@@ -119,7 +119,7 @@ K_V_TABLE = {
 def test_dynamic_factor_of_the_test_gear(grade, relief):
     """The row of grade 7 counts the tip relief, to show the deviations alone."""
     options = replace(AS_IN_THE_PAPER, grade=grade, tip_relief=relief * 1e-6, relief_grade=7)
-    curve = dynamic_factor_curve(TEST_GEAR, 180.0, [n * RPM for n in (2500, 2953, 4500)], options)
+    curve = [dynamic_factor(TEST_GEAR, 180.0, n * RPM, options) for n in (2500, 2953, 4500)]
     assert [round(f.K_V, 3) for f in curve] == list(K_V_TABLE[grade, relief])
     assert [f.range for f in curve] == ["subcritical", "main resonance", "supercritical"]
 

@@ -156,10 +156,6 @@ class ReducedConduction:
         """(n_nodes,) temperatures [K]."""
         return np.asarray(self.shapes @ coefficients)
 
-    def projected(self, field: FloatArray) -> FloatArray:
-        """(m,) coefficients of the nearest field, by least squares over the nodes."""
-        return np.asarray(self.shapes.T @ field) / len(field)
-
     def surface(self, name: str) -> _Surface:
         """The shapes on a surface."""
         if name not in self._surfaces:

@@ -25,7 +25,7 @@ from rigdesign.diagnosis.residual.unmodelled_cause import unmodelled_causes
 from rigdesign.diagnosis.statistics.columns import Array, Column
 from rigdesign.diagnosis.statistics.covariance import Covariance, Whitened
 from rigdesign.diagnosis.statistics.detectability import Detectability, aliases
-from rigdesign.diagnosis.statistics.evidence import Evidence, Hypothesis, evaluate_hypothesis
+from rigdesign.diagnosis.statistics.evidence import Evidence, evaluate_hypothesis
 from rigdesign.diagnosis.statistics.heldout import Gap, held_out
 from rigdesign.diagnosis.statistics.intervals import JointFit, fit_together
 from rigdesign.diagnosis.statistics.model_error import ModelError
@@ -228,10 +228,6 @@ def _explanations(
         if data
         else [],
     )
-
-
-def _unmodelled(covariance: Covariance, residuals: ResidualProblem) -> list[Hypothesis]:
-    return without_a_name(covariance, unmodelled_causes(residuals.library, residuals.channels))
 
 
 def _search(

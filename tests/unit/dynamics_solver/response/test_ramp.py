@@ -10,8 +10,6 @@ from dynamics.response.schedule import (
     Schedule,
     ScheduleError,
     Stage,
-    cycles_in_test,
-    load_cycles,
     ramp_rules,
     s_derivative,
     s_function,
@@ -180,13 +178,3 @@ def test_losing_torque_at_speed_breaks_a_rule() -> None:
     rules = {rule.id: rule for rule in ramp_rules(Schedule(stages=stages), LIMITS)}
     assert not rules["ramp.standstill_torque"].holds
     assert rules["ramp.standstill_torque"].value == pytest.approx(2.0)
-
-
-def test_load_cycles_by_stage() -> None:
-    cycles = load_cycles(p2(), repeats=3)
-    assert cycles["test"] == pytest.approx(3 * 200.0 * 2.0)
-    assert cycles["run-up"] == pytest.approx(3 * 4.0 * (12750.0 / 2.0) / 60.0)
-    command = p2().command(1e-4)
-    turns = np.trapezoid(command.speed, command.time) / (2.0 * math.pi)
-    assert sum(load_cycles(p2()).values()) == pytest.approx(turns, rel=1e-6)
-    assert cycles_in_test(12000.0 * RPM, 3600.0) == pytest.approx(720_000.0)

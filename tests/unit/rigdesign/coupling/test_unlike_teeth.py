@@ -16,7 +16,6 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case import Case
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import MeshModel, laws_of, locked_share, mesh_models, signed_torque
-from rigdesign.coupling.shaft_torques import harmonic_torques, torques_left_out
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.coupling.tooth_deviations import averaged_gears, periodic_laws
 from rigdesign.rig.model import Rig, build_rig
@@ -47,7 +46,6 @@ def test_defaults_leave_all_teeth_alike() -> None:
         assert model.law.tooth_offset_2 == 0
     assert locked_share(rig) == 1.0
     assert rig.system is not None and rig.system.shaft_torques == ()
-    assert harmonic_torques(rig, laws_of(models)) == ()
 
 
 def test_profile_slope_takes_from_the_root_what_it_adds_to_the_tip() -> None:
@@ -224,31 +222,13 @@ def test_teeth_that_do_not_come_back_in_the_period_are_averaged(
     assert bool(law.deviation_2.any()) == ("test.wheel" not in averaged)
 
 
-def test_harmonic_torques_count_turns_of_the_gear_that_counts() -> None:
-    """In the hunting loop the wheel line turns 16/25 as fast; a coupling pulls its ends against each other."""
-    case = shipped("loop_hunting").with_value(
-        "drivetrain.couplings.wheel_side.excitation", [{"order": 2, "torque": "4 N m", "phase": "90 deg"}]
-    )
-    case = case.with_value("drivetrain.motor.ripple", [{"order": 6, "torque": "0.5 N m"}])
-    rig, models = built(case)
-    motor, *ends = harmonic_torques(rig, laws_of(models))
-    assert rig.system is not None
-    assert motor == (rig.system.drive_dof, pytest.approx(6.0), pytest.approx(0.5))
-    assert [end.order for end in ends] == [pytest.approx(2.0 * 16.0 / 25.0)] * 2
-    assert sum(end.amplitude for end in ends) == pytest.approx(0.0)
-    assert {complex(round(end.amplitude.real, 9), round(end.amplitude.imag, 9)) for end in ends} == {-4j, 4j}
-    assert torques_left_out(rig, laws_of(models)) == ["motor order 6", "wheel_side order 2"]
-    whole, _ = built(case.with_value("numerics.response_period", "hunting_cycle"))
-    assert torques_left_out(whole, laws_of(models)) == []
-
-
 def test_a_swinging_torque_needs_an_order() -> None:
     with pytest.raises(ValueError, match="must be above 0"):
         ShaftTorque(order=0.0, torque=1.0)
 
 
 def warned(case: Case) -> list[str]:
-    """Warnings of a response that leaves out what single teeth and swinging torques do."""
+    """Warnings of a response that leaves out what single teeth and alternating torques do."""
     rig, models = built(case)
     point = SimpleNamespace(last=SimpleNamespace(models=models))
     solved: Any = SimpleNamespace(rig=rig, points=[point])
@@ -260,5 +240,5 @@ def test_what_the_response_averages_is_warned_of() -> None:
     case = case.with_value("drivetrain.motor.ripple", [{"order": 6, "torque": "0.5 N m"}])
     teeth, torque = warned(case)
     assert teeth.startswith("test.wheel: its teeth differ") and "response_period = mesh" in teeth
-    assert torque.startswith("motor order 6: its torque swings")
+    assert torque.startswith("motor order 6: its torque alternates")
     assert warned(case.with_value("numerics.response_period", "hunting_cycle")) == []
