@@ -5,7 +5,7 @@
 the modes over one step, ``mesh_solve`` the meshes, ``drag`` the drag torques, ``march`` joins them; ``mesh_workspace``
 is the state of the meshes that the last four share. The disk cache of a compiled function is keyed by the content of
 its own file: a hash of all sources in each file that takes from another goes with it
-(``tests/unit/dynamics_solver/kernels/test_kernel_cache.py`` says what to write).
+(``tests/unit/dynamics_package/kernels/test_kernel_cache.py`` says what to write).
 """
 
 from pathlib import Path

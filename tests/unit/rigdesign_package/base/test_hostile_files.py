@@ -17,9 +17,7 @@ from rigdesign.case import load_case
 from rigdesign.case.loader import changed_together
 from rigdesign.cli import ending
 from rigdesign.studies.grid import parse_variation
-from tests.builders.commands import PROTOTYPE, SMALL, Rigdesign, Write, rigdesign, write
-
-__all__ = ["rigdesign", "write"]
+from tests.builders.commands import PROTOTYPE, SMALL, Rigdesign, Write
 
 LONG = 200_000
 GIVEN = PROTOTYPE / "given_losses.toml"

@@ -5,6 +5,7 @@ from pathlib import Path
 import dynamics
 import rigdesign
 import thermal
+from tests.builders.paths import ROOT
 
 
 def test_three_packages_share_one_parent_folder() -> None:
@@ -13,7 +14,7 @@ def test_three_packages_share_one_parent_folder() -> None:
 
 
 def test_no_test_folder_shadows_a_package() -> None:
-    tests = Path(__file__).parents[1]
+    tests = ROOT / "tests"
     names = {path.name for path in tests.rglob("*") if path.is_dir()}
     assert not names & {"rigdesign", "thermal", "dynamics"}
 
