@@ -10,7 +10,14 @@ from rigdesign.coupling.bearing_films import solve_bearings
 from rigdesign.coupling.drag_torques import drag_torques
 from rigdesign.coupling.expansion import HousingExpansion, expand_housing
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import BracedLoop, BracingState, MeshModel, brace_initial, mesh_models, respond
+from rigdesign.coupling.loads import (
+    BracingState,
+    LoadedCircuit,
+    MeshModel,
+    brace_initial,
+    mesh_models,
+    respond,
+)
 from rigdesign.coupling.losses import mesh_losses, rotating_losses
 from rigdesign.coupling.oil import OilStream, oil_streams
 from rigdesign.coupling.point_losses import PointLosses
@@ -87,10 +94,10 @@ class LoadResult(PointLosses):
     response: CurvePoint | None
 
     @property
-    def loop(self) -> BracedLoop:
+    def loop(self) -> LoadedCircuit:
         """The braced loop; of a rig with a drivetrain only."""
         assert self.bracing is not None
-        return BracedLoop(self.point, self.models, self.drags, self.bracing)
+        return LoadedCircuit(self.point, self.models, self.drags, self.bracing)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -329,7 +329,7 @@ def brace_initial(
 
 
 @dataclass(frozen=True)
-class BracedLoop:
+class LoadedCircuit:
     """The warm meshes of a braced power circuit at an operating point, and the torques that brake it."""
 
     point: OperatingPoint

@@ -13,7 +13,7 @@ from dynamics.errors import DynamicsNotConverged
 from dynamics.mesh.flank import alike_teeth
 from dynamics.orders.deviation_response import DeviationResponse, OrderLoads, OrderTorque
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
-from rigdesign.coupling.loads import BracedLoop, MeshModel, shifted_laws, signed_torque
+from rigdesign.coupling.loads import LoadedCircuit, MeshModel, shifted_laws, signed_torque
 from rigdesign.prediction.exact_orders import ExactMotion
 from rigdesign.prediction.order_places import OscillatingTorque
 from rigdesign.rig.model import Rig
@@ -22,7 +22,7 @@ SAME_ORDER = 1e-6
 """Relative difference below which two orders are the same."""
 
 
-def ideal_response(rig: Rig, loop: BracedLoop) -> CurvePoint:
+def ideal_response(rig: Rig, loop: LoadedCircuit) -> CurvePoint:
     """Response with all teeth of a gear alike and no oscillating torque, over one mesh period.
 
     Raises DynamicsNotConverged.

@@ -19,7 +19,7 @@ from dynamics.orders.deviation_response import CYCLE_STEPS, DeviationResponse, O
 from dynamics.response.initial_state import pinion_ratios
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.errors import UsageError
-from rigdesign.coupling.loads import BracedLoop, shifted_laws
+from rigdesign.coupling.loads import LoadedCircuit, shifted_laws
 from rigdesign.prediction.exact_orders import exact_motion
 from rigdesign.prediction.model import ORDER_QUANTITIES, Channel
 from rigdesign.prediction.order_motion import (
@@ -43,7 +43,7 @@ MOST_CHANGE = 0.05
 
 def shaft_orders(
     rig: Rig,
-    loop: BracedLoop,
+    loop: LoadedCircuit,
     channels: Sequence[Channel],
     *,
     base: CurvePoint | None = None,
@@ -68,7 +68,7 @@ class PointOrders:
     def __init__(
         self,
         rig: Rig,
-        loop: BracedLoop,
+        loop: LoadedCircuit,
         *,
         base: CurvePoint | None = None,
         exact: bool | None = None,

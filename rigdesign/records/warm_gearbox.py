@@ -18,9 +18,9 @@ from rigdesign.results.warm_gearbox import (
     CouplingAlignment,
     MeshClearance,
     SealClearance,
-    ShaftExpansion,
     ShaftOffset,
     WarmGearbox,
+    WarmShaft,
 )
 from rigdesign.rig.model import Rig
 from thermal.expansion.alignment import ShaftPair
@@ -60,11 +60,11 @@ def _seals(rig: Rig, name: str, shape: Expansion) -> Iterator[SealClearance]:
         )
 
 
-def _shafts(rig: Rig, name: str, shape: Expansion) -> Iterator[ShaftExpansion]:
+def _shafts(rig: Rig, name: str, shape: Expansion) -> Iterator[WarmShaft]:
     bearings = rig.case.gearboxes[name].bearings.values()
     for shaft in shape.shafts.values():
         play = next((b.axial_play for b in bearings if b.shaft == shaft.name and b.locating), 0.0)
-        yield ShaftExpansion(
+        yield WarmShaft(
             name=shaft.name,
             front=shaft.start,
             rear=shaft.end,

@@ -28,7 +28,7 @@ class SealClearance:
 
 
 @dataclass(frozen=True, kw_only=True)
-class ShaftExpansion:
+class WarmShaft:
     """Thermal expansion of one shaft from its locating bearing, and the axial play it leaves [m]."""
 
     name: str
@@ -179,7 +179,7 @@ class WarmGearbox:
     gearbox: str
     stage: str
     seals: tuple[SealClearance, ...] = ()
-    shafts: tuple[ShaftExpansion, ...] = ()
+    shafts: tuple[WarmShaft, ...] = ()
     meshes: tuple[MeshClearance, ...] = ()
     bearings: tuple[BearingClearance, ...] = ()
     bores: tuple[BoreAlignment, ...] = ()

@@ -7,7 +7,7 @@ from math import pi
 from rigdesign import load_case
 from rigdesign.case import Case
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import BracedLoop, BracingState, MeshModel, brace_initial, mesh_models
+from rigdesign.coupling.loads import BracingState, LoadedCircuit, MeshModel, brace_initial, mesh_models
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import Channel
 from rigdesign.rig.model import Rig, build_rig
@@ -37,7 +37,7 @@ class BracedCase:
 
     @property
     def arguments(self):
-        return self.rig, BracedLoop(self.point, self.models, DRAGS, self.setting)
+        return self.rig, LoadedCircuit(self.point, self.models, DRAGS, self.setting)
 
 
 def settled(case: Case, rpm: float, torque: float) -> BracedCase:

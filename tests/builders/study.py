@@ -87,6 +87,7 @@ import sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
 from rigdesign.studies.run import parse_variation
+from tests.builders.study import ExampleCase, run_example, run_study
 
 if __name__ == "__main__":
     out = Path(sys.argv[1])

@@ -13,8 +13,8 @@ from rigdesign.results.warm_gearbox import (
     CouplingAlignment,
     MeshClearance,
     SealClearance,
-    ShaftExpansion,
     WarmGearbox,
+    WarmShaft,
 )
 
 
@@ -48,7 +48,7 @@ def _seal_row(seal: SealClearance) -> dict[str, Any]:
     }
 
 
-def _shaft_row(shaft: ShaftExpansion) -> dict[str, Any]:
+def _shaft_row(shaft: WarmShaft) -> dict[str, Any]:
     return {
         "shaft": shaft.name,
         "growth_mm": MM * shaft.total,

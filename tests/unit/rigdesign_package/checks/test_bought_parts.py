@@ -33,7 +33,7 @@ def solved_rig_of(case: Case) -> SolvedRig:
         label: MeshLoads(role="rig", torque_peak=PEAKS[label.split(".")[0]])
         for label in rig.mesh_labels.values()
     }
-    drift: Any = SimpleNamespace(hot=SimpleNamespace(actuator_force=600.0, friction_force=300.0))
+    drift: Any = SimpleNamespace(warm=SimpleNamespace(actuator_force=600.0, friction_force=300.0))
     ramp = SimpleNamespace(
         drive_torque=np.array([15.0]), speed=np.array([12000.0 * RPM]), time=np.array([10.0])
     )

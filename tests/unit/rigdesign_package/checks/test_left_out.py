@@ -8,7 +8,7 @@ import pytest
 from rigdesign import load_case
 from rigdesign.checks.clearances import NO_PLAY, checks
 from rigdesign.results.check import Check
-from rigdesign.results.warm_gearbox import ShaftExpansion, WarmGearbox
+from rigdesign.results.warm_gearbox import WarmGearbox, WarmShaft
 from rigdesign.rig.model import build_rig
 from rigdesign.run.warnings import not_modelled
 from tests.builders.paths import CASES
@@ -19,9 +19,7 @@ PROTOTYPE = CASES / "uhcf_prototype"
 def axial_play(*plays: tuple[float, float]) -> Check:
     """The check for shafts with a play as drawn and warm [mm]."""
     shafts = tuple(
-        ShaftExpansion(
-            name=f"s{i}", front=0.0, rear=0.0, free=0.0, play_as_drawn=1e-3 * drawn, play=1e-3 * warm
-        )
+        WarmShaft(name=f"s{i}", front=0.0, rear=0.0, free=0.0, play_as_drawn=1e-3 * drawn, play=1e-3 * warm)
         for i, (drawn, warm) in enumerate(plays)
     )
     warm = WarmGearbox(gearbox="test", stage="test", shafts=shafts)

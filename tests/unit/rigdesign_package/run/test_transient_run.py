@@ -191,7 +191,7 @@ def test_json_report_and_curves_hold_it(result: RunResult, tmp_path: Path) -> No
     assert {"lid [degC]", "seal_gap test_pinion_front [mm]"} <= set(rows[0])
     page = (tmp_path / "report.html").read_text()
     assert "Over the schedule and its events" in page and "warm-up before test" in page
-    assert page.count("Temperatures and clearances of gearbox test over the course") == 2
+    assert page.count("Temperatures and clearances of gearbox test over the thermal history") == 2
 
 
 def test_a_rig_without_a_housing_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
