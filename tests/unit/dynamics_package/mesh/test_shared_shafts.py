@@ -11,6 +11,8 @@ from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.time_march import TimeMarch
 from tests.builders.mesh import BASE_RADIUS_1, BASE_RADIUS_2, ramped_law
 
+pytestmark = pytest.mark.whole_run
+
 
 def star(ports: list[tuple[int, int]], shaft: int) -> LinearSystem:
     """A shaft of ``shaft`` discs on springs that meshes with free discs, one line each."""

@@ -27,6 +27,8 @@ from rigdesign.rig.model import Rig
 from tests.builders.paths import CASES
 from tests.builders.warm_prototype import base, settled
 
+pytestmark = pytest.mark.whole_run
+
 COMPLETE = (
     "dynamics.ramp_peak.*",  # the time run holds whole turns and all swinging torques
     "dynamics.lift_off.*",

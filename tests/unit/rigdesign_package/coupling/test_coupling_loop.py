@@ -13,6 +13,8 @@ from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.oil_supply import gear_oil
 from tests.builders.warm_prototype import base
 
+pytestmark = pytest.mark.whole_run
+
 POINT = OperatingPoint(stage="x", speed=1.0, torque=1.0)
 TOLERANCE = {"temperature": 0.05, "length": 0.5e-6, "torque": 1e-3}
 SIZE = {"temperature": 4.0, "length": 300e-6, "torque": 0.5}

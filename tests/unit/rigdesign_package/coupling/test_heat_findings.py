@@ -22,6 +22,8 @@ from rigdesign.rig.model import build_rig
 from tests.builders.paths import CASES
 from thermal.conditions.boundary import Radiation
 
+pytestmark = pytest.mark.whole_run
+
 PROTOTYPE = CASES / "uhcf_prototype"
 NIEMANN = 'law = "niemann_winter", height = "400 mm"'
 PUBLISHED = f"""

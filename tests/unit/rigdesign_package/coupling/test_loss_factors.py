@@ -20,6 +20,8 @@ from tests.builders.warm_prototype import (
     settled,
 )
 
+pytestmark = pytest.mark.whole_run
+
 FACTOR = 1.5
 LOSSES = {
     "windage": "windage",

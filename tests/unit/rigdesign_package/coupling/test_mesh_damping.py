@@ -17,6 +17,8 @@ from rigdesign.validation.prototype import Prototype
 from rigdesign.validation.speed_sweeps import closing, simulation_laws, speed_sweep
 from tests.builders.warm_prototype import base, drive_power, lost, lost_in_all, open_share, outlet, settled
 
+pytestmark = pytest.mark.whole_run
+
 CLOSING = tuple(
     (f"gearboxes.{box}.meshes.main.damping_acts_on", "contact_closing_rate") for box in ("test", "reference")
 )

@@ -19,6 +19,8 @@ from tests.builders.warm_prototype import base, case_with, lost, open_share, out
 from thermal.conditions.streams import StreamNetwork
 from thermal.conduction.steady import solve_steady
 
+pytestmark = pytest.mark.whole_run
+
 BOX = "gearboxes.test"
 LEAK, BYPASS, SHORT = (f"{BOX}.oil_paths.{key}" for key in ("leak_warm_cold", "bypass", "short_circuit"))
 JETS = f"{BOX}.oil.blocked_jets"

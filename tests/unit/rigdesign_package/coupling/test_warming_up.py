@@ -17,6 +17,8 @@ from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.steady import CLOSURE, ConductionSetup, solve_steady
 from thermal.films.convection import constant
 
+pytestmark = pytest.mark.whole_run
+
 START, CAPACITY = 293.15, 3.6e6
 TIME = "ambient.warming_time"
 

@@ -75,4 +75,4 @@ def test_an_entry_survives_the_way_to_another_core():
     effect: Effect = effects_of(case_of("uhcf_prototype"))[0]
     again = pickle.loads(pickle.dumps(effect))
     assert again.family == effect.family
-    assert again.swings == effect.swings
+    assert again.oscillates == effect.oscillates

@@ -15,6 +15,8 @@ from rigdesign.rig.model import build_rig
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
 
+pytestmark = pytest.mark.whole_run
+
 CASE = load_case(CASES / "uhcf_prototype")
 STAGE = next(stage for stage in CASE.schedule.resolved() if stage.held)
 DWELL = OperatingCondition(name=STAGE.name, speed=STAGE.speed_end, torque=STAGE.torque_end)

@@ -11,6 +11,8 @@ from rigdesign.prediction.predict import predict
 from rigdesign.prediction.predictor import Predictor
 from tests.builders.paths import CASES
 
+pytestmark = pytest.mark.whole_run
+
 CASE = load_case(CASES / "uhcf_prototype")
 SETTINGS = (
     OperatingCondition(name="fast", speed=1256.0, torque=180.0),

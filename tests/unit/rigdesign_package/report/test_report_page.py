@@ -83,7 +83,7 @@ def test_sections_stand_in_the_order_of_reading(page):
         "Ramp and loads",
         "Losses and oil",
         "Temperatures",
-        "Clearances cold and hot",
+        "Clearances as drawn and warm",
         "Assumptions behind the verdicts",
         "Hand checks",
         "What is not modelled",

@@ -13,6 +13,8 @@ from tests.builders.warm_prototype import base, case_with, heat_by_kind, open_sh
 from thermal.conditions.boundary import Exchange, Film
 from thermal.conduction.steady import CLOSURE
 
+pytestmark = pytest.mark.whole_run
+
 FACTOR = 1.7
 
 

@@ -7,6 +7,8 @@ from rigdesign.properties.oil import FVA_3, OilError
 from rigdesign.rig.oil_supply import bearing_oil, gear_oil
 from tests.builders.warm_prototype import base, case_with, lost, open_share, settled
 
+pytestmark = pytest.mark.whole_run
+
 STATE = "gearboxes.test.oil_state"
 AT = 350.0
 

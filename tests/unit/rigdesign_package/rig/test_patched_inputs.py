@@ -8,6 +8,8 @@ from tests.builders.warm_prototype import base, case_with, heat_by_kind, lost, o
 from thermal.conduction.steady import CLOSURE
 from thermal.films.law import STEFAN_BOLTZMANN
 
+pytestmark = pytest.mark.whole_run
+
 BOX = "gearboxes.test"
 
 

@@ -18,6 +18,8 @@ from rigdesign.results.transient import TransientCurve, TransientResult
 from rigdesign.run.main import run_case
 from tests.builders.paths import CASES
 
+pytestmark = pytest.mark.whole_run
+
 BASE = (CASES / "uhcf_prototype" / "given_losses.toml").as_posix()
 COURSE = f"""
 extends = "{BASE}"

@@ -20,6 +20,8 @@ from tests.builders.paths import CASES
 from thermal.fe.mesh import NamedMesh, named_mesh
 from thermal.housing.mesh_file import read_mesh
 
+pytestmark = pytest.mark.whole_run
+
 GIVEN = CASES / "uhcf_prototype" / "given_losses.toml"
 END = "shaft_test_pinion_end_front"
 

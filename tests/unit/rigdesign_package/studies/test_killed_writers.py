@@ -17,6 +17,8 @@ from tests.builders.output import attempts, held_against, published
 from tests.builders.report import small_result
 from tests.builders.study import VARIED, ExampleCase, in_process, run_example, run_study
 
+pytestmark = pytest.mark.whole_run
+
 STEPS = (1, 2, 4, 7, 11, 14, 16, 18, 20, 21, 22, 23, 24, 26, 28, 30, 60)
 
 

@@ -21,6 +21,8 @@ from rigdesign.studies.run import parse_variation
 from tests.builders.paths import ROOT
 from tests.builders.study import DRIVER, POINTS, ExampleCase, _events, _stored, run_example, run_study
 
+pytestmark = pytest.mark.whole_run
+
 
 @pytest.mark.parametrize(
     ("text", "values"),

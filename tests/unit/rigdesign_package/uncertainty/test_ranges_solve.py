@@ -16,6 +16,8 @@ from rigdesign.uncertainty.point import EndResult, Reference, solve_end, solve_s
 from rigdesign.uncertainty.run import with_ranges
 from tests.builders.paths import CASES
 
+pytestmark = pytest.mark.whole_run
+
 PROTOTYPE = CASES / "uhcf_prototype"
 HEADER = 'name = "small"\ntitle = "small"\n[gearboxes.test]\nremove = ["housing"]\n'
 STAGES = (

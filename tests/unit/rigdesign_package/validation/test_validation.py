@@ -43,7 +43,7 @@ from rigdesign.validation.rows import (
     not_modelled,
 )
 from rigdesign.validation.run_rows import run_rows
-from rigdesign.validation.speed_sweeps import FINE, SpeedSweep, course, simulation_laws, smooth
+from rigdesign.validation.speed_sweeps import FINE, SpeedSweep, simulation_laws, smooth, speed_sweep
 from tests.builders.report import make_result
 from tests.builders.rig import TABLE_2
 
@@ -216,7 +216,7 @@ def test_figure_12_is_shown_for_both_readings_of_the_main_rig():
     assert all(row.deviation == pytest.approx(0.0, abs=1e-12) and row.basis == "fitted" for row in found)
 
 
-def made_up_course(*_, **__):
+def made_up_sweep(*_, **__):
     """One peak of both meshes at 3000 rpm, in place of the periodic response over speed."""
     factor = 1.0 + 0.3 / (1.0 + ((FINE - 3000.0) / 60.0) ** 2)
     both = np.column_stack([factor, factor])
@@ -251,7 +251,7 @@ PRINTED = {
 def response_rows(shipped):
     """Rows of a response that is made up: what they hold ours against."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(response, "course", made_up_course)
+        patch.setattr(response, "speed_sweep", made_up_sweep)
         return list(response.response_rows(shipped))
 
 
@@ -310,12 +310,12 @@ def test_free_parameters_of_the_main_rig_are_those_its_case_gives_reasons_for():
 
 def test_speeds_without_a_response_are_told():
     nothing = np.zeros((2, 2))
-    course = SpeedSweep(
+    speed_sweep = SpeedSweep(
         speed=np.array([1000.0, 3000.0]), factor=nothing, half=nothing, mean=nothing, drive=np.zeros(2),
         missing=(2000.0, 2050.0, 9000.0),
     )  # fmt: skip
-    assert course.left_out((750.0, 2500.0)) == " (2 speeds without a periodic response: 2000, 2050 rpm)"
-    assert course.left_out((3000.0, 4000.0)) == ""
+    assert speed_sweep.left_out((750.0, 2500.0)) == " (2 speeds without a periodic response: 2000, 2050 rpm)"
+    assert speed_sweep.left_out((3000.0, 4000.0)) == ""
 
 
 def test_every_number_of_the_brief_has_its_row(rows):
@@ -473,11 +473,11 @@ def test_benchmark_gates_can_fail(monkeypatch):
 
 def test_smooth_meshes_excite_nothing(shipped):
     laws = [smooth(law) for law in simulation_laws(shipped)]
-    found = course(shipped, laws, np.array([900.0, 2400.0, 9000.0]))
+    found = speed_sweep(shipped, laws, np.array([900.0, 2400.0, 9000.0]))
     assert found.factor == pytest.approx(1.0, abs=1e-6)
 
 
-def test_course_reads_peaks_and_amplitudes():
+def test_a_sweep_reads_peaks_and_amplitudes():
     speed = np.arange(1000.0, 2000.0, 50.0)
     factor = 1.0 + 0.3 / (1.0 + ((speed - 1500.0) / 60.0) ** 2)
     found = SpeedSweep(

@@ -160,7 +160,7 @@ def without(surface: str) -> list[BoundaryCondition]:
 
 
 BAD: list[tuple[list[BoundaryCondition], str]] = [
-    (without("hot_z_max"), r"without a boundary condition: hot_z_max \(beside hot_y_max, which has one\)"),
+    (without("hot_z_max"), r"without a boundary condition: hot_z_max \(next to hot_y_max, which has one\)"),
     ([*conditions(), Adiabatic(surface="hot_zmax")], "unknown surface 'hot_zmax'; nearest: hot_z_max"),
     ([*conditions(), BodySource(body="hat", power=1.0, kind="x")], "unknown body 'hat'; nearest: hot"),
     ([*conditions(), Adiabatic(surface="hot_y_max")], "'hot_y_max' is Adiabatic and carries Film as well"),
