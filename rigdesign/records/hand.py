@@ -27,7 +27,7 @@ BORE = (
 
 WINDAGE = (
     "2.82e-7 (1 + 2.3 b/R) n^2.8 R^4.6 (0.028 eta + 0.019)^0.2 kW (Anderson and Loewenthal), a mist of about 27 kg/m3 "
-    "built in; the default law takes the density of the case, 1.2 to 20 kg/m3 believable; put a range on "
+    "built in; the default law takes the density of the case, 1.2 to 20 kg/m3 plausible; put a range on "
     "loss_factors.windage where both still differ"
 )
 

@@ -150,7 +150,7 @@ def _time_run(solved: SolvedRig) -> Iterator[str]:
 
 
 def loss_warnings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[str]:
-    """What a loss says of itself at several stages is said once, with their names."""
+    """A warning of a loss at several stages is reported once, with their names."""
     stages: dict[tuple[str, str], list[str]] = {}
     for stage, found in losses.items():
         for placed in found:
@@ -159,7 +159,7 @@ def loss_warnings(losses: Mapping[str, Sequence[PlacedLoss]]) -> Iterator[str]:
     for (place, text), where in stages.items():
         named = f"stage {where[0]}" if len(where) == 1 else f"stages {', '.join(where)}"
         everywhere = len(where) == len(losses) > 1
-        yield f"{place}, {'all turning stages' if everywhere else named}: {text}"
+        yield f"{place}, {'all stages that rotate' if everywhere else named}: {text}"
 
 
 def _oils(solved: SolvedRig) -> Iterator[str]:

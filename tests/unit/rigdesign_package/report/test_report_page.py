@@ -317,10 +317,10 @@ def test_numbers_as_they_read(value, text):
 @pytest.mark.parametrize(
     ("key", "text"),
     [
-        ("torque_cold_Nm", "torque cold [Nm]"),
+        ("torque_cold_Nm", "torque as drawn [Nm]"),
         ("angle_of_min_deg", "angle of min [°]"),
         ("share", "share"),
-        ("diametral_clearance_hot_um", "diametral clearance hot [µm]"),
+        ("diametral_clearance_hot_um", "diametral clearance warm [µm]"),
         ("flow_l_min", "flow [l/min]"),
         ("mode", "mode"),
     ],
