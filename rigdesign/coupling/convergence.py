@@ -33,7 +33,7 @@ class Residual:
     def between(cls, old: CouplingState, new: CouplingState, heat: float = 0.0) -> "Residual":
         """Changes from the coupling state of an iteration to what it proposes.
 
-        heat : temperature error [K] of the heats of the iteration, see `iteration.heat_residual`
+        heat : temperature error [K] of the heats of the iteration, see `relaxation.heat_residual`
         """
         return cls(
             temperature=max(temperature_change(old, new), heat),

@@ -10,11 +10,10 @@ from rigdesign.case.model import Case
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.prediction.model import OperatingCondition
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
 
 STREAMS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
 """Name of an oil stream -> key of the gearbox that feeds it."""
-HOUSINGS = ("models", "conduction")
-"""Cached parts of a rig that depend on geometry and materials of its housings alone, as ``expansion`` does."""
 UNMOVED = (*HOUSINGS, "geometries", "speed_ratios", "drivetrain", "mesh_forces", "system", "joints")
 """Cached parts of a rig that no setting of an operating point touches."""
 
@@ -36,7 +35,7 @@ def rig_at(rig: Rig, setting: OperatingCondition) -> Rig:
     if case is rig.case:
         return rig
     placed = Rig(case=case, fidelity=rig.fidelity, oils=rig.oils, materials=rig.materials, pairs=rig.pairs)
-    return _sharing(placed, rig, UNMOVED)
+    return take_over(placed, rig, UNMOVED)
 
 
 def case_at(case: Case, setting: OperatingCondition) -> Case:
@@ -70,38 +69,11 @@ def like(stated: Rig, case: Case) -> Rig:
     if case is stated.case:
         return stated
     rig = build_rig(case, stated.fidelity)
-    if _same_housings(rig, stated):
-        _sharing(rig, stated, HOUSINGS)
+    if same_housings(rig, stated):
+        take_over(rig, stated, HOUSINGS)
     if rig.drivetrain == stated.drivetrain:
-        _sharing(rig, stated, ("drivetrain", "system", "joints"))
+        take_over(rig, stated, ("drivetrain", "system", "joints"))
     return rig
-
-
-def _sharing(rig: Rig, source: Rig, parts: tuple[str, ...]) -> Rig:
-    """Let ``rig`` use what ``source`` computes; computed now, so that no two rigs compute it twice."""
-    for name in parts:
-        rig.__dict__[name] = getattr(source, name)
-    if "models" in parts and not any(model.no_expansion for model in source.models.values()):
-        rig.__dict__["expansion"] = source.expansion
-    return rig
-
-
-def _same_housings(rig: Rig, stated: Rig) -> bool:
-    """Whether meshes, conductivities and stiffnesses of the housings are the same."""
-    if dict(rig.geometries) != dict(stated.geometries) or dict(rig.materials) != dict(stated.materials):
-        return False
-    boxes, others = rig.case.gearboxes, stated.case.gearboxes
-    return all(_made_of(boxes[name]) == _made_of(others[name]) for name in stated.geometries)
-
-
-def _made_of(box: Gearbox) -> tuple[object, ...]:
-    """What a housing is meshed from in addition to its geometry, and its materials with those of shafts and gears."""
-    housing = box.housing
-    assert housing is not None
-    shafts = [shaft.material for shaft in housing.shafts.values()]
-    gears = [gear.material for gear in box.gears.values()]
-    contact = housing.foot_contact is None
-    return (housing.mesh_file, housing.mesh, housing.material, housing.field.material, contact, shafts, gears)
 
 
 def _feed(boxes: dict[str, Gearbox], stream: str, key: str, value: float) -> None:

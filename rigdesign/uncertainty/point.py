@@ -23,6 +23,7 @@ from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.units import ZERO
 from rigdesign.results.verdict import Verdict
 from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
 from rigdesign.run.main import solve_case
 from rigdesign.run.solver_errors import solver_errors
 from rigdesign.uncertainty.drive import Array, losses_on_motor, peaks_only, shifted_drive
@@ -37,8 +38,6 @@ ACTUATOR = ("actuator_force",)
 LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "axial_expansion": 2e-6}
 """Change of a field of `CouplingState` [K, m] beyond which the loads are solved again: on the prototype half a
 kelvin moves a check on loads by up to 0.001 of its limit, `ranges_verdicts.LEAST_MOVE`, and 5 um do."""
-GEOMETRY = ("models", "conduction", "expansion")
-"""Cached parts of a rig that depend on geometry and materials of its housings alone."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -184,26 +183,9 @@ def _loads_move(points: Sequence[PointResult], stated: Sequence[PointResult]) ->
 def _rig_like(stated: Rig, case: Case, parts: tuple[Part, ...]) -> Rig:
     """The rig of ``case``; it takes over what the stated rig has computed and the change does not touch."""
     rig = build_rig(case, stated.fidelity)
-    if "coupling" not in parts or _same_housings(rig, stated):
-        for name in GEOMETRY:
-            rig.__dict__[name] = getattr(stated, name)
+    if "coupling" not in parts or same_housings(rig, stated):
+        take_over(rig, stated, HOUSINGS)
     return rig
-
-
-def _same_housings(rig: Rig, stated: Rig) -> bool:
-    """Whether meshes, conductivities and stiffnesses of the housings are the same."""
-    if dict(rig.geometries) != dict(stated.geometries) or dict(rig.materials) != dict(stated.materials):
-        return False
-    return all(_made_of(rig.case, name) == _made_of(stated.case, name) for name in stated.geometries)
-
-
-def _made_of(case: Case, name: str) -> tuple[str, ...]:
-    """Names of the materials of one housing with its shafts and gears."""
-    box = case.gearboxes[name]
-    assert box.housing is not None
-    shafts = (shaft.material for shaft in box.housing.shafts.values())
-    gears = (gear.material for gear in box.gears.values())
-    return (box.housing.material, box.housing.field.material, *shafts, *gears)
 
 
 def _coupled(rig: Rig, stated: SolvedRig) -> Iterator[PointResult]:
