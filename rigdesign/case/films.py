@@ -4,6 +4,7 @@ A new law of a still wall or of a shaft is a formula in `thermal.films`, its cla
 or `ShaftFilm`.
 """
 
+from abc import abstractmethod
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal, get_args
 
@@ -74,9 +75,9 @@ class SurfaceFilm(SurfaceCondition):
     coefficient_given: ClassVar[bool] = False
     """Its coefficient is a number of the case, not computed by a law."""
 
+    @abstractmethod
     def film_law(self, place: SurfacePlace) -> FilmLaw:
         """Its law with the numbers of a surface."""
-        raise NotImplementedError
 
     def radiation_included(self, place: SurfacePlace) -> bool:
         """Whether its coefficient is of the size of convection and radiation together."""
@@ -97,9 +98,9 @@ class PublishedFilm(SurfaceFilm):
         """Its law with the numbers of a surface."""
         return convection.scaled(self.correlation_at(place), self.film_factor)
 
+    @abstractmethod
     def correlation_at(self, place: SurfacePlace) -> FilmLaw:
         """The law as published."""
-        raise NotImplementedError
 
 
 class StillAirFilm(PublishedFilm):

@@ -1,5 +1,6 @@
 """What an entry of ``boundary`` may be besides a film to a fluid: flanks, bearings, radiation, exchange, fixed ends."""
 
+from abc import abstractmethod
 from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal
 
@@ -88,9 +89,9 @@ class SurfaceExchange(SurfaceCondition):
     partner: Text
     """Surface on the other side; ``*`` is filled with what it stood for in ``surfaces``."""
 
+    @abstractmethod
     def exchange_law(self, place: SurfacePlace) -> ExchangeLaw:
         """Its law with the numbers of the first surface."""
-        raise NotImplementedError
 
     def partner_of(self, stood_for: tuple[str, ...]) -> str:
         """Name of the partner surface, each ``*`` filled with what it stood for in the surface."""
