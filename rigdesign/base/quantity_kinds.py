@@ -3,6 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+ZERO_CELSIUS = 273.15
+"""0 degC [K]."""
+
 
 @dataclass(frozen=True)
 class QuantityKind:

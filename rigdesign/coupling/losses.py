@@ -12,6 +12,7 @@ from dynamics.losses.oil_jet import JET_ANGLES, OilJet, oil_acceleration
 from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from dynamics.response.speed_sweep import CurvePoint
+from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals
 from rigdesign.coupling.bearing_films import constant_drag
 from rigdesign.coupling.flank_heat import MeshSplit, mesh_split
@@ -235,7 +236,7 @@ def _bearing_loss(
         details={
             "load_N": state.load,
             **bearing_ratings(state),
-            "film_temperature_degC": state.film_temperature - 273.15,
+            "film_temperature_degC": state.film_temperature - ZERO_CELSIUS,
             "torsional_damping_Nms_rad": state.torsional_damping,
             "source": state.source,
         },

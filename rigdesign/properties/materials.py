@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
+from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+
 Confidence = Literal["high", "medium", "low"]
 Treatment = Literal["case_hardened", "nitrided", "through_hardened"]
-ZERO_CELSIUS = 273.15
 
 
 class MaterialError(ValueError):

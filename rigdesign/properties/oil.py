@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal, Self
 
+from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+
 Confidence = Literal["high", "medium", "low"]
-ZERO_CELSIUS = 273.15
 WALTHER_CONSTANT = {"ASTM D341": 0.7, "DIN 51563": 0.8}
 VISCOSITY_RANGE = (2e-6, 2e-2)
 """Kinematic viscosity within which Walther's line is trusted [m2/s]."""

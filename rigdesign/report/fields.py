@@ -5,9 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.results.thermal import TemperatureField
-
-ZERO_CELSIUS = 273.15
 
 
 def write_field(field: TemperatureField, path: Path) -> dict[str, Any]:

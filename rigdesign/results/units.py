@@ -3,7 +3,9 @@
 import math
 from dataclasses import dataclass
 
-ZERO = 273.15
+from rigdesign.base.quantity_kinds import ZERO_CELSIUS
+
+ZERO = ZERO_CELSIUS
 """0 degC [K]."""
 MM, UM, MRAD = 1e3, 1e6, 1e3
 KW, MPA = 1e-3, 1e-6

@@ -18,12 +18,12 @@ from collections.abc import Iterator
 from math import pi
 
 from rigdesign.properties.oil import OILS
+from rigdesign.results.units import ZERO
 from rigdesign.validation.rows import Basis, Gate, PublishedQuantity, ValidationRow, compare
 from thermal.conduction.audit import least_radiation
 from thermal.films import convection
 from thermal.films.law import FilmLaw
 
-ZERO = 273.15
 AMBIENT = 20.0 + ZERO
 FIGURE_11, FIGURE_12 = "P2, Figure 11", "P2, Figure 12"
 HEAT_FLOWS = {"field convection": 1179.0, "field radiation": 706.0, "housing warm": 800.0, "housing "

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 
+from rigdesign.results.units import ZERO
 from rigdesign.validation.mapped_mesh import mapped, split
 from thermal.conditions.boundary import Adiabatic, Film, PrescribedTemperature, Radiation, SurfaceSource
 from thermal.conduction.condition_checks import Condition
@@ -18,7 +19,6 @@ from thermal.fe.mesh import CellName, FloatArray, NamedMesh, box_mesh
 from thermal.films.convection import constant
 from thermal.transient.history import StepControl, ThermalStage, solve_transient
 
-ZERO = 273.15
 SOURCE = "NAFEMS, The Standard NAFEMS Benchmarks (1990)"
 
 

@@ -9,6 +9,7 @@ from itertools import combinations
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.diagnosis.residual.hypotheses import whitened
 from rigdesign.diagnosis.residual.sensors import LARGEST_ANGLE_ERROR, mark_elsewhere
 from rigdesign.diagnosis.statistics.columns import Array
@@ -83,8 +84,8 @@ def _swapped_points(features: Sequence[Feature], values: Array) -> list[tuple[st
 
 _Misreading = tuple[str, float, float]
 _TEMPERATURE: tuple[_Misreading, ...] = (
-    ("fahrenheit", 1.8, 273.15 - 459.67),
-    ("kelvin as celsius", 1.0, 273.15),
+    ("fahrenheit", 1.8, ZERO_CELSIUS - 459.67),
+    ("kelvin as celsius", 1.0, ZERO_CELSIUS),
 )
 _TORQUE: tuple[_Misreading, ...] = (
     ("sign", -1.0, 0.0),

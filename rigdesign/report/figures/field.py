@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rigdesign.report.fields import ZERO_CELSIUS
+from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.report.figures.drawing import INK, MUTED, finish, new_figure
 from rigdesign.report.figures.mesh_views import (
     OutsideView,
