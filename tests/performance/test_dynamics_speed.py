@@ -5,7 +5,6 @@ Run with ``pytest -m performance -s tests/performance/test_dynamics_speed.py``.
 """
 
 import warnings
-from math import radians
 from time import process_time
 
 import numpy as np
@@ -14,8 +13,6 @@ import pytest
 from dynamics.drivetrain.graph import assemble
 from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.drivetrain.loop_load import LoopLoad
-from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import TipShortening
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.law import MeshLaw
 from dynamics.mesh.microgeometry import Microgeometry
@@ -25,6 +22,7 @@ from dynamics.response.initial_state import wound_state
 from dynamics.response.march_inputs import DriveLoads, DriveState, MarchSettings
 from dynamics.response.time_march import TimeMarch
 from tests.builders.mesh import wavy_law
+from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
 from tests.builders.rig import BASE_RADIUS_REFERENCE, BASE_RADIUS_TEST, prototype
 
 pytestmark = pytest.mark.performance
@@ -45,25 +43,8 @@ def rig() -> LinearSystem:
 
 def shipped_laws() -> list[MeshLaw]:
     """Test gear in 5 slices and reference gear in 12, with the modifications of P2, Figure 7."""
-    test = GearPair.from_centre_distance(
-        normal_module=1e-3,
-        teeth=(99, 102),
-        centre_distance=99.5e-3,
-        face_widths=(7e-3, 15e-3),
-        profile_shift_1=0.0,
-        thickness_allowances=(40e-6, 60e-6),
-        tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
-    )
-    reference = GearPair.from_centre_distance(
-        normal_module=0.95e-3,
-        teeth=(99, 102),
-        centre_distance=99.5e-3,
-        helix_angle=radians(18.0),
-        face_widths=(40e-3, 40e-3),
-        profile_shift_1=0.0,
-        thickness_allowances=(40e-6, 60e-6),
-        tips=TipShortening(contact_ratio=1.448),
-    )
+    test = spur_pair(**ALLOWANCES)
+    reference = helical_pair(**ALLOWANCES)
     micro = (
         Microgeometry(profile_crowning=7e-6, lead_crowning=5e-6),
         Microgeometry(profile_crowning=5e-6, lead_crowning=3e-6),

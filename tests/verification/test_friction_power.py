@@ -6,35 +6,20 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import TipShortening
 from dynamics.losses.mesh_loss import ToothContacts, mesh_loss, sliding_power
 from dynamics.mesh.flank import ContactDiscretisation, MeshDissipation, mesh_law
 from dynamics.mesh.force import evaluate_mesh, tooth_forces
 from dynamics.mesh.friction import GivenFriction, friction_coefficient
 from dynamics.mesh.sliding import ToothPath
 from dynamics.mesh.stiffness import pair_stiffness
+from tests.builders.p2_gears import helical_pair, spur_pair
 
 OMEGA = 12000 * math.pi / 30
 FRICTION = 0.04
 TORQUE = 180.0
 PAIRS = {
-    "spur, pitch point outside": GearPair.from_centre_distance(
-        normal_module=1e-3,
-        teeth=(99, 102),
-        centre_distance=99.5e-3,
-        face_widths=(7e-3, 15e-3),
-        profile_shift_1=0.0,
-        tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
-    ),
-    "helical": GearPair.from_centre_distance(
-        normal_module=0.95e-3,
-        helix_angle=math.radians(18.0),
-        teeth=(99, 102),
-        centre_distance=99.5e-3,
-        face_widths=(40e-3, 40e-3),
-        profile_shift_1=0.0,
-        tips=TipShortening(contact_ratio=1.448),
-    ),
+    "spur, pitch point outside": spur_pair(),
+    "helical": helical_pair(),
 }
 
 

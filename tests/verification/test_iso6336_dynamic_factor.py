@@ -16,6 +16,7 @@ from dynamics.gear.pair import GearPair
 from dynamics.gear.pair_geometry import TipShortening
 from dynamics.rating.iso_rating import RatingOptions, dynamic_factor, mesh_data
 from dynamics.standards import iso6336_1_2006 as iso
+from tests.builders.p2_gears import spur_pair
 
 RPM = pi / 30.0
 EXAMPLE_1 = GearPair(
@@ -28,14 +29,7 @@ EXAMPLE_1 = GearPair(
     tip_diameters=(159.66e-3, 872.35e-3),
     racks=(Rack(dedendum=1.4, tip_radius=0.39),) * 2,
 )
-TEST_GEAR = GearPair.from_centre_distance(
-    normal_module=1e-3,
-    teeth=(99, 102),
-    centre_distance=99.5e-3,
-    face_widths=(7e-3, 15e-3),
-    profile_shift_1=0.0,
-    tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
-)
+TEST_GEAR = spur_pair()
 AS_IN_THE_PAPER = RatingOptions(low_load_factor=False)
 RESONANCE_CONSISTENT = [(0.05, 1.25, False), (-0.67, 1.25, False), (0.05, 1.2, True), (-0.67, 1.2, True)]
 

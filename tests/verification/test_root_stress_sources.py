@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import TipShortening
 from dynamics.rating import iso_rating
 from dynamics.rating.root_stress import root_influence, root_stress_history
+from tests.builders.p2_gears import spur_pair
 
 FZG_C = GearPair.from_centre_distance(
     normal_module=4.5e-3,
@@ -23,14 +23,7 @@ FZG_C = GearPair.from_centre_distance(
 
 
 def uhcf(profile_shift_1):
-    return GearPair.from_centre_distance(
-        normal_module=1e-3,
-        teeth=(99, 102),
-        centre_distance=99.5e-3,
-        face_widths=(7e-3, 15e-3),
-        profile_shift_1=profile_shift_1,
-        tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
-    )
+    return spur_pair(profile_shift_1=profile_shift_1)
 
 
 @pytest.mark.parametrize(

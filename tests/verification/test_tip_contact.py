@@ -5,24 +5,17 @@ Second derivative at the end of the path, from the relative acceleration of the 
 gap'' = rho_1/r_b1^2 + rho_2/r_b2^2 + 2 v/r_b2 + v^2/rho_2 for a corner of gear 1 on a flank of gear 2.
 """
 
-from math import atan2, hypot, radians, tan
+from math import atan2, hypot, tan
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
 from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import TipShortening
 from dynamics.mesh.tip_contact import path_reach, tip_separation
+from tests.builders.p2_gears import helical_pair, spur_pair
 
-UHCF = GearPair.from_centre_distance(
-    normal_module=1e-3,
-    teeth=(99, 102),
-    centre_distance=99.5e-3,
-    face_widths=(7e-3, 15e-3),
-    profile_shift_1=0.0,
-    tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
-)
+UHCF = spur_pair()
 FZG_C = GearPair.from_centre_distance(
     normal_module=4.5e-3,
     teeth=(16, 24),
@@ -112,15 +105,7 @@ def test_reach_stops_where_the_gap_is_wide_enough():
 
 
 def test_helical_gears_take_the_transverse_section():
-    pair = GearPair.from_centre_distance(
-        normal_module=0.95e-3,
-        teeth=(99, 102),
-        centre_distance=99.5e-3,
-        helix_angle=radians(18.0),
-        face_widths=(40e-3, 40e-3),
-        profile_shift_1=0.0,
-        tips=TipShortening(contact_ratio=1.448),
-    )
+    pair = helical_pair()
     path = np.linspace(*path_reach(pair, 50e-6), 200)
     gap = tip_separation(pair, path)
     assert np.all(gap >= 0.0)

@@ -5,8 +5,6 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import TipShortening
 from dynamics.losses.mesh_loss import LossError
 from dynamics.losses.windage import (
     LAMINAR_LIMIT,
@@ -20,6 +18,7 @@ from dynamics.losses.windage import (
     shaft_windage,
     tooth_coefficient,
 )
+from tests.builders.p2_gears import spur_pair
 
 AIR = Mist(density=1.2, viscosity=1.8e-5)
 HOT_AIR = Mist(density=0.83, viscosity=2.4e-5)
@@ -28,14 +27,7 @@ TEST_SPEED = 12000 * math.pi / 30
 
 def prototype_pinion() -> GearRotor:
     """P2, Figure 7: z 99, m 1, b 7, x1 = 0; made from the gear pair."""
-    pair = GearPair.from_centre_distance(
-        normal_module=1e-3,
-        teeth=(99, 102),
-        centre_distance=99.5e-3,
-        face_widths=(7e-3, 15e-3),
-        profile_shift_1=0.0,
-        tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
-    )
+    pair = spur_pair()
     return GearRotor.of_pair(pair, 0)
 
 

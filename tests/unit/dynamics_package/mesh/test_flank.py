@@ -1,11 +1,9 @@
 from dataclasses import replace
-from math import cos, pi, radians, tan
+from math import cos, pi, tan
 
 import numpy as np
 import pytest
 
-from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import TipShortening
 from dynamics.mesh.flank import (
     ContactDiscretisation,
     MeshDissipation,
@@ -17,26 +15,10 @@ from dynamics.mesh.law import check_mesh_law
 from dynamics.mesh.microgeometry import Microgeometry, cumulative_pitch
 from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import mesh_stiffness
+from tests.builders.p2_gears import ALLOWANCES, helical_pair, spur_pair
 
-TEST_GEAR = GearPair.from_centre_distance(
-    normal_module=1e-3,
-    teeth=(99, 102),
-    centre_distance=99.5e-3,
-    face_widths=(7e-3, 15e-3),
-    profile_shift_1=0.0,
-    thickness_allowances=(40e-6, 60e-6),
-    tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
-)
-REFERENCE_GEAR = GearPair.from_centre_distance(
-    normal_module=0.95e-3,
-    teeth=(99, 102),
-    centre_distance=99.5e-3,
-    helix_angle=radians(18.0),
-    face_widths=(40e-3, 40e-3),
-    profile_shift_1=0.0,
-    thickness_allowances=(40e-6, 60e-6),
-    tips=TipShortening(contact_ratio=1.448),
-)
+TEST_GEAR = spur_pair(**ALLOWANCES)
+REFERENCE_GEAR = helical_pair(**ALLOWANCES)
 PUBLISHED = (
     Microgeometry(profile_crowning=7e-6, lead_crowning=5e-6),
     Microgeometry(profile_crowning=7e-6),

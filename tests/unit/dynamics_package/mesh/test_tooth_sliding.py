@@ -5,8 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import TipShortening
 from dynamics.losses.mesh_loss import LossError, ToothContacts, mesh_loss, sliding_power, squeeze_loss
 from dynamics.mesh.friction import GivenFriction, Schlenk, friction_coefficient
 from dynamics.mesh.sliding import (
@@ -16,6 +14,7 @@ from dynamics.mesh.sliding import (
     sliding_speed,
     tooth_loss_factor,
 )
+from tests.builders.p2_gears import helical_pair
 
 
 def spur_path(start: float = -4e-3, end: float = 5e-3, **changes: float) -> ToothPath:
@@ -137,15 +136,7 @@ def test_loss_does_not_care_for_the_running_direction() -> None:
 
 
 def test_path_of_a_gear_pair() -> None:
-    pair = GearPair.from_centre_distance(
-        normal_module=0.95e-3,
-        helix_angle=math.radians(18.0),
-        teeth=(99, 102),
-        centre_distance=99.5e-3,
-        face_widths=(40e-3, 40e-3),
-        profile_shift_1=0.0,
-        tips=TipShortening(contact_ratio=1.448),
-    )
+    pair = helical_pair()
     path = ToothPath.of_pair(pair)
     assert path.contact_ratio == pytest.approx(1.448)
     assert path.width_shift == pytest.approx(pair.overlap_ratio * pair.base_pitch)

@@ -1,18 +1,10 @@
 import numpy as np
 import pytest
 
-from dynamics.gear.pair import GearPair
-from dynamics.gear.pair_geometry import TipShortening
 from dynamics.rating.root_stress import root_influence, root_stress_history, root_stress_over_face
+from tests.builders.p2_gears import spur_pair
 
-PAIR = GearPair.from_centre_distance(
-    normal_module=1e-3,
-    teeth=(99, 102),
-    centre_distance=99.5e-3,
-    face_widths=(7e-3, 15e-3),
-    profile_shift_1=0.0,
-    tips=TipShortening(contact_ratio=1.26, cut_gear="wheel"),
-)
+PAIR = spur_pair()
 
 
 def test_stress_grows_towards_the_own_tip():
