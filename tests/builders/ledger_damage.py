@@ -128,11 +128,11 @@ def resumed(path: Path) -> tuple[int, str]:
     """
     truth = entries()
     with Ledger(path) as ledger:
-        kept, told = ledger.stored(), ledger.repaired
+        kept, reported = ledger.stored(), ledger.repaired
         assert all(json.dumps(truth[key]) == json.dumps(entry) for key, entry in kept.items())
         for key in truth.keys() - kept.keys():
             store(ledger, key, truth[key])
     with Ledger(path) as ledger:
         assert json.dumps(ledger.stored(), sort_keys=True) == json.dumps(truth, sort_keys=True)
         assert ledger.repaired == ""
-    return len(kept), told
+    return len(kept), reported

@@ -24,10 +24,12 @@ def test_many_damaged_ledgers(kind: str, tmp_path: Path) -> None:
         path = tmp_path / "l.sqlite"
         copy_ledger(sound, path)
         harm_file(path, kind, random.Random(f"many {kind} {seed}"))
-        kept, told = resumed(path)
+        kept, reported = resumed(path)
         counts["damaged ledgers"] += 1
         counts["points"] += POINTS
         counts["points kept"] += kept
-        counts["nothing lost, nothing to say" if kept == POINTS and not told else "set aside and said"] += 1
-        assert kept == POINTS or told
+        counts[
+            "nothing lost, nothing to say" if kept == POINTS and not reported else "set aside and said"
+        ] += 1
+        assert kept == POINTS or reported
     print(f"\n{kind}: {dict(counts)}")

@@ -108,8 +108,8 @@ def test_extends_of_an_impossible_name(extends: str, tmp_path: Path) -> None:
 )
 def test_a_case_of_another_format_is_named_as_such(content: bytes, named: str, tmp_path: Path) -> None:
     (tmp_path / "case.toml").write_bytes(content)
-    told = message(lambda: load_case(tmp_path))
-    assert named in told and "a case is a TOML text" in told
+    reported = message(lambda: load_case(tmp_path))
+    assert named in reported and "a case is a TOML text" in reported
     assert foreign(b"name = 1") is None
 
 
@@ -143,8 +143,8 @@ TEXTS = {
 def test_a_text_of_200_kB_is_not_repeated_whole(what: str, tmp_path: Path) -> None:
     case = tmp_path / "case.toml"
     case.write_text(f'extends = "{GIVEN}"\n' + TEXTS[what].format("x" * LONG))
-    told = message(lambda: load_case(case))
-    assert max(map(len, told.splitlines())) < 4000 and str(LONG)[:3] in told
+    reported = message(lambda: load_case(case))
+    assert max(map(len, reported.splitlines())) < 4000 and str(LONG)[:3] in reported
 
 
 def test_blanks_of_200_kB_take_no_time(tmp_path: Path) -> None:
@@ -201,9 +201,9 @@ def test_control_characters_are_refused_and_spelled_out(tmp_path: Path) -> None:
         '[ambient]\ntemperature = { value = "20 degC", assumed = "\\u0007" }\n',
     ):
         case.write_text(f'extends = "{GIVEN}"\n' + text)
-        told = message(lambda: load_case(case))
-        assert "holds the control character" in told
-        assert all(sign >= " " or sign == "\n" for sign in told)
+        reported = message(lambda: load_case(case))
+        assert "holds the control character" in reported
+        assert all(sign >= " " or sign == "\n" for sign in reported)
 
 
 # ---------------------------------------------------------------------------- study paths and profile shifts
@@ -238,9 +238,11 @@ def test_both_profile_shifts_are_accepted_where_they_agree_with_the_centre_dista
     for said in (round(one[1], 3), one[1] + 0.0019):
         both = build_pairs(changed_together(case, {at: said}), MATERIALS)["test.main"].profile_shifts
         assert both == one
-    told = message(lambda: changed_together(case, {at: one[1] + 0.0021}))
-    assert "fixes the sum of the profile shifts at -0.9610, the gears state 0 + -0.958946 = -0.9589" in told
-    assert "leave wheel.profile_shift out" in told
+    reported = message(lambda: changed_together(case, {at: one[1] + 0.0021}))
+    assert (
+        "fixes the sum of the profile shifts at -0.9610, the gears state 0 + -0.958946 = -0.9589" in reported
+    )
+    assert "leave wheel.profile_shift out" in reported
 
 
 # ---------------------------------------------------------------------------- interrupt
@@ -262,10 +264,10 @@ def test_an_interrupted_check_leaves_nothing_and_says_so(tmp_path: Path, write: 
         assert process.stderr is not None
         assert "building the rig" in process.stderr.readline()
         process.send_signal(signal.SIGINT)
-        told = process.stderr.read()
+        reported = process.stderr.read()
     assert process.returncode == 130
-    assert "rigdesign: interrupted; nothing was written; the same command starts again" in told
-    assert "Traceback" not in told
+    assert "rigdesign: interrupted; nothing was written; the same command starts again" in reported
+    assert "Traceback" not in reported
     assert not (tmp_path / "out").exists()
 
 

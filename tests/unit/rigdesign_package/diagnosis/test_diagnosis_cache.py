@@ -73,8 +73,8 @@ def counted(folder: Path, count: int) -> dict[str, int]:
             outcomes["crash"] += 1
             continue
         aside = list(folder.rglob("*.damaged"))
-        told = rig.built == 1 and len(rig.said) == 1 and name in rig.said[0] and len(aside) == 1
-        outcomes["built again, told once" if told else "accepted" if not rig.built else "other"] += 1
+        reported = rig.built == 1 and len(rig.said) == 1 and name in rig.said[0] and len(aside) == 1
+        outcomes["built again, told once" if reported else "accepted" if not rig.built else "other"] += 1
     return outcomes
 
 

@@ -77,8 +77,8 @@ def test_no_name_and_nothing_proven_where_the_gap_grows():
 def test_a_grown_gap_is_red_on_the_page_and_in_the_terminal(tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("FORCE_COLOR", "1")
     problem = contradicted()
-    told = outcome(replace(story("mesh loss"), problem=problem, diagnosis=diagnosed(problem)))
-    document = diagnosis_document(told)
+    reported = outcome(replace(story("mesh loss"), problem=problem, diagnosis=diagnosed(problem)))
+    document = diagnosis_document(reported)
     assert document["named"] == [] and document["patch"]["case"] is None
     (row,) = document["refused"]
     assert (
@@ -86,12 +86,12 @@ def test_a_grown_gap_is_red_on_the_page_and_in_the_terminal(tmp_path, capsys, mo
         and row["gap"]["grown"]
         and row["gap"]["after"] > row["gap"]["before"]
     )
-    page = diagnosis_page(told, document)
+    page = diagnosis_page(reported, document)
     assert (
         '<p class="grown">With <b>friction of the teeth' in page
         and ".grown { color: var(--fail)" in page.replace(".grown, .grown b", ".grown")
     )
-    print_diagnosis(told, tmp_path)
+    print_diagnosis(reported, tmp_path)
     text = capsys.readouterr().out
     red = text.split("\x1b[1;31m")[1:]
     assert any("grows from" in part.split("\x1b[0m")[0] for part in red)
@@ -134,8 +134,8 @@ def test_without_a_full_run_nothing_is_proven():
     problem = with_added(healthy(), stored(healthy(), SIZE))
     found = diagnose(problem, DESIGN)
     assert found.named == ("mesh_loss:test",) and found.strength == "indicative"
-    told = outcome(replace(story("mesh loss"), problem=problem, diagnosis=found))
-    assert "not run in full" in diagnosis_document(told)["certainty"]
+    reported = outcome(replace(story("mesh loss"), problem=problem, diagnosis=found))
+    assert "not run in full" in diagnosis_document(reported)["certainty"]
 
 
 def test_of_two_names_only_the_one_that_closes_the_gap_is_given():
@@ -205,23 +205,23 @@ def test_effects_present_apart_from_a_group_are_reported():
     both = {"bearing_loss:test": (log(1.12),), "single_pitch:test.pinion/5": (60e-6,)}
     found = diagnosed(with_added(problem, stored(problem, both)))
     assert (found.decision.verdict, found.decision.apart) == ("alias_group", ("single_pitch:test.pinion",))
-    told = outcome(replace(story("mesh loss"), problem=problem, diagnosis=found))
-    document = diagnosis_document(told)
+    reported = outcome(replace(story("mesh loss"), problem=problem, diagnosis=found))
+    document = diagnosis_document(reported)
     assert [row["effect"] for row in document["named"]] == ["single_pitch:test.pinion"]
     assert {row["effect"] for row in document["suspects"]} == {"bearing_loss:test", "oil_viscosity:test"}
     assert "Missing in the model: single pitch deviation of test.pinion: tooth 5" in document["headline"]
-    assert told.case_patch is None and "--name" in told.refused and document["gap"]["shrunk"]
+    assert reported.case_patch is None and "--name" in reported.refused and document["gap"]["shrunk"]
     assert document["gap"]["effects_added"] == ["single_pitch:test.pinion/5", "bearing_loss:test"]
     assert (
         document["strength"] == "indicative"
         and "an alias group identifies no single effect" in document["certainty"]
     )
     for pick in ("bearing_loss:test", "oil_viscosity:test"):
-        picked = outcome(told.result, pick=pick)
+        picked = outcome(reported.result, pick=pick)
         assert [one.name for one in picked.applied] == ["single_pitch:test.pinion", pick]
         assert picked.gap is not None and picked.gap.shrunk and picked.case_patch is not None
         assert len(picked.case_patch.values) >= 2
-    again = outcome(told.result, pick="single_pitch:test.pinion")
+    again = outcome(reported.result, pick="single_pitch:test.pinion")
     assert [one.name for one in again.applied] == ["single_pitch:test.pinion"]
     assert again.case_patch is not None and again.case_patch.title.count("single pitch deviation") == 1
 
@@ -336,10 +336,15 @@ def test_scatter_is_the_standard_deviation_of_the_fall(size):
 
 def test_a_pick_with_which_the_gap_grows_is_not_patched():
     problem = contradicted()
-    told = outcome(
+    reported = outcome(
         replace(story("mesh loss"), problem=problem, diagnosis=diagnosed(problem)), pick="mesh_loss:test"
     )
-    assert told.case_patch is None and "grows" in told.refused and told.gap is not None and told.gap.grown
+    assert (
+        reported.case_patch is None
+        and "grows" in reported.refused
+        and reported.gap is not None
+        and reported.gap.grown
+    )
     alias = outcome(story("alias"), pick="run_out:test.wheel")
     assert alias.case_patch is not None and alias.gap is not None and alias.gap.shrunk
 

@@ -21,8 +21,8 @@ STORIES = ("mesh loss", "run-out", "alias", "exchanged", "angle", "one point", "
 
 
 def page(name: str, **keys) -> str:
-    told = outcome(story(name), **keys)
-    return diagnosis_page(told, diagnosis_document(told))
+    reported = outcome(story(name), **keys)
+    return diagnosis_page(reported, diagnosis_document(reported))
 
 
 def words(text: str) -> str:
@@ -45,9 +45,9 @@ def test_the_page_stands_alone_and_tells_the_story_in_order(name: str) -> None:
 
 
 def test_the_page_says_what_the_document_says() -> None:
-    told = outcome(story("mesh loss"))
-    found = diagnosis_document(told)
-    text = words(diagnosis_page(told, found))
+    reported = outcome(story("mesh loss"))
+    found = diagnosis_document(reported)
+    text = words(diagnosis_page(reported, found))
     assert found["headline"] in text
     (parameter,) = found["named"][0]["parameters"]
     assert shown_size(parameter["value"], "", True) in text
@@ -67,8 +67,8 @@ def test_a_refusal_says_why() -> None:
 
 def test_a_users_words_stay_words(tmp_path: Path) -> None:
     result = result_of(write_set(tmp_path, Rig(), title="<b>$x_1$</b> & more"))
-    told = outcome(result)
-    text = diagnosis_page(told, diagnosis_document(told))
+    reported = outcome(result)
+    text = diagnosis_page(reported, diagnosis_document(reported))
     assert "<b>$x" not in text and "&lt;b&gt;$x_1$" in text
 
 
@@ -84,25 +84,25 @@ def test_readings_left_out_are_listed(tmp_path: Path) -> None:
         return {**values, "P": values["P"] + (2500.0 if point == "P04" else 0.0)}
 
     result = result_of(write_set(tmp_path, Rig(), spoil=spoil))
-    told = outcome(result)
-    found = diagnosis_document(told)
+    reported = outcome(result)
+    found = diagnosis_document(reported)
     (row,) = found["data"]["rejected_readings"]
     assert (row["channel"], row["point"], row["unit"]) == ("P", "P04", "W") and row["deviation"] > 5.5
     assert found["data"]["numbers"] == len(result.problem.residuals.features) - 1
-    assert "rejected as outliers" in words(diagnosis_page(told, found))
+    assert "rejected as outliers" in words(diagnosis_page(reported, found))
 
 
 @pytest.mark.parametrize("name", STORIES)
 def test_the_terminal_names_verdict_and_report(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    told = outcome(story(name))
-    print_diagnosis(told, tmp_path)
+    reported = outcome(story(name))
+    print_diagnosis(reported, tmp_path)
     text = capsys.readouterr().out
-    assert told.result.diagnosis.strength in text and "diagnosis.html" in text
-    assert ("patched case" in text) == (told.case_patch is not None)
-    assert ("perhaps" in text) == (bool(told.suspects) and told.verdict != "within_noise")
-    doubted = any(one.weight == "suspect" for one in told.result.data.findings)
+    assert reported.result.diagnosis.strength in text and "diagnosis.html" in text
+    assert ("patched case" in text) == (reported.case_patch is not None)
+    assert ("perhaps" in text) == (bool(reported.suspects) and reported.verdict != "within_noise")
+    doubted = any(one.weight == "suspect" for one in reported.result.data.findings)
     assert ("suspect " in text) == doubted
 
 
@@ -157,12 +157,12 @@ def test_an_out_that_is_a_file_is_refused_before_anything_is_computed(
 
 
 def test_nothing_is_left_of_a_run_that_breaks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    told = outcome(story("mesh loss"))
+    reported = outcome(story("mesh loss"))
 
     def broken(*arguments):
         raise RuntimeError("drawing")
 
     monkeypatch.setattr("rigdesign.report.diagnosis_files.diagnosis_page", broken)
     with pytest.raises(RuntimeError, match="drawing"):
-        write_diagnosis(told, tmp_path / "out")
+        write_diagnosis(reported, tmp_path / "out")
     assert not (tmp_path / "out").exists()

@@ -199,10 +199,10 @@ def test_a_later_refusal_takes_the_earlier_patch_away(tmp_path: Path) -> None:
 
 
 def test_a_pick_is_patched_and_marked_as_the_users(tmp_path: Path) -> None:
-    told = outcome(story("alias"), pick="run_out:test.wheel")
-    write_diagnosis(told, tmp_path)
+    reported = outcome(story("alias"), pick="run_out:test.wheel")
+    write_diagnosis(reported, tmp_path)
     flank = load_case(tmp_path / "patched").gearboxes["test"].gears["wheel"].flank
-    assert told.picked is not None
-    assert 0.5 * flank.run_out == pytest.approx(hypot(*told.picked.values))
+    assert reported.picked is not None
+    assert 0.5 * flank.run_out == pytest.approx(hypot(*reported.picked.values))
     assert "picked by the user" in (tmp_path / "case.patch.json").read_text(encoding="utf-8")
-    assert diagnosis_document(told)["verdict"] == "alias_group"
+    assert diagnosis_document(reported)["verdict"] == "alias_group"

@@ -200,8 +200,8 @@ def test_a_spoilt_file_is_refused_with_a_remedy(folder: Path, case, name, spoil,
 )
 def test_a_table_of_another_format_is_named_as_such(folder: Path, case, content: bytes, named: str) -> None:
     (folder / "data.csv").write_bytes(content)
-    told = faults(folder, case)
-    assert f"is {named}, not a table of text; export the sheet as CSV" in told
+    reported = faults(folder, case)
+    assert f"is {named}, not a table of text; export the sheet as CSV" in reported
 
 
 @pytest.mark.parametrize("content", [bytes(range(256)) * 4, b"a,b\0c\n1,2\n"])

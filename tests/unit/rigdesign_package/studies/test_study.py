@@ -323,6 +323,6 @@ def test_an_interrupt_of_all_processes_while_workers_start_prints_no_traceback(t
         children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
         _wait(lambda: any("numpy" in _mapped(pid) for pid in children.read_text().split()))
         os.killpg(process.pid, signal.SIGINT)
-        told = process.stderr.read()
+        reported = process.stderr.read()
     assert process.returncode != 0
-    assert told.count("KeyboardInterrupt") == 1 and "spawn_main" not in told
+    assert reported.count("KeyboardInterrupt") == 1 and "spawn_main" not in reported

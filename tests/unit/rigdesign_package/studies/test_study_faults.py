@@ -51,11 +51,11 @@ def test_rows_that_are_not_as_written_are_set_aside_and_said_once(
 ) -> None:
     path = copied(sound, tmp_path)
     harm_rows(path, ROWS[kind])
-    kept, told = resumed(path)
+    kept, reported = resumed(path)
     lost = {"a column less": POINTS, "another table": POINTS, "another schema": 0, "an earlier format": 0}
     assert kept == POINTS - lost.get(kind, 1)
-    assert ("is of format 1" if kind == "an earlier format" else "is damaged") in told
-    assert "l.sqlite.damaged-1" in told and f"{kept} points" in told
+    assert ("is of format 1" if kind == "an earlier format" else "is damaged") in reported
+    assert "l.sqlite.damaged-1" in reported and f"{kept} points" in reported
     assert (tmp_path / "l.sqlite.damaged-1").exists()
 
 
@@ -68,15 +68,15 @@ def test_damaged_files_are_never_believed_and_never_stop_a_study(
         folder.mkdir()
         path = copied(sound, folder)
         harm_file(path, kind, random.Random(f"{kind} {seed}"))
-        kept, told = resumed(path)
-        assert kept == POINTS or told
+        kept, reported = resumed(path)
+        assert kept == POINTS or reported
 
 
 def test_a_file_that_is_no_ledger_is_kept_under_another_name(tmp_path: Path) -> None:
     path = tmp_path / "l.sqlite"
     path.write_text("not a database " * 50, encoding="utf-8")
-    kept, told = resumed(path)
-    assert kept == 0 and "not a database" in told
+    kept, reported = resumed(path)
+    assert kept == 0 and "not a database" in reported
     assert (tmp_path / "l.sqlite.damaged-1").read_text(encoding="utf-8") == "not a database " * 50
     path.write_text("again", encoding="utf-8")
     resumed(path)
