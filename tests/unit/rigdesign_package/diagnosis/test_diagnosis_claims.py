@@ -8,7 +8,7 @@ import pytest
 
 from rigdesign.base.errors import NotConvergedError
 from rigdesign.case import load_case
-from rigdesign.cli.terminal import print_diagnosis
+from rigdesign.cli.terminal.diagnosis import print_diagnosis
 from rigdesign.diagnosis.catalogue import effects_of
 from rigdesign.diagnosis.decision.claims import Traces, _group
 from rigdesign.diagnosis.decision.proof import FullRun, Proof

@@ -9,7 +9,7 @@ import pytest
 
 from rigdesign.cli import ending
 from rigdesign.cli import main as cli
-from rigdesign.cli.terminal import print_diagnosis
+from rigdesign.cli.terminal.diagnosis import print_diagnosis
 from rigdesign.diagnosis import run
 from rigdesign.diagnosis.document.document import diagnosis_document
 from rigdesign.diagnosis.document.outcome import outcome

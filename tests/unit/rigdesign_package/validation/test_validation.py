@@ -13,8 +13,8 @@ from rigdesign import validation
 from rigdesign.base.errors import OutputError, UsageError
 from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
-from rigdesign.cli import main as cli
-from rigdesign.cli.terminal import print_validation
+from rigdesign.cli.commands.validate import validate
+from rigdesign.cli.terminal.validation import print_validation
 from rigdesign.results.result import RunResult
 from rigdesign.results.thermal import HeatRow
 from rigdesign.validation import (
@@ -439,7 +439,7 @@ def test_command_fails_when_a_gate_is_missed_and_counts_a_missed_goal(limit, sta
     monkeypatch.setattr(
         validation, "validation_rows", lambda **_: (row(criterion=Gate(limit)), row(criterion=Goal(0.01)))
     )
-    assert cli.validate(json=True) == status
+    assert validate(json=True) == status
     document = json.loads(capsys.readouterr().out)
     assert document["rows"][0]["id"] == "x"
     assert document["headline"]["goals"] == {"predicted": {"met": 0, "missed": 1}}

@@ -1,0 +1,65 @@
+"""`rigdesign check`: the main job."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from rigdesign.base.fidelity import Fidelity
+from rigdesign.cli.application import app, loaded_case, print_json
+from rigdesign.cli.ending import NOTHING_KEPT, failure_kept, interrupted
+
+
+@app.command
+def check(
+    case: Path,
+    *,
+    out: Path | None = None,
+    fidelity: Fidelity = "standard",
+    transient: Annotated[bool, Parameter(negative=())] = False,
+    ranges: Annotated[bool, Parameter(negative=())] = False,
+    json: bool = False,
+    fail_on: Literal["fail", "warn"] = "fail",
+) -> int:
+    """Compute loads, losses, temperatures and clearances of a rig and hold them against its limits.
+
+    Parameters
+    ----------
+    case
+        Case folder or its case.toml.
+    out
+        Folder for results.json, report.html, junit.xml, fields and curves.
+    fidelity
+        Size of the models: quick, standard or reference.
+    transient
+        Follow temperatures and clearances over warm-up, schedule, stops and soak-back as well.
+    ranges
+        Move every assumed input to both ends of its range, one at a time: a check passes only if it holds there too.
+    json
+        Print results.json on stdout; everything else goes to stderr.
+    fail_on
+        Verdict from which the exit status is 1.
+    """
+    loaded = loaded_case(case)
+    from rigdesign.cli.terminal.checks import print_checks
+    from rigdesign.cli.terminal.progress import Progress
+    from rigdesign.report import prepare_output, results_document, write_results
+    from rigdesign.run.main import run_case
+
+    if out is not None:
+        prepare_output(out)
+    with Progress() as progress, interrupted(NOTHING_KEPT), failure_kept(out):
+        result = run_case(loaded, fidelity=fidelity, progress=progress, transient=transient)
+        if ranges:
+            from rigdesign.uncertainty.run import with_ranges
+
+            result = with_ranges(loaded, result, progress=progress, count=progress.count)
+        if out is not None:
+            progress("writing report")
+            write_results(result, out)
+    if json:
+        print_json(results_document(result))
+    else:
+        print_checks(result, out)
+    failing = {"fail"} if fail_on == "fail" else {"fail", "warn"}
+    return 1 if result.verdict in failing else 0

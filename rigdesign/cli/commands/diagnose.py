@@ -1,0 +1,80 @@
+"""`rigdesign diagnose`: the effect that a simulation lacks against measured data."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from rigdesign.cli.application import app, loaded_case, print_json
+from rigdesign.cli.ending import SIMULATIONS_KEPT, interrupted
+
+
+@app.command
+def diagnose(
+    case: Path,
+    measurement: Path,
+    *,
+    out: Path,
+    json: bool = False,
+    name: str | None = None,
+    calibrate: Annotated[bool, Parameter(negative=())] = False,
+) -> int:
+    """Name the effect that the model lacks against a measurement set, patch the case, and prove that the gap shrinks.
+
+    Parameters
+    ----------
+    case
+        Case folder or its case.toml; it is not written to.
+    measurement
+        Folder with measurement.toml.
+    out
+        Folder for diagnosis.json, diagnosis.html and, where nothing speaks against it, case.patch.json and
+        patched/case.toml.
+    json
+        Print diagnosis.json on stdout; everything else goes to stderr.
+    name
+        Effect to patch where the data leave several, such as one of an alias group.
+    calibrate
+        The set is of a healthy rig: fit the uncertain constants of the case to it and write calibrated/case.toml.
+    """
+    if calibrate:
+        return _calibrate(case, measurement, out)
+    loaded = loaded_case(case)
+    from rigdesign.cli.terminal.diagnosis import print_diagnosis
+    from rigdesign.cli.terminal.progress import Progress
+    from rigdesign.diagnosis.catalogue import effects_of
+    from rigdesign.diagnosis.document.document import diagnosis_document
+    from rigdesign.diagnosis.document.outcome import check_pick, outcome
+    from rigdesign.diagnosis.run import diagnose_measurement
+    from rigdesign.report import prepare_output
+    from rigdesign.report.diagnosis_files import write_diagnosis
+
+    if name is not None:
+        check_pick(effects_of(loaded), name)
+    prepare_output(out)
+    with Progress() as progress, interrupted(SIMULATIONS_KEPT):
+        found = diagnose_measurement(loaded, measurement, say=progress)
+        reported = outcome(found, pick=name, proposals=found.proposals)
+        progress("writing report")
+        write_diagnosis(reported, out)
+    if json:
+        print_json(diagnosis_document(reported))
+    else:
+        print_diagnosis(reported, out)
+    return 0
+
+
+def _calibrate(case: Path, measurement: Path, out: Path) -> int:
+    loaded = loaded_case(case)
+    from rigdesign.cli.terminal.diagnosis import print_constants
+    from rigdesign.cli.terminal.progress import Progress
+    from rigdesign.diagnosis.run import calibrate_case
+    from rigdesign.report import prepare_output
+    from rigdesign.report.diagnosis_files import write_calibrated
+
+    prepare_output(out)
+    with Progress() as progress, interrupted(SIMULATIONS_KEPT):
+        found = calibrate_case(loaded, measurement, say=progress)
+        write_calibrated(found, out)
+    print_constants(found, out)
+    return 0
