@@ -13,6 +13,7 @@ from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
 from rigdesign.case.drivetrain import DrivetrainInput
 from rigdesign.case.fields import Name, Part, Text
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.inputs import InputRow, input_rows
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
 from rigdesign.case.numerics import Numerics
@@ -78,6 +79,11 @@ class Case(Part):
             if mark.assumed is not None
         )
         return (*marked, *implied_assumptions(self.gearboxes))
+
+    @property
+    def inputs(self) -> tuple[InputRow, ...]:
+        """Every value the case states, in the order of the file."""
+        return input_rows(self._origin.tree)
 
     @property
     def overrides(self) -> tuple[dict[str, str], ...]:

@@ -37,6 +37,7 @@ def results_document(result: RunResult) -> dict[str, Any]:
         "discretisation": result.discretisation,
         "reference_shift": result.reference_shift,
         "hand_checks": result.hand_checks,
+        "inputs": result.inputs,
         "assumptions": result.assumptions,
         "overrides": result.overrides,
         "not_modelled": result.not_modelled,

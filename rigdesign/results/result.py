@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rigdesign.base.errors import MissingLibraryError
 from rigdesign.case.assumptions import AssumptionRecord
+from rigdesign.case.inputs import InputRow
 from rigdesign.results.check import Checks
 from rigdesign.results.curves import Columns, curves_of
 from rigdesign.results.dynamics import DynamicsResult
@@ -96,6 +97,8 @@ class RunResult:
     """At reference: every check that depends on a housing mesh, on the standard mesh and on the fine one."""
     hand_checks: list[dict[str, Any]]
     """{quantity, computed, by_hand, unit, formula}: a number an engineer can redo for each key result."""
+    inputs: list[InputRow] = field(default_factory=list)
+    """Every value the case states."""
     assumptions: list[AssumptionRecord]
     overrides: list[dict[str, str]]
     not_modelled: list[str]

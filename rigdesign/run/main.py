@@ -145,6 +145,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         discretisation=list(solved.discretisation),
         reference_shift=list(solved.mesh_shifts),
         hand_checks=hand_checks(solved),
+        inputs=list(case.inputs),
         assumptions=_assumptions(case, checks),
         overrides=list(case.overrides),
         not_modelled=not_modelled(solved),

@@ -12,12 +12,13 @@ from collections.abc import Iterator
 from contextlib import closing, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from rigdesign.base.errors import OutputError
 from rigdesign.base.version import __version__
+from rigdesign.studies.result import Record
 
-FORMAT = 2
+FORMAT = 3
 """Of the table below, kept in the file as user_version; raise it with any change."""
 SCHEMA = """
 CREATE TABLE IF NOT EXISTS points (
@@ -44,9 +45,6 @@ NOT_DAMAGE = frozenset(
     )
 )  # fmt: skip
 """What SQLite says of a machine or a folder that refuses; all else of a file that can be read is damage."""
-
-Record = dict[str, Any]
-"""What is kept of a point: {verdict, max_temperature_degC, checks: [...]} or {error, traceback}."""
 
 
 class _Row(NamedTuple):

@@ -16,7 +16,8 @@ from rigdesign.base.output_folder import prepare_output
 from rigdesign.base.worker_pool import compute_all, worker_count
 from rigdesign.results.result import RunResult
 from rigdesign.studies.grid import Variation, grid, parse_variation
-from rigdesign.studies.ledger import Ledger, Record, point_key
+from rigdesign.studies.ledger import Ledger, point_key
+from rigdesign.studies.result import Record, StudyPoint, StudyResult
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
@@ -25,20 +26,15 @@ __all__ = ["Execution", "StudyOutcome", "StudyPoint", "Variation", "parse_variat
 
 LEDGER_NAME = "ledger.sqlite"
 LOCK_NAME = ".rigdesign-study.lock"
-CHECK_KEYS = ("id", "title", "value", "limit", "upper_limit", "unit", "margin", "utilisation", "verdict")
+CHECK_KEYS = (
+    "id", "title", "group", "value", "limit", "upper_limit", "unit", "comparison", "margin", "utilisation", "verdict",
+)  # fmt: skip
 
 
 class Writer(Protocol):
-    """What writes the files of a study from its computed points; `rigdesign.report.pages.study.write_study`."""
+    """What writes the files of a study; `rigdesign.report.pages.study.write_study`."""
 
-    def __call__(
-        self,
-        case: "Case",
-        variations: Sequence[Variation],
-        points: "Sequence[StudyPoint]",
-        fidelity: str,
-        out: Path,
-    ) -> None:
+    def __call__(self, study: StudyResult, out: Path) -> None:
         """Write them to ``out``."""
 
 
@@ -47,19 +43,6 @@ class Run(Protocol):
 
     def __call__(self, case: "Case", *, fidelity: Fidelity) -> RunResult:
         """Compute one case."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class StudyPoint:
-    """One point of the grid with what came of it.
-
-    values : varied values by path
-    record : {verdict, max_temperature_degC, checks} of a computed point, {error} of a failed one
-    """
-
-    values: dict[str, str]
-    failed: bool
-    record: Record
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,7 +164,10 @@ def run_study(
             else StudyPoint(values=values, failed=stored[task.key][0], record=stored[task.key][1])
             for values, task, error in zip(points, tasks, invalid, strict=True)
         ]
-        write(case, variations, computed, fidelity, out)
+        found = StudyResult(
+            case=case, fidelity=fidelity, design="grid", variations=variations, points=computed
+        )
+        write(found, out)
     reused = sum(task is not None for task in tasks) - len(missing)
     return StudyOutcome(points=computed, completed=len(missing), reused=reused)
 

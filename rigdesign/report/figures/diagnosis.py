@@ -12,9 +12,10 @@ from rigdesign.diagnosis.document.outcome import Outcome
 from rigdesign.measurement.comparison.compare import series_of
 from rigdesign.measurement.quantities import CHANNELS
 from rigdesign.prediction.model import Feature
-from rigdesign.report.figures.drawing import GRID, INK, MUTED, SERIES, finish, new_figure, plain
+from rigdesign.report.figures.drawing import finish, new_figure, plain
 from rigdesign.report.figures.measurement import COLOUR_END
 from rigdesign.report.numbers import unit_text
+from rigdesign.report.palette import GRID, INK, MUTED, SERIES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

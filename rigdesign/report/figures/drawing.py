@@ -7,15 +7,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from rigdesign.report.palette import GRID, INK, MUTED
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-INK = "#22303c"
-GRID = "#d9dfe4"
-MUTED = "#7d8b97"
-SERIES = ("#1f5a8a", "#c2571a", "#3c7a4b", "#7a4c93", "#9a7b1c", "#2a8c8c", "#a3395b", "#5b6b78")
-VERDICT_COLOURS = {"pass": "#2e7d4f", "warn": "#b7791f", "fail": "#b3261e", "not applicable": "#8a96a1"}
 
 WIDTH = 9.2
 """Width of a full figure [in]; the page scales it to its text width."""

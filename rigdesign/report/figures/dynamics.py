@@ -5,16 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rigdesign.report.figures.drawing import (
-    INK,
-    MUTED,
-    SERIES,
-    VERDICT_COLOURS,
-    finish,
-    legend_right,
-    new_figure,
-    plain,
-)
+from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain
+from rigdesign.report.palette import INK, MUTED, SERIES, VERDICT_COLOURS
 from rigdesign.results.dynamics import DynamicFactorPoint, DynamicsResult, GearboxDynamics
 
 if TYPE_CHECKING:

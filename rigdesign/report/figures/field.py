@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rigdesign.base.quantity_kinds import ZERO_CELSIUS
-from rigdesign.report.figures.drawing import INK, MUTED, finish, new_figure
+from rigdesign.report.figures.drawing import finish, new_figure
 from rigdesign.report.figures.mesh_views import (
     OutsideView,
     PlaneCut,
@@ -17,6 +17,7 @@ from rigdesign.report.figures.mesh_views import (
     view_outside,
 )
 from rigdesign.report.numbers import number_text
+from rigdesign.report.palette import INK, MUTED
 from rigdesign.results.thermal import TemperatureField
 from thermal.fe.mesh import FloatArray, NamedMesh
 

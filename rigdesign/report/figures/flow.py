@@ -4,9 +4,10 @@ from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rigdesign.report.figures.drawing import INK, SERIES, new_figure, plain
+from rigdesign.report.figures.drawing import new_figure, plain
 from rigdesign.report.figures.sankey import NODE_WIDTH, Flow, SankeyLayout, layout, spread
 from rigdesign.report.numbers import number_text
+from rigdesign.report.palette import INK, SERIES
 from rigdesign.results.thermal import LossRow, OilRow, ThermalResult
 
 if TYPE_CHECKING:

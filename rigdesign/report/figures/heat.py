@@ -2,8 +2,9 @@
 
 from typing import TYPE_CHECKING
 
-from rigdesign.report.figures.drawing import MUTED, SERIES, finish, legend_right, new_figure, plain
+from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain
 from rigdesign.report.numbers import power_text
+from rigdesign.report.palette import MUTED, SERIES
 from rigdesign.results.result import CouplingHistory
 from rigdesign.results.thermal import LossRow, OilRow
 

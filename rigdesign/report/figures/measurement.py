@@ -11,8 +11,9 @@ from rigdesign.measurement.comparison.compare import Comparison, display_residua
 from rigdesign.measurement.comparison.locate import Located, leading_variables
 from rigdesign.measurement.quantities import CHANNELS
 from rigdesign.prediction.model import ORDER_QUANTITIES
-from rigdesign.report.figures.drawing import GRID, INK, MUTED, SERIES, finish, legend_right, new_figure, plain
+from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain
 from rigdesign.report.numbers import unit_text
+from rigdesign.report.palette import GRID, INK, MUTED, SERIES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

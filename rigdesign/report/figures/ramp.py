@@ -3,7 +3,8 @@
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from rigdesign.report.figures.drawing import INK, MUTED, SERIES, finish, new_figure, plain
+from rigdesign.report.figures.drawing import finish, new_figure, plain
+from rigdesign.report.palette import INK, MUTED, SERIES
 from rigdesign.results.dynamics import RampHistory
 
 if TYPE_CHECKING:

@@ -3,14 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rigdesign.report.figures.drawing import (
-    INK,
-    MUTED,
-    VERDICT_COLOURS,
-    finish,
-    new_figure,
-    plain,
-)  # fmt: skip
+from rigdesign.report.figures.drawing import finish, new_figure, plain
+from rigdesign.report.palette import INK, MUTED, VERDICT_COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

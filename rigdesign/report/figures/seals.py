@@ -4,8 +4,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rigdesign.report.figures.drawing import INK, MUTED, SERIES, finish, legend_right, new_figure, plain
+from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain
 from rigdesign.report.numbers import number_text
+from rigdesign.report.palette import INK, MUTED, SERIES
 from rigdesign.results.thermal import ExpansionResult
 from thermal.fe.mesh import FloatArray
 

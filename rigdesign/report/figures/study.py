@@ -5,24 +5,16 @@ from itertools import product
 from math import isnan, nan
 from typing import TYPE_CHECKING
 
-from rigdesign.report.figures.drawing import (
-    GRID,
-    INK,
-    SERIES,
-    VERDICT_COLOURS,
-    finish,
-    legend_right,
-    new_figure,
-    plain,
-)  # fmt: skip
+from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain
 from rigdesign.report.numbers import unit_text
+from rigdesign.report.palette import GRID, INK, SERIES, VERDICT_COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from rigdesign.studies.grid import Variation
-    from rigdesign.studies.run import StudyPoint
+    from rigdesign.studies.result import StudyPoint
 
 NAMED_CURVES = 8
 """Checks drawn in colour with their name: those that move and come nearest to their limit or break it."""

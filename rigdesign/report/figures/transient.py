@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.report.figures.drawing import INK, MUTED, SERIES, legend_right, new_figure, plain
+from rigdesign.report.figures.drawing import legend_right, new_figure, plain
+from rigdesign.report.palette import INK, MUTED, SERIES
 from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rigdesign.base.output_folder import staged
 from rigdesign.base.version import __version__
@@ -10,15 +10,10 @@ from rigdesign.report.csv_text import csv_text
 from rigdesign.report.figures.drawing import drawing_style, inline_svg
 from rigdesign.report.numbers import margin_unit
 from rigdesign.studies.grid import Variation
-from rigdesign.studies.run import StudyPoint
-
-if TYPE_CHECKING:
-    from rigdesign.case import Case
+from rigdesign.studies.result import StudyPoint, StudyResult
 
 
-def write_study(
-    case: "Case", variations: Sequence[Variation], points: Sequence[StudyPoint], fidelity: str, out: Path
-) -> None:
+def write_study(study: StudyResult, out: Path) -> None:
     """Write the three files whole; they depend on the points alone, so an interrupted study ends the same.
 
     Raises
@@ -28,6 +23,7 @@ def write_study(
     """
     from rigdesign.report.figures.study import study_figure
 
+    variations, points = study.variations, study.points
     with drawing_style():
         figure = study_figure(variations, points)
         svg = None if figure is None else inline_svg(figure, "study", "Margins over the varied input")
@@ -36,7 +32,7 @@ def write_study(
         if svg is not None:
             document = f'<?xml version="1.0" encoding="utf-8"?>\n{svg}\n'
             (scratch / "study.svg").write_text(document, encoding="utf-8", newline="\n")
-        page = _page(case, variations, points, fidelity, svg)
+        page = _page(study, svg)
         (scratch / "study.html").write_text(page, encoding="utf-8", newline="\n")
 
 
@@ -82,13 +78,7 @@ def first_failing(point: "StudyPoint") -> str:
     return "" if worst is None else str(worst["id"])
 
 
-def _page(
-    case: "Case",
-    variations: Sequence[Variation],
-    points: Sequence[StudyPoint],
-    fidelity: str,
-    svg: str | None,
-) -> str:
+def _page(study: StudyResult, svg: str | None) -> str:
     from markupsafe import Markup
 
     from rigdesign.report.pages.report import environment
@@ -98,10 +88,10 @@ def _page(
         environment()
         .get_template("study.html.j2")
         .render(
-            case=case,
-            paths=[variation.path for variation in variations],
-            points=points,
-            fidelity=fidelity,
+            case=study.case,
+            paths=[variation.path for variation in study.variations],
+            points=study.points,
+            fidelity=study.fidelity,
             figure=picture,
             first_failing=first_failing,
             tool_version=__version__,
