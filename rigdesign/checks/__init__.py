@@ -9,17 +9,20 @@ from rigdesign.checks.rules import with_error, with_omissions
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
 
-__all__ = ["all_checks", "held_checks", "mesh_checks"]
+__all__ = ["all_checks", "estimated_checks", "held_checks", "mesh_checks"]
 
 load_topics(__name__, __path__)
 
 
 def all_checks(solved: SolvedRig) -> list[Check]:
     """Every check in the order of the report, each with its discretisation error and the inputs it depends on."""
-    return [
-        with_error(with_assumptions(solved.case, check), solved.mesh_errors.get(check.id))
-        for check in held_checks(solved)
-    ]
+    return [with_assumptions(solved.case, check) for check in estimated_checks(solved)]
+
+
+def estimated_checks(solved: SolvedRig) -> list[Check]:
+    """Every check in the order of the report with its discretisation error, without its assumed inputs."""
+    errors = solved.mesh_errors
+    return [with_error(check, errors.get(check.id)) for check in held_checks(solved)]
 
 
 def held_checks(solved: SolvedRig) -> list[Check]:

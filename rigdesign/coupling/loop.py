@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rigdesign.coupling.acceleration import PlainRelaxation
+from rigdesign.coupling.acceleration import Acceleration, PlainRelaxation
 from rigdesign.coupling.convergence import CaseTolerances, Residual
 from rigdesign.coupling.fixed_point import solve_fixed_point
 from rigdesign.coupling.iteration import IterationResult, PointProblem
@@ -37,6 +37,7 @@ def solve_point(
     start: CouplingState | None = None,
     before: IterationResult | None = None,
     freeze: frozenset[str] = frozenset(),
+    acceleration: Acceleration | None = None,
 ) -> PointResult:
     """Repeat the iteration until temperatures, lengths and torques stay within the tolerances of the case.
 
@@ -45,6 +46,7 @@ def solve_point(
     start : coupling state of a neighbouring point; that of the rig before it turns when left out
     before : last iteration of a neighbouring point on the same meshes: first guess of fields and thermal expansion
     freeze : arrows of the loop that are cut, by field of `CouplingState`: they keep their initial values
+    acceleration : plain relaxation when left out
 
     Raises
     ------
@@ -56,7 +58,7 @@ def solve_point(
     problem = PointProblem.braced(rig, point, freeze=freeze)
     last, residuals = solve_fixed_point(
         problem,
-        PlainRelaxation(),
+        acceleration or PlainRelaxation(),
         CaseTolerances(rig.case.numerics),
         problem.initial if start is None else start.freeze(freeze, problem.initial),
         before,

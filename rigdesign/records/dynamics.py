@@ -46,14 +46,17 @@ class DynamicRun:
         return governing_point(self.points)
 
 
-def dynamic_loads(rig: Rig, run: DynamicRun) -> DynamicLoads:
-    """All of them as SI records."""
+def dynamic_loads(rig: Rig, run: DynamicRun, *, over_speed: bool = True) -> DynamicLoads:
+    """All of them as SI records.
+
+    over_speed : with the ratio of dynamic to quasi-static root stress over speed, which no check asks for
+    """
     assert rig.drivetrain is not None
     laws = laws_of(run.test.last.models)
     modes = loop_modes(rig.drivetrain, laws, DEFAULT_CUTOFF)
     return DynamicLoads(
         meshes={
-            rig.mesh_labels[name]: mesh_loads(rig, run, mesh, modes)
+            rig.mesh_labels[name]: mesh_loads(rig, run, mesh, modes, over_speed=over_speed)
             for mesh, name in enumerate(rig.mesh_names)
         },
         modes=tuple(modes),
@@ -90,9 +93,11 @@ def mode_crossings(rig: Rig, modes: Sequence[LoopMode], top: float) -> Iterator[
         )
 
 
-def mesh_loads(rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopMode]) -> MeshLoads:
+def mesh_loads(
+    rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopMode], *, over_speed: bool
+) -> MeshLoads:
     """Loads of one mesh, by its number."""
-    paths, ratios = root_stresses(rig, run, mesh)
+    paths, ratios = root_stresses(rig, run, mesh, over_speed=over_speed)
     return MeshLoads(
         role=rig.mesh(rig.mesh_names[mesh])[0].role,
         torque_peak=max(
@@ -109,7 +114,7 @@ def mesh_loads(rig: Rig, run: DynamicRun, mesh: int, modes: Sequence[LoopMode]) 
 
 
 def root_stresses(
-    rig: Rig, run: DynamicRun, mesh: int
+    rig: Rig, run: DynamicRun, mesh: int, *, over_speed: bool
 ) -> tuple[tuple[RootStressPath, ...], tuple[RootStressRatio, ...]]:
     """Root stress of pinion and wheel at the held stage that stresses them most, and its ratio over speed.
 
@@ -125,13 +130,16 @@ def root_stresses(
         own = names[gear].split(".")[1]
         paths.append(root.over_path(own, stage, model.pair.base_radii[gear], dynamic[gear], static[gear]))
     static = of_point[run.test.point.stage][1]
-    points = run.curves.response.points
-    ratios = []
+    return tuple(paths), tuple(_over_speed(rig, run, mesh, static)) if over_speed else ()
+
+
+def _over_speed(rig: Rig, run: DynamicRun, mesh: int, static: root.Pair) -> Iterator[RootStressRatio]:
+    """Highest dynamic over highest quasi-static root stress at every speed of the governing curve."""
+    model, points = run.test.last.models[mesh], run.curves.response.points
     for response, stresses in zip(points, root.dynamic_stresses(model, points, mesh)):
         pinion, wheel = (root.peak(stresses[gear]) / root.peak(static[gear]) for gear in (0, 1))
         speed = own_ratio(rig, mesh) * response.speed
-        ratios.append(RootStressRatio(speed=speed, pinion=pinion, wheel=wheel))
-    return tuple(paths), tuple(ratios)
+        yield RootStressRatio(speed=speed, pinion=pinion, wheel=wheel)
 
 
 def _stresses(rig: Rig, point: PointResult, mesh: int) -> tuple[root.Pair, root.Pair]:

@@ -1,8 +1,4 @@
-"""Which assumed inputs are moved to the ends of their ranges, and what has to be solved again for each.
-
-The table names what is known to touch only a part of the model. An input that stands in none of them is solved
-again in full and influences every check (`checks.assumptions`): a missing entry costs time, not truth.
-"""
+"""Which assumed inputs are moved to the ends of their ranges."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -12,50 +8,11 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case.assumptions import AssumptionRecord
 from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
-from rigdesign.checks.assumptions import is_under
+from rigdesign.reanalysis.affected_parts import Part, parts_of
 from rigdesign.results.check import Check
 from rigdesign.results.ranges import LeftOut
 
-Part = Literal["coupling", "curves", "time run"]
 End = Literal["low", "high"]
-PARTS: tuple[Part, ...] = ("coupling", "curves", "time run")
-
-SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
-    (
-        "limits.dynamics.resonance_distance_minimum",
-        "limits.dynamics.dangerous_amplification",
-        "limits.dynamics.dangerous_force_share",
-        "limits.bearing.start_torque_limit",
-    ): ("curves",),
-    (
-        "limits",
-        "test_plan",
-        "gearboxes.*.seals.*.axial_travel",
-        "gearboxes.*.meshes.*.face_load_factor",
-        "drivetrain.couplings.*.radial_offset_maximum",
-        "drivetrain.couplings.*.angle_maximum",
-    ): (),
-    ("schedule.stages.*.duration", "drivetrain.motor.torque_limit"): ("time run",),
-    (
-        "gearboxes.*.housing",
-        "gearboxes.*.seals",
-        "gearboxes.*.gears.*.flank_roughness",
-        *(
-            f"gearboxes.*.bearings.*.{key}"
-            for key in ("width", "diametral_clearance", "feed_share", "axial_play", "locating")
-        ),
-        "losses.chamber_density",
-        "losses.squeeze_share",
-        "losses.friction",
-    ): ("coupling",),
-}
-"""Inputs -> parts of the model they touch; the first entry that holds a path counts.
-
-Heat and oil move the response over speed and the time run through drag torques and the temperature of the gears.
-Where they move gears or axes more than `ranges_point.LOADS_MOVE` the loads are solved again as well; the torque of
-the motor follows its losses (`ranges_drive`).
-"""
-
 
 ALIKE = ("diameter", "width", "diametral_clearance")
 """What the bearings of one shaft have in common (`case.surfaces`)."""
@@ -78,13 +35,6 @@ class RangeEnd:
     case: Case | None
     error: str | None = None
     same: bool = False
-
-
-def parts_of(path: str) -> tuple[Part, ...]:
-    """Parts of the model that have to be solved again when the value at ``path`` changes."""
-    return next(
-        (parts for paths, parts in SOLVED.items() if any(is_under(path, entry) for entry in paths)), PARTS
-    )
 
 
 def plan(case: Case, checks: Sequence[Check]) -> tuple[list[RangeEnd], list[LeftOut]]:

@@ -14,11 +14,12 @@ from functools import partial
 from rigdesign.base.worker_pool import compute_all, worker_count
 from rigdesign.case.model import Case
 from rigdesign.checks.rules import overall
+from rigdesign.reanalysis.reference import Reference
 from rigdesign.results.check import Checks
 from rigdesign.results.ranges import LeftOut, RangedInput, RangesResult, TemperatureRange
 from rigdesign.results.result import RunResult
 from rigdesign.uncertainty.plan import RangeEnd, plan
-from rigdesign.uncertainty.point import FIDELITY, EndResult, Reference, solve_end, solve_stated
+from rigdesign.uncertainty.point import FIDELITY, EndResult, solve_end, solve_stated
 from rigdesign.uncertainty.verdicts import (
     Ranged,
     check_range,

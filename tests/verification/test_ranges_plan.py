@@ -22,8 +22,10 @@ from rigdesign.case.loader import changed_together
 from rigdesign.case.paths import Slot, known_paths, slot_at
 from rigdesign.case.provenance import item_name, take_off
 from rigdesign.checks.assumptions import depends, with_assumptions
-from rigdesign.uncertainty.plan import ALIKE, PARTS, Part, RangeEnd, parts_of, plan
-from rigdesign.uncertainty.point import EndResult, Reference, solve_end, solve_stated
+from rigdesign.reanalysis.affected_parts import PARTS, Part, parts_of
+from rigdesign.reanalysis.reference import Reference
+from rigdesign.uncertainty.plan import ALIKE, RangeEnd, plan
+from rigdesign.uncertainty.point import EndResult, solve_end, solve_stated
 from rigdesign.uncertainty.verdicts import LEAST_MOVE
 from tests.builders.checks import EXPECTED, check, limit_of
 from tests.builders.paths import CASES

@@ -9,10 +9,12 @@ import pytest
 
 from rigdesign import load_case, run_case
 from rigdesign.case import Case
+from rigdesign.reanalysis import modified_rig
+from rigdesign.reanalysis.affected_parts import PARTS, Part, parts_of
+from rigdesign.reanalysis.reference import Reference
 from rigdesign.results.check import Check
-from rigdesign.uncertainty import point as ranges_point
-from rigdesign.uncertainty.plan import PARTS, Part, RangeEnd, parts_of, plan
-from rigdesign.uncertainty.point import EndResult, Reference, solve_end, solve_stated
+from rigdesign.uncertainty.plan import RangeEnd, plan
+from rigdesign.uncertainty.point import EndResult, solve_end, solve_stated
 from rigdesign.uncertainty.run import with_ranges
 from tests.builders.paths import CASES
 
@@ -90,7 +92,7 @@ def test_losses_need_no_march_for_the_torque_of_the_motor(
     """
     reference, stated = loop
     assert solve_end(end(reference.case, path, value), reference=reference).parts == PARTS
-    monkeypatch.setattr(ranges_point, "LOADS_MOVE", {})
+    monkeypatch.setattr(modified_rig, "LOADS_MOVE", {})
     quick = solve_end(end(reference.case, path, value), reference=reference)
     full = solve_end(end(reference.case, path, value, "time run"), reference=reference)
     assert (quick.parts, full.parts) == (("coupling",), ("coupling", "time run"))
@@ -137,7 +139,7 @@ def test_an_end_that_does_not_settle_says_so(loop: tuple[Reference, EndResult]) 
 def test_the_torque_of_a_motor_at_its_limit_is_marched(
     loop: tuple[Reference, EndResult], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(ranges_point, "LOADS_MOVE", {})
+    monkeypatch.setattr(modified_rig, "LOADS_MOVE", {})
     reference, _ = loop
     assert reference.ramp is not None
     most = 1.0001 * float(np.abs(reference.ramp.drive_torque).max())

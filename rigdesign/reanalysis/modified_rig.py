@@ -1,0 +1,140 @@
+"""A solved rig with some inputs changed: from its converged state, only what they touch is solved again."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from dynamics.response.time_response import TimeResponse
+from rigdesign.case.model import Case
+from rigdesign.coupling.acceleration import Anderson
+from rigdesign.coupling.loop import PointResult, governing_point, solve_point
+from rigdesign.coupling.time_run import held_points, run_ramp
+from rigdesign.reanalysis.affected_parts import PARTS, Part
+from rigdesign.reanalysis.motor_torque import Array, shifted_drive
+from rigdesign.reanalysis.shifted_run import shifted_run
+from rigdesign.records.curves import Curves, solve_curves
+from rigdesign.records.dynamics import DynamicRun, dynamic_loads, stage_bracing
+from rigdesign.records.housing import housing_temperatures
+from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
+from rigdesign.results.loads import DynamicLoads
+from rigdesign.rig.model import Rig, build_rig
+from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
+
+DRIVE = ("drive_torque", "drive_power")
+"""Quantities of bought parts that follow the losses of the whole run."""
+ACTUATOR = ("actuator_force",)
+"""Quantities of bought parts that follow the setting of the bracing, hot."""
+LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "axial_expansion": 2e-6}
+"""Change of a field of `CouplingState` [K, m] beyond which the loads are solved again: on the prototype half a
+kelvin moves a check on loads by up to 0.001 of its limit, `verdicts.LEAST_MOVE`, and 5 um do."""
+
+TimeRun = Literal["marched", "shifted"]
+"""How the time run follows loads that move: marched again, or shifted by the periodic response (`shifted_run`)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Modification:
+    """What changes.
+
+    parts : of the model that the changed inputs touch
+    time_run : ``shifted`` for inputs that reach the loads through heat alone, where it may be
+    """
+
+    case: Case
+    parts: tuple[Part, ...]
+    time_run: TimeRun = "marched"
+
+
+def modified_rig(
+    stated: SolvedRig, modification: Modification, motor_losses: Array | None
+) -> tuple[SolvedRig, tuple[Part, ...]]:
+    """The modified rig and the parts that were solved again; all others are those of the stated rig.
+
+    motor_losses : torque of all losses at the motor over the stated time run [N m], (n,)
+    """
+    case, parts = modification.case, modification.parts
+    rig = _rig_like(stated.rig, case, parts)
+    points = list(stated.points)
+    if "coupling" in parts:
+        points = list(_coupled(rig, stated))
+        parts = PARTS if stated.run is not None and _loads_move(points, stated.points) else parts
+    run, loads = stated.run, stated.loads
+    if run is None:
+        return with_records(rig, points, None, None), tuple(part for part in parts if part == "coupling")
+    test = governing_point(points)
+    curves = solve_curves(rig, test.last) if "curves" in parts else run.curves
+    ramp, solved = _time_run(rig, test, replace(modification, parts=parts), (run, curves), motor_losses)
+    run = DynamicRun(points=tuple(points), curves=curves, ramp=ramp)
+    if "curves" in parts or "time run" in parts:
+        loads = dynamic_loads(rig, run, over_speed=False)
+    elif loads is not None and "coupling" in parts and _asks_for(case, ACTUATOR):
+        loads = replace(loads, bracing=tuple(stage_bracing(rig, point) for point in points))
+    return with_records(rig, points, run, loads), solved
+
+
+def _time_run(
+    rig: Rig,
+    test: PointResult,
+    modification: Modification,
+    responses: tuple[DynamicRun, Curves],
+    motor_losses: Array | None,
+) -> tuple[TimeResponse, tuple[Part, ...]]:
+    """The time run of the modified rig and the parts that were solved again.
+
+    responses : of the stated rig, and the curves of the modified one
+    """
+    (run, curves), case, parts = responses, modification.case, list(modification.parts)
+    ramp: TimeResponse | None = run.ramp
+    if "time run" in parts and modification.time_run == "shifted":
+        ramp = shifted_run(rig, run, curves)
+        parts.remove("time run")
+    if ramp is not None and "time run" not in parts and "coupling" in parts and _asks_for(case, DRIVE):
+        assert motor_losses is not None
+        ramp = shifted_drive(rig, test.last, ramp, motor_losses)
+    if ramp is None or "time run" in parts:
+        assert test.setting is not None
+        ramp = run_ramp(rig, test.last, test.setting, test.last.coupling_state)
+        parts = [*dict.fromkeys((*parts, "time run"))]
+    return ramp, tuple(parts)
+
+
+def _loads_move(points: Sequence[PointResult], stated: Sequence[PointResult]) -> bool:
+    """Whether gears or axes are so much warmer or colder that the loads change."""
+    return any(
+        abs(value - getattr(before.last.coupling_state, name)[part]) > most
+        for point, before in zip(points, stated, strict=True)
+        for name, most in LOADS_MOVE.items()
+        for part, value in getattr(point.last.coupling_state, name).items()
+    )
+
+
+def _rig_like(stated: Rig, case: Case, parts: tuple[Part, ...]) -> Rig:
+    """The rig of ``case``; it takes over what the stated rig has computed and the change does not touch."""
+    rig = build_rig(case, stated.fidelity)
+    if "coupling" not in parts or same_housings(rig, stated):
+        take_over(rig, stated, HOUSINGS)
+    return rig
+
+
+def _coupled(rig: Rig, stated: SolvedRig) -> Iterator[PointResult]:
+    """The held points from those of the stated rig; its fields are the first guess where the mesh is the same."""
+    same = all(rig.models[name] is stated.rig.models[name] for name in rig.models)
+    for point, near in zip(held_points(rig), stated.points, strict=True):
+        start = near.last.coupling_state
+        yield solve_point(
+            rig, point, start=start, before=near.last if same else None, acceleration=Anderson(start)
+        )
+
+
+def _asks_for(case: Case, quantities: tuple[str, ...]) -> bool:
+    return any(
+        part.given is None and part.quantity in quantities for part in case.limits.bought_parts.values()
+    )
+
+
+def with_records(
+    rig: Rig, points: Sequence[PointResult], run: DynamicRun | None, loads: DynamicLoads | None
+) -> SolvedRig:
+    """The records of solved points; nothing is solved to compare."""
+    temperatures = [housing_temperatures(rig, *found) for found in housing_fields(points)]
+    return solved_rig(rig, points, temperatures, run=run, loads=loads)

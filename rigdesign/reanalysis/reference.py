@@ -1,0 +1,89 @@
+"""The solved rig from which modified ones start: small enough to be sent to worker processes, restored there once."""
+
+from dataclasses import dataclass, replace
+
+from threadpoolctl import threadpool_limits
+
+from dynamics.response.time_response import TimeResponse
+from rigdesign.base.fidelity import Fidelity
+from rigdesign.case.model import Case
+from rigdesign.coupling.loads import BracingState
+from rigdesign.coupling.loop import solve_point
+from rigdesign.coupling.state import CouplingState
+from rigdesign.coupling.time_run import held_points
+from rigdesign.reanalysis.modified_rig import with_records
+from rigdesign.reanalysis.motor_torque import Array, losses_on_motor, peaks_only
+from rigdesign.records.curves import Curves
+from rigdesign.records.dynamics import DynamicRun
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.loads import DynamicLoads
+from rigdesign.results.result import DiscretisationRow
+from rigdesign.rig.model import build_rig
+from rigdesign.run.main import Progress, solve_case
+from rigdesign.run.solver_errors import solver_errors
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reference:
+    """A converged rig as its coupling states and its dynamic response; `restored` makes the rest again from it."""
+
+    case: Case
+    fidelity: Fidelity
+    states: tuple[CouplingState, ...]
+    settings: tuple[BracingState | None, ...]
+    curves: Curves | None
+    ramp: TimeResponse | None
+    motor_losses: Array | None
+    """Torque of all losses at the motor over ``ramp`` [N m], (n,)."""
+    loads: DynamicLoads | None
+    discretisation: tuple[DiscretisationRow, ...]
+    key: str
+
+
+def solve_reference(
+    case: Case, fidelity: Fidelity, say: Progress = lambda message: None
+) -> tuple[Reference, SolvedRig]:
+    """Solve a case as `rigdesign check` does."""
+    with solver_errors(case), threadpool_limits(limits=1):
+        solved = solve_case(case, fidelity, say)
+        run = solved.run
+        ramp = None if run is None else peaks_only(run.ramp)
+        losses = None if ramp is None else losses_on_motor(solved.rig, solved.test.last, ramp)
+    reference = Reference(
+        case=case,
+        fidelity=fidelity,
+        states=tuple(point.last.coupling_state for point in solved.points),
+        settings=tuple(point.setting for point in solved.points),
+        curves=None if run is None else run.curves,
+        ramp=ramp,
+        motor_losses=losses,
+        loads=solved.loads,
+        discretisation=tuple(solved.discretisation),
+        key=f"{case.hash} {fidelity}",
+    )
+    return reference, solved
+
+
+_made: dict[str, SolvedRig] = {}
+"""The reference rig of this process by its key; one at a time."""
+
+
+def restored(reference: Reference) -> SolvedRig:
+    """The reference rig with its fields, from its converged coupling states; made once in every process."""
+    if reference.key not in _made:
+        _made.clear()
+        _made[reference.key] = _restored(reference)
+    return _made[reference.key]
+
+
+def _restored(reference: Reference) -> SolvedRig:
+    rig = build_rig(reference.case, reference.fidelity)
+    points = [
+        solve_point(rig, point, start=coupling_state)
+        for point, coupling_state in zip(held_points(rig), reference.states, strict=True)
+    ]
+    run = None
+    if reference.curves is not None and reference.ramp is not None:
+        run = DynamicRun(points=tuple(points), curves=reference.curves, ramp=reference.ramp)
+    solved = with_records(rig, points, run, reference.loads)
+    return replace(solved, discretisation=reference.discretisation)

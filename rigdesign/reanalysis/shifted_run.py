@@ -1,0 +1,111 @@
+"""The envelopes of the time run under warmer or colder gears, without marching again.
+
+In every window of the run the highest and the lowest torque move by what the periodic response at its speed and
+torque moves by: the run passes its speeds slowly against the decay of its vibrations, so that both differ from it by
+the same. Windows below the least torque at which the response is known keep what they have.
+
+On the prototype, oil at 140 degC moved to 60 and to 180 degC: peaks within 1 % of their mean torque, the governing
+one within 0.05 % (`tests/verification/test_shifted_run.py`).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.response.envelopes import EnvelopeWindows
+from dynamics.response.speed_sweep import ResponseCurve
+from dynamics.response.time_response import TimeResponse
+from rigdesign.records.curves import Curves
+from rigdesign.records.dynamics import DynamicRun
+from rigdesign.rig.model import Rig
+
+Array = NDArray[np.float64]
+
+LIGHT = 0.9
+"""Share of the least torque of a curve below which a window keeps its envelope."""
+FARTHEST = 0.15
+"""Shift of an envelope, as a share of the mean torque, beyond which the run is marched again."""
+
+
+def shifted_run(rig: Rig, stated: DynamicRun, curves: Curves) -> TimeResponse | None:
+    """The time run of ``stated`` with its envelopes moved to the response ``curves`` of the modified rig.
+
+    None where that tells nothing: an envelope moves by more than `FARTHEST` of its mean, teeth part or lose the
+    reserve in a loaded stage, or a curve has gaps.
+    """
+    before, after = _ordered(stated.curves), _ordered(curves)
+    if any(curve.failed for curve in (*before, *after)) or len(before) != len(after):
+        return None
+    windows = stated.ramp.windows
+    least, greatest = windows.least.copy(), windows.greatest.copy()
+    for mesh in range(len(rig.mesh_names)):
+        edges = _shifted(windows, mesh, before, after)
+        if edges is None:
+            return None
+        least[mesh], greatest[mesh] = edges
+    return replace(stated.ramp, windows=replace(windows, least=least, greatest=greatest))
+
+
+def _shifted(
+    windows: EnvelopeWindows, mesh: int, before: Sequence[ResponseCurve], after: Sequence[ResponseCurve]
+) -> tuple[Array, Array] | None:
+    """Lowest and highest torque of a mesh in every window [N m], (n,) each, moved from one response to another."""
+    mean = windows.mean[mesh]
+    load = np.abs(mean)
+    low, high = (
+        _factor(windows.speed, load, mesh, after, edge) - _factor(windows.speed, load, mesh, before, edge)
+        for edge in ("minimum", "maximum")
+    )
+    loaded = load >= LIGHT * _torque(before[0], mesh)
+    moves = np.where(loaded, (low, high), 0.0)
+    parted = loaded & (windows.out_of_contact[mesh] > 0.0)
+    if np.max(np.abs(moves), initial=0.0) > FARTHEST or np.any(parted):
+        return None
+    down, up = load * moves[0], load * moves[1]
+    turned = mean.sum() < 0.0
+    edges = (
+        windows.least[mesh] - up if turned else windows.least[mesh] + down,
+        windows.greatest[mesh] - down if turned else windows.greatest[mesh] + up,
+    )
+    reserve = edges[1] if turned else edges[0]
+    if np.any(loaded & ((reserve >= 0.0) if turned else (reserve <= 0.0))):
+        return None
+    return edges
+
+
+def _ordered(curves: Curves) -> list[ResponseCurve]:
+    """The curves of the shipped mesh laws, least torque first."""
+    return [curve for _, curve in sorted(curves.named.values(), key=lambda item: abs(item[0]))]
+
+
+def _torque(curve: ResponseCurve, mesh: int) -> float:
+    """Mean torque of a mesh over a curve [N m]."""
+    return float(np.mean([abs(point.mean[mesh]) for point in curve.points]))
+
+
+def _factor(speed: Array, load: Array, mesh: int, curves: Sequence[ResponseCurve], edge: str) -> Array:
+    """Highest or lowest torque over the mean [-] at speeds and torques (n,): linear between curves and their points."""
+    torques = np.array([_torque(curve, mesh) for curve in curves])
+    factors = np.array(
+        [
+            np.interp(
+                speed, *_over_speed([(p.speed, getattr(p, edge)[mesh] / p.mean[mesh]) for p in curve.points])
+            )
+            for curve in curves
+        ]
+    )
+    if len(torques) == 1:
+        return np.asarray(factors[0])
+    upper = np.clip(np.searchsorted(torques, load), 1, len(torques) - 1)
+    lower = upper - 1
+    share = np.clip((load - torques[lower]) / (torques[upper] - torques[lower]), 0.0, 1.0)
+    number = np.arange(len(load))
+    return np.asarray((1.0 - share) * factors[lower, number] + share * factors[upper, number])
+
+
+def _over_speed(points: Sequence[tuple[float, float]]) -> tuple[Array, Array]:
+    """Speeds, rising, and values (n,) each."""
+    table = np.array(sorted(points))
+    return table[:, 0], table[:, 1]
