@@ -14,6 +14,7 @@ from rigdesign.diagnosis.run import diagnose_measurement
 from rigdesign.measurement.comparison.compare import Comparison
 from rigdesign.measurement.comparison.comparing import compare_measurement
 from rigdesign.prediction.predict import Thermal
+from rigdesign.reanalysis.flips import with_flips
 from rigdesign.report import write_results
 from rigdesign.report.pages.study import write_study
 from rigdesign.results.result import RunResult
@@ -51,7 +52,7 @@ def run_case(
     MissingLibraryError
         A system library that gmsh needs.
     """
-    result = main.run_case(case, fidelity, progress, transient=transient)
+    result = main.run_case(case, fidelity, progress, transient=transient, follow_ups={"flips": with_flips})
     return with_ranges(case, result, progress=progress) if ranges else result
 
 

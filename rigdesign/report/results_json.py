@@ -42,6 +42,7 @@ def results_document(result: RunResult) -> dict[str, Any]:
         "overrides": result.overrides,
         "not_modelled": result.not_modelled,
         "warnings": result.warnings,
+        "flips": result.flips,
         "timings_s": result.timings_s,
     }
     if result.ranges is not None:

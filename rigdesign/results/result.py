@@ -14,6 +14,7 @@ from rigdesign.case.inputs import InputRow
 from rigdesign.results.check import Checks
 from rigdesign.results.curves import Columns, curves_of
 from rigdesign.results.dynamics import DynamicsResult
+from rigdesign.results.flips import Flip
 from rigdesign.results.ranges import RangesResult
 from rigdesign.results.thermal import ExpansionResult, LossRow, OilRow, TemperatureField, ThermalResult
 from rigdesign.results.transient import TransientResult
@@ -108,6 +109,8 @@ class RunResult:
     """With ``--transient``."""
     ranges: RangesResult | None = None
     """With `--ranges`: verdicts and margins over the ranges of the assumed inputs."""
+    flips: list[Flip] = field(default_factory=list)
+    """Inputs that would turn the verdict, the nearest first."""
     fields: list[TemperatureField] = field(repr=False)
 
     def __repr__(self) -> str:

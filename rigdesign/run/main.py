@@ -5,8 +5,9 @@ they give and make the last digits of a result depend on the machine's load.
 """
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
 from threadpoolctl import threadpool_limits
 
@@ -41,6 +42,8 @@ from rigdesign.run.warnings import not_modelled, unanswered, warnings_of
 from thermal.fe.kernels import one_thread
 
 Progress = Callable[[str], None]
+FollowUp = Callable[[SolvedRig, RunResult], RunResult]
+"""Adds to the result what is found from the solved rig."""
 
 
 def run_case(
@@ -49,8 +52,12 @@ def run_case(
     progress: Progress | None = None,
     *,
     transient: bool = False,
+    follow_ups: Mapping[str, FollowUp] = MappingProxyType({}),
 ) -> RunResult:
-    """Compute a case and hold it against its limits; parameters and errors are those of `rigdesign.api.run_case`."""
+    """Compute a case and hold it against its limits; parameters and errors are those of `rigdesign.api.run_case`.
+
+    follow_ups : called with the solved rig and the result so far, by the name of their time in the timings
+    """
     say = progress or (lambda message: None)
     clock = _Clock()
     with solver_errors(case), threadpool_limits(limits=1):
@@ -61,6 +68,9 @@ def run_case(
 
             result = with_transient(solved, result, say)
             clock.lap("transient")
+        for name, follow_up in follow_ups.items():
+            result = follow_up(solved, result)
+            clock.lap(name)
         require_finite(result)
         return result
 

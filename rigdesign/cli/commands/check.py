@@ -43,13 +43,20 @@ def check(
     loaded = loaded_case(case)
     from rigdesign.cli.terminal.checks import print_checks
     from rigdesign.cli.terminal.progress import Progress
+    from rigdesign.reanalysis.flips import with_flips
     from rigdesign.report import prepare_output, results_document, write_results
     from rigdesign.run.main import run_case
 
     if out is not None:
         prepare_output(out)
     with Progress() as progress, interrupted(NOTHING_KEPT), failure_kept(out):
-        result = run_case(loaded, fidelity=fidelity, progress=progress, transient=transient)
+        result = run_case(
+            loaded,
+            fidelity=fidelity,
+            progress=progress,
+            transient=transient,
+            follow_ups={"flips": with_flips},
+        )
         if ranges:
             from rigdesign.uncertainty.run import with_ranges
 
