@@ -1,0 +1,93 @@
+"""The time run moved by the periodic response against the run marched again, and study points against whole checks."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from rigdesign import load_case, run_case
+from rigdesign.case import Case
+from rigdesign.reanalysis.affected_parts import PARTS
+from rigdesign.reanalysis.modified_rig import Modification, modified_rig
+from rigdesign.reanalysis.reference import Reference, restored, solve_reference
+from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.loads import StageLoad
+from rigdesign.studies.point import solve_study_point, study_base
+
+INLET = "gearboxes.test.oil.inlet_temperature"
+START_TORQUE = {"loop_1to1": 60.0, "uhcf_prototype": 90.0}
+"""Mean torque from which a stage counts as loaded [N m]."""
+
+
+@dataclass(frozen=True)
+class Both:
+    """One modified rig, its time run shifted and marched."""
+
+    shifted: SolvedRig
+    marched: SolvedRig
+
+
+def both(reference: Reference, stated: SolvedRig, case: Case) -> Both:
+    rigs = []
+    for how in ("shifted", "marched"):
+        solved, parts = modified_rig(
+            stated, Modification(case=case, parts=PARTS, time_run=how), reference.motor_losses
+        )
+        assert ("time run" in parts) == (how == "marched")
+        rigs.append(solved)
+    return Both(*rigs)
+
+
+def loaded(rig: SolvedRig, least: float) -> dict[tuple[str, str], StageLoad]:
+    assert rig.loads is not None
+    return {
+        (mesh, load.stage): load
+        for mesh, loads in rig.loads.meshes.items()
+        for load in loads.stage_loads
+        if load.mean > 0.95 * least and load.least_share_mean > 0.95 * least
+    }
+
+
+def compared(name: str, inlet: str, fidelity: str) -> tuple[float, float]:
+    """Largest difference of a peak and of a least torque of a loaded stage, as shares of the mean torque."""
+    case = load_case(name)
+    reference, _ = solve_reference(case, fidelity)  # type: ignore[arg-type]
+    found = both(reference, restored(reference), case.with_value(INLET, inlet))
+    one, other = (loaded(rig, START_TORQUE[name]) for rig in (found.shifted, found.marched))
+    assert one.keys() == other.keys() and one
+    peaks = max(abs(one[key].peak - other[key].peak) / other[key].mean for key in one)
+    least = max(abs(one[key].least_share - other[key].least_share) for key in one)
+    return peaks, least
+
+
+@pytest.mark.whole_run
+def test_moved_envelopes_are_those_of_the_run_marched_again() -> None:
+    peaks, least = compared("loop_1to1", "80 degC", "quick")
+    assert peaks < 0.01
+    assert least < 0.02
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("inlet", ["60 degC", "100 degC", "180 degC"])
+def test_the_prototype_from_140_degc(inlet: str) -> None:
+    peaks, least = compared("uhcf_prototype", inlet, "standard")
+    assert peaks < 0.02
+    assert least < 0.03
+
+
+@pytest.mark.whole_run
+def test_a_study_point_is_the_check_of_its_case() -> None:
+    """What heat moves, within the tolerances of the coupling loop: one in a thousand of a limit."""
+    case = load_case("loop_1to1")
+    moved = case.with_value(INLET, "75 degC")
+    point = solve_study_point(moved, base=study_base(case, "quick", [INLET]))
+    whole = run_case(moved, fidelity="quick")
+    rows = {row["id"]: row for row in point["checks"]}
+    assert rows.keys() == {check.id for check in whole.checks}
+    for check in whole.checks:
+        row = rows[check.id]
+        if check.utilisation is None:
+            assert row["utilisation"] is None
+        elif np.isfinite(check.utilisation):
+            assert row["utilisation"] == pytest.approx(check.utilisation, abs=5e-3), check.id
+    assert point["verdict"] == whole.verdict
