@@ -8,9 +8,10 @@ data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy impor
 
 import sys
 
-from rigdesign.cli.application import app
+from rigdesign.cli.application import app, run
 from rigdesign.cli.commands import check, compare, diagnose, doctor, mesh, new, schema, study, validate
 from rigdesign.cli.ending import exit_status
+from rigdesign.cli.terminal.console import plain_streams
 
 __all__ = [
     "app",
@@ -21,6 +22,7 @@ __all__ = [
     "main",
     "mesh",
     "new",
+    "run",
     "schema",
     "study",
     "validate",
@@ -29,4 +31,5 @@ __all__ = [
 
 def main() -> None:
     """Entry point of the `rigdesign` command."""
-    sys.exit(exit_status(lambda: app(result_action="return_value")))
+    plain_streams()
+    sys.exit(exit_status(lambda: run(sys.argv[1:])))
