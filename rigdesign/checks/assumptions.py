@@ -1,14 +1,11 @@
 """Which assumed inputs a check depends on: those its family declares (`registry.RuleFamily`) and its own limit."""
 
-import re
 from dataclasses import replace
 
 from rigdesign.case.model import Case
 from rigdesign.checks.influences import INPUTS, OF_ONE_GEARBOX, Influence
-from rigdesign.checks.registry import REGISTRY, RuleFamily
+from rigdesign.checks.registry import PATH, REGISTRY, RuleFamily
 from rigdesign.results.check import Check
-
-PATH = re.compile(r"[a-z_0-9]+(?:\.[a-z_0-9]+)+")
 
 
 def with_assumptions(case: Case, check: Check) -> Check:
