@@ -25,7 +25,7 @@ def depends(case: Case, check: Check, path: str) -> bool:
     family = REGISTRY.family_of(case, check)
     if family.only_inputs is not None:
         return any(is_under(path, part) for part in family.only_inputs)
-    influences = _influences(case, path)
+    influences = influences_of(case, path)
     return influences is None or any(_moves(influence, family, check, path) for influence in influences)
 
 
@@ -38,7 +38,7 @@ def _moves(influence: Influence, family: RuleFamily, check: Check, path: str) ->
     return influence in family.moved_by
 
 
-def _influences(case: Case, path: str) -> tuple[Influence, ...] | None:
+def influences_of(case: Case, path: str) -> tuple[Influence, ...] | None:
     """What an input moves; None for all checks."""
     bare = [name for name, entry in case.gearboxes.items() if entry.housing is None]
     for inputs, influences in INPUTS.items():

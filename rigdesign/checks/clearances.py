@@ -185,6 +185,7 @@ SEAL_TRAVEL = SealTravel(
     group=GROUP,
     source="gearboxes.{place}.axial_travel",
     places=housed_seals,
+    housed=True,
     leaves_out=HEAT,
     moved_by=frozenset({"housing"}),
 )

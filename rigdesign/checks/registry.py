@@ -62,6 +62,8 @@ class RuleFamily:
     needs: Need | None = None
     absent: str | Callable[[SolvedRig], str] = NO_HOUSING
     """Why the rule does not apply where the solved rig has no value for it."""
+    housed: bool = False
+    """Without a housing there is no value."""
     leaves_out: tuple[Finder, ...] = ()
     """Known contributors that the value does not count, in the order in which they are reported."""
     moved_by: frozenset[Influence] = frozenset()

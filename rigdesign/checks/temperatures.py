@@ -107,6 +107,7 @@ RULES = (
         source="limits.temperatures.housing_maximum",
         limit=lambda limits: limits.temperatures.housing_maximum,
         values=_housings,
+        housed=True,
         leaves_out=(WALLS, *HEAT),
         moved_by=frozenset({"housing"}),
     ),

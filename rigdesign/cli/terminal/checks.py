@@ -1,6 +1,5 @@
 """The checks of a run: what decides on one screen, or all of them."""
 
-import textwrap
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
@@ -12,7 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rigdesign.checks.rules import WARN_UTILISATION
-from rigdesign.cli.terminal.console import new_console, verbosity, verdict_console
+from rigdesign.cli.terminal.console import hanging, new_console, verbosity, verdict_console
 from rigdesign.cli.terminal.warning_groups import warning_groups
 from rigdesign.report.numbers import limit_text, margin_text, quantity_text
 from rigdesign.results.check import Check
@@ -28,8 +27,6 @@ MOST_GROUPS = 5
 """Groups of warnings that are printed; failing checks are printed whatever their number."""
 NEAREST = 5
 """Checks of the table of margins."""
-NARROWEST = 30
-"""Columns of a text beside its head, however narrow the terminal is."""
 MOST_FAILED_ENDS = 3
 """Ends of ranges without a result that are printed."""
 
@@ -62,31 +59,23 @@ def _print_summary(console: Console, result: RunResult) -> None:
     for check in result.checks:
         if check.verdict == "fail":
             against = f"{quantity_text(check.value, check.unit)}, limit {limit_text(check)}"
-            _hanging(console, Text("fail: ", STYLES["fail"]), f"{check.title}: {against}")
-            _hanging(console, Text(" " * 6), check.reason.partition("; ")[0])
+            hanging(console, Text("fail: ", STYLES["fail"]), f"{check.title}: {against}")
+            hanging(console, Text(" " * 6), check.reason.partition("; ")[0])
     _print_warnings(console, result.checks)
     _print_nearest(console, result.checks)
     _print_not_applicable(console, result.checks)
     if result.warnings:
         kinds = Counter(record.id for record in result.warnings)
         listed = ", ".join(f"{number} {kind}" for kind, number in kinds.most_common())
-        _hanging(console, Text("notes: "), f"{listed}; --all prints them and every check")
+        hanging(console, Text("notes: "), f"{listed}; --all prints them and every check")
 
 
 def _print_warnings(console: Console, checks: Iterable[Check]) -> None:
     groups = warning_groups(checks)
     for group in groups[:MOST_GROUPS]:
-        _hanging(console, Text("warn: ", STYLES["warn"]), group.text)
+        hanging(console, Text("warn: ", STYLES["warn"]), group.text)
     if len(groups) > MOST_GROUPS:
         console.print(f"      {len(groups) - MOST_GROUPS} more reasons: --all")
-
-
-def _hanging(console: Console, head: Text, text: str) -> None:
-    """A head and a text whose further lines stand under its first one; nothing for an empty text."""
-    lines = textwrap.wrap(text, max(NARROWEST, console.width - head.cell_len))
-    for line in lines:
-        console.print(head + Text(line), soft_wrap=True)
-        head = Text(" " * head.cell_len)
 
 
 def _print_nearest(console: Console, checks: Iterable[Check]) -> None:

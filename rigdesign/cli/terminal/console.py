@@ -3,10 +3,12 @@
 import codecs
 import io
 import sys
+import textwrap
 from contextvars import ContextVar
 from typing import Literal
 
 from rich.console import Console
+from rich.text import Text
 
 Verbosity = Literal["quiet", "normal", "verbose"]
 """quiet: errors and the verdict line; normal; verbose: every step with its time, iterations, cache use."""
@@ -38,6 +40,17 @@ def _console(*, stderr: bool, wrap: bool, width: int | None, quiet: bool) -> Con
         width=width,
         quiet=quiet,
     )
+
+
+NARROWEST = 30
+"""Columns of a text beside its head, however narrow the terminal is."""
+
+
+def hanging(console: Console, head: Text, text: str) -> None:
+    """Print a head and a text whose further lines stand under its first one; nothing for an empty text."""
+    for line in textwrap.wrap(text, max(NARROWEST, console.width - head.cell_len)):
+        console.print(head + Text(line), soft_wrap=True)
+        head = Text(" " * head.cell_len)
 
 
 PLAIN = {
