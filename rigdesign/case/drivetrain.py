@@ -97,7 +97,7 @@ class MotorInput(Part):
     end: End
     """End of that shaft at which it drives."""
     torque_limit: Torque
-    """At every speed; hold the power against a limit of its own under ``limits.bought_parts``."""
+    """Most torque of the motor at every speed; its power has a limit of its own under ``limits.bought_parts``."""
     inertia: Inertia
     """Polar mass moment of inertia of the rotor, turning with the shaft."""
     ripple: tuple[HarmonicTorqueInput, ...] = ()

@@ -40,7 +40,7 @@ def print_overview(seen: Overview, case: Path) -> None:
     console.print(table)
     counts = ", ".join(f"{number} {basis}" for basis, number in seen.inputs.items())
     _answer(console, "inputs", f"{sum(seen.inputs.values())}: {counts}; {seen.ranged} assumed with a range")
-    groups = ", ".join(f"{len(found)} {group}" for group, found in seen.checks.items())
+    groups = ", ".join(f"{group} {len(found)}" for group, found in seen.checks.items())
     unlimited = f"; {len(seen.unlimited)} more without a limit in this case" if seen.unlimited else ""
     _answer(
         console, "checks", f"{sum(map(len, seen.checks.values()))}: {groups}{unlimited}; --json lists them"
