@@ -61,12 +61,15 @@ def case_keys() -> tuple[KeyEntry, ...]:
 
 
 def entry_at(path: str, law: str = "") -> KeyEntry | None:
-    """The entry of a key or part of a case by its path; None where the schema has none.
+    """The entry of a key or part of a case by its path, for a value of a list that of the list; None if there is none.
 
     law : of the boundary condition that the path leads into
     """
-    fitting = [entry for entry in case_keys() if _expression(entry.path).fullmatch(path)]
-    return next((entry for entry in fitting if entry.law in ("", law)), fitting[0] if fitting else None)
+    table, _, last = path.rpartition(".")
+    fitting = [entry for fits, entry in _by_length().get(path.count("."), ()) if fits.fullmatch(path)]
+    if not fitting:
+        return entry_at(table, law) if last.isdigit() else None
+    return next((entry for entry in fitting if entry.law in ("", law)), fitting[0])
 
 
 def starred(path: str) -> str:
@@ -74,8 +77,14 @@ def starred(path: str) -> str:
     return ".".join("*" if key in (NAMED, NUMBERED) else key for key in path.split("."))
 
 
-def _expression(path: str) -> re.Pattern[str]:
-    return re.compile(re.escape(starred(path)).replace(r"\*", r"[^.]+"))
+@cache
+def _by_length() -> Mapping[int, tuple[tuple[re.Pattern[str], KeyEntry], ...]]:
+    """Entries by the number of dots in their paths, each with the expression that its paths fit."""
+    found: dict[int, list[tuple[re.Pattern[str], KeyEntry]]] = {}
+    for entry in case_keys():
+        expression = re.escape(starred(entry.path)).replace(r"\*", r"[^.]+")
+        found.setdefault(entry.path.count("."), []).append((re.compile(expression), entry))
+    return {number: tuple(entries) for number, entries in found.items()}
 
 
 def entry_of(path: str, field: FieldInfo, law: str = "") -> KeyEntry:

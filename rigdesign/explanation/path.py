@@ -127,8 +127,6 @@ def _keys_below(case: Case, plain: Any, known: list[str], path: str) -> Iterator
 
 
 def _value(case: Case, path: str, entry: KeyEntry, *, description: str = "") -> StatedValue:
-    if entry.table:
-        return StatedValue(path=path, value="", basis="stated", description=description, table=True)
     row = next((row for row in case.inputs if row.path == path), None)
     mark = next((mark for mark in case.origin.marks if mark.path == path), None)
     implied = next((record for record in case.assumptions if record.path == path), None)
@@ -136,6 +134,8 @@ def _value(case: Case, path: str, entry: KeyEntry, *, description: str = "") -> 
         return StatedValue(
             path=path, value=implied.value, basis="assumed", reason=implied.reason, description=description
         )
+    if entry.table:
+        return StatedValue(path=path, value="", basis="stated", description=description, table=True)
     if row is None:
         return StatedValue(
             path=path,

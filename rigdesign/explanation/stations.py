@@ -183,7 +183,10 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.heat_split.mesh_pinion_share": _at(
         coupling__flank_heat="friction heat between pinion and wheel"
     ),
-    "gearboxes.*.heat_split.mesh": _at(coupling__flank_heat="friction heat between gears and oil"),
+    "gearboxes.*.heat_split.mesh": _at(
+        case__gearbox="by which rule the friction heat divides",
+        coupling__flank_heat="friction heat between gears and oil",
+    ),
     "gearboxes.*.heat_split.mesh_into_gears": _at(coupling__flank_heat="friction heat between gears and oil"),
     "gearboxes.*.loss_factors": _at(
         coupling__losses="losses of the gearbox: heat and drag torque",
@@ -298,7 +301,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     ),
     "transient": _at(transient__phases="phases of the thermal history"),
     "transient.events": _at(transient__thermal_history="what is followed in addition to the schedule"),
-    "transient.still_film": _at(transient__still_air="least film of surfaces in still air"),
+    "transient.still_film": _at(transient__oil="least film of surfaces in still air"),
     "transient.settled_share": _at(run__transient="time until a quantity is steady"),
     "transient.tolerance": _at(transient__thermal_history="time steps of the thermal history"),
     "transient.probes.*": _at(transient__places="places whose temperature is kept"),

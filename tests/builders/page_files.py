@@ -23,9 +23,7 @@ def shown(page: str) -> list[tuple[list[str], list[str]]]:
 
     These stand in a block marked ``text`` right after that of the command; empty where there is none.
     """
-    found = re.findall(
-        r"^```sh\n(.*?)^```$(?:\n\n^```text\n(.*?)^```$)?", page, re.DOTALL | re.MULTILINE
-    )
+    found = re.findall(r"^```sh\n(.*?)^```$(?:\n\n^```text\n(.*?)^```$)?", page, re.DOTALL | re.MULTILINE)
     pairs: list[tuple[list[str], list[str]]] = []
     for block, text in found:
         lines = [shlex.split(line) for line in block.splitlines()]

@@ -28,7 +28,7 @@ class Progress:
         self._console = new_console(stderr=True)
         self._times = times or StepTimes()
         self._started = time.perf_counter()
-        self._step, self._step_began = "starting", 0.0
+        self._step, self._step_began = "", 0.0
         self._counted: _Counted | None = None
         self._verbose, self._quiet = verbosity.get() == "verbose", self._console.quiet
         self._live = None
@@ -58,7 +58,7 @@ class Progress:
         """Begin the step ``message``."""
         self._report_step()
         elapsed = self._elapsed()
-        first = not self._step_began
+        first = not self._step
         self._step, self._step_began, self._counted = message, elapsed, None
         self._times.begin(message, elapsed)
         rest = self._remaining_text()
@@ -86,7 +86,7 @@ class Progress:
 
     def _report_step(self) -> None:
         """With ``--verbose``: the step that ends, with its time."""
-        if self._verbose and self._step_began:
+        if self._verbose and self._step:
             seconds = self._elapsed() - self._step_began
             self._console.print(Text(f"{seconds:8.2f} s  {self._step}", "dim"), soft_wrap=True)
 
@@ -108,7 +108,7 @@ class Progress:
         row = Table.grid(padding=(0, 1))
         cells = [Text(f"{self._elapsed():6.1f} s")]
         if self._counted is None:
-            row.add_row(*cells, Text(self._step), Text(self._remaining_text(), "dim"))
+            row.add_row(*cells, Text(self._step or "starting"), Text(self._remaining_text(), "dim"))
         else:
             counted = self._counted
             row.add_row(
