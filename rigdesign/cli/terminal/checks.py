@@ -100,7 +100,7 @@ def _used(check: Check) -> float:
 def _print_not_applicable(console: Console, checks: Iterable[Check]) -> None:
     reasons = Counter(check.reason for check in checks if check.verdict == "not applicable")
     for reason, number in reasons.most_common(2):
-        console.print(Text(f"{number} not applicable: {reason}", STYLES["not applicable"]))
+        hanging(console, Text(f"{number} not applicable: ", STYLES["not applicable"]), reason)
     if len(reasons) > 2:
         rest = sum(number for _, number in reasons.most_common()[2:])
         console.print(Text(f"{rest} not applicable for other reasons", STYLES["not applicable"]))
