@@ -23,6 +23,7 @@ app = App(
     print_error=False,
     suppress_keyboard_interrupt=False,
 )
+app.meta.suppress_keyboard_interrupt = False
 app.meta.group_parameters = Group("Options of every command", sort_key=100)
 
 
