@@ -17,7 +17,7 @@ def test_no_key_is_without_a_description() -> None:
         f"{part.__name__}.{key}"
         for part in parts()
         for key, field in part.model_fields.items()
-        if part.__module__.startswith("rigdesign.") and not field.description
+        if part.__module__.startswith("rigdesign.case.") and not field.description
     ]
     assert bare == []
 
@@ -41,7 +41,7 @@ def test_a_description_is_a_sentence() -> None:
         f"{part.__name__}.{key}: {field.description}"
         for part in set(parts())
         for key, field in part.model_fields.items()
-        if part.__module__.startswith("rigdesign.")
+        if part.__module__.startswith("rigdesign.case.")
         and not ((field.description or "").rstrip().endswith(".") and "\n\n" not in (field.description or ""))
     ]
     assert odd == []
