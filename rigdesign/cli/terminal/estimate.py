@@ -82,9 +82,9 @@ def remaining_points(done: int, whole: int, seconds: float) -> float:
 
 
 def duration_text(seconds: float) -> str:
-    """A length of time that is an estimate: 8 s, 40 s, 3 min, 2.5 h."""
+    """A length of time that is an estimate, of a second at least: 8 s, 40 s, 3 min, 2.5 h."""
     if seconds < 10.0:
-        return f"{seconds:.0f} s"
+        return f"{max(1.0, seconds):.0f} s"
     if seconds < 90.0:
         return f"{round(seconds, -1):.0f} s"
     return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"

@@ -106,16 +106,19 @@ class Progress:
     def _line(self) -> Table:
         """The line of a terminal, drawn anew at every tick."""
         row = Table.grid(padding=(0, 1))
-        cells = [Text(f"{self._elapsed():6.1f} s")]
+        head = [Text(f"{self._elapsed():6.1f} s"), Text(self._remaining_text(), "dim")]
         if self._counted is None:
-            row.add_row(*cells, Text(self._step or "starting"), Text(self._remaining_text(), "dim"))
+            row.add_row(*head, _cut(self._step or "starting"))
         else:
             counted = self._counted
-            row.add_row(
-                *cells, ProgressBar(counted.whole, counted.done, width=20), Text(f"{counted.done} of {counted.whole}"),
-                Text(self._remaining_text(), "dim"), Text(counted.last, overflow="ellipsis", no_wrap=True),
-            )  # fmt: skip
+            bar = ProgressBar(counted.whole, counted.done, width=20)
+            row.add_row(*head, bar, Text(f"{counted.done} of {counted.whole}"), _cut(counted.last))
         return row
+
+
+def _cut(text: str) -> Text:
+    """A text that ends with the line."""
+    return Text(text, overflow="ellipsis", no_wrap=True)
 
 
 @dataclass(frozen=True)

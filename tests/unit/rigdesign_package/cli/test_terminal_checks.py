@@ -1,12 +1,14 @@
 """The terminal of check: one screen that loses no failing check, or everything."""
 
 import io
+import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from rigdesign.cli.application import print_json
 from rigdesign.cli.terminal.checks import print_checks
 from rigdesign.cli.terminal.console import plain_streams, verbosity
 from rigdesign.cli.terminal.warning_groups import warning_groups
@@ -181,3 +183,12 @@ def test_a_stream_in_ascii_prints_words_for_signs(monkeypatch: pytest.MonkeyPatc
     print("5.032 × 10⁸ ≥ 1\u202f000 N/mm², 20 °C, 3 µm, −4 … 5, 10⁻³, 漢", flush=True)
     printed = stream.buffer.getvalue().decode("ascii")  # type: ignore[attr-defined]
     assert printed == "5.032 x 10^8 >= 1 000 N/mm2, 20 degC, 3 um, -4 ... 5, 10^-3, ?\n"
+
+
+def test_json_stays_whole_in_a_stream_in_ascii(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    monkeypatch.setattr("sys.stdout", stream)
+    plain_streams()
+    print_json({"unit": "°C"})
+    stream.flush()
+    assert json.loads(stream.buffer.getvalue()) == {"unit": "°C"}  # type: ignore[attr-defined]
