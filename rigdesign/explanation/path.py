@@ -10,7 +10,7 @@ from rigdesign.case.model import Case
 from rigdesign.case.paths import known_paths, nearest_paths
 from rigdesign.case.provenance import take_off
 from rigdesign.checks.assumptions import influences_of
-from rigdesign.explanation.keys import KeyEntry, entry_at, starred
+from rigdesign.explanation.keys import KeyEntry, case_keys, entry_at, starred
 from rigdesign.explanation.rules import declared_checks, depends_on
 from rigdesign.explanation.stations import Station, entering
 
@@ -81,7 +81,9 @@ def explain_path(case: Case, path: str) -> PathExplanation:
         )
         raise UsageError(f"{path}: no such path in {case.path}; {hint}")
     entry = _entry(plain, places[0])
-    below = tuple(_keys_below(case, plain, known, places[0])) if entry.table else ()
+    below = (
+        (tuple(_keys_below(case, plain, known, places[0])) or _keys_of_parts(entry)) if entry.table else ()
+    )
     influences = None if entry.table else influences_of(case, places[0])
     checks = declared_checks(case)
     moved = (
@@ -118,12 +120,24 @@ def _law(plain: Any, path: str) -> str:
 
 
 def _keys_below(case: Case, plain: Any, known: list[str], path: str) -> Iterator[StatedValue]:
-    """Keys one level below a table; those of an empty table of named parts: what each part would have."""
+    """Keys one level below a table."""
     depth = path.count(".") + 1
     for one in known:
         if one.startswith(f"{path}.") and one.count(".") == depth:
             entry = _entry(plain, one)
             yield _value(case, one, entry, description=entry.description)
+
+
+def _keys_of_parts(table: KeyEntry) -> tuple[StatedValue, ...]:
+    """Keys that the parts of a table without parts would have."""
+    return tuple(
+        StatedValue(
+            path=entry.path, value=entry.default_text, basis="left out", description=entry.description,
+            table=entry.table,
+        )
+        for entry in case_keys()
+        if starred(entry.path).rpartition(".")[0] == f"{starred(table.path)}.*"
+    )  # fmt: skip
 
 
 def _value(case: Case, path: str, entry: KeyEntry, *, description: str = "") -> StatedValue:

@@ -72,6 +72,11 @@ def test_a_table_lists_its_keys(prototype: Case, rigdesign: Rigdesign) -> None:
     assert ["flow", "5", "l/min", "*", "Flow", "per", "mesh."] in rows and ["*", "assumed"] in rows
 
 
+def test_a_table_without_parts_says_what_a_part_would_hold(prototype: Case) -> None:
+    found = explain_path(prototype, "oils")
+    assert found.keys[0].path == "oils.NAME.title" and found.keys[0].value == "required"
+
+
 @pytest.mark.parametrize(
     ("path", "basis", "value"),
     [
