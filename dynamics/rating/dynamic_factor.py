@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import find_peaks
 
 from dynamics.errors import DynamicsInputError
 
@@ -123,6 +122,8 @@ def resonances(curve: DynamicFactorCurve, *, least_prominence: float = 0.02) -> 
 
     A curve that still rises at its highest speed has a peak there (``at_end``).
     """
+    from scipy.signal import find_peaks  # half a second that no other command needs
+
     found: list[Resonance] = []
     for mesh, amplitude in enumerate(curve.amplitude):
         share = amplitude / np.abs(curve.mean_torque[mesh])

@@ -28,8 +28,11 @@ class SectionInput(Part):
     """Cylinder of a stepped shaft."""
 
     length: Size
+    """Axial length of the section."""
     outer_diameter: Length
+    """Outside diameter of the section."""
     inner_diameter: Gap = 0.0
+    """Bore; zero for a solid section."""
 
 
 class DiscInput(Part):
@@ -38,14 +41,18 @@ class DiscInput(Part):
     position: Gap
     """Distance from the start of the shaft."""
     inertia: Inertia
+    """Polar mass moment of inertia about the axis of the shaft."""
 
 
 class ShaftInput(Part):
     """Stepped shaft; positions on it count from its start."""
 
     sections: tuple[SectionInput, ...] = Field(min_length=1)
+    """Cylinders from the start of the shaft to its end, one after the other."""
     discs: Mapping[Name, DiscInput] = {}
+    """Rigid discs by name."""
     material: Name
+    """Built-in material or a name under ``materials``: shear modulus and density of the shaft."""
 
 
 class HarmonicTorqueInput(Part):
@@ -54,16 +61,20 @@ class HarmonicTorqueInput(Part):
     order: float = Field(gt=0.0, le=1000.0)
     """Per turn of that shaft; the angle is zero where the pinion of the first mesh passes zero."""
     torque: Torque
-    """Amplitude."""
+    """Amplitude of the torque (half peak to peak)."""
     phase: Angle = 0.0
+    """Phase angle by which the torque lags: its maximum is where order times angle equals it."""
 
 
 class CouplingInput(Part):
     """Torsion spring and damper between the ends of two shafts."""
 
     shafts: tuple[Name, Name]
+    """First and second shaft that it joins."""
     ends: tuple[End, End]
+    """End of the first and of the second shaft at which it sits."""
     torsional_stiffness: TorsionalStiffness
+    """Torque per angle of twist between its two halves."""
     torsional_damping: TorsionalDamping
     """Massless; its flanges and a torque flange are discs of the shafts."""
     excitation: tuple[HarmonicTorqueInput, ...] = ()
@@ -75,25 +86,31 @@ class CouplingInput(Part):
     cold_offset_lateral: Deviation = 0.0
     """Axis of the first shaft against that of the second as set up, across (y)."""
     cold_offset_vertical: Deviation = 0.0
-    """The same upwards (z)."""
+    """Axis of the first shaft against that of the second as set up, upwards (z)."""
 
 
 class MotorInput(Part):
     """Drive outside the power circuit."""
 
     shaft: Name
+    """Shaft of the power circuit that the motor drives."""
     end: End
+    """End of that shaft at which it drives."""
     torque_limit: Torque
-    """At every speed; hold the power against a limit of its own under ``limits.bought_parts``."""
+    """Most torque of the motor at every speed; its power has a limit of its own under ``limits.bought_parts``."""
     inertia: Inertia
+    """Polar mass moment of inertia of the rotor, turning with the shaft."""
     ripple: tuple[HarmonicTorqueInput, ...] = ()
-    """Of its torque, about the mean."""
+    """Alternating parts of its torque about the mean."""
 
 
 class Bracing(Part):
     """How the test torque is locked into the loop."""
 
     mode: Literal["torque_controlled", "twist_held", "shift_held"]
+    """torque_controlled: the mean torque at ``torque_at`` is held at that of the stage, whatever expands;
+    twist_held, shift_held: the twist of a coupling or the axial shift of a gear that makes the torque in the
+    initial state is kept, so that thermal expansion changes the torque."""
     coupling: Name | None = None
     """Coupling that is twisted (``twist_held``)."""
     shifted_gear: Text | None = None
@@ -101,7 +118,10 @@ class Bracing(Part):
     partner_floats: bool = False
     """The partner of the shifted half floats axially and takes half of the shift."""
     spline_friction_coefficient: float = Field(default=0.0, ge=0.0, le=1.0)
+    """Friction coefficient of the seat on which the shifted gear slides: adds to the force of the load
+    unit."""
     spline_pitch_radius: Length | None = None
+    """Radius at which that friction acts; no friction force when left out."""
     temperature_drift: float = Field(default=0.0, ge=-0.02, le=0.02)
     """Change of the locked torque, as a share, for each kelvin by which the gear oil that enters the gearbox of
     ``torque_at`` is warmer than ``ambient.reference_temperature``."""
@@ -111,9 +131,13 @@ class DrivetrainInput(Part):
     """The power circuit: which shafts, how joined, how driven and braced."""
 
     shafts: Mapping[Name, ShaftInput] = Field(min_length=2)
+    """Shafts of the power circuit by name."""
     couplings: Mapping[Name, CouplingInput] = {}
+    """Couplings between ends of shafts by name."""
     motor: MotorInput
+    """Drive of the rig."""
     bracing: Bracing
+    """How the test torque is locked into the loop."""
     torque_at: Text
     """Gear at which test torque and speed are counted, ``gearbox.gear``."""
     mesh_stiffness: Literal["iso_6336_scaled", "weber_banaschek_0.8"] = "iso_6336_scaled"

@@ -51,6 +51,7 @@ class SurfaceCondition(Part):
     surfaces: tuple[Text, ...] = Field(min_length=1)
     """Surface names; ``*`` stands for any run of characters."""
     law: str
+    """Which law holds on the surfaces; it decides which other keys the entry has."""
 
     may_join_a_film: ClassVar[bool] = False
     """It may stand on a surface that has a film already."""
@@ -132,6 +133,7 @@ class NiemannWinter(HousingHeightFilm):
     """Housing to room air, alpha = f_k (10 + 0.07 dT) h^-0.15 (Niemann/Winter; P2, Formula 2)."""
 
     law: Literal["niemann_winter"]
+    """Selects the film of Niemann/Winter for the housing in room air."""
     draught_factor: float = Field(default=1.0, gt=0.0, le=5.0)
     """f_k: 1 in still room air."""
     height: Size | None = None
@@ -146,6 +148,7 @@ class RecknagelPlate(StillAirFilm):
     """Horizontal plate to still room air."""
 
     law: Literal["recknagel_plate"]
+    """Selects the film of Recknagel for a horizontal plate."""
     correlation: Literal["dimensional", "turbulent"] = "dimensional"
     """dimensional: 2.0 dT^(1/4); turbulent: Nu = 0.125 Ra^(1/3)."""
 
@@ -158,6 +161,7 @@ class IsoTr14179(HousingHeightFilm):
     """Housing to room air by ISO/TR 14179-2, free convection."""
 
     law: Literal["iso_tr_14179_2"]
+    """Selects the film of ISO/TR 14179-2 for free convection."""
 
     def correlation_at(self, place: SurfacePlace) -> FilmLaw:
         """The law as published."""
@@ -168,6 +172,7 @@ class VerticalPlate(HousingHeightFilm):
     """Vertical wall to still room air (Churchill and Chu, as the VDI Heat Atlas has it); no radiation in it."""
 
     law: Literal["vertical_plate"]
+    """Selects the film of Churchill and Chu for a vertical wall."""
 
     def correlation_at(self, place: SurfacePlace) -> FilmLaw:
         """The law as published."""
@@ -178,7 +183,9 @@ class HorizontalPlate(StillAirFilm):
     """Horizontal plate to still room air; no radiation in it."""
 
     law: Literal["horizontal_plate"]
+    """Selects the film of a horizontal plate."""
     correlation: Literal["mcadams", "vdi", "rohsenow"] = "mcadams"
+    """Author of the correlation; all take ``length`` and ``facing``."""
     length: Size
     """Characteristic length: area over perimeter."""
     facing: Literal["up", "down"] = "up"
@@ -255,8 +262,11 @@ class ConstantFilm(SurfaceFilm):
     coefficient_given: ClassVar[bool] = True
 
     law: Literal["constant_film"]
+    """Selects a given heat transfer coefficient."""
     heat_transfer_coefficient: HeatTransferCoefficient
+    """Heat flux per kelvin between surface and fluid."""
     fluid: Fluid
+    """Fluid that wets the surface: room air, or one of the oils at inlet, mean or outlet."""
     taken_from: TakenFrom | None = None
     """For a printed coefficient to room air: what it was read from."""
     fluid_temperature: Temperature | None = None
@@ -319,6 +329,7 @@ class HorizontalCylinder(TurningFilm):
     """Shaft at rest in still room air (Churchill and Chu); diameter from the shaft."""
 
     law: Literal["horizontal_cylinder"]
+    """Selects the film of a shaft at rest."""
 
     @property
     def wetted_by(self) -> Fluid:
@@ -334,11 +345,14 @@ class RotatingCylinder(TurningFilm):
     """Rotating shaft in air or oil mist; diameter and speed from the shaft."""
 
     law: Literal["rotating_cylinder"]
+    """Selects the film of a rotating shaft."""
     correlation: Literal["becker", "jungnickel", "kays_bjorklund", "etemad", "dropkin_carmi"] = "becker"
     """becker, etemad, dropkin_carmi: air at the film temperature; kays_bjorklund: with buoyancy, down to zero speed;
     jungnickel: constants of air near room temperature."""
     fluid: Fluid
+    """Fluid whose temperature counts: room air, or one of the oils at inlet, mean or outlet."""
     medium: Medium = "air"
+    """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``)."""
 
     @property
     def wetted_by(self) -> Fluid:
@@ -364,10 +378,13 @@ class RotatingDisc(TurningFilm):
     """Rotating end or gear face in air or oil mist; radius and speed from the shaft."""
 
     law: Literal["rotating_disc"]
+    """Selects the film of a rotating end or gear face."""
     correlation: Literal["kreith", "jungnickel"] = "kreith"
     """kreith: air at the film temperature; jungnickel: constants of air near room temperature."""
     fluid: Fluid
+    """Fluid whose temperature counts: room air, or one of the oils at inlet, mean or outlet."""
     medium: Medium = "air"
+    """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``)."""
 
     @property
     def wetted_by(self) -> Fluid:

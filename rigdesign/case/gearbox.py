@@ -39,10 +39,14 @@ class GearOil(Part):
     oil: Text
     """Built-in oil or a name under ``oils``."""
     inlet_temperature: Temperature
+    """Temperature at which the oil enters the gearbox."""
     flow: Flow
     """Flow per mesh."""
     jet_direction: Literal["into_mesh", "out_of_mesh", "radial"]
+    """Where the jets point: with the motion of the teeth into the mesh, against their motion out of the
+    mesh, or radially; decides the power that brings the oil up to speed."""
     jet_velocity: Velocity
+    """Velocity of the oil as it leaves the jets, all open and nothing in ``oil_paths.bypass``."""
     outlet_temperature: Temperature | None = None
     """Measured outlet; computed from the heat when left out."""
     blocked_jets: Annotated[float, Field(ge=0.0, le=0.9)] = 0.0
@@ -53,7 +57,9 @@ class BearingOil(Part):
     """Oil fed to the journal bearings of a gearbox."""
 
     oil: Text
+    """Built-in oil or a name under ``oils``."""
     inlet_temperature: Temperature
+    """Temperature at which the oil enters the bearings."""
     flow: Flow
     """Flow per bearing."""
     outlet_temperature: Temperature | None = None
@@ -100,10 +106,13 @@ class JournalBearingInput(Part):
     """Plain journal bearing."""
 
     shaft: Name
+    """Shaft that it carries."""
     side: Literal["front", "rear"]
     """End of the housing it sits in; the front is where x starts."""
     diameter: Length
+    """Nominal diameter of the journal."""
     width: Length
+    """Load-carrying width along the shaft."""
     diametral_clearance: Clearance
     """Bore minus journal, as drawn."""
     locating: bool = False
@@ -152,8 +161,11 @@ class Seals(Part):
     """
 
     shaft: Name
+    """Shaft that they seal."""
     kind: Literal["contactless", "radial_lip"] = "contactless"
+    """What seals the shaft where it leaves the gearbox: a gap without contact, or a radial lip."""
     radial_gap: Clearance
+    """Half the difference of bore and shaft diameter as drawn; thermal expansion changes it."""
     axial_travel: Clearance
     """Axial movement of the shaft the seals take without touching."""
     rubbing_torque: Torque = 0.0
@@ -171,12 +183,15 @@ class HeatSplit(Part):
     and the films on the rims (law ``flank_film``) decide how much heat goes into the oil. When left out:
     flank_film, or assumed where the case gives a share."""
     mesh_into_gears: Share | None = None
-    """For ``assumed``."""
+    """Share of the friction heat of the meshes that enters the gears, for ``mesh = assumed``."""
     mesh_pinion_share: Share | None = None
     """Of the friction heat, the part that enters the pinion; by the thermal contact of the flanks when left out."""
     windage_into_gears: Share
+    """Share of the windage loss that heats the gear bodies."""
     seal_into_shaft: Share
+    """Share of the seal losses that enters the shaft at the seal."""
     seal_into_housing: Share
+    """Share of the seal losses that enters the bore of the seal."""
 
     @property
     def rule(self) -> MeshRule:
@@ -214,18 +229,29 @@ class Gearbox(Part):
     """One gearbox of the rig."""
 
     title: Text
+    """Name of the gearbox in the report."""
     role: Literal["specimen", "rig"]
     """specimen: its gears are what is tested, held against a target window; rig: against a safety."""
     gears: Mapping[Name, Gear] = Field(min_length=2)
+    """Gears by name."""
     meshes: Mapping[Name, GearMesh] = Field(min_length=1)
+    """Meshes by name, each of two gears."""
     oil: GearOil
+    """Oil injected at the meshes."""
     bearings: Mapping[Name, BearingInput] = Field(min_length=1)
+    """Bearings by name."""
     bearing_oil: BearingOil
+    """Oil fed to the bearings."""
     seals: Mapping[Name, Seals] = {}
+    """Seals by name, one entry a shaft."""
     heat_split: HeatSplit
+    """Shares of the losses that heat solid parts."""
     loss_factors: LossFactors = LossFactors()
+    """Factors on the losses of this gearbox."""
     oil_paths: OilPaths = OilPaths()
+    """Shares of the gear oil that take another way."""
     oil_state: OilState = OilState()
+    """How both oils differ from their data sheet."""
     housing: Housing | None = None
     """Geometry and boundary conditions; a gearbox without one has no temperature field."""
 

@@ -31,8 +31,11 @@ class RackInput(Part):
     """Basic rack of the toothing, in modules (ISO 53 A: 1.0, 1.25, 0.38)."""
 
     addendum: Positive = 1.0
+    """Addendum of the basic rack in normal modules."""
     dedendum: Positive = 1.25
+    """Dedendum of the basic rack in normal modules."""
     tip_radius: float = Field(default=0.38, ge=0.0, le=0.6)
+    """Fillet radius of the basic rack (tip radius of the tool) in normal modules."""
 
     @model_validator(mode="after")
     def _radius_fits(self) -> "RackInput":
@@ -48,7 +51,9 @@ class Spline(Part):
     """Spline-hub connection of a gear with its shaft."""
 
     torsional_stiffness: TorsionalStiffness
+    """Torque per angle of twist between gear and shaft."""
     torsional_damping: TorsionalDamping = 0.0
+    """Torque per speed of twist between gear and shaft."""
 
 
 class PitchWave(Part):
@@ -66,7 +71,7 @@ class WeakTooth(Part):
     """One tooth that gives way: cracked, or missing."""
 
     tooth: int = Field(default=0, ge=0, le=1999)
-    """Which one, counted from 0."""
+    """Number of the weak tooth, counted from 0."""
     stiffness: float = Field(default=1.0, ge=0.0, le=1.0)
     """Of the tooth pairs it is in, as a share of that of the others; 0 for a missing tooth, whose neighbours carry
     what it would."""
@@ -109,8 +114,11 @@ class Gear(Part):
     """One gear: body, toothing of its own, and where it sits."""
 
     shaft: Name
+    """Shaft on which it sits."""
     teeth: Count = Field(ge=6, le=2000)
+    """Number of teeth."""
     face_width: Length
+    """Width of the toothing; of one half for a double-helical gear."""
     bore_diameter: Gap = 0.0
     """Bore of the gear body; zero for a solid disc."""
     position: Gap | None = None
@@ -125,9 +133,11 @@ class Gear(Part):
     quality_grade: int = Field(ge=1, le=11)
     """Flank tolerance class, ISO 1328-1:2013."""
     flank_roughness: Small
-    """Ra of the flank."""
+    """Arithmetic mean roughness Ra of the flanks."""
     material: Name
+    """Built-in material or a name under ``materials``."""
     flank: FlankModification = FlankModification()
+    """Modifications and deviations of the flanks."""
     inertia: Inertia | None = None
     """Polar inertia of the gear body; that of the bored disc when left out."""
     inertia_factor: float = Field(default=1.0, ge=0.1, le=10.0)
@@ -140,17 +150,25 @@ class GearMesh(Part):
     """Two meshing gears of a gearbox."""
 
     pinion: Name
+    """Gear at which torque and speed of the mesh are counted."""
     wheel: Name
+    """The gear that the pinion meshes with."""
     normal_module: Length
+    """Module in the normal section."""
     pressure_angle: PressureAngle
+    """Normal pressure angle at the reference cylinder."""
     helix_angle: HelixAngle = 0.0
+    """Helix angle at the reference cylinder, without sign; zero for spur gears."""
     centre_distance: Size
+    """Working distance of the axes, as drawn."""
     rack: RackInput = RackInput()
+    """Basic rack of both gears."""
     profile_shift_split: Literal["equal"] | None = None
     """How the sum of the profile shifts is shared when no gear states its own."""
     contact_ratio: float | None = Field(default=None, gt=0.5, lt=4.0)
     """Transverse contact ratio to which the tips named in ``tip_cut`` are shortened."""
     tip_cut: Literal["pinion", "wheel", "both"] | None = None
+    """Gear whose tip is shortened until ``contact_ratio`` is met."""
     double_helical: bool = False
     """Two opposite helices; face widths are those of the modelled half that carries the torque."""
     damping: LinearDamping
@@ -165,9 +183,9 @@ class GearMesh(Part):
     tooth_offset: int = Field(default=0, ge=0, le=1999)
     """Teeth by which the wheel is put on further: tooth 0 of the pinion meets this tooth of the wheel."""
     application_factor: float = Field(default=1.0, ge=1.0, le=5.0)
-    """K_A of ISO 6336."""
+    """K_A of ISO 6336: load from outside the gearbox over the nominal one."""
     face_load_factor: float = Field(default=1.0, ge=1.0, le=10.0)
-    """K_Fbeta of ISO 6336-3."""
+    """K_Fbeta of ISO 6336-3: uneven load over the face width."""
     phase: Share = 0.0
     """Where the pinion's teeth stand when all shafts stand at zero, as a share of a pitch; how the gears are put on
     their shafts decides it. A pinion in a second mesh of its gearbox counts from there on, by the place of its axes

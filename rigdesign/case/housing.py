@@ -23,18 +23,24 @@ class HousingShaft(Part):
     overhang_front: Gap
     """Length that leaves the front end wall; zero for a shaft that ends at its bearing."""
     overhang_rear: Gap
+    """Length that leaves the rear end wall; zero for a shaft that ends at its bearing."""
     bore_diameter: Gap = 0.0
+    """Bore through the shaft; zero for a solid one."""
     material: Name
+    """Built-in material or a name under ``materials``."""
 
 
 class ClampingFieldInput(Part):
     """Plate the gearbox stands on."""
 
     length: Size
-    """Along the shafts."""
+    """Length of the plate along the shafts."""
     width: Size
+    """Width of the plate across the shafts."""
     thickness: Length
+    """Height of the plate."""
     material: Name
+    """Built-in material or a name under ``materials``."""
 
 
 class Housing(Part):
@@ -46,21 +52,31 @@ class Housing(Part):
     warm_length: Size
     """Clear length of the warm chamber, between the partitions."""
     cold_length_front: Size
+    """Clear length of the front cold section, between end wall and partition."""
     cold_length_rear: Size
+    """Clear length of the rear cold section, between partition and end wall."""
     width: Size
+    """Outer width, across the shafts."""
     height: Size
+    """Outer height above the clamping field."""
     wall_thickness: Length
+    """Thickness of the two side walls."""
     floor_thickness: Length
+    """Thickness of the floor."""
     top_thickness: Length
+    """Thickness of the top."""
     partition_thickness: Length
+    """Thickness of the walls between warm chamber and cold sections: length of their seals."""
     end_wall_thickness: Length
-    """Walls that carry the bearings."""
+    """Thickness of the walls that carry the bearings."""
     end_seal_width: Length
     """Length of the end seal outside of each bearing."""
     shaft_height: Size
     """Height of the shaft axes above the clamping field."""
     material: Name
+    """Built-in material or a name under ``materials``."""
     field: ClampingFieldInput
+    """Plate the gearbox stands on."""
     foot_contact: FootContact | None = None
     """Joint between foot and field; perfect contact when left out, which the report lists as an assumption."""
     mesh: HousingMesh = HousingMesh()
@@ -75,7 +91,9 @@ class Housing(Part):
     ``field``, ``housing_foot`` and ``field_seat`` for a ``foot_contact``. Heights of films, diameters and speeds of
     shafts stay those of this table; clearances are read where bearings, shafts and gears carry the names of the box."""
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
+    """Shafts in the housing by name, each with two bearings and a seal."""
     boundary: Mapping[Name, Condition] = Field(min_length=1)
+    """Boundary conditions by name: every surface needs one."""
     ambient_film_factor: FilmFactor = 1.0
     """Multiplies every film to room air on top of the ``film_factor`` of each: draught, a badly ventilated place."""
     bearing_film_factor: FilmFactor = 1.0

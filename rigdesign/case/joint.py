@@ -11,7 +11,7 @@ class PressedJoint(Part):
     """Two rough metal faces under pressure (Cooper, Mikic, Yovanovich 1969)."""
 
     pressure: Stress
-    """Mean pressure of the joint."""
+    """Mean contact pressure of the joint."""
     roughness: Small
     """Root of the sum of both squared rms roughnesses."""
     slope: Annotated[float, Field(gt=0.0, le=1.0)]
@@ -19,7 +19,7 @@ class PressedJoint(Part):
     hardness: Stress
     """Micro-hardness of the softer side."""
     filling_conductivity: Conductivity | None = None
-    """Of oil or grease between the faces; dry air when left out."""
+    """Thermal conductivity of oil or grease between the faces; dry air when left out."""
 
     @model_validator(mode="after")
     def _rough(self) -> "PressedJoint":
@@ -32,7 +32,9 @@ class FootContact(Part):
     """Foot and field as bodies that touch: a measured or assumed conductance, or the joint it follows from."""
 
     conductance: HeatTransferCoefficient | None = None
+    """Heat flux per kelvin between foot and field."""
     joint: PressedJoint | None = None
+    """Joint of two rough faces from which the conductance follows."""
 
     @model_validator(mode="after")
     def _one(self) -> "FootContact":

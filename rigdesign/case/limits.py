@@ -31,19 +31,22 @@ class ClearanceLimits(Part):
     """Play that must be left hot."""
 
     seal_gap_minimum: Play | None = None
+    """Least warm radial gap of a seal without contact."""
     axial_play_minimum: Deviation | None = None
+    """Least warm axial play of a shaft between its stops; negative where a preload is allowed."""
     backlash_minimum: Play | None = None
-    """Transverse, at the working pitch circle."""
+    """Least warm backlash, transverse at the working pitch circle."""
     tip_clearance_minimum: Play | None = None
+    """Least warm clearance between the tip of a gear and the root of its partner."""
     bearing_clearance_minimum: Play | None = None
-    """Diametral."""
+    """Least warm diametral clearance of a bearing."""
 
 
 class AlignmentLimits(Part):
     """How far axes and bores may leave their drawing when hot; couplings carry limits of their own."""
 
     bearing_tilt_maximum: Tilt | None = None
-    """Of a shaft axis in a bearing bore."""
+    """Most tilt of a shaft axis in a bearing bore."""
     bore_out_of_round_maximum: Share | None = None
     """Peak to valley of the bore radius as a share of the hot radial clearance."""
     axis_inclination_maximum: Small | None = None
@@ -56,8 +59,11 @@ class TemperatureLimits(Part):
     """Temperatures that must not be passed."""
 
     housing_maximum: Temperature | None = None
+    """Most at the hottest place of a housing."""
     bearing_film_maximum: Temperature | None = None
+    """Most of the lubricant film of a bearing."""
     oil_outlet_maximum: Temperature | None = None
+    """Most of any oil that leaves a gearbox."""
     tempering_distance_minimum: TemperatureDifference | None = None
     """Distance of the gear bulk temperature below the tempering temperature of its material."""
 
@@ -66,10 +72,13 @@ class OilLimits(Part):
     """What pump, cooler and room can take."""
 
     flow_maximum: Flow | None = None
+    """Most oil that the pumps feed to the whole rig."""
     cooler_power_maximum: Power | None = None
+    """Most heat that the cooler takes out of the oil."""
     heater_power_maximum: Power | None = None
-    """Of all circuits whose oil comes back colder than it went."""
+    """Most heat that the heaters give to all circuits whose oil comes back colder than it went."""
     room_heat_maximum: Power | None = None
+    """Most heat that the rig may give to its room."""
 
 
 class BearingLimits(Part):
@@ -78,7 +87,9 @@ class BearingLimits(Part):
     start_torque_limit: Torque | None = None
     """Most torque below the transition speed."""
     film_thickness_minimum: Play | None = None
+    """Least oil film of a journal bearing at a held stage."""
     specific_load_maximum: Stress | None = None
+    """Most radial load over diameter times width."""
 
 
 class DynamicsLimits(Part):
@@ -89,9 +100,9 @@ class DynamicsLimits(Part):
     resonance_distance_minimum: Share | None = None
     """Distance of a held speed from a dangerous resonance, as a share of that speed."""
     dangerous_amplification: Positive = 2.0
-    """A resonance is dangerous above this amplification of the mesh force …"""
+    """A resonance is dangerous above this amplification of the mesh force, or above ``dangerous_force_share``."""
     dangerous_force_share: Positive = 0.2
-    """… or above this dynamic mesh force as a share of the mean one."""
+    """A resonance is dangerous above this dynamic mesh force as a share of the mean one."""
     lift_off_share_maximum: Share | None = None
     """Share of time without tooth contact in a loaded stage."""
     contact_margin_minimum: Share | None = None
@@ -102,15 +113,18 @@ class StrengthLimits(Part):
     """Safety of the gears that belong to the rig."""
 
     root_safety_minimum: Positive | None = None
-    """S_F, ISO 6336-3."""
+    """Least safety S_F against tooth breakage, ISO 6336-3."""
 
 
 class SpecimenWindow(Part):
     """What the test gears are meant to see."""
 
     root_stress_minimum: Stress | None = None
+    """Lower end of the window of the root stress of specimens."""
     root_stress_maximum: Stress | None = None
+    """Upper end of the window of the root stress of specimens."""
     load_cycles_minimum: Positive | None = None
+    """Load cycles that every tooth of a specimen has to see in the planned time."""
 
     @model_validator(mode="after")
     def _window_open(self) -> "SpecimenWindow":
@@ -166,16 +180,17 @@ class BoughtPart(Part):
     """Limit of a bought part: a result or a given value held below what its maker allows."""
 
     title: Text
+    """Name of the limit in the report."""
     part: Text
     """Case path of the part it belongs to, e.g. ``drivetrain.couplings.pinion_side``."""
     quantity: ResultQuantity
-    """What is held against the limit."""
+    """Which result is held against the limit."""
     given: str | None = None
     """The value, when it does not come from the run."""
     limit: str
-    """Quantity with unit."""
+    """Limit of its maker, a quantity with unit of the kind of ``quantity``."""
     source: Text
-    """Data sheet."""
+    """Where the limit is printed, e.g. the data sheet."""
 
     @model_validator(mode="after")
     def _quantities(self) -> "BoughtPart":
@@ -208,12 +223,22 @@ class Limits(Part):
     """All limits of the rig."""
 
     clearances: ClearanceLimits = ClearanceLimits()
+    """Limits of warm clearances."""
     alignment: AlignmentLimits = AlignmentLimits()
+    """Limits of axes and bores."""
     temperatures: TemperatureLimits = TemperatureLimits()
+    """Limits of the temperatures of housing, films, oil and gears."""
     oil: OilLimits = OilLimits()
+    """Limits of the oil plant and the room."""
     bearing: BearingLimits = BearingLimits()
+    """Limits of the journal bearings."""
     dynamics: DynamicsLimits = DynamicsLimits()
+    """Limits of the additional dynamic load and of resonances."""
     strength: StrengthLimits = StrengthLimits()
+    """Least safeties of the gears of the rig itself."""
     specimen: SpecimenWindow = SpecimenWindow()
+    """Window of the test gears."""
     ramp: RampRules = RampRules()
+    """Rules of the run-up."""
     bought_parts: Mapping[Name, BoughtPart] = {}
+    """Limits of bought parts by name."""

@@ -18,15 +18,17 @@ class LossFactors(Part):
     """Losses of one gearbox over what their laws, or the case, say: heat in the box and torque on its shafts alike."""
 
     mesh: LossFactor = 1.0
-    """On the friction coefficient of the teeth."""
+    """Multiplies the friction coefficient of the teeth."""
     bearing: LossFactor = 1.0
-    """On the friction of the bearing films, or on their constant drag."""
+    """Multiplies the friction of the bearing films, or their constant drag."""
     windage: LossFactor = 1.0
+    """Multiplies the windage of the gears."""
     seal: LossFactor = 1.0
+    """Multiplies the losses of the seals."""
     jet: LossFactor = 1.0
-    """On the power that brings the oil of the jets up to speed."""
+    """Multiplies the power that brings the oil of the jets up to speed."""
     squeeze: LossFactor = 1.0
-    """On squeezing, a share of the mesh loss: follows ``mesh`` besides."""
+    """Multiplies squeezing, a share of the mesh loss: follows ``mesh`` as well."""
 
     def of(self, kind: str) -> float:
         """Factor of a kind of loss as results name it."""
@@ -44,10 +46,13 @@ class GivenLoss(Part):
     """A power loss prescribed or measured at one place; with basis ``computed`` it overrides that place."""
 
     gearbox: Name
+    """Gearbox in which it arises."""
     kind: LossKind
+    """Kind of the loss."""
     part: Name
     """Mesh, bearing, seal or gear (windage) of that gearbox."""
     power: Power
+    """The loss as a power."""
     stages: tuple[Name, ...] = ()
     """Stages it holds for; all when empty."""
 
@@ -58,18 +63,25 @@ class DoleschelConstants(Part):
     solid: Positive
     """Friction coefficient of solid contact at 1000 N/mm2 and 0.2 m/s."""
     solid_pressure_exponent: float
+    """Of the solid coefficient over p_H / 1000 N/mm2."""
     solid_speed_exponent: float
+    """Of the solid coefficient over the sum speed / 0.2 m/s."""
     fluid: Positive
     """Friction coefficient of the full film at 1000 N/mm2, 8.3 m/s and 20 mPa s."""
     fluid_pressure_exponent: float
+    """Of the film coefficient over p_H / 1000 N/mm2."""
     fluid_speed_exponent: float
+    """Of the film coefficient over the sum speed / 8.3 m/s."""
     fluid_viscosity_exponent: float
+    """Of the film coefficient over the dynamic viscosity / 20 mPa s."""
 
 
 class ToothFriction(Part):
     """Friction coefficient of the tooth contact, used in the torque loop and for the loss."""
 
     law: Literal["schlenk", "michaelis", "doleschel", "constant"] = "schlenk"
+    """Which law gives the mean friction coefficient: Schlenk (ISO/TR 14179-2), Michaelis, Doleschel with the
+    constants of an oil test, or a constant."""
     lubricant_factor: float | None = Field(default=None, gt=0.1, le=2.0)
     """X_L; that of the oil when left out."""
     coefficient: float | None = Field(default=None, ge=0.0, le=0.5)
@@ -82,8 +94,11 @@ class Losses(Part):
     """Basis and inputs of the losses."""
 
     basis: Literal["computed", "input"]
+    """computed: every loss by its law; input: only those under ``given``."""
     given: Mapping[Name, GivenLoss] = {}
+    """Losses prescribed or measured, by name."""
     friction: ToothFriction = ToothFriction()
+    """Friction of the teeth."""
     chamber_density: Density | None = None
     """Density of the oil-air mist round the gears, for windage."""
     squeeze_share: float = Field(default=0.0, ge=0.0, le=0.10)

@@ -16,14 +16,15 @@ class HousingMesh(Part):
     """
 
     walls: Length | None = None
+    """Largest elements in the walls of the housing."""
     field: Length | None = None
-    """At the outer edges of the clamping field; under the foot the size of the walls holds."""
+    """Largest elements at the outer edges of the clamping field; under the foot the size of the walls holds."""
     seals: Length | None = None
-    """At most, on bores and shafts of the seals."""
+    """Largest elements on bores and shafts of the seals."""
     bearings: Length | None = None
-    """At most, on bearing bores, bosses and journals."""
+    """Largest elements on bearing bores, bosses and journals."""
     gears: Length | None = None
-    """At most, on gears and their seats."""
+    """Largest elements on gears and their seats."""
 
     @model_validator(mode="after")
     def _feasible(self) -> "HousingMesh":

@@ -42,21 +42,33 @@ class Case(Part):
     """
 
     schema_version: Literal[1]
+    """Version of the case file format."""
     name: Name
+    """Short name of the case, for files and tables."""
     title: Text
+    """Title of the report."""
     ambient: Ambient
+    """Room in which the rig stands."""
     oils: Mapping[Name, CustomOil] = {}
+    """Oils of the case by name, in addition to the built-in ones."""
     materials: Mapping[Name, CustomMaterial] = {}
+    """Materials of the case by name, in addition to the built-in ones."""
     gearboxes: Mapping[Name, Gearbox] = Field(min_length=1)
+    """Gearboxes of the rig by name."""
     drivetrain: DrivetrainInput | None = None
     """Left out when the losses are given: the dynamic checks are then not applicable."""
     losses: Losses
+    """How the losses are found."""
     schedule: ScheduleInput
+    """Stages of speed and torque."""
     test_plan: TestPlan
+    """Planned test."""
     limits: Limits = Limits()
+    """Limits of the checks."""
     numerics: Numerics
+    """Tolerances and sizes of the models."""
     transient: Transient = Transient()
-    """For ``check --transient``."""
+    """Warm-up, dwell and stops that ``check --transient`` follows."""
 
     _origin: Origin = PrivateAttr()
 

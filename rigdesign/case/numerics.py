@@ -11,12 +11,15 @@ class Numerics(Part):
     """Tolerances of the coupling loop and sizes of the models; the fidelity scales the sizes."""
 
     temperature_tolerance: TemperatureDifference
+    """Most change of any temperature in the last iteration of the coupling loop."""
     growth_tolerance: Length
+    """Most change of any thermal expansion in the last iteration of the coupling loop."""
     torque_tolerance: Positive
-    """Relative."""
+    """Most relative change of any torque in the last iteration of the coupling loop."""
     coupling_passes: Count = 30
     """Most iterations of the coupling loop."""
     sample_rate: Frequency
+    """Rate at which the time run is stored; it integrates ``internal_steps`` times as fast."""
     internal_steps: Annotated[int, Field(ge=8, le=256)] = 8
     """Integration steps per sample."""
     slices_spur: Annotated[int, Field(ge=1, le=101)] | None = None
@@ -29,6 +32,8 @@ class Numerics(Part):
     curve_speed_start: Speed
     """First speed of the dynamic factor curve."""
     curve_speed_end: Speed
+    """Last speed of the dynamic factor curve."""
     curve_speeds: Annotated[int, Field(ge=2, le=5000)] = 200
+    """Speeds between both, evenly spaced; resonances get more."""
     response_period: Literal["mesh", "revolution", "hunting_cycle"] = "mesh"
     """What the periodic response repeats after."""

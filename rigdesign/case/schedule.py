@@ -18,7 +18,10 @@ class StageInput(Part):
     """
 
     name: Name
+    """Name of the stage in results and paths."""
     kind: StageKind
+    """What changes during the stage: the torque (load, unload), the speed (run_up, run_down) or nothing
+    (dwell)."""
     speed: Speed | None = None
     """Speed at its end; that of the stage before when left out."""
     torque: Torque | None = None
@@ -26,6 +29,7 @@ class StageInput(Part):
     torque_share: Share | None = None
     """The torque as a share of the test torque."""
     duration: Time
+    """How long the stage takes."""
     drive_torque: Torque | None = None
     """Constant drive torque instead of speed control; ``duration`` is then the most it may take."""
     held: bool = False
@@ -59,7 +63,9 @@ class ScheduleInput(Part):
     test_speed: Speed
     """Speed of the test, counted at ``drivetrain.torque_at``."""
     test_torque: Torque
+    """Torque of the test, counted at ``drivetrain.torque_at``."""
     stages: tuple[StageInput, ...] = Field(min_length=1)
+    """Stages in the order in which they run."""
     simulation_only: Text | None = None
     """Why the schedule cannot be run on the rig; left out for one that can."""
 

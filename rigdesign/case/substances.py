@@ -25,6 +25,7 @@ class Ambient(Part):
     """The room."""
 
     temperature: RoomTemperature
+    """Temperature of the room air."""
     surroundings_temperature: RoomTemperature | None = None
     """Walls that the rig radiates to; the air temperature when left out."""
     reference_temperature: RoomTemperature = 293.15
@@ -35,14 +36,20 @@ class Ambient(Part):
 
 
 class CustomOil(Part):
-    """Oil described by two viscosities and its heat data at 15 degC."""
+    """Oil described by two viscosities, its density and its heat data."""
 
     title: Text
+    """Name of the oil in the report."""
     kinematic_viscosity_40: KinematicViscosity
+    """Kinematic viscosity at 40 degC."""
     kinematic_viscosity_100: KinematicViscosity
+    """Kinematic viscosity at 100 degC."""
     density_15: Density
+    """Density at 15 degC."""
     heat_capacity: HeatCapacity
+    """Specific heat capacity, taken as constant."""
     conductivity: Conductivity
+    """Thermal conductivity at 40 degC."""
     lubricant_factor: Annotated[float, Field(gt=0.1, le=2.0)] = 1.0
     """X_L of the friction laws: 1 for mineral oil."""
 
@@ -60,18 +67,25 @@ class CustomMaterial(Part):
     """Solid material."""
 
     title: Text
+    """Name of the material in the report."""
     conductivity: Conductivity
+    """Thermal conductivity."""
     expansion_coefficient: ExpansionCoefficient
+    """Linear thermal expansion per kelvin."""
     elastic_modulus: Modulus
+    """Young's modulus."""
     poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)]
+    """Poisson's ratio."""
     density: Density
+    """Mass density."""
     root_strength: Stress | None = None
-    """sigma_FE of ISO 6336-5 for gears."""
+    """sigma_FE of ISO 6336-5 for gears: allowable stress number of the root, sigma_Flim Y_ST."""
     flank_strength: Stress | None = None
     """sigma_Hlim of ISO 6336-5 for gears: how their flanks run in."""
     treatment: Literal["case_hardened", "nitrided", "through_hardened"] = "case_hardened"
     """Of gears: how their flanks run in (ISO 6336-1)."""
     tempering_temperature: Temperature | None = None
+    """Tempering temperature of gears; without it their bulk temperature is not checked."""
 
     @model_validator(mode="after")
     def _runs_in(self) -> "CustomMaterial":

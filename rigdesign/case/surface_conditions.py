@@ -19,6 +19,7 @@ class FlankFilm(SurfaceCondition):
     """Rim of a gear that stands for its teeth: the oil the jets lay on the flanks, tooth as a fin."""
 
     law: Literal["flank_film"]
+    """Selects the oil film on the flanks."""
     correlation: Literal["fling_off", "jet_renewal", "constant"] = "fling_off"
     """fling_off: laid by every jet and flung off; jet_renewal: stays until the next jet, an upper bound; constant:
     ``heat_transfer_coefficient`` on the flanks."""
@@ -54,6 +55,7 @@ class BearingFilm(SurfaceCondition):
     """Bore or journal to the lubricant film: conductance of the film, sink at film temperature."""
 
     law: Literal["bearing_film"]
+    """Selects the film of the bearing."""
     film_factor: FilmFactor = 1.0
     """Multiplies the conductance between film and wall, not what the film carries or heats."""
 
@@ -64,7 +66,9 @@ class ThermalRadiation(SurfaceCondition):
     may_join_a_film: ClassVar[bool] = True
 
     law: Literal["radiation"]
+    """Selects radiation."""
     emissivity: float = Field(gt=0.0, le=1.0)
+    """Emissivity of the grey surface."""
     emissivity_excess: float = Field(default=0.0, ge=-1.0, le=1.0)
     """What the surface has beyond ``emissivity``: it counts even where a film to room air stands for the rest."""
     surroundings_temperature: Temperature | None = None
@@ -107,6 +111,7 @@ class GapExchange(SurfaceExchange):
     film_factor: FilmFactor = 1.0
     """Multiplies the film: with a range it stands for the scatter of the correlation."""
     law: Literal["narrow_gap"]
+    """Selects exchange across a narrow rotating gap."""
     correlation: Literal["becker_kaye", "jungnickel"] = "becker_kaye"
     """becker_kaye: air at the mean temperature, with the onset of vortices; jungnickel: constants of air near room
     temperature."""
@@ -137,6 +142,7 @@ class SeriesExchange(SurfaceExchange):
     """Heat from a rotating shaft through air to a wall: two films in series (P2, Formula 3)."""
 
     law: Literal["series_films"]
+    """Selects two films in series."""
     coefficients: tuple[HeatTransferCoefficient, HeatTransferCoefficient]
     """Film on the surface, film on the partner."""
     film_factor: FilmFactor = 1.0
@@ -152,13 +158,16 @@ class FixedTemperature(SurfaceCondition):
     """A surface held at one temperature."""
 
     law: Literal["fixed_temperature"]
+    """Selects a given temperature."""
     temperature: Temperature
+    """Temperature at which the surface is held."""
 
 
 class Insulated(SurfaceCondition):
     """A surface that passes no heat."""
 
     law: Literal["insulated"]
+    """Selects no heat flux."""
 
 
 Condition = Annotated[

@@ -23,9 +23,11 @@ class TransientProbe(Part):
     """A place whose temperature is kept over time."""
 
     gearbox: Name
+    """Gearbox in which the place is."""
     place: Text
-    """Surface or body of its housing."""
+    """Surface or body of its housing, named as the thermal model names them."""
     quantity: Literal["mean", "max", "min"] = "mean"
+    """Mean, highest or lowest temperature of the place."""
 
 
 class Transient(Part):
@@ -36,7 +38,7 @@ class Transient(Part):
     dwell: Hours | None = None
     """Length of every held stage; the planned time of the test when left out."""
     oil_run_on: Time = 0.5 * HOUR
-    """Oil after the stop."""
+    """How long the oil runs on after the stop."""
     soak_back: Hours = 8.0 * HOUR
     """Standstill without oil after that."""
     stop_time: Time = 10.0
@@ -50,6 +52,6 @@ class Transient(Part):
     settled_share: Annotated[float, Field(gt=0.0, lt=0.5)] = 0.05
     """A quantity is steady once it stays within this share of its whole change in the dwell."""
     tolerance: TemperatureDifference = 0.2
-    """Error of a time step."""
+    """Most error of a time step."""
     probes: Mapping[Name, TransientProbe] = {}
     """Places in addition to the bodies, bearings and oil outlets that are always kept."""

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from rigdesign.checks.clearances import NOT_EXPANDED
 from rigdesign.checks.omissions import HEAT, coupled_shafts
+from rigdesign.checks.places import couplings
 from rigdesign.checks.registry import REGISTRY, RigRule, RuleFamily, Topic, Values
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
@@ -52,48 +53,68 @@ RULES = (
     RigRule(
         key="alignment.bearing_tilt",
         title="largest tilt of a shaft in a bearing bore",
+        procedure=(
+            "Axis of every shaft through the warm places of its two bearings against the axis of each "
+            "bore, at the held stages. The largest angle counts."
+        ),
         unit=MILLIRADIAN,
         group=GROUP,
         source="limits.alignment.bearing_tilt_maximum",
         limit=lambda limits: limits.alignment.bearing_tilt_maximum,
         values=_tilts,
         absent=_no_clearances,
+        housed=True,
         leaves_out=(NOT_EXPANDED, *HEAT),
         moved_by=frozenset({"housing"}),
     ),
     RigRule(
         key="alignment.bore_out_of_round",
         title="bearing bore out of round, share of the radial clearance",
+        procedure=(
+            "Peak to valley of the radius of every warm bearing bore over its warm radial clearance, at "
+            "the held stages. The largest counts."
+        ),
         unit=NUMBER,
         group=GROUP,
         source="limits.alignment.bore_out_of_round_maximum",
         limit=lambda limits: limits.alignment.bore_out_of_round_maximum,
         values=_out_of_round,
         absent=_no_clearances,
+        housed=True,
         leaves_out=(NOT_EXPANDED, *HEAT),
         moved_by=frozenset({"housing"}),
     ),
     RigRule(
         key="alignment.axis_inclination",
         title="in-plane deviation of the axes of a mesh over the face",
+        procedure=(
+            "Warm axes of the two shafts of a mesh: their in-plane deviation over the face width, at the "
+            "held stages. The largest counts."
+        ),
         unit=MICROMETRE,
         group=GROUP,
         source="limits.alignment.axis_inclination_maximum",
         limit=lambda limits: limits.alignment.axis_inclination_maximum,
         values=_inclinations,
         absent=_no_clearances,
+        housed=True,
         leaves_out=(NOT_EXPANDED, *HEAT),
         moved_by=frozenset({"housing"}),
     ),
     RigRule(
         key="alignment.axis_skew",
         title="out-of-plane deviation of the axes of a mesh over the face",
+        procedure=(
+            "Warm axes of the two shafts of a mesh: their out-of-plane deviation over the face width, at "
+            "the held stages. The largest counts."
+        ),
         unit=MICROMETRE,
         group=GROUP,
         source="limits.alignment.axis_skew_maximum",
         limit=lambda limits: limits.alignment.axis_skew_maximum,
         values=_skews,
         absent=_no_clearances,
+        housed=True,
         leaves_out=(NOT_EXPANDED, *HEAT),
         moved_by=frozenset({"housing"}),
     ),
@@ -101,20 +122,32 @@ RULES = (
 OFFSET = RuleFamily(
     key="alignment.coupling_offset",
     title="radial offset between the shafts at coupling {place}",
+    procedure=(
+        "Radial distance between the axes of the two shafts at the coupling, as set up and warm at "
+        "the held stages. The larger counts."
+    ),
     unit=MILLIMETRE,
     group=GROUP,
     source="drivetrain.couplings.{place}.radial_offset_maximum",
+    places=couplings,
     absent=_no_coupling,
+    housed=True,
     leaves_out=(coupled_shafts, *HEAT),
     moved_by=frozenset({"housing", "coupling offset"}),
 )
 ANGLE = RuleFamily(
     key="alignment.coupling_angle",
     title="angle between the shafts at coupling {place}",
+    procedure=(
+        "Angle between the axes of the two shafts at the coupling, as set up and warm at the held "
+        "stages. The larger counts."
+    ),
     unit=MILLIRADIAN,
     group=GROUP,
     source="drivetrain.couplings.{place}.angle_maximum",
+    places=couplings,
     absent=_no_coupling,
+    housed=True,
     leaves_out=(coupled_shafts, *HEAT),
     moved_by=frozenset({"housing", "coupling offset"}),
 )

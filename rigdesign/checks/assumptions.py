@@ -1,14 +1,11 @@
 """Which assumed inputs a check depends on: those its family declares (`registry.RuleFamily`) and its own limit."""
 
-import re
 from dataclasses import replace
 
 from rigdesign.case.model import Case
 from rigdesign.checks.influences import INPUTS, OF_ONE_GEARBOX, Influence
-from rigdesign.checks.registry import REGISTRY, RuleFamily
+from rigdesign.checks.registry import PATH, REGISTRY, RuleFamily
 from rigdesign.results.check import Check
-
-PATH = re.compile(r"[a-z_0-9]+(?:\.[a-z_0-9]+)+")
 
 
 def with_assumptions(case: Case, check: Check) -> Check:
@@ -28,7 +25,7 @@ def depends(case: Case, check: Check, path: str) -> bool:
     family = REGISTRY.family_of(case, check)
     if family.only_inputs is not None:
         return any(is_under(path, part) for part in family.only_inputs)
-    influences = _influences(case, path)
+    influences = influences_of(case, path)
     return influences is None or any(_moves(influence, family, check, path) for influence in influences)
 
 
@@ -41,7 +38,7 @@ def _moves(influence: Influence, family: RuleFamily, check: Check, path: str) ->
     return influence in family.moved_by
 
 
-def _influences(case: Case, path: str) -> tuple[Influence, ...] | None:
+def influences_of(case: Case, path: str) -> tuple[Influence, ...] | None:
     """What an input moves; None for all checks."""
     bare = [name for name, entry in case.gearboxes.items() if entry.housing is None]
     for inputs, influences in INPUTS.items():

@@ -7,10 +7,12 @@ rest is left out, and reported as such.
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from rigdesign.checks.omissions import EXPANSION, HEAT, of_gearboxes, sealed, unexpanded, with_play
+from rigdesign.checks.places import housed_seals
 from rigdesign.checks.registry import REGISTRY, RigRule, RuleFamily, Topic, Values
+from rigdesign.checks.rules import Rule
 from rigdesign.coupling.loads import MeshModel
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
@@ -76,6 +78,10 @@ RULES = (
     RigRule(
         key="clearance.seal_gap",
         title="smallest hot radial gap of a seal",
+        procedure=(
+            "Radial gap as drawn plus thermal expansion of bore and shaft and the offset between both at "
+            "the held stages; least over the circumference and all seals without contact."
+        ),
         unit=MILLIMETRE,
         group=GROUP,
         source="limits.clearances.seal_gap_minimum",
@@ -89,6 +95,10 @@ RULES = (
     RigRule(
         key="clearance.axial_play",
         title="smallest hot axial play of a shaft",
+        procedure=(
+            "Axial play as drawn plus thermal expansion of the housing less that of the shaft between its "
+            "stops, at the held stages. The least counts."
+        ),
         unit=MILLIMETRE,
         group=GROUP,
         source="limits.clearances.axial_play_minimum",
@@ -102,6 +112,10 @@ RULES = (
     RigRule(
         key="clearance.backlash",
         title="smallest hot backlash",
+        procedure=(
+            "Transverse backlash at the working pitch circle with the warm centre distance and the warm "
+            "teeth, at the held stages. The least of all meshes counts."
+        ),
         unit=MILLIMETRE,
         group=GROUP,
         source="limits.clearances.backlash_minimum",
@@ -114,6 +128,10 @@ RULES = (
     RigRule(
         key="clearance.tip_clearance",
         title="smallest hot tip clearance",
+        procedure=(
+            "Warm centre distance less tip radius and root radius of the partner, at the held stages; the "
+            "lesser of both gears, the least of all meshes."
+        ),
         unit=MILLIMETRE,
         group=GROUP,
         source="limits.clearances.tip_clearance_minimum",
@@ -126,6 +144,10 @@ RULES = (
     RigRule(
         key="clearance.bearing_clearance",
         title="smallest hot diametral bearing clearance",
+        procedure=(
+            "Diametral clearance as drawn plus thermal expansion of bore less journal at the held stages. "
+            "The least of all bearings counts."
+        ),
         unit=MICROMETRE,
         group=GROUP,
         source="limits.clearances.bearing_clearance_minimum",
@@ -136,12 +158,34 @@ RULES = (
         moved_by=frozenset({"housing"}),
     ),
 )
-SEAL_TRAVEL = RuleFamily(
+
+
+@dataclass(frozen=True, kw_only=True)
+class SealTravel(RuleFamily):
+    """One rule for the seals of every shaft in a housing; the place is ``gearbox.seals``."""
+
+    def rule(self, limit: float | None, place: str = "") -> Rule:
+        """The rule of one place with its limit [SI]."""
+        box, _, name = place.partition(".")
+        return replace(
+            super().rule(limit, place),
+            title=f"axial movement of the {name} shaft in its seals ({box})",
+            source=f"gearboxes.{box}.seals.{name}.axial_travel",
+        )
+
+
+SEAL_TRAVEL = SealTravel(
     key="clearance.seal_travel",
     title="axial movement of a shaft in its seals, {place}",
+    procedure=(
+        "Axial movement of the shaft in its seals by thermal expansion, from its locating bearing on, "
+        "at the held stages. The largest counts."
+    ),
     unit=MILLIMETRE,
     group=GROUP,
     source="gearboxes.{place}.axial_travel",
+    places=housed_seals,
+    housed=True,
     leaves_out=HEAT,
     moved_by=frozenset({"housing"}),
 )
@@ -156,11 +200,7 @@ def seal_travel(solved: SolvedRig) -> Iterator[Check]:
     """Axial movement of every shaft in its seals against what they take, the worst of the held stages."""
     for box in dict.fromkeys(warm.gearbox for warm in solved.warm):
         for name, seals in solved.case.gearboxes[box].seals.items():
-            rule = replace(
-                SEAL_TRAVEL.rule(seals.axial_travel, f"{box}.{name}"),
-                title=f"axial movement of the {name} shaft in its seals ({box})",
-                source=f"gearboxes.{box}.seals.{name}.axial_travel",
-            )
+            rule = SEAL_TRAVEL.rule(seals.axial_travel, f"{box}.{name}")
             shifts = (
                 (abs(seal.axial_shift), f"{seal.name}, stage {warm.stage}")
                 for warm in solved.warm

@@ -1,7 +1,7 @@
 """Limits of bought parts: a result at the part itself, or a given value, against what its maker allows."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -10,6 +10,7 @@ from rigdesign.base.quantity_kinds import KINDS
 from rigdesign.base.units import display
 from rigdesign.case.component_limits import shafts_of
 from rigdesign.case.limits import BoughtPart, ResultQuantity
+from rigdesign.case.model import Case
 from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.oil import FLOWS
 from rigdesign.checks.omissions import Omissions, constant_drag, warming
@@ -35,10 +36,7 @@ def checks(solved: SolvedRig) -> Iterator[Check]:
 
 
 def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
-    rule = Rule(
-        id=f"bought_part.{name}", title=f"{part.title} ({part.part})", unit=KINDS[part.kind].display_unit,
-        source=part.source, group=GROUP, limit=display(part.limit_si, part.kind),
-    )  # fmt: skip
+    rule = _rule(name, part)
     value: float | None
     value, reason = part.given_si, "given in the case"
     if value is None:
@@ -47,6 +45,13 @@ def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
         return not_applicable(rule, reason)
     check = hold(rule, display(value, part.kind), reason)
     return exact(check) if part.quantity in EXACT else check
+
+
+def _rule(name: str, part: BoughtPart) -> Rule:
+    return Rule(
+        id=f"bought_part.{name}", title=f"{part.title} ({part.part})", unit=KINDS[part.kind].display_unit,
+        source=part.source, group=GROUP, limit=display(part.limit_si, part.kind),
+    )  # fmt: skip
 
 
 def _speed(solved: SolvedRig, part: str) -> Found:
@@ -222,48 +227,120 @@ RESULTS: dict[ResultQuantity, Callable[[SolvedRig, str], Found]] = {
 """How each quantity is found at a part."""
 
 
-def _family(quantity: ResultQuantity | Literal["given"], title: str) -> RuleFamily:
-    """Family of the limits on one quantity; unit, source and title are those that the case states."""
-    return RuleFamily(
-        key=f"bought_part.{quantity}", title=title, unit=NUMBER, group=GROUP, source="limits.bought_parts"
-    )
+@dataclass(frozen=True, kw_only=True)
+class PartFamily(RuleFamily):
+    """Limits of bought parts on one quantity; unit, source and title are those that the case states."""
+
+    def rules(self, case: Case) -> Iterator[Rule]:
+        """The rule of every bought part that is held against this quantity."""
+        quantity = self.key.partition(".")[2]
+        for name, part in case.limits.bought_parts.items():
+            if quantity == (part.quantity if part.given is None else "given"):
+                yield _rule(name, part)
+
+    def limits_of(self, rule: Rule) -> tuple[str, ...]:
+        """The limit that the case states for the part."""
+        return (f"limits.bought_parts.{rule.id.partition('.')[2]}.limit",)
+
+
+def _family(quantity: ResultQuantity | Literal["given"], title: str, procedure: str) -> PartFamily:
+    return PartFamily(
+        key=f"bought_part.{quantity}", title=title, procedure=procedure, unit=NUMBER, group=GROUP,
+        source="limits.bought_parts",
+    )  # fmt: skip
 
 
 FAMILIES = (
-    replace(_family("torque_peak", "highest dynamic torque"), moved_by=frozenset({"time run"})),
-    replace(_family("torque_mean", "largest mean torque"), only_inputs=SPEEDS),
-    replace(_family("speed", "highest speed"), only_inputs=SPEEDS),
     replace(
-        _family("drive_torque", "highest torque of the motor"),
+        _family(
+            "torque_peak",
+            "highest dynamic torque",
+            "Largest dynamic torque of the meshes at the part, referred to the gear on its shaft.",
+        ),
+        moved_by=frozenset({"time run"}),
+    ),
+    replace(
+        _family(
+            "torque_mean",
+            "largest mean torque",
+            "Largest mean torque of the schedule at the gears of the part, by the ratios of the meshes.",
+        ),
+        only_inputs=SPEEDS,
+    ),
+    replace(
+        _family(
+            "speed",
+            "highest speed",
+            "Largest speed of the schedule at the shafts of the part, by the ratios of the meshes.",
+        ),
+        only_inputs=SPEEDS,
+    ),
+    replace(
+        _family(
+            "drive_torque",
+            "highest torque of the motor",
+            "Time run over the whole schedule: largest torque of the motor.",
+        ),
         leaves_out=(constant_drag, _saturated),
         moved_by=frozenset({"time run", "housing"}),
     ),
     replace(
-        _family("drive_power", "highest power of the motor"),
+        _family(
+            "drive_power",
+            "highest power of the motor",
+            "Time run over the whole schedule: largest torque of the motor times its speed.",
+        ),
         leaves_out=(constant_drag, _saturated),
         moved_by=frozenset({"time run", "housing"}),
     ),
     replace(
-        _family("actuator_force", "largest force of the load unit"),
+        _family(
+            "actuator_force",
+            "largest force of the load unit",
+            "Axial force of the shifted gear at the held stages, warm, plus the friction of its seat.",
+        ),
         moved_by=frozenset({"spline friction", "housing"}),
     ),
-    replace(_family("circulating_power", "largest power in the loop"), only_inputs=SPEEDS),
     replace(
-        _family("seal_surface_velocity", "highest surface speed in a seal"),
+        _family(
+            "circulating_power",
+            "largest power in the loop",
+            "Largest torque times speed of the schedule: the same at every place of the loop.",
+        ),
+        only_inputs=SPEEDS,
+    ),
+    replace(
+        _family(
+            "seal_surface_velocity",
+            "highest surface speed in a seal",
+            "Diameter of the seal times the largest speed of its shaft; the largest of all seals of the part.",
+        ),
         only_inputs=(*SPEEDS, "gearboxes.*.housing.shafts", "gearboxes.*.bearings", "drivetrain.shafts"),
     ),
     replace(
-        _family("shaft_growth", "largest thermal expansion of a shaft"),
+        _family(
+            "shaft_growth",
+            "largest thermal expansion of a shaft",
+            "Thermal expansion of the whole shaft at the held stages, from its mean temperatures.",
+        ),
+        housed=True,
         leaves_out=(warming, constant_drag),
         moved_by=frozenset({"housing"}),
     ),
-    replace(_family("oil_flow", "oil flow"), only_inputs=FLOWS),
     replace(
-        _family("temperature_maximum", "highest temperature"),
+        _family("oil_flow", "oil flow", "Sum of the flows of the circuits of the part."), only_inputs=FLOWS
+    ),
+    replace(
+        _family(
+            "temperature_maximum",
+            "highest temperature",
+            "Highest temperature of the field of the gearbox at the held stages.",
+        ),
+        housed=True,
         leaves_out=(warming, constant_drag),
         moved_by=frozenset({"housing"}),
     ),
-    replace(_family("given", "value given in the case"), only_inputs=()),
+    replace(_family("given", "value given in the case", "The value that the case gives."), only_inputs=()),
 )
 """By quantity: the id of a check ends with the name of its part."""
 

@@ -1,13 +1,15 @@
 """Checks of the dynamic loads: K_V, resonances, tooth contact and peaks on the ramp, mesh by mesh."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from rigdesign.case.limits import DynamicsLimits
+from rigdesign.case.model import Case
 from rigdesign.checks.omissions import Omissions, long_periods
+from rigdesign.checks.places import meshes
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic, Values
 from rigdesign.checks.rules import Omission
 from rigdesign.coupling.loads import signed_torque
@@ -26,6 +28,7 @@ NOT_LOADED = "no stage turns under more than the start torque"
 class MeshRule(RuleFamily):
     """One rule for every mesh, against one limit of the case."""
 
+    places: Callable[[Case], Iterable[str]] = meshes
     limit: Callable[[DynamicsLimits], float | None]
     values: Callable[[SolvedRig, int], Values]
     """Of a solved rig and the number of a mesh."""
@@ -173,6 +176,10 @@ RULES = (
     MeshRule(
         key="dynamics.dynamic_factor",
         title="K_V at the held stages, {place} gearbox",
+        procedure=(
+            "Periodic response of the braced loop with warm meshes at every held stage: largest over mean "
+            "torque of the mesh, at the pinion. The highest of the held stages counts."
+        ),
         unit=NUMBER,
         group=GROUP,
         source="limits.dynamics.dynamic_factor_maximum; max/mean, P2 Formula 1",
@@ -185,6 +192,10 @@ RULES = (
     MeshRule(
         key="dynamics.ramp_peak",
         title="highest torque of the loaded ramp over the test torque, {place} gearbox",
+        procedure=(
+            "Time run over the whole schedule: largest torque at the pinion in the stages that turn under "
+            "more than the start torque, over the mean torque at the test point."
+        ),
         unit=NUMBER,
         group=GROUP,
         source="limits.dynamics.dynamic_factor_maximum times the test torque; time run over the schedule",
@@ -197,6 +208,12 @@ RULES = (
     MeshRule(
         key="dynamics.resonance_distance",
         title="distance of held speeds from dangerous resonances, {place} gearbox",
+        procedure=(
+            "Response over speed under every held torque. A peak is a dangerous resonance where it "
+            "amplifies the mesh force by more than dangerous_amplification, or makes a dynamic force "
+            "above dangerous_force_share of the mean. The value is the distance of the nearest one from a "
+            "held speed, as a share of that speed, or that of the end of the speeds looked at."
+        ),
         unit=NUMBER,
         group=GROUP,
         source="limits.dynamics.resonance_distance_minimum; resonances by strength",
@@ -210,6 +227,10 @@ RULES = (
     MeshRule(
         key="dynamics.lift_off",
         title="time without tooth contact in loaded stages, {place} gearbox",
+        procedure=(
+            "Time run over the whole schedule: share of a loaded stage in which no tooth of the mesh "
+            "touches; gaps count from 5 % of a mesh period. The worst stage counts."
+        ),
         unit=NUMBER,
         group=GROUP,
         source="limits.dynamics.lift_off_share_maximum; time run over the schedule",
@@ -222,6 +243,10 @@ RULES = (
     MeshRule(
         key="dynamics.contact_margin",
         title="least torque in loaded stages as a share of the mean, {place} gearbox",
+        procedure=(
+            "Time run over the whole schedule: least torque at the pinion in a loaded stage over its "
+            "mean. The worst stage counts."
+        ),
         unit=NUMBER,
         group=GROUP,
         source="limits.dynamics.contact_margin_minimum; time run over the schedule",

@@ -91,6 +91,10 @@ RULES = (
     RigRule(
         key="bearing.minimum_film",
         title="smallest film of a journal bearing",
+        procedure=(
+            "Film of every journal bearing at the held stages from load, speed, warm clearance and "
+            "viscosity at film temperature (ISO 7902-1): least thickness."
+        ),
         unit=MICROMETRE,
         group=GROUP,
         source="limits.bearing.film_thickness_minimum; film after ISO 7902-1",
@@ -103,6 +107,10 @@ RULES = (
     RigRule(
         key="bearing.specific_load",
         title="largest specific load of a journal bearing",
+        procedure=(
+            "Radial load of every journal bearing at the held stages, from the tooth forces unless "
+            "stated, over diameter times width."
+        ),
         unit=MEGAPASCAL,
         group=GROUP,
         source="limits.bearing.specific_load_maximum",

@@ -37,6 +37,7 @@ RULES = (
     RigRule(
         key="oil.flow",
         title="oil flow of the rig",
+        procedure="Flow per mesh times meshes plus flow per bearing times bearings, of all gearboxes.",
         unit=LITRE_PER_MINUTE,
         group=GROUP,
         source="limits.oil.flow_maximum",
@@ -47,6 +48,11 @@ RULES = (
     RigRule(
         key="oil.cooler",
         title="power the cooler carries",
+        procedure=(
+            "Heat that the oils bring back above their inlet temperatures at the held stages, summed over "
+            "circuits of one oil and inlet temperature; circuits that come back colder do not count "
+            "against it."
+        ),
         unit=KILOWATT,
         group=GROUP,
         source="limits.oil.cooler_power_maximum",
@@ -58,6 +64,10 @@ RULES = (
     RigRule(
         key="oil.heater",
         title="power the heaters of the warm circuits give",
+        procedure=(
+            "Heat that circuits lack whose oil comes back colder than it went, at the held stages, "
+            "summed; warmer circuits do not count against it."
+        ),
         unit=KILOWATT,
         group=GROUP,
         source="limits.oil.heater_power_maximum",
@@ -69,6 +79,10 @@ RULES = (
     RigRule(
         key="oil.room",
         title="heat to the room",
+        procedure=(
+            "Heat from the surfaces of all housings and their clamping fields to the room at the held "
+            "stages, from the temperature fields."
+        ),
         unit=KILOWATT,
         group=GROUP,
         source="limits.oil.room_heat_maximum",

@@ -1,39 +1,65 @@
 """Checks of the schedule: rules of the ramp, and the transition speed on which they depend."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from dynamics.response.schedule import RampLimits, ramp_rules
 from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT
 from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
-from rigdesign.checks.rules import exact, hold, not_applicable
+from rigdesign.checks.rules import Comparison, exact, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig
 from rigdesign.results.check import Check
 from rigdesign.results.units import NEWTON_METRE, REVOLUTION_PER_MINUTE
 
-SOURCES = {
-    "ramp.standstill_torque": "limits.ramp.standstill_torque",
-    "ramp.start_torque": "limits.bearing.start_torque_limit",
-    "ramp.run_up_torque": "limits.ramp.run_up_torque_share_maximum",
-    "ramp.test_torque": "schedule.test_torque",
-}
-RAMP = RuleFamily(
-    key="ramp",
-    title="rule of the ramp",
-    unit=NEWTON_METRE,
-    group="ramp",
-    source="P2, Figure 9",
-    only_inputs=("limits.ramp", "limits.bearing.start_torque_limit", *SPEEDS),
-)
+OF_SPEEDS = ("limits.ramp", "limits.bearing.start_torque_limit", *SPEEDS)
+
+
+def _family(name: str, title: str, limit: str, procedure: str, comparison: Comparison = "<=") -> RuleFamily:
+    return RuleFamily(
+        key=f"ramp.{name}",
+        title=title,
+        procedure=f"{procedure}, along the schedule as stated: nothing is simulated (P2, Figure 9).",
+        unit=NEWTON_METRE,
+        group="ramp",
+        source=limit,
+        comparison=comparison,
+        only_inputs=OF_SPEEDS,
+    )
+
+
+RAMP = {
+    family.key: family
+    for family in (
+        _family(
+            "standstill_torque", "least torque while the rig turns, backlash taken up",
+            "limits.ramp.standstill_torque", "Least torque from just before the rig starts to turn", ">=",
+        ),
+        _family(
+            "start_torque", "most torque below the transition speed of the bearings",
+            "limits.bearing.start_torque_limit", "Most torque below limits.ramp.transition_speed",
+        ),
+        _family(
+            "run_up_torque", "most torque between transition and test speed",
+            "limits.ramp.run_up_torque_share_maximum", "Most torque from the transition speed up to the test speed, "
+            "against the share of the test torque",
+        ),
+        _family("test_torque", "most torque at test speed", "schedule.test_torque", "Most torque at test speed"),
+    )
+}  # fmt: skip
+"""By the ids of `dynamics.response.schedule.ramp_rules`."""
 TRANSITION_SPEED = RuleFamily(
     key="bearing.transition_speed",
     title="transition speed of the bearings under the start torque",
+    procedure=(
+        "Vogelpohl transition speed of every bearing under the load of the start torque: that of the "
+        "film at a held stage times start torque over held torque. The highest counts."
+    ),
     unit=REVOLUTION_PER_MINUTE,
     group="bearings",
     source="Vogelpohl, against limits.ramp.transition_speed",
+    limit_keys=("limits.ramp.transition_speed",),
     absent=NO_LIMIT,
     leaves_out=(SHAFT_HEAT, THRUST_TILT, warming),
     moved_by=frozenset({"start torque", "ramp limits", "housing"}),
@@ -69,13 +95,7 @@ def ramp(solved: SolvedRig) -> Iterator[Check]:
         ),
     )
     for entry in rules:
-        rule = replace(
-            RAMP.rule(entry.limit if stated[entry.id] else None),
-            id=entry.id,
-            title=entry.text,
-            source=SOURCES.get(entry.id, RAMP.source),
-            comparison=entry.comparison,
-        )
+        rule = RAMP[entry.id].rule(entry.limit if stated[entry.id] else None)
         if not stated[entry.id]:
             yield not_applicable(rule, NO_LIMIT)
         elif not entry.stage:
@@ -109,4 +129,4 @@ def transition_speeds(solved: SolvedRig, torque: float) -> Values:
     )
 
 
-REGISTRY.register(Topic(order=50, families=(RAMP, TRANSITION_SPEED), checks=checks))
+REGISTRY.register(Topic(order=50, families=(*RAMP.values(), TRANSITION_SPEED), checks=checks))

@@ -6,12 +6,14 @@ limit, the key of that limit in `case.limits`. Nothing else lists checks.
 
 import importlib
 import pkgutil
+import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from rigdesign.case.limits import Limits
 from rigdesign.case.model import Case
 from rigdesign.checks.influences import Influence
+from rigdesign.checks.places import whole_rig
 from rigdesign.checks.rules import Comparison, Omission, Rule, hold, not_applicable
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
@@ -21,6 +23,8 @@ Values = Iterable[tuple[float, str]]
 """(value [SI], where it occurs)."""
 Finder = Callable[[SolvedRig, Check], Iterator[Omission]]
 """What the value of a held check leaves out."""
+PATH = re.compile(r"[a-z_0-9]+(?:\.[a-z_0-9]+)+")
+"""Paths of the case in the source of a rule."""
 
 
 @dataclass(frozen=True)
@@ -48,10 +52,18 @@ class RuleFamily:
     """Section of the report; sections stand in the order of the checks."""
     source: str
     """Where the limit stands, as a path of the case, and the basis of the value; ``{place}`` stands for the place."""
+    procedure: str
+    """How the value is computed, in words."""
+    places: Callable[[Case], Iterable[str]] = whole_rig
+    """Where in a case rules of the family hold."""
+    limit_keys: tuple[str, ...] = ()
+    """Paths of the limits, where the source does not begin with the only one."""
     comparison: Comparison = "<="
     needs: Need | None = None
     absent: str | Callable[[SolvedRig], str] = NO_HOUSING
     """Why the rule does not apply where the solved rig has no value for it."""
+    housed: bool = False
+    """Without a housing there is no value."""
     leaves_out: tuple[Finder, ...] = ()
     """Known contributors that the value does not count, in the order in which they are reported."""
     moved_by: frozenset[Influence] = frozenset()
@@ -70,6 +82,14 @@ class RuleFamily:
             limit=None if limit is None else self.unit.shown(limit),
             comparison=self.comparison,
         )
+
+    def rules(self, case: Case) -> Iterator[Rule]:
+        """The rules of a case before anything is solved, without their limits."""
+        return (self.rule(None, place) for place in self.places(case))
+
+    def limits_of(self, rule: Rule) -> tuple[str, ...]:
+        """Paths of the limits of one of its rules."""
+        return self.limit_keys or tuple(PATH.findall(rule.source.partition(";")[0]))[:1]
 
     def worst(self, solved: SolvedRig, rule: Rule, values: Values) -> Check:
         """Hold the governing one of some values against a rule of this family, or say why there is none."""

@@ -8,8 +8,9 @@ from dynamics.rating.iso_rating import permissible_factors, root_stress, transve
 from dynamics.standards.iso6336_3_2006 import LoadFactors
 from rigdesign.checks.influences import SPEEDS, Influence
 from rigdesign.checks.omissions import long_periods
+from rigdesign.checks.places import rig_gears, specimen_gears
 from rigdesign.checks.registry import LOADS, REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import hold, not_applicable
+from rigdesign.checks.rules import Rule, hold, not_applicable
 from rigdesign.records.curves import iso_factor
 from rigdesign.records.solved_rig import NO_LIMIT, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
@@ -27,26 +28,51 @@ class StressMethod:
     """In ids."""
     title: str
     source: str
+    procedure: str
+    """Of the stress."""
     moved_by: frozenset[Influence] = frozenset()
 
 
+@dataclass(frozen=True, kw_only=True)
+class GearFamily(RuleFamily):
+    """One rule for every gear of every mesh; the place is ``mesh.gear``."""
+
+    def rule(self, limit: float | None, place: str = "") -> Rule:
+        """The rule of one gear with its limit [SI]."""
+        label, _, gear = place.rpartition(".")
+        return replace(super().rule(limit, place), title=self.title.format(place=f"{label} {gear}"))
+
+
 ISO = StressMethod(
-    "iso", "ISO 6336-3", "ISO 6336-3:2006 method B with the simulated K_V", frozenset({"gear rating"})
+    "iso",
+    "ISO 6336-3",
+    "ISO 6336-3:2006 method B with the simulated K_V",
+    "sigma_F of ISO 6336-3:2006 at every held stage: nominal stress of the mean torque at the outer point of single "
+    "contact times K_A, simulated K_V, K_Fbeta and K_Falpha; the highest stage counts.",
+    frozenset({"gear rating"}),
 )
 PATH = StressMethod(
-    "path", "over the path", "sigma_F over the path from the dynamic tooth forces, local lever"
+    "path",
+    "over the path",
+    "sigma_F over the path from the dynamic tooth forces, local lever",
+    "Forces on one tooth through its whole contact in the periodic response, shared between the pairs by their "
+    "stiffness and deviations; root stress of every force at the lever of its place; the peak of the path and of all "
+    "held stages counts.",
 )
 METHODS = (ISO, PATH)
 OF_WINDOW: frozenset[Influence] = frozenset({"specimen limits"})
 OF_SAFETY: frozenset[Influence] = frozenset({"strength limits", "test time"})
 
 WINDOWS = {
-    method.name: RuleFamily(
+    method.name: GearFamily(
         key=f"specimen.root_stress_{method.name}",
         title=f"root stress of specimen {{place}}, {method.title}",
         unit=MEGAPASCAL,
         group="specimen",
         source=method.source,
+        procedure=method.procedure,
+        places=specimen_gears,
+        limit_keys=("limits.specimen.root_stress_minimum", "limits.specimen.root_stress_maximum"),
         comparison="within",
         needs=LOADS,
         leaves_out=(long_periods,),
@@ -55,12 +81,16 @@ WINDOWS = {
     for method in METHODS
 }
 SAFETIES = {
-    method.name: RuleFamily(
+    method.name: GearFamily(
         key=f"strength.root_safety_{method.name}",
         title=f"root safety of {{place}}, {method.title}",
         unit=NUMBER,
         group="dynamics",
         source=f"{method.source}; sigma_FE of the material, ISO 6336-3:2006 clauses 12, 13, 15",
+        procedure=f"{method.procedure} The strength is sigma_FE of the material times the factors of life (planned "
+        "cycles of all specimens), notch, surface and size; 0.7 of it for an idler. Safety: strength over stress.",
+        places=rig_gears,
+        limit_keys=("limits.strength.root_safety_minimum",),
         comparison=">=",
         needs=LOADS,
         leaves_out=(long_periods,),
@@ -71,6 +101,7 @@ SAFETIES = {
 LOAD_CYCLES = RuleFamily(
     key="specimen.load_cycles",
     title="load cycles of a specimen tooth in the planned time",
+    procedure="Turns of every specimen gear at test speed in the planned time; the slowest gear counts.",
     unit=NUMBER,
     group="specimen",
     source="limits.specimen.load_cycles_minimum; test_plan.time at test speed",
@@ -100,7 +131,6 @@ def _window(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> C
     label, gear = solved.label(mesh), solved.rig.mesh_gear_name(mesh, index)
     rule = replace(
         family.rule(low, f"{label}.{gear}"),
-        title=family.title.format(place=f"{label} {gear}"),
         role="specimen",
         upper_limit=None if high is None else MPA * high,
     )
@@ -112,7 +142,7 @@ def _window(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> C
 def _safety(solved: SolvedRig, mesh: int, index: int, method: StressMethod) -> Check:
     family, limit = SAFETIES[method.name], solved.case.limits.strength.root_safety_minimum
     label, gear = solved.label(mesh), solved.rig.mesh_gear_name(mesh, index)
-    rule = replace(family.rule(limit, f"{label}.{gear}"), title=family.title.format(place=f"{label} {gear}"))
+    rule = family.rule(limit, f"{label}.{gear}")
     material = solved.rig.materials[solved.rig.mesh_gear(mesh, index).material]
     if solved.loads is None or limit is None:
         return not_applicable(rule, NO_LOADS if solved.loads is None else NO_LIMIT)

@@ -98,17 +98,26 @@ RULES = (
     RigRule(
         key="temperature.housing",
         title="hottest place of the housing",
+        procedure=(
+            "Steady temperature field of every housing at the held stages (finite elements, losses of the "
+            "coupled iteration as heat): highest temperature of the body of the housing."
+        ),
         unit=DEGREE_CELSIUS,
         group=GROUP,
         source="limits.temperatures.housing_maximum",
         limit=lambda limits: limits.temperatures.housing_maximum,
         values=_housings,
+        housed=True,
         leaves_out=(WALLS, *HEAT),
         moved_by=frozenset({"housing"}),
     ),
     RigRule(
         key="temperature.bearing_film",
         title="hottest bearing film",
+        procedure=(
+            "Heat balance of every bearing film at the held stages (ISO 7902-1): friction against the "
+            "heat that oil, shaft and shell carry off."
+        ),
         unit=DEGREE_CELSIUS,
         group=GROUP,
         source="limits.temperatures.bearing_film_maximum; ISO 7902-1 heat balance",
@@ -120,6 +129,10 @@ RULES = (
     RigRule(
         key="temperature.oil_outlet",
         title="hottest oil outlet",
+        procedure=(
+            "Heat balance of every oil stream at the held stages: inlet temperature plus the heat it "
+            "takes up over mass flow and heat capacity. The warmest outlet counts."
+        ),
         unit=DEGREE_CELSIUS,
         group=GROUP,
         source="limits.temperatures.oil_outlet_maximum",
@@ -131,6 +144,11 @@ RULES = (
     RigRule(
         key="temperature.gear_bulk",
         title="gear bulk temperature below tempering temperature",
+        procedure=(
+            "Tempering temperature of the material less the temperature of the gear at the held stages: "
+            "that of its teeth where a flank film gives it, else of its body; of its oil outlet without a "
+            "housing. The least counts."
+        ),
         unit=KELVIN,
         group=GROUP,
         source="limits.temperatures.tempering_distance_minimum",

@@ -6,6 +6,7 @@ from dataclasses import replace
 from rigdesign.checks.clearances import NOT_EXPANDED, PLAY_NOT_EXPANDED, SEALS_NOT_EXPANDED
 from rigdesign.checks.influences import Influence
 from rigdesign.checks.omissions import constant_drag, coupled_shafts, given_losses
+from rigdesign.checks.places import couplings, housings
 from rigdesign.checks.registry import REGISTRY, Finder, RuleFamily, Topic
 from rigdesign.checks.rules import Comparison, hold, not_applicable
 from rigdesign.checks.temperatures import WALLS
@@ -29,9 +30,12 @@ def _family(
     comparison: Comparison = "<=",
     leaves_out: tuple[Finder, ...] = (),
 ) -> RuleFamily:
+    extreme = "least" if comparison == ">=" else "largest"
     return RuleFamily(
         key=f"transient.{quantity}",
         title=title,
+        procedure="Thermal history over warm-up, schedule, stops and soak-back (check --transient): the "
+        f"{extreme} value at all places and moments of the planned course.",
         unit=UNITS[quantity],
         group=GROUP,
         source=source,
@@ -57,7 +61,7 @@ def _coupling(quantity: str, title: str, limit: str) -> RuleFamily:
     """Largest misalignment of every coupling over time."""
     source = f"drivetrain.couplings.{{place}}.{limit}; thermal history"
     family = _family(quantity, title, source, leaves_out=(coupled_shafts,))
-    return replace(family, moved_by=MOVED_BY | {"coupling offset"})
+    return replace(family, moved_by=MOVED_BY | {"coupling offset"}, places=couplings)
 
 
 EXTREMES = (
@@ -97,6 +101,9 @@ SOAK = RuleFamily(
     title="warm-up needed before full torque, {place} gearbox",
     unit=DisplayUnit("h", 1.0 / HOUR),
     group=GROUP,
+    procedure="Thermal history (check --transient): shortest warm-up after which every clearance limit holds up to the "
+    "end of the dwell.",
+    places=housings,
     source="transient.warm_up; shortest warm-up with which all clearance limits hold",
     leaves_out=(constant_drag, given_losses),
     moved_by=MOVED_BY,

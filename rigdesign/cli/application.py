@@ -2,12 +2,15 @@
 
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from cyclopts import App
+from cyclopts import App, Group, Parameter
 
+from rigdesign.base.errors import UsageError
 from rigdesign.base.version import __version__
+from rigdesign.cli.terminal.console import verbosity
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
@@ -20,6 +23,50 @@ app = App(
     print_error=False,
     suppress_keyboard_interrupt=False,
 )
+app.meta.suppress_keyboard_interrupt = False
+app.meta.group_parameters = Group("Options of every command", sort_key=100)
+
+
+def run(tokens: Sequence[str]) -> object:
+    """Run a command line; the value that its command returns.
+
+    Raises
+    ------
+    CycloptsError
+        A line that is no command.
+    RigdesignError
+        What the command raises.
+    """
+    return app.meta(list(tokens), result_action="return_value")
+
+
+@app.meta.default
+def _launch(
+    *tokens: Annotated[str, Parameter(show=False, allow_leading_hyphen=True)],
+    verbose: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
+    quiet: Annotated[bool, Parameter(negative=(), show_default=False)] = False,
+) -> object:
+    """Take the options of every command off and run the rest.
+
+    Parameters
+    ----------
+    tokens
+        Command with its own options.
+    verbose
+        Say every step with its time, the iterations of the solvers, and what the caches gave.
+    quiet
+        Print errors and the line of the verdict only.
+    """
+    if verbose and quiet:
+        raise UsageError("--verbose and --quiet exclude each other; leave one of them out")
+    before = verbosity.set("verbose" if verbose else "quiet" if quiet else "normal")
+    try:
+        from rigdesign.cli.terminal.verbose import cache_use
+
+        with cache_use():
+            return app(tokens, result_action="return_value")
+    finally:
+        verbosity.reset(before)
 
 
 def loaded_case(path: Path) -> "Case":
@@ -30,6 +77,7 @@ def loaded_case(path: Path) -> "Case":
 
 
 def print_json(document: object) -> None:
-    """One JSON document on stdout."""
-    json.dump(document, sys.stdout, indent=2, ensure_ascii=False, allow_nan=False)
+    """One JSON document on stdout; escaped where the stream is not in UTF."""
+    plain = not (sys.stdout.encoding or "").lower().startswith("utf")
+    json.dump(document, sys.stdout, indent=2, ensure_ascii=plain, allow_nan=False)
     sys.stdout.write("\n")

@@ -1,4 +1,7 @@
-"""The command line: `rigdesign check | study | compare | diagnose | validate | new | mesh | schema | doctor`.
+"""The command line, `rigdesign COMMAND`.
+
+Commands: check, study, compare, diagnose, validate, explain, new, mesh, schema, doctor, completion; ``--verbose`` and
+``--quiet`` go with each.
 
 Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; validate: no gate missed), 1 a
 check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is missing, 5 measured
@@ -8,19 +11,35 @@ data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy impor
 
 import sys
 
-from rigdesign.cli.application import app
-from rigdesign.cli.commands import check, compare, diagnose, doctor, mesh, new, schema, study, validate
+from rigdesign.cli.application import app, run
+from rigdesign.cli.commands import (
+    check,
+    compare,
+    completion,
+    diagnose,
+    doctor,
+    explain,
+    mesh,
+    new,
+    schema,
+    study,
+    validate,
+)
 from rigdesign.cli.ending import exit_status
+from rigdesign.cli.terminal.console import plain_streams
 
 __all__ = [
     "app",
     "check",
     "compare",
+    "completion",
     "diagnose",
     "doctor",
+    "explain",
     "main",
     "mesh",
     "new",
+    "run",
     "schema",
     "study",
     "validate",
@@ -29,4 +48,5 @@ __all__ = [
 
 def main() -> None:
     """Entry point of the `rigdesign` command."""
-    sys.exit(exit_status(lambda: app(result_action="return_value")))
+    plain_streams()
+    sys.exit(exit_status(lambda: run(sys.argv[1:])))

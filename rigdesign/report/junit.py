@@ -1,6 +1,12 @@
-"""junit.xml: one testcase per check, so that any CI server shows the verdicts."""
+"""junit.xml: one testcase per check, so that any CI server shows the verdicts.
+
+The time of a testcase is its part of the run: the seconds of every part of the run (``timings_s``) are shared out
+evenly among the checks that use it, so that the testcases together last as long as the run. Checks that do not apply
+take none. Times differ from run to run as ``timings_s`` does; all else is the same.
+"""
 
 import re
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 
@@ -10,30 +16,54 @@ from rigdesign.results.result import RunResult
 
 NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 """Characters that XML 1.0 cannot hold."""
+OF_LOADS = frozenset({"dynamics", "specimen", "bought parts"})
+OF_HOUSINGS = frozenset({"temperatures", "clearances", "bearings", "oil", "alignment"})
+GROUPS_OF_PARTS: Mapping[str, frozenset[str]] = {
+    "dynamics": OF_LOADS,
+    "load_errors": OF_LOADS,
+    "discretisation": OF_HOUSINGS,
+    "alternatives": OF_HOUSINGS,
+    "transient": frozenset({"transient"}),
+}
+"""Part of the run -> groups of the checks that use it; every other part serves all checks."""
 
 
 def write_junit(result: RunResult, path: Path) -> None:
     """Write junit.xml: a suite per group of checks.
 
     fail -> failure with value, limit and margin; warn -> passed, the reason in system-out; not applicable ->
-    skipped with the reason. No times: two runs give the same file.
+    skipped with the reason.
     """
     from junitparser import JUnitXml, TestSuite
 
+    seconds = check_seconds(result.checks, result.timings_s)
     document = JUnitXml(f"rigdesign {_clean(result.case['name'])}")
     for group, checks in groupby(sorted(result.checks, key=lambda item: item.group), lambda item: item.group):
         suite = TestSuite(_clean(group) or "checks")
         for check in checks:
-            suite.add_testcase(_testcase(check, result.case["name"]))
+            suite.add_testcase(_testcase(check, result.case["name"], seconds[check.id]))
         document.add_testsuite(suite)
     document.update_statistics()  # type: ignore[no-untyped-call]
     document.write(str(path), pretty=True)
 
 
-def _testcase(check: Check, case: str):  # type: ignore[no-untyped-def]  # junitparser has no types
+def check_seconds(checks: Sequence[Check], timings: Mapping[str, float]) -> dict[str, float]:
+    """Seconds of the run by id of the check, together those of all parts; 0 for checks that do not apply."""
+    seconds = {check.id: 0.0 for check in checks}
+    applied = [check for check in checks if check.verdict != "not applicable"] or list(checks)
+    for part, whole in timings.items():
+        groups = GROUPS_OF_PARTS.get(part)
+        sharing = [check for check in applied if groups is None or check.group in groups] or applied
+        for check in sharing:
+            seconds[check.id] += whole / len(sharing)
+    return seconds
+
+
+def _testcase(check: Check, case: str, seconds: float):  # type: ignore[no-untyped-def]  # junitparser has no types
     from junitparser import Failure, Skipped, TestCase
 
-    testcase = TestCase(_clean(check.id), classname=_clean(f"{case}.{check.group or 'checks'}"))
+    classname = _clean(f"{case}.{check.group or 'checks'}")
+    testcase = TestCase(_clean(check.id), classname=classname, time=round(seconds, 3))
     summary = _clean(check_summary(check))
     if check.verdict == "fail":
         failure = Failure(summary, type_="limit exceeded")

@@ -1,5 +1,6 @@
 """Commands called as the entry point does, and a case that runs in a second."""
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,12 +50,18 @@ Write = Callable[[str], Path]
 
 
 @pytest.fixture
-def rigdesign(capsys: pytest.CaptureFixture[str]) -> Rigdesign:
-    """Call a command as the entry point does, but in this process."""
+def rigdesign(
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Rigdesign:
+    """Call a command as the entry point does, but in this process and with a cache folder of the test run."""
+    if "RIGDESIGN_CACHE_DIR" not in os.environ:
+        monkeypatch.setenv("RIGDESIGN_CACHE_DIR", str(tmp_path_factory.getbasetemp() / "rigdesign-cache"))
 
     def call(*arguments: object) -> Ended:
         tokens = [str(argument) for argument in arguments]
-        status = ending.exit_status(lambda: cli.app(tokens, result_action="return_value"))
+        status = ending.exit_status(lambda: cli.run(tokens))
         return Ended(status, *capsys.readouterr())
 
     return call

@@ -11,10 +11,12 @@ are thought over again. The prototype is held at standard fidelity, the others a
 
 import json
 from functools import cache
+from pathlib import Path
 
 import pytest
 
 from rigdesign import load_case, run_case
+from rigdesign.cli.terminal.checks import print_checks
 from rigdesign.report import results_document
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
@@ -49,6 +51,20 @@ def test_check_of_a_shipped_case(name: str, check_id: str) -> None:
     entry = EXPECTED[name]["checks"][check_id]
     assert check.verdict == entry["verdict"]
     assert expected.agrees(entry["utilisation"], check.utilisation), (check.utilisation, entry["utilisation"])
+
+
+@pytest.mark.parametrize(("name", "fails"), [("uhcf_prototype", 2), ("loop_1to1", 0)])
+def test_the_terminal_says_what_decides_on_one_screen(
+    name: str, fails: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Under 30 lines of at most 80 columns, every failing check among them."""
+    monkeypatch.setenv("COLUMNS", "80")
+    print_checks(shipped(name), Path("out"))
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) < 30 and all(len(line) <= 80 for line in lines)
+    assert lines[1].startswith(f"verdict: {shipped(name).verdict} (")
+    assert sum(line.startswith("fail: ") for line in lines) == fails
+    assert lines[-1] == "report: out/report.html"
 
 
 @pytest.mark.parametrize(

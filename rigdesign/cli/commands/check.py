@@ -5,9 +5,11 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
+from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.cli.application import app, loaded_case, print_json
 from rigdesign.cli.ending import NOTHING_KEPT, failure_kept, interrupted
+from rigdesign.cli.terminal.console import verbosity
 
 
 @app.command
@@ -18,6 +20,7 @@ def check(
     fidelity: Fidelity = "standard",
     transient: Annotated[bool, Parameter(negative=())] = False,
     ranges: Annotated[bool, Parameter(negative=())] = False,
+    everything: Annotated[bool, Parameter(name="--all", negative=())] = False,
     json: bool = False,
     fail_on: Literal["fail", "warn"] = "fail",
 ) -> int:
@@ -35,21 +38,31 @@ def check(
         Follow temperatures and clearances over warm-up, schedule, stops and soak-back as well.
     ranges
         Move every assumed input to both ends of its range, one at a time: a check passes only if it holds there too.
+    everything
+        Print every check and every note, not only what decides.
     json
         Print results.json on stdout; everything else goes to stderr.
     fail_on
         Verdict from which the exit status is 1.
     """
+    if everything and verbosity.get() == "quiet":
+        raise UsageError(
+            "--all prints every check and --quiet nothing but the verdict; leave one of them out"
+        )
     loaded = loaded_case(case)
     from rigdesign.cli.terminal.checks import print_checks
+    from rigdesign.cli.terminal.estimate import step_times
     from rigdesign.cli.terminal.progress import Progress
+    from rigdesign.cli.terminal.verbose import print_run
     from rigdesign.reanalysis.flips import with_flips
     from rigdesign.report import prepare_output, results_document, write_results
     from rigdesign.run.main import run_case
 
     if out is not None:
         prepare_output(out)
-    with Progress() as progress, interrupted(NOTHING_KEPT), failure_kept(out):
+    options = "".join(f" {name}" for name, on in (("transient", transient), ("ranges", ranges)) if on)
+    times = step_times(f"check {loaded.hash[:16]} {fidelity}{options}")
+    with Progress(times) as progress, interrupted(NOTHING_KEPT), failure_kept(out):
         result = run_case(
             loaded,
             fidelity=fidelity,
@@ -64,9 +77,10 @@ def check(
         if out is not None:
             progress("writing report")
             write_results(result, out)
+    print_run(result)
     if json:
         print_json(results_document(result))
     else:
-        print_checks(result, out)
+        print_checks(result, out, everything=everything)
     failing = {"fail"} if fail_on == "fail" else {"fail", "warn"}
     return 1 if result.verdict in failing else 0

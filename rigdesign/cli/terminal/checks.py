@@ -1,5 +1,8 @@
-"""The checks of a run."""
+"""The checks of a run: what decides on one screen, or all of them."""
 
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -7,7 +10,10 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from rigdesign.cli.terminal.console import new_console
+from rigdesign.checks.rules import WARN_UTILISATION
+from rigdesign.cli.terminal.console import hanging, new_console, verbosity, verdict_console
+from rigdesign.cli.terminal.warning_groups import warning_groups
+from rigdesign.report.numbers import limit_text, margin_text, quantity_text
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 
@@ -15,63 +21,156 @@ if TYPE_CHECKING:
     from rigdesign.results.ranges import RangesResult
 
 STYLES = {"pass": "green", "warn": "yellow", "fail": "bold red", "not applicable": "dim"}
+ORDER = ("fail", "warn", "pass", "not applicable")
+"""Of the counts."""
+MOST_GROUPS = 5
+"""Groups of warnings that are printed; failing checks are printed whatever their number."""
+NEAREST = 5
+"""Checks of the table of margins."""
+MOST_FAILED_ENDS = 3
+"""Ends of ranges without a result that are printed."""
 
 
-def print_checks(result: RunResult, out: Path | None) -> None:
-    """Checks grouped as in the report, failing ones explained, then the verdict."""
+def print_checks(result: RunResult, out: Path | None, *, everything: bool = False) -> None:
+    """What decides: verdict, failing checks, warnings by reason, nearest margins, counts; or every check and note."""
+    if verbosity.get() == "quiet":
+        _print_verdict(verdict_console(), result)
+        return
     console = new_console(wrap=True)
-    table = Table(title=f"{result.case['title']}  ({result.fidelity})", title_justify="left", pad_edge=False)
-    for heading, justify in (
-        ("check", "left"), ("value", "right"), ("limit", "right"), ("margin", "right"), ("used", "right"),
-        ("verdict", "left"),
-    ):  # fmt: skip
-        table.add_column(heading, justify=justify)  # type: ignore[arg-type]
+    console.print(Text(f"{result.case['title']}  ({result.fidelity})", "bold"))
+    _print_verdict(console, result)
+    if everything:
+        _print_all(console, result)
+    else:
+        _print_summary(console, result)
+    if result.ranges is not None:
+        _print_ranges(console, result.ranges, everything=everything)
+    if out is not None:
+        console.print(f"report: {out / 'report.html'}")
+
+
+def _print_verdict(console: Console, result: RunResult) -> None:
+    numbers = sorted(result.counts.items(), key=lambda count: ORDER.index(count[0]))
+    counts = ", ".join(f"{number} {verdict}" for verdict, number in numbers if number)
+    console.print(Text("verdict: ") + Text(result.verdict, STYLES[result.verdict]) + Text(f" ({counts})"))
+
+
+def _print_summary(console: Console, result: RunResult) -> None:
+    for check in result.checks:
+        if check.verdict == "fail":
+            against = f"{quantity_text(check.value, check.unit)}, limit {limit_text(check)}"
+            hanging(console, Text("fail: ", STYLES["fail"]), f"{check.title}: {against}")
+            hanging(console, Text(" " * 6), check.reason.partition("; ")[0])
+    _print_warnings(console, result.checks)
+    _print_nearest(console, result.checks)
+    _print_not_applicable(console, result.checks)
+    if result.warnings:
+        kinds = Counter(record.id for record in result.warnings)
+        listed = ", ".join(f"{number} {kind}" for kind, number in kinds.most_common())
+        hanging(console, Text("notes: "), f"{listed}; --all prints them and every check")
+
+
+def _print_warnings(console: Console, checks: Iterable[Check]) -> None:
+    groups = warning_groups(checks)
+    for group in groups[:MOST_GROUPS]:
+        hanging(console, Text("warn: ", STYLES["warn"]), group.text)
+    if len(groups) > MOST_GROUPS:
+        console.print(f"      {len(groups) - MOST_GROUPS} more reasons: --all")
+
+
+def _print_nearest(console: Console, checks: Iterable[Check]) -> None:
+    """The checks that hold with the least left; those at a limit that the case states as the value itself are none."""
+    held = [check for check in checks if check.verdict in ("pass", "warn") and check.utilisation is not None]
+    stated = [check for check in held if check.verdict == "pass" and _used(check) > WARN_UTILISATION]
+    nearest = sorted((check for check in held if check not in stated), key=_used, reverse=True)[:NEAREST]
+    if not nearest:
+        return
+    table = _table("nearest margins", "margin", "used")
+    for check in nearest:
+        table.add_row(Text(check.id), *map(Text, _numbers(check)))
+    console.print(table)
+    if stated:
+        console.print(f"stated inputs at their limit, left out here: {len(stated)}")
+
+
+def _used(check: Check) -> float:
+    return 0.0 if check.utilisation is None else check.utilisation
+
+
+def _print_not_applicable(console: Console, checks: Iterable[Check]) -> None:
+    reasons = Counter(check.reason for check in checks if check.verdict == "not applicable")
+    for reason, number in reasons.most_common(2):
+        hanging(console, Text(f"{number} not applicable: ", STYLES["not applicable"]), reason)
+    if len(reasons) > 2:
+        rest = sum(number for _, number in reasons.most_common()[2:])
+        console.print(Text(f"{rest} not applicable for other reasons", STYLES["not applicable"]))
+
+
+def _table(first: str, *further: str) -> Table:
+    """A table of checks: what, value, limit, and further numbers."""
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column(first, overflow="fold")
+    for heading in ("value", "limit", *further):
+        table.add_column(heading, justify="right")
+    return table
+
+
+def _numbers(check: Check) -> tuple[str, str, str, str]:
+    """Value, limit in its unit, margin, share of the limit used."""
+    used = "" if check.utilisation is None else f"{100 * check.utilisation:.0f} %"
+    value = "" if check.value is None else quantity_text(check.value, check.unit)
+    limit = "" if check.limit is None else limit_text(replace(check, unit=""))
+    return value, limit, "" if check.margin is None else margin_text(check), used
+
+
+def _print_all(console: Console, result: RunResult) -> None:
+    """Checks grouped as in the report, the reason of each that fails or warns, every note."""
+    table = _table("check", "margin", "used")
+    table.add_column("verdict")
     group = None
     for check in result.checks:
+        if check.verdict == "not applicable":
+            continue
         if check.group != group:
             group = check.group
             table.add_section()
-        table.add_row(*_check_cells(check))
+        table.add_row(
+            Text(check.title), *map(Text, _numbers(check)), Text(check.verdict, STYLES[check.verdict])
+        )
     console.print(table)
     for check in result.checks:
         if check.verdict in ("fail", "warn"):
             console.print(
                 Text(f"{check.verdict}: ", STYLES[check.verdict]) + Text(f"{check.title}: {check.reason}")
             )
+        elif check.verdict == "not applicable":
+            console.print(Text(f"not applicable: {check.title}: {check.reason}", STYLES[check.verdict]))
     for record in result.warnings:
         console.print(Text(f"note {record.id}: ", "yellow") + Text(record.text))
-    if result.ranges is not None:
-        _print_ranges(console, result.ranges)
-    console.print(Text("verdict: ") + Text(result.verdict, STYLES[result.verdict]))
-    if out is not None:
-        console.print(f"report: {out / 'report.html'}")
 
 
-def _print_ranges(console: Console, ranges: "RangesResult") -> None:
+def _print_ranges(console: Console, ranges: "RangesResult", *, everything: bool) -> None:
     """How far the ranges of the assumed inputs reach, and the ends that have no result."""
-    console.print(Text("ranges: ", "bold") + Text(ranges.method))
+    if everything:
+        console.print(Text("ranges: ", "bold") + Text(ranges.method))
     hottest = ranges.max_temperature
     if hottest is not None:
-        console.print(
-            f"highest temperature over the ranges: {hottest.low_degC:.1f} to {hottest.high_degC:.1f} degC, stated "
-            f"{hottest.stated_degC:.1f} degC"
+        low, high, stated = (
+            quantity_text(value, "degC")
+            for value in (
+                round(hottest.low_degC, 1),
+                round(hottest.high_degC, 1),
+                round(hottest.stated_degC, 1),
+            )
         )
-    for entry in ranges.inputs:
-        for value, error in ((entry.low, entry.low_error), (entry.high, entry.high_error)):
-            if error is not None:
-                console.print(Text("no result: ", "yellow") + Text(f"{entry.path} = {value}: {error}"))
-
-
-def _check_cells(check: Check) -> tuple[Text, ...]:
-    limit = _number(check.limit)
-    if check.upper_limit is not None:
-        limit = f"{limit} … {_number(check.upper_limit)}"
-    used = "" if check.utilisation is None else f"{100 * check.utilisation:.0f} %"
-    margin = "" if check.margin is None else f"{_number(check.margin)} {check.unit}"
-    value = "" if check.value is None else f"{_number(check.value)} {check.unit}"
-    cells = (check.title, value, f"{check.comparison} {limit}" if limit else "", margin, used)
-    return (*map(Text, cells), Text(check.verdict, STYLES[check.verdict]))
-
-
-def _number(value: float | None) -> str:
-    return "" if value is None else f"{value:.4g}"
+        console.print(f"highest temperature over the ranges: {low} to {high}, stated {stated}")
+    failed = [
+        f"{entry.path} = {value}: {error}"
+        for entry in ranges.inputs
+        for value, error in ((entry.low, entry.low_error), (entry.high, entry.high_error))
+        if error is not None
+    ]
+    for text in failed if everything else failed[:MOST_FAILED_ENDS]:
+        console.print(Text("no result: ", "yellow") + Text(text))
+    if not everything and len(failed) > MOST_FAILED_ENDS:
+        console.print(f"no result at {len(failed) - MOST_FAILED_ENDS} more ends: --all")

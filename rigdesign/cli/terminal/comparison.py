@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from rich.text import Text
 
-from rigdesign.cli.terminal.console import new_console
+from rigdesign.cli.terminal.console import new_console, verdict_console
 
 if TYPE_CHECKING:
     from rigdesign.measurement.comparison.compare import Comparison
@@ -16,7 +16,7 @@ def print_comparison(comparison: "Comparison", out: Path | None) -> None:
     from rigdesign.measurement.comparison.compare import headline
 
     console = new_console()
-    console.print(Text(headline(comparison), "bold"))
+    verdict_console().print(Text(headline(comparison), "bold"))
     for finding in comparison.findings:
         style = {"dropped": "red", "suspect": "yellow"}.get(finding.weight, "dim")
         console.print(Text(f"{finding.weight:8s}", style) + Text(finding.text))

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from rich.text import Text
 
-from rigdesign.cli.terminal.console import new_console
+from rigdesign.cli.terminal.console import new_console, verdict_console
 
 if TYPE_CHECKING:
     from rigdesign.diagnosis.document.outcome import Outcome
@@ -43,7 +43,7 @@ def print_diagnosis(outcome: "Outcome", out: Path) -> None:
     console = new_console()
     found, measurement = outcome.result.diagnosis, outcome.result.measurement
     style = DIAGNOSIS_STYLES.get(outcome.verdict, "bold yellow")
-    console.print(Text(VERDICTS[outcome.verdict], style) + Text(f" ({found.strength})", "dim"))
+    verdict_console().print(Text(VERDICTS[outcome.verdict], style) + Text(f" ({found.strength})", "dim"))
     console.print(Text(headline(outcome)))
     console.print(Text(certainty(outcome), "dim"))
     for text in sentences(outcome.before, measurement)[:3]:

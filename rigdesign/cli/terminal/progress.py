@@ -1,27 +1,45 @@
-"""What is being computed, on stderr."""
+"""What is being computed, on stderr: a clock that ticks, the step, and how long it still takes."""
 
 import sys
 import time
+from dataclasses import dataclass
 from types import TracebackType
 
+from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from rigdesign.cli.terminal.console import new_console
+from rigdesign.cli.terminal.console import new_console, verbosity
+from rigdesign.cli.terminal.estimate import StepTimes, duration_text, remaining_points
+
+TICKS = 4
+"""Times a second the clock is drawn in a terminal."""
+FIRST_RUN = "first run of this case: no estimate"
 
 
 class Progress:
-    """Says what is being computed: a spinner in a terminal, plain lines elsewhere."""
+    """Says what is being computed: a line whose clock ticks in a terminal, plain lines elsewhere.
 
-    def __init__(self) -> None:
+    times : of this run's steps against those of the last one, for the estimate; none where left out
+    """
+
+    def __init__(self, times: StepTimes | None = None) -> None:
         self._console = new_console(stderr=True)
-        self._status = self._console.status("starting") if self._console.is_terminal else None
+        self._times = times or StepTimes()
         self._started = time.perf_counter()
+        self._step, self._step_began = "", 0.0
+        self._counted: _Counted | None = None
+        self._verbose, self._quiet = verbosity.get() == "verbose", self._console.quiet
+        self._live = None
+        if self._console.is_terminal and not self._quiet:
+            self._live = Live(
+                get_renderable=self._line, console=self._console, refresh_per_second=TICKS, transient=True
+            )
 
     def __enter__(self) -> "Progress":
-        if self._status is not None:
-            self._status.start()
+        if self._live is not None:
+            self._live.start()
         return self
 
     def __exit__(
@@ -30,29 +48,91 @@ class Progress:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        if self._status is not None:
-            self._status.stop()
+        self._report_step()
+        if self._live is not None:
+            self._live.stop()
+        if error is None:
+            self._times.keep(self._elapsed())
+
+    def __call__(self, message: str) -> None:
+        """Begin the step ``message``."""
+        self._report_step()
+        elapsed = self._elapsed()
+        first = not self._step
+        self._step, self._step_began, self._counted = message, elapsed, None
+        self._times.begin(message, elapsed)
+        rest = self._remaining_text()
+        self._say(message, "" if rest == FIRST_RUN and not first else rest)
 
     def count(self, done: int, whole: int, last: str) -> None:
         """Show how many of many are done as a bar; a line for every tenth where the output is no terminal."""
-        if self._status is not None:
-            row = Table.grid(padding=(0, 1))
-            row.add_row(self._elapsed(), ProgressBar(whole, done, width=30), f"{done} of {whole}", Text(last))
-            self._status.update(row)
-        elif done == whole or 10 * done // whole > 10 * (done - 1) // whole:
-            self(f"{done} of {whole}, last {last}")
-
-    def _elapsed(self) -> str:
-        return f"{time.perf_counter() - self._started:6.1f} s"
+        since = self._counted.since if self._counted is not None else self._step_began
+        self._counted = _Counted(done, whole, last, since, self._elapsed())
+        if self._verbose or done == whole or 10 * done // whole > 10 * (done - 1) // whole:
+            self._say(f"{done} of {whole}, last {last}", self._remaining_text())
 
     def note(self, message: str) -> None:
         """Show ``message`` so that it stays."""
         self._console.print(Text("note: ", "yellow") + Text(message), soft_wrap=True)
 
-    def __call__(self, message: str) -> None:
-        """Show ``message`` with the seconds since the start."""
-        text = f"{self._elapsed()}  {message}"
-        if self._status is not None:
-            self._status.update(Text(text))
-        else:
+    def _elapsed(self) -> float:
+        return time.perf_counter() - self._started
+
+    def _say(self, message: str, rest: str) -> None:
+        """A plain line where no line is drawn anew, with what is left."""
+        if self._live is None and not self._quiet:
+            text = f"{self._elapsed():6.1f} s  {message}{f' ({rest})' if rest else ''}"
             print(text, file=sys.stderr, flush=True)
+
+    def _report_step(self) -> None:
+        """With ``--verbose``: the step that ends, with its time."""
+        if self._verbose and self._step:
+            seconds = self._elapsed() - self._step_began
+            self._console.print(Text(f"{seconds:8.2f} s  {self._step}", "dim"), soft_wrap=True)
+
+    def _remaining_text(self) -> str:
+        """What is left, in words; empty where nothing tells."""
+        elapsed = self._elapsed()
+        if self._counted is not None:
+            left = self._counted.remaining(elapsed)
+            return "" if left is None else f"about {duration_text(left)} left"
+        if self._times.first_run:
+            return FIRST_RUN if self._times.key else ""
+        remaining = self._times.remaining(elapsed)
+        if remaining is None:
+            return ""
+        return f"about {duration_text(remaining)} left" if remaining else "longer than last time"
+
+    def _line(self) -> Table:
+        """The line of a terminal, drawn anew at every tick."""
+        row = Table.grid(padding=(0, 1))
+        head = [Text(f"{self._elapsed():6.1f} s"), Text(self._remaining_text(), "dim")]
+        if self._counted is None:
+            row.add_row(*head, _cut(self._step or "starting"))
+        else:
+            counted = self._counted
+            bar = ProgressBar(counted.whole, counted.done, width=20)
+            row.add_row(*head, bar, Text(f"{counted.done} of {counted.whole}"), _cut(counted.last))
+        return row
+
+
+def _cut(text: str) -> Text:
+    """A text that ends with the line."""
+    return Text(text, overflow="ellipsis", no_wrap=True)
+
+
+@dataclass(frozen=True)
+class _Counted:
+    """How many of many are done: since when they are computed, and when this was counted [s]."""
+
+    done: int
+    whole: int
+    last: str
+    since: float
+    at: float
+
+    def remaining(self, elapsed: float) -> float | None:
+        """Seconds for the others, each at the mean of those done; None with none done or none left."""
+        if not 0 < self.done < self.whole:
+            return None
+        return max(0.0, remaining_points(self.done, self.whole, self.at - self.since) - (elapsed - self.at))

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
+from rigdesign.base.cache_folder import cache_folder
 from rigdesign.base.version import __version__
 from rigdesign.case.model import Case
 from rigdesign.diagnosis.catalogue.effects import Effect
@@ -33,14 +34,6 @@ Progress = Callable[[str], None]
 
 def _silent(message: str) -> None:
     """Say nothing."""
-
-
-def cache_folder() -> Path:
-    """Where libraries are kept."""
-    given = os.environ.get("RIGDESIGN_CACHE_DIR")
-    if given:
-        return Path(given)
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "rigdesign"
 
 
 def library_of(

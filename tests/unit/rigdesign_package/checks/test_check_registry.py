@@ -1,10 +1,12 @@
 """Rules register once, each check finds its family, and what a family declares reaches its check."""
 
+import json
 from dataclasses import replace
 
 import pytest
 
 from rigdesign.case import Case, load_case
+from rigdesign.case.paths import known_paths
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.registry import LOADS, REGISTRY, Registry, RigRule, RuleFamily, Topic
 from rigdesign.checks.rules import hold
@@ -31,6 +33,7 @@ def rule(**changes: object) -> RigRule:
     """A rule on two made-up temperature differences, 3 K and 5 K, below 10 K."""
     made = RigRule(
         key="temperature.difference", title="difference", unit=KELVIN, group="temperatures", source="a test",
+        procedure="The larger of two numbers.",
         limit=lambda limits: 10.0, values=lambda solved: ((3.0, "first"), (5.0, "second")),
     )  # fmt: skip
     return replace(made, **changes)  # type: ignore[arg-type]
@@ -87,7 +90,7 @@ def check_of(identity: str) -> Check:
 def test_a_check_finds_its_family_by_the_beginning_of_its_id(case: Case) -> None:
     for identity, key in (
         ("dynamics.lift_off.test.a", "dynamics.lift_off"),
-        ("ramp.start_torque", "ramp"),
+        ("ramp.start_torque", "ramp.start_torque"),
         ("bought_part.motor", f"bought_part.{case.limits.bought_parts['motor'].quantity}"),
     ):
         assert REGISTRY.family_of(case, check_of(identity)) is family(key)
@@ -99,6 +102,27 @@ def test_an_influence_of_one_gearbox_stays_in_it(case: Case) -> None:
     grade = "gearboxes.reference.gears.pinion.quality_grade"
     assert depends(case, check_of("strength.root_safety_iso.reference.pinion"), grade)
     assert not depends(case, check_of("specimen.root_stress_iso.test.pinion"), grade)
+
+
+def test_every_family_says_how_its_value_is_computed() -> None:
+    for found in REGISTRY.families():
+        assert found.procedure.endswith(".") and len(found.procedure) > 20, found.key
+
+
+@pytest.mark.parametrize("name", ["uhcf_prototype", "loop_1to1", "loop_hunting", "uhcf_main"])
+def test_the_rules_of_a_case_are_known_before_it_is_solved(name: str) -> None:
+    """The checks of the shipped cases and the rules that their families declare are the same, by id."""
+    expected = json.loads((CASES / name / "expected.json").read_text(encoding="utf-8"))
+    found = load_case(CASES / name)
+    declared = {rule.id for family in REGISTRY.families() for rule in family.rules(found)}
+    assert declared - {one for one in declared if one.startswith("transient.")} == set(expected["checks"])
+
+
+def test_every_rule_has_a_limit_that_the_case_may_state(case: Case) -> None:
+    paths = set(known_paths(Case, case.model_dump(mode="python")))
+    for found in REGISTRY.families():
+        for one in found.rules(case):
+            assert found.limits_of(one) and set(found.limits_of(one)) <= paths, one.id
 
 
 def test_a_limit_of_zero_degrees_is_shown_as_such() -> None:

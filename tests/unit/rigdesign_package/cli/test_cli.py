@@ -10,6 +10,7 @@ import csv
 import ctypes
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -74,6 +75,11 @@ remove = ["housing"]
 # ---------------------------------------------------------------------------- help
 
 
+COMMANDS = (
+    "check", "study", "compare", "diagnose", "validate", "explain", "new", "mesh", "schema", "doctor", "completion",
+)  # fmt: skip
+
+
 def help_text(*command: str) -> str:
     called = "from rigdesign.cli.main import main; main()"
     result = subprocess.run(
@@ -86,18 +92,16 @@ def help_text(*command: str) -> str:
 def test_help_lists_the_commands_that_exist() -> None:
     words = [line.strip("│ ").split(" ")[0] for line in help_text().splitlines() if line.startswith("│")]
     commands = [word for word in words if word and word[0] != "-" and word.islower()]
-    assert {"check", "study", "compare", "diagnose", "validate", "new", "mesh", "schema", "doctor"} <= set(
-        commands
-    )
-    assert not {"explain", "diff", "import"} & set(commands)
     listed = {name for name in cli.app if not name.startswith("-")}
-    assert listed == {"check", "study", "compare", "diagnose", "validate", "new", "mesh", "schema", "doctor"}
+    assert listed == set(COMMANDS) <= set(commands)
+    assert not {"diff", "import"} & set(commands)
+    assert all(f" {name}" in cli.__doc__ for name in COMMANDS)
 
 
 def test_help_of_check_lists_its_options() -> None:
     text = help_text("check")
-    options = ("--out", "--fidelity", "--transient", "--ranges", "--json", "--fail-on")
-    assert all(option in text for option in options)
+    options = ("--out", "--fidelity", "--transient", "--ranges", "--all", "--json", "--fail-on")
+    assert all(option in text for option in (*options, "--verbose", "--quiet"))
 
 
 HELP = (
@@ -180,6 +184,47 @@ def test_a_warning_fails_only_on_demand(rigdesign: Rigdesign, write: Write) -> N
     ended = rigdesign("check", case, "--fidelity", "quick", "--fail-on", "warn")
     assert ended.status == 1
     assert "verdict: warn" in ended.out
+
+
+def test_quiet_says_the_verdict_and_nothing_else(rigdesign: Rigdesign, write: Write) -> None:
+    for arguments in (("check", write(FAILING), "--quiet"), ("--quiet", "check", write(FAILING))):
+        ended = rigdesign(*arguments, "--fidelity", "quick")
+        assert ended.status == 1 and ended.err == ""
+        assert re.fullmatch(r"verdict: fail \(1 fail.*\)\n", ended.out)
+
+
+def test_quiet_leaves_errors(rigdesign: Rigdesign, write: Write) -> None:
+    ended = rigdesign("check", write(SMALL.replace('"1000 h"', '"1000 kg"')), "--quiet")
+    assert ended.status == 2 and "test_plan.time" in ended.err and ended.out == ""
+
+
+def test_verbose_says_steps_iterations_and_caches(rigdesign: Rigdesign, write: Write) -> None:
+    ended = rigdesign("check", write(SMALL), "--fidelity", "quick", "--verbose")
+    assert ended.status == 0
+    assert re.search(r"^ +\d+\.\d\d s  building the rig$", ended.err, re.MULTILINE)
+    assert re.search(r"stage test: \d+ iterations, last residuals temperature_K ", ended.err)
+    assert "parts of the run: rig_and_mesh " in ended.err
+    assert re.search(r"^cache .*: \d+ files before, 1 written by this command$", ended.err, re.MULTILINE)
+
+
+def test_all_prints_every_note(rigdesign: Rigdesign, write: Write) -> None:
+    case = write(SMALL)
+    short, whole = (rigdesign("check", case, "--fidelity", "quick", *more) for more in ((), ("--all",)))
+    assert "--all prints them and every" in short.out and "note " not in short.out
+    assert whole.out.count("note ") >= 1 and len(whole.out) > len(short.out)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [(("--all", "--quiet"), "--all prints every check"), (("--verbose", "--quiet"), "exclude each other")],
+)
+def test_options_that_contradict_each_other(
+    options: tuple[str, ...], said: str, rigdesign: Rigdesign, write: Write
+) -> None:
+    ended = rigdesign("check", write(SMALL), *options)
+    assert (
+        ended.status == 2 and said in ended.err and "leave one of them out" in ended.err and ended.out == ""
+    )
 
 
 def test_json_is_one_document_and_nothing_else(rigdesign: Rigdesign, write: Write, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from xml.etree import ElementTree
 
 import meshio
@@ -13,6 +14,7 @@ from rigdesign.base.json_text import to_plain, to_text
 from rigdesign.base.output_folder import file_stem, staged
 from rigdesign.report import NonFiniteResultError, prepare_output, results_document, write_results
 from rigdesign.report.csv_text import csv_text
+from rigdesign.report.junit import check_seconds, write_junit
 from tests.builders.report import gearbox_field, make_check, make_result, small_result
 
 
@@ -110,6 +112,34 @@ def test_junit_has_a_testcase_per_check(written):
     assert root.get("failures") == "1"
     assert root.get("skipped") == "1"
     assert "margin 9 K" in cases["bearing_film"].find("system-out").text
+
+
+def test_the_testcases_together_last_as_long_as_the_run(written):
+    out, result = written
+    root = ElementTree.parse(out / "junit.xml").getroot()
+    cases = {case.get("name"): float(case.get("time")) for case in root.iter("testcase")}
+    assert sum(cases.values()) == pytest.approx(sum(result.timings_s.values()), abs=0.001 * len(cases))
+    assert cases["bought_part_coupling"] == 0.0
+
+
+def test_a_part_of_the_run_goes_to_the_checks_that_use_it():
+    checks = [
+        make_check("load", 1.0, 2.0, group="dynamics"),
+        make_check("gap", 1.0, 2.0, group="clearances"),
+        make_check("play", 1.0, 2.0, group="clearances", verdict="not applicable"),
+    ]
+    timings = {"coupling": 4.0, "dynamics": 3.0, "discretisation": 1.0, "transient": 2.0}
+    assert check_seconds(checks, timings) == {"load": 2.0 + 3.0 + 1.0, "gap": 2.0 + 1.0 + 1.0, "play": 0.0}
+
+
+def test_two_runs_differ_in_the_times_of_junit_only(tmp_path):
+    texts = []
+    for name, seconds in (("one", 1.0), ("two", 7.5)):
+        write_junit(small_result(timings_s={"coupling": seconds}), tmp_path / name)
+        texts.append((tmp_path / name).read_text(encoding="utf-8"))
+    assert texts[0] != texts[1]
+    without = [re.sub(r' time="[^"]*"', "", text) for text in texts]
+    assert without[0] == without[1] and "testcase" in without[0]
 
 
 def test_junit_survives_characters_that_xml_lacks(tmp_path):

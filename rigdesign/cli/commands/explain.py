@@ -1,0 +1,63 @@
+"""`rigdesign explain`: what a case, one of its keys or one of its checks is."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from rigdesign.base.errors import UsageError
+from rigdesign.cli.application import app, loaded_case, print_json
+
+
+@app.command
+def explain(
+    case: Path,
+    path: str | None = None,
+    *,
+    check: str | None = None,
+    results: Path | None = None,
+    json: Annotated[bool, Parameter(negative=())] = False,
+) -> int:
+    """Say what a case holds, what a key is and what it moves, or how a check is computed; nothing is solved.
+
+    Parameters
+    ----------
+    case
+        Case folder or its case.toml.
+    path
+        Key or part of the case, e.g. gearboxes.test.oil.inlet_temperature; * stands for any name. Left out: an
+        overview of the case.
+    check
+        Id of a check, e.g. clearance.backlash: its rule, limit, procedure and inputs.
+    results
+        With --check: folder of a finished check; with its ranges the inputs are sorted by how far they move the margin.
+    json
+        Print the explanation as JSON on stdout.
+    """
+    if path is not None and check is not None:
+        raise UsageError(f"a path ({path}) and --check {check} are two questions; leave one of them out")
+    if results is not None and check is None:
+        raise UsageError(f"--results {results} belongs to a check; add --check ID")
+    loaded = loaded_case(case)
+    from dataclasses import asdict
+
+    from rigdesign.cli.terminal.explanation import print_check, print_overview, print_path
+
+    if check is not None:
+        from rigdesign.explanation.check import explain_check
+        from rigdesign.explanation.finished import finished_check
+
+        finished = None if results is None else finished_check(results, check, loaded.hash)
+        found = explain_check(loaded, check, finished)
+        print_json(asdict(found)) if json else print_check(found)
+    elif path is not None:
+        from rigdesign.explanation.path import explain_path
+
+        told = explain_path(loaded, path)
+        print_json(asdict(told)) if json else print_path(told)
+    else:
+        from rigdesign.explanation.overview import overview
+
+        seen = overview(loaded)
+        print_json(asdict(seen)) if json else print_overview(seen, case)
+    return 0

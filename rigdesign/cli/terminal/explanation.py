@@ -1,0 +1,209 @@
+"""A case, a key or a check explained."""
+
+import textwrap
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from rigdesign.cli.terminal.console import hanging, new_console
+from rigdesign.explanation.check import CheckExplanation, Input
+from rigdesign.explanation.keys import KeyEntry
+from rigdesign.explanation.overview import Overview
+from rigdesign.explanation.path import PathExplanation, StatedValue
+from rigdesign.report.numbers import number_text, quantity_text, unit_text
+
+HEAD = 11
+"""Columns of the word before an answer."""
+MOST_IDS = 24
+"""Ids of checks that are listed; beyond that those that are not are fewer to read."""
+MOST_INPUTS = 12
+"""Inputs of a check that are listed one by one."""
+COMPARISONS = {"<=": "at most", ">=": "at least", "within": "within"}
+
+
+def print_overview(seen: Overview, case: Path) -> None:
+    """Parts, schedule, inputs by where they come from, checks, and what to do next."""
+    console = new_console(wrap=True)
+    console.print(Text(f"{seen.title}  ({seen.name})", "bold"))
+    for name, text in seen.gearboxes.items():
+        _answer(console, "gearbox", f"{name}: {text}")
+    _answer(console, "drivetrain", seen.drivetrain or "none: losses are given, no loads are computed")
+    table = _table("stage", "ends at", "torque", "takes", "")
+    for stage in seen.stages:
+        held = "held" if stage.held else ""
+        table.add_row(
+            *map(Text, (f"{stage.name} ({stage.kind})", stage.speed, stage.torque, stage.duration, held))
+        )
+    console.print(table)
+    counts = ", ".join(f"{number} {basis}" for basis, number in seen.inputs.items())
+    _answer(console, "inputs", f"{sum(seen.inputs.values())}: {counts}; {seen.ranged} assumed with a range")
+    groups = ", ".join(f"{group} {len(found)}" for group, found in seen.checks.items())
+    unlimited = f"; {len(seen.unlimited)} more without a limit in this case" if seen.unlimited else ""
+    _answer(
+        console, "checks", f"{sum(map(len, seen.checks.values()))}: {groups}{unlimited}; --json lists them"
+    )
+    for command in (
+        f"rigdesign check {case} --fidelity quick --out results",
+        f"rigdesign explain {case} PATH, e.g. {_example(seen)}.oil.inlet_temperature",
+        f"rigdesign explain {case} --check {next(iter(seen.checks.values()))[0]}" if seen.checks else "",
+    ):
+        if command:
+            _answer(console, "next", command)
+
+
+def print_path(found: PathExplanation) -> None:
+    """What a key is, its value and where that comes from, where it enters, which checks depend on it."""
+    console = new_console(wrap=True)
+    console.print(Text(found.asked, "bold"))
+    _answer(console, "is", _plain(found.key.description))
+    if found.key.law:
+        _answer(console, "of law", found.key.law)
+    if found.key.table:
+        _print_keys(console, found)
+        return
+    _answer(console, "holds", _holds(found.key))
+    _answer(console, "default", found.key.default_text)
+    for value in found.values:
+        place = f"{value.path}: " if len(found.values) > 1 else ""
+        _answer(console, "value", f"{place}{_value(value)}")
+    for station in found.enters:
+        _answer(console, "enters", f"{station.module}: {station.role}")
+    if found.influences:
+        _answer(console, "moves", ", ".join(found.influences))
+    _answer(console, "checks", _checks(found.checks, found.all_checks))
+
+
+def print_check(found: CheckExplanation) -> None:
+    """Rule, limit, procedure, source, what it needs, its inputs."""
+    console = new_console(wrap=True)
+    console.print(Text(f"{found.id}: {found.title}", "bold"))
+    _answer(console, "rule", f"{COMPARISONS[found.comparison]} {_limits(found)}")
+    _answer(console, "value", found.procedure)
+    _answer(console, "source", found.source)
+    if found.needs:
+        _answer(console, "needs", ", ".join(found.needs))
+    if not found.applicable:
+        _answer(console, "so", "the check does not apply to this case")
+    done = found.finished
+    if done is not None:
+        used = "" if done.utilisation is None else f", {100.0 * done.utilisation:.0f} % used"
+        margin = (
+            "" if done.margin is None else f", margin {quantity_text(done.margin, _difference(done.unit))}"
+        )
+        _answer(
+            console,
+            "result",
+            f"{done.verdict}: {quantity_text(done.value, done.unit)}{margin}{used}; {done.reason}",
+        )
+        if not done.same_case:
+            _answer(console, "note", f"{done.folder} holds results of another state of the case")
+        if not done.ranged:
+            _answer(console, "note", f"{done.folder} holds no ranges: run rigdesign check with --ranges")
+    _print_inputs(console, found)
+
+
+def _answer(console: Console, head: str, text: str) -> None:
+    hanging(console, Text(f"{head:{HEAD}s}", "bold" if head else ""), text)
+
+
+def _plain(description: str) -> str:
+    return description.replace("``", "")
+
+
+def _holds(key: KeyEntry) -> str:
+    """Kind, units and bounds of a key."""
+    accepted = f" in {', '.join(key.units)}" if key.units else ""
+    return f"{key.kind}{accepted}{f'; {key.bounds}' if key.bounds else ''}"
+
+
+def _value(value: StatedValue) -> str:
+    """A value with where it comes from."""
+    if value.basis == "left out":
+        return "left out"
+    words = {"stated": "stated by the case", "default": "default"}.get(
+        value.basis, f"{value.basis}: {value.reason}"
+    )
+    limits = "" if value.range is None else f"; range {value.range[0]} to {value.range[1]}"
+    return f"{value.value} ({words}{limits})"
+
+
+def _checks(ids: Sequence[str], whole: int) -> str:
+    if not ids:
+        return "none depends on it"
+    if len(ids) == whole:
+        return f"all {whole} depend on it"
+    if len(ids) > MOST_IDS:
+        groups = ", ".join(dict.fromkeys(one.partition(".")[0] for one in ids))
+        return f"{len(ids)} of {whole} depend on it, of {groups}; --json lists them"
+    return f"{len(ids)} of {whole} depend on it: {', '.join(ids)}"
+
+
+def _print_keys(console: Console, found: PathExplanation) -> None:
+    """Keys of a table with their values in this case."""
+    table = _table("key", "value", "what it is")
+    table.columns[1].justify = "left"
+    table.columns[2].justify = "left"
+    for value in found.keys:
+        name = value.path.rpartition(".")[2]
+        shown = "table" if value.table else value.value or "left out"
+        shown = textwrap.shorten(shown, 24, placeholder="...")
+        first = _plain(value.description).partition(". ")[0]
+        table.add_row(Text(name), Text(f"{shown} *" if value.basis == "assumed" else shown), Text(first))
+    console.print(table)
+    if any(value.basis == "assumed" for value in found.keys):
+        console.print("* assumed")
+
+
+def _limits(found: CheckExplanation) -> str:
+    stated = [limit for limit in found.limits if limit.value]
+    keys = ", ".join(limit.path for limit in found.limits)
+    if not stated:
+        return f"{keys}: the case states no limit"
+    return f"{' to '.join(limit.value for limit in stated)} ({keys}); shown in {unit_text(found.unit)}"
+
+
+def _difference(unit: str) -> str:
+    return "K" if unit == "degC" else unit
+
+
+def _print_inputs(console: Console, found: CheckExplanation) -> None:
+    """The inputs one by one as far as ranges sort them, the rest by their tables."""
+    ranged = [one for one in found.inputs if one.shift]
+    for one in ranged[:MOST_INPUTS]:
+        low, high = (number_text(margin, 3) for margin in one.margins or (None, None))
+        unit = unit_text(_difference(found.unit))
+        ends = "" if one.range is None else f" = {one.range[0]} to {one.range[1]}"
+        _answer(console, "moved by", f"{one.path}{ends}: margin {low} to {high} {unit}".rstrip(" -"))
+    rest = [one for one in found.inputs if one not in ranged[:MOST_INPUTS]]
+    assumed = sum(one.assumed for one in rest)
+    more = " more" if ranged else ""
+    _answer(console, "inputs", f"{len(rest)}{more}, {assumed} assumed: {_by_table(rest)}")
+    special = dict.fromkeys(name for one in rest for name in one.influences)
+    if special:
+        groups = ", ".join(f"{sum(name in one.influences for one in rest)} {name}" for name in special)
+        _answer(console, "", f"of them move some checks only, by group: {groups}; the others every check")
+
+
+def _by_table(inputs: Iterable[Input]) -> str:
+    """Inputs counted by gearbox, else by the first name of their paths."""
+    counts: dict[str, int] = {}
+    for one in inputs:
+        names = one.path.split(".")
+        head = ".".join(names[: 2 if names[0] == "gearboxes" else 1])
+        counts[head] = counts.get(head, 0) + 1
+    return ", ".join(f"{table} ({number})" if number > 1 else table for table, number in counts.items())
+
+
+def _table(first: str, *further: str) -> Table:
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    table.add_column(first, overflow="fold")
+    for heading in further:
+        table.add_column(heading, justify="right")
+    return table
+
+
+def _example(seen: Overview) -> str:
+    return f"gearboxes.{next(iter(seen.gearboxes))}"

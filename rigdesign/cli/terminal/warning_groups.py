@@ -1,0 +1,116 @@
+"""Warnings of a run by their reason: most of them share a few."""
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from rigdesign.checks.rules import WARN_UTILISATION
+from rigdesign.results.check import Check
+
+OF_GEARBOX = re.compile(r"\bgearbox (\w+)\b")
+DECIDED = "decided by assumption "
+"""How the doubt of a check begins that does not hold over a range."""
+
+
+NO_HOUSING, UNEXPANDED = "it has no housing", "its housing is not expanded"
+"""Two reasons of one gearbox, of which the first holds the second."""
+
+
+@dataclass(frozen=True)
+class WarningGroup:
+    """Checks that warn for one reason."""
+
+    reason: str
+    """With the verb in the number of the checks: ``leave out …``."""
+    checks: tuple[Check, ...]
+
+    @property
+    def text(self) -> str:
+        """The checks and the reason: a number of checks, or the id of the only one."""
+        who = self.checks[0].id if len(self.checks) == 1 else f"{len(self.checks)} checks"
+        return f"{who} {self.reason}"
+
+
+@dataclass(frozen=True)
+class _Cause:
+    """One cause of a warning.
+
+    kind : broken, near, mesh, decided, gearbox, left out or doubt
+    scope : what the checks of a group have in common beyond the kind: a gearbox, a reason
+    what, why : what a value leaves out, and why
+    """
+
+    kind: str
+    scope: str = ""
+    what: str = ""
+    why: str = ""
+
+
+WORDS = {
+    "broken": ("breaks a rule of good practice", "break rules of good practice"),
+    "near": (
+        f"uses more than {100 * WARN_UTILISATION:.0f} % of its limit",
+        f"use more than {100 * WARN_UTILISATION:.0f} % of their limits",
+    ),
+    "mesh": ("has a margin below the error of the mesh", "have margins below the error of the mesh"),
+}
+"""Causes without further words, of one check and of several."""
+
+
+def warning_groups(checks: Iterable[Check]) -> list[WarningGroup]:
+    """The checks that warn by cause, the largest group first; a check with several causes is in several groups."""
+    found: dict[tuple[str, str], list[tuple[_Cause, Check]]] = {}
+    for check in checks:
+        if check.verdict == "warn":
+            for cause in _causes(check):
+                found.setdefault((cause.kind, cause.scope), []).append((cause, check))
+    together: dict[tuple[object, ...], list[_Cause]] = {}
+    members: dict[tuple[object, ...], tuple[Check, ...]] = {}
+    for (kind, scope), entries in found.items():
+        own = {check.id: check for _, check in entries}
+        key = (kind, *own) if kind == "gearbox" else (kind, scope)
+        together.setdefault(key, []).extend(cause for cause, _ in entries)
+        members[key] = tuple(own.values())
+    groups = [
+        WarningGroup(_reason(causes, len(members[key])), members[key]) for key, causes in together.items()
+    ]
+    return sorted(groups, key=lambda group: -len(group.checks))
+
+
+def _causes(check: Check) -> Iterator[_Cause]:
+    """Why a check warns, from its record; the words of its reason where nothing else tells."""
+    causes = []
+    if check.margin is not None and check.margin < 0.0:
+        causes.append(_Cause("broken"))
+    elif check.utilisation is not None and check.utilisation > WARN_UTILISATION:
+        causes.append(_Cause("near"))
+    error = check.discretisation_error
+    if error is not None and check.margin is not None and abs(check.margin) < error:
+        causes.append(_Cause("mesh"))
+    doubts = [part for part in check.reason.split("; ") if part.startswith(DECIDED)]
+    causes += [_Cause("decided", part, why=part) for part in doubts]
+    for text in check.left_out:
+        what, _, why = text.rpartition(": ")
+        box = OF_GEARBOX.search(what)
+        kind, scope = ("gearbox", box[1]) if box is not None else ("left out", why if what else text)
+        causes.append(_Cause(kind, scope, what or text, why if what else ""))
+    yield from causes or [_Cause("doubt", check.reason, why=check.reason.rpartition("; ")[2])]
+
+
+def _reason(causes: list[_Cause], number: int) -> str:
+    """Words for causes of one kind, with the verb for a number of checks."""
+    kind = causes[0].kind
+    if kind in WORDS:
+        return WORDS[kind][number > 1]
+    if kind == "decided":
+        return f"{'are' if number > 1 else 'is'} {causes[0].why}"
+    if kind == "doubt":
+        return f"{'warn' if number > 1 else 'warns'}: {causes[0].why}"
+    whats = list(dict.fromkeys(cause.what for cause in causes))
+    whys = list(dict.fromkeys(cause.why for cause in causes if cause.why))
+    if NO_HOUSING in whys and UNEXPANDED in whys:
+        whys.remove(UNEXPANDED)
+    what = whats[0] if len(whats) == 1 else f"{whats[0]} and {len(whats) - 1} more"
+    if kind == "gearbox" and len(whats) > 1:
+        what = "effects in gearbox " + " and ".join(dict.fromkeys(cause.scope for cause in causes))
+    return f"leave{'' if number > 1 else 's'} out {': '.join([what, '; '.join(whys)] if whys else [what])}"

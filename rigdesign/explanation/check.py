@@ -1,0 +1,163 @@
+"""A check of a case explained: rule, limit, how the value is computed, what it needs and what moves it."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from rigdesign.base.errors import UsageError
+from rigdesign.case.model import Case
+from rigdesign.checks.assumptions import influences_of
+from rigdesign.checks.registry import RuleFamily
+from rigdesign.checks.rules import Rule, not_applicable
+from rigdesign.explanation.finished import FinishedCheck
+from rigdesign.explanation.rules import declared_rules, depends_on
+from rigdesign.results.check import Check
+
+
+@dataclass(frozen=True, kw_only=True)
+class Limit:
+    """One limit of a check: its key, and the value that the case gives it; empty where it states none."""
+
+    path: str
+    value: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Input:
+    """An input that a check depends on.
+
+    influences : groups it moves the check by; empty for an input that moves every check, or its own limit
+    assumed : the case assumes it; range : its plausible ends
+    shift : how far the ends move the margin, in the unit of the check; None where no ranges were evaluated
+    margins : at the low and at the high end
+    """
+
+    path: str
+    value: str
+    influences: tuple[str, ...]
+    assumed: bool
+    range: tuple[str, str] | None = None
+    shift: float | None = None
+    margins: tuple[float | None, float | None] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckExplanation:
+    """How a check comes about.
+
+    comparison : ``<=``, ``>=`` or ``within``; unit : of value and limits
+    source : standard, paper or case path behind limit and value
+    procedure : how the value is computed
+    needs : parts of the case without which it does not apply
+    inputs : by influence: by the shift of the margin where ranges are known, else those of special influence first
+    finished : the check in the results that were named
+    """
+
+    id: str
+    title: str
+    group: str
+    comparison: str
+    unit: str
+    limits: tuple[Limit, ...]
+    source: str
+    procedure: str
+    needs: tuple[str, ...]
+    applicable: bool
+    inputs: tuple[Input, ...]
+    finished: FinishedCheck | None = None
+
+
+def explain_check(case: Case, identity: str, finished: FinishedCheck | None = None) -> CheckExplanation:
+    """How the check ``identity`` of a case is computed.
+
+    finished : the same check in the results of a run, whose ranges sort the inputs
+
+    Raises
+    ------
+    UsageError
+        No such check in this case; the nearest ones are named.
+    """
+    rules = {rule.id: (family, rule) for family, rule in declared_rules(case)}
+    if identity not in rules:
+        near = get_close_matches(identity, list(rules), n=3, cutoff=0.4)
+        hint = f"the nearest are {', '.join(near)}" if near else "rigdesign explain CASE lists the checks"
+        raise UsageError(f"{identity}: no such check of {case.path}; {hint}")
+    family, rule = rules[identity]
+    limits = tuple(Limit(path=path, value=_stated(case, path)) for path in family.limits_of(rule))
+    needs = tuple(_needs(family))
+    return CheckExplanation(
+        id=rule.id,
+        title=rule.title,
+        group=rule.group,
+        comparison=rule.comparison,
+        unit=rule.unit,
+        limits=limits,
+        source=rule.source,
+        procedure=family.procedure,
+        needs=needs,
+        applicable=all(limit.value for limit in limits) and _met(case, needs),
+        inputs=tuple(_inputs(case, family, rule, finished)),
+        finished=finished,
+    )
+
+
+DRIVETRAIN, HOUSING, TRANSIENT = "a drivetrain", "a gearbox with a housing", "check --transient"
+
+
+def _needs(family: RuleFamily) -> Iterator[str]:
+    if family.needs is not None:
+        yield DRIVETRAIN
+    if family.housed:
+        yield HOUSING
+    if family.key.startswith("transient."):
+        yield TRANSIENT
+
+
+def _met(case: Case, needs: tuple[str, ...]) -> bool:
+    """Whether the case has what the check needs; that it is run with an option is not a matter of the case."""
+    housed = any(box.housing is not None for box in case.gearboxes.values())
+    return (DRIVETRAIN not in needs or case.drivetrain is not None) and (HOUSING not in needs or housed)
+
+
+def _stated(case: Case, path: str) -> str:
+    """The value of a key as the case writes it; empty where it does not."""
+    return next((row.value for row in case.inputs if row.path == path), "")
+
+
+def _inputs(case: Case, family: RuleFamily, rule: Rule, finished: FinishedCheck | None) -> Iterator[Input]:
+    """Inputs of the case that the check depends on, the most important first."""
+    check = not_applicable(rule, "not computed")
+    moved = {} if finished is None else finished.margins
+    found = [
+        _input(case, family, check, row.path, row.value, moved.get(row.path))
+        for row in case.inputs
+        if depends_on(case, check, row.path)
+    ]
+    shifts = {one.path: -1.0 if one.shift is None else one.shift for one in found}
+    yield from sorted(found, key=lambda one: (-shifts[one.path], not one.influences, not one.assumed))
+
+
+def _input(
+    case: Case,
+    family: RuleFamily,
+    check: Check,
+    path: str,
+    value: str,
+    margins: tuple[float | None, float | None] | None,
+) -> Input:
+    mark = next((mark for mark in case.origin.marks if mark.path == path), None)
+    known = set(influences_of(case, path) or ()) & set(family.moved_by)
+    return Input(
+        path=path,
+        value=value,
+        influences=tuple(sorted(known)),
+        assumed=mark is not None and mark.assumed is not None,
+        range=None if mark is None or mark.range is None else (str(mark.range[0]), str(mark.range[1])),
+        shift=None if margins is None else _span(margins),
+        margins=margins,
+    )
+
+
+def _span(margins: tuple[float | None, float | None]) -> float | None:
+    low, high = margins
+    return None if low is None or high is None else abs(high - low)

@@ -1,0 +1,214 @@
+"""Every key a case file may hold, from its schema: path, kind, units, default, what it is.
+
+A path stands with placeholders: ``NAME`` for a part that the user names, ``N`` for an item of a list.
+"""
+
+import inspect
+import re
+import typing
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from rigdesign.base import units
+from rigdesign.base.quantity_kinds import KINDS
+from rigdesign.case.fields import Name, Quantity
+from rigdesign.case.model import Case
+from rigdesign.case.paths import Slot, slot_of
+
+NAMED, NUMBERED = "NAME", "N"
+"""Placeholders of a path."""
+PLAIN = {float: "number", int: "whole number", str: "text", bool: "true or false"}
+LIMITS = {"ge": (Ge, "at least"), "gt": (Gt, "above"), "le": (Le, "at most"), "lt": (Lt, "below")}
+_NAME_PATTERN = typing.get_args(Name)[1].metadata
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeyEntry:
+    """One key.
+
+    path : with placeholders; law : of a boundary condition that has the key, empty elsewhere
+    kind : quantity kind, type or choices, in words; units : accepted spellings, the usual one first
+    default : as a case would write it; None where the key is required or nothing stands for it when left out
+    """
+
+    path: str
+    law: str = ""
+    kind: str
+    units: tuple[str, ...] = ()
+    bounds: str = ""
+    default: str | None = None
+    required: bool
+    description: str
+    table: bool = False
+    """It holds further keys."""
+
+    @property
+    def default_text(self) -> str:
+        """The default in words."""
+        return "required" if self.required else self.default or "left out"
+
+
+@cache
+def case_keys() -> tuple[KeyEntry, ...]:
+    """Every key and named part in the order of the schema, tables before their keys."""
+    return tuple(_keys_of(Case, "", ""))
+
+
+def entry_at(path: str, law: str = "") -> KeyEntry | None:
+    """The entry of a key or part of a case by its path, for a value of a list that of the list; None if there is none.
+
+    law : of the boundary condition that the path leads into
+    """
+    table, _, last = path.rpartition(".")
+    fitting = [entry for fits, entry in _by_length().get(path.count("."), ()) if fits.fullmatch(path)]
+    if not fitting:
+        return entry_at(table, law) if last.isdigit() else None
+    return next((entry for entry in fitting if entry.law in ("", law)), fitting[0])
+
+
+def starred(path: str) -> str:
+    """A path with placeholders as a pattern with ``*``."""
+    return ".".join("*" if key in (NAMED, NUMBERED) else key for key in path.split("."))
+
+
+@cache
+def _by_length() -> Mapping[int, tuple[tuple[re.Pattern[str], KeyEntry], ...]]:
+    """Entries by the number of dots in their paths, each with the expression that its paths fit."""
+    found: dict[int, list[tuple[re.Pattern[str], KeyEntry]]] = {}
+    for entry in case_keys():
+        expression = re.escape(starred(entry.path)).replace(r"\*", r"[^.]+")
+        found.setdefault(entry.path.count("."), []).append((re.compile(expression), entry))
+    return {number: tuple(entries) for number, entries in found.items()}
+
+
+def entry_of(path: str, field: FieldInfo, law: str = "") -> KeyEntry:
+    """The entry of one field."""
+    slot = slot_of(field.annotation, field.metadata)
+    quantity = slot.quantity
+    return KeyEntry(
+        path=path,
+        law=law,
+        kind=kind_text(slot),
+        units=() if quantity is None else tuple(KINDS[quantity.kind].units),
+        bounds=_bounds(slot),
+        default=_default(field, quantity),
+        required=field.is_required(),
+        description=" ".join((field.description or "").split()),
+        table=slot.table is not None,
+    )
+
+
+def kind_text(slot: Slot) -> str:
+    """What a place holds: kind of quantity, type, choices, or table."""
+    words = dict.fromkeys(_kind(kind, metadata) for kind, metadata in slot.choices)
+    return " or ".join(words)
+
+
+def _kind(kind: Any, metadata: tuple[Any, ...]) -> str:
+    quantity = next((item for item in metadata if isinstance(item, Quantity)), None)
+    if quantity is not None:
+        return KINDS[quantity.kind].label
+    origin, arguments = typing.get_origin(kind), typing.get_args(kind)
+    if origin is typing.Literal:
+        return " | ".join(f'"{value}"' if isinstance(value, str) else str(value) for value in arguments)
+    if origin is tuple:
+        inner = [argument for argument in arguments if argument is not Ellipsis]
+        return f"list of {kind_text(slot_of(inner[0]))}" + (
+            "" if Ellipsis in arguments else f" ({len(inner)})"
+        )
+    if origin is Mapping:
+        return "tables by name"
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        return "table"
+    return "name" if any(item in _NAME_PATTERN for item in metadata) else PLAIN.get(kind, "text")
+
+
+def _bounds(slot: Slot) -> str:
+    """Limits of a number in words."""
+    if slot.quantity is not None:
+        return slot.quantity.bounds
+    found = [
+        f"{word} {getattr(item, name):g}"
+        for _, metadata in slot.choices
+        for item in _constraints(metadata)
+        for name, (sign, word) in LIMITS.items()
+        if isinstance(item, sign)
+    ]
+    return " and ".join(dict.fromkeys(found))
+
+
+def _constraints(metadata: tuple[Any, ...]) -> Iterator[Any]:
+    """Constraints of a field, also those inside a nested pydantic field."""
+    for item in metadata:
+        if isinstance(item, FieldInfo):
+            yield from item.metadata
+        else:
+            yield item
+
+
+def _default(field: FieldInfo, quantity: Quantity | None) -> str | None:
+    if field.is_required():
+        return None
+    value = field.get_default(call_default_factory=True)
+    if value is None or isinstance(value, BaseModel) or value in ((), {}):
+        return None
+    return value_text(value, quantity)
+
+
+def value_text(value: Any, quantity: Quantity | None) -> str:
+    """A value as a case would write it."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, tuple | list):
+        return ", ".join(value_text(item, quantity) for item in value)
+    if isinstance(value, float) and quantity is not None:
+        return units.show(value, quantity.kind)
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _keys_of(model: type[BaseModel], path: str, law: str) -> Iterator[KeyEntry]:
+    for key, field in model.model_fields.items():
+        here = f"{path}.{key}" if path else key
+        yield entry_of(here, field, law)
+        for inner, below in _tables(slot_of(field.annotation, field.metadata), here):
+            yield from _inner_keys(inner, below, law)
+
+
+def _inner_keys(models: tuple[type[BaseModel], ...], path: str, law: str) -> Iterator[KeyEntry]:
+    """Keys of a table that may be one of several, each with the law that has it."""
+    placeholder = path.endswith((f".{NAMED}", f".{NUMBERED}"))
+    for model in models:
+        own = typing.get_args(model.model_fields["law"].annotation)[0] if len(models) > 1 else law
+        if placeholder:
+            text = (inspect.getdoc(model) or "").partition("\n\n")[0]
+            yield KeyEntry(
+                path=path,
+                law=own,
+                kind="table",
+                required=False,
+                description=" ".join(text.split()),
+                table=True,
+            )
+        yield from _keys_of(model, path, own)
+
+
+def _tables(slot: Slot, path: str) -> Iterator[tuple[tuple[type[BaseModel], ...], str]]:
+    """Tables that a place holds, each with the path of its keys."""
+    for kind, _ in slot.choices:
+        origin, arguments = typing.get_origin(kind), typing.get_args(kind)
+        if origin is tuple or origin is Mapping:
+            models = tuple(slot_of(arguments[1 if origin is Mapping else 0]).models())
+            if models:
+                yield (
+                    models,
+                    f"{path}.{NAMED if origin is Mapping or 'name' in models[0].model_fields else NUMBERED}",
+                )
+    direct = tuple(slot.models())
+    if direct:
+        yield direct, path

@@ -1,0 +1,49 @@
+"""The key reference: every key of the case file by table, generated from the schema."""
+
+from collections.abc import Iterator
+
+from rigdesign.explanation.keys import NAMED, NUMBERED, KeyEntry, case_keys
+
+HEADER = f"""\
+# Keys of a case file
+
+Generated from the schema by `rigdesign schema --reference`; a test holds it current.
+`{NAMED}` stands for the name of a part, `{NUMBERED}` for the number of an item in a list. A quantity is a text
+with a unit, `"7 mm"`; any value may be a table that says where it comes from:
+`{{ value = …, source = …, assumed = …, range = […], measured = … }}`.
+`rigdesign explain CASE PATH` says what a key is in one case and which checks depend on it.
+"""
+
+
+def key_reference() -> str:
+    """The reference as Markdown: a section for every table, a row for every key."""
+    return "\n".join([HEADER, *_sections()])
+
+
+def _sections() -> Iterator[str]:
+    entries = case_keys()
+    tables = {(entry.path, entry.law): entry for entry in entries if entry.table}
+    groups: dict[tuple[str, str], list[KeyEntry]] = {}
+    for entry in entries:
+        if not entry.path.endswith((f".{NAMED}", f".{NUMBERED}")):
+            groups.setdefault((entry.path.rpartition(".")[0], entry.law), []).append(entry)
+    for (path, law), keys in groups.items():
+        yield f"## {path or 'case'}" + (f" with law = {law}" if law else "") + "\n"
+        table = tables.get((path, law)) or tables.get((path, ""))
+        if table is not None and table.description:
+            yield f"{_cell(table.description)}\n"
+        yield "| key | holds | default | what it is |\n|---|---|---|---|"
+        yield from (_row(key) for key in keys)
+        yield ""
+
+
+def _row(key: KeyEntry) -> str:
+    name = key.path.rpartition(".")[2]
+    units = f" [{', '.join(key.units)}]" if key.units else ""
+    bounds = f", {key.bounds}" if key.bounds else ""
+    default = key.default_text if key.required or key.default is None else f"`{key.default}`"
+    return f"| `{name}` | {_cell(key.kind + units + bounds)} | {_cell(default)} | {_cell(key.description)} |"
+
+
+def _cell(text: str) -> str:
+    return text.replace("``", "`").replace("|", "\\|")

@@ -1,0 +1,309 @@
+"""Where every key of the case enters the flow: module by module, with the physics it takes part in.
+
+The nearest entry counts: of the key itself, else of its table. Every table has an entry, so that a new one has to say
+where it enters. ``*`` stands for a name.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Station:
+    """One place of the flow where a key enters."""
+
+    module: str
+    """Folder and module of the tool."""
+    role: str
+    """What the key does there."""
+
+
+def _at(**roles: str) -> tuple[Station, ...]:
+    return tuple(Station(module.replace("__", "/"), role) for module, role in roles.items())
+
+
+def entering(path: str) -> tuple[Station, ...]:
+    """Stations of a key, by its path with ``*`` for names; KeyError where no entry holds it or its table."""
+    table = path.rpartition(".")[0]
+    return STATIONS[path] if path in STATIONS else STATIONS[table]
+
+
+_OIL_FLOW = "heat capacity flow of the oil stream: its outlet temperature"
+_BOUNDARY = "film law of the surfaces of the condition, in the temperature field"
+_SHEET = "properties of the oil at every temperature, from its data sheet"
+_BOX = "geometry of the housing that is meshed"
+_WARM = "flank of the loaded contact: load distribution, transmission error, mesh stiffness"
+_LIMIT = "limit that a result is held against"
+
+STATIONS: Mapping[str, tuple[Station, ...]] = {
+    "": _at(run__main="names the case in results and report"),
+    "schema_version": _at(case__model="tells the reader which keys to expect"),
+    "drivetrain": _at(
+        rig__drivetrain="shafts, couplings and motor of the torsional model; without it no loads are computed"
+    ),
+    "ambient": _at(coupling__boundary="fluid of the films to room air"),
+    "ambient.surroundings_temperature": _at(coupling__boundary="walls that surfaces radiate to"),
+    "ambient.reference_temperature": _at(
+        coupling__expansion="temperature without thermal expansion",
+        coupling__loads="cold geometry of the teeth",
+    ),
+    "ambient.warming_time": _at(
+        coupling__boundary="heat stored in bodies that still warm up, as one implicit step"
+    ),
+    "oils.*": _at(rig__model=_SHEET, properties__oil="viscosity by Ubbelohde-Walther, density, heat data"),
+    "materials.*": _at(
+        rig__model="material of gears, shafts and housing",
+        coupling__expansion="thermal expansion",
+        coupling__boundary="heat conduction of the bodies",
+    ),
+    "materials.*.elastic_modulus": _at(
+        rig__gears="stiffness of the teeth",
+        rig__drivetrain="shear modulus of the shafts",
+        coupling__expansion="centrifugal expansion of journals",
+    ),
+    "materials.*.poisson_ratio": _at(
+        rig__gears="stiffness of the teeth", rig__drivetrain="shear modulus of the shafts"
+    ),
+    "materials.*.density": _at(
+        rig__drivetrain="inertia of shafts and gears", coupling__boundary="heat stored in bodies"
+    ),
+    "materials.*.root_strength": _at(checks__strength="strength of the tooth root"),
+    "materials.*.flank_strength": _at(records__curves="running-in allowance in K_V of ISO 6336-1"),
+    "materials.*.treatment": _at(records__curves="running-in allowance in K_V of ISO 6336-1"),
+    "materials.*.tempering_temperature": _at(
+        checks__temperatures="temperature that gears keep a distance from"
+    ),
+    "gearboxes.*": _at(rig__model="one gearbox of the rig"),
+    "gearboxes.*.role": _at(checks__strength="target window for specimens, safety for gears of the rig"),
+    "gearboxes.*.gears.*": _at(
+        rig__gears="tooth geometry: stiffness, root stress, backlash",
+        rig__drivetrain="inertia and place on the shaft",
+    ),
+    "gearboxes.*.gears.*.quality_grade": _at(
+        records__curves="K_V of ISO 6336-1",
+        checks__strength="K_Falpha of ISO 6336-1",
+        coupling__alignment="tolerances of the axes",
+    ),
+    "gearboxes.*.gears.*.flank_roughness": _at(coupling__loads="friction coefficient of the teeth"),
+    "gearboxes.*.gears.*.inertia": _at(rig__drivetrain="inertia of the gear body"),
+    "gearboxes.*.gears.*.inertia_factor": _at(rig__drivetrain="inertia of the gear body"),
+    "gearboxes.*.gears.*.flank": _at(coupling__loads=_WARM),
+    "gearboxes.*.gears.*.flank.pitch_waves.*": _at(
+        coupling__loads="pitch deviations of the teeth: orders of the shaft"
+    ),
+    "gearboxes.*.gears.*.flank.weak_tooth": _at(
+        coupling__loads="stiffness of the pairs of one tooth: orders of the shaft"
+    ),
+    "gearboxes.*.gears.*.spline": _at(rig__drivetrain="spring and damper between gear and shaft"),
+    "gearboxes.*.meshes.*": _at(
+        rig__gears="geometry of the gear pair", coupling__loads="mesh law: stiffness over the path of contact"
+    ),
+    "gearboxes.*.meshes.*.damping": _at(coupling__loads="damper of the mesh in the response"),
+    "gearboxes.*.meshes.*.damping_acts_on": _at(
+        coupling__loads="damper of the mesh in the response", coupling__losses="work of the damper"
+    ),
+    "gearboxes.*.meshes.*.stiffness_factor": _at(coupling__loads="stiffness of the tooth pairs"),
+    "gearboxes.*.meshes.*.friction_factor": _at(
+        coupling__loads="friction coefficient: drag in the loop and heat of the mesh"
+    ),
+    "gearboxes.*.meshes.*.tooth_offset": _at(coupling__loads="which teeth meet"),
+    "gearboxes.*.meshes.*.phase": _at(coupling__loads="phase of the mesh against the others of the loop"),
+    "gearboxes.*.meshes.*.application_factor": _at(
+        checks__strength="K_A of the root stress", records__curves="load of K_V by ISO 6336-1"
+    ),
+    "gearboxes.*.meshes.*.face_load_factor": _at(checks__strength="K_Fbeta of the root stress"),
+    "gearboxes.*.meshes.*.low_load_factor": _at(
+        coupling__loads="mean mesh stiffness of ISO 6336-1", records__curves="K_V of ISO 6336-1"
+    ),
+    "gearboxes.*.meshes.*.rack": _at(
+        rig__gears="outline of the tooth with its fillet: stiffness and root stress"
+    ),
+    "gearboxes.*.oil": _at(rig__oil_supply="oil that is fed", coupling__oil=_OIL_FLOW),
+    "gearboxes.*.oil.oil": _at(
+        rig__oil_supply="oil data",
+        coupling__losses="windage and jets",
+        coupling__loads="viscosity in the friction of the teeth",
+    ),
+    "gearboxes.*.oil.inlet_temperature": _at(
+        rig__oil_supply="temperature of the oil that is fed",
+        coupling__loads="viscosity in the friction of the teeth, locked torque by bracing.temperature_drift",
+        coupling__boundary="fluid of the films of wetted walls",
+        coupling__oil="start of the heat balance of the stream",
+    ),
+    "gearboxes.*.oil.flow": _at(
+        rig__oil_supply="oil that is fed",
+        coupling__losses="power that brings the jets up to speed",
+        coupling__flank_heat="film of the jets on the flanks",
+        coupling__oil=_OIL_FLOW,
+    ),
+    "gearboxes.*.oil.jet_direction": _at(
+        coupling__losses="power that brings the jets up to speed",
+        coupling__flank_heat="film of the jets on the flanks",
+    ),
+    "gearboxes.*.oil.jet_velocity": _at(
+        rig__oil_supply="velocity with which the oil arrives: power of the jets, film on the flanks"
+    ),
+    "gearboxes.*.oil.blocked_jets": _at(rig__oil_supply="velocity of the open jets and wetted face width"),
+    "gearboxes.*.bearing_oil": _at(rig__oil_supply="oil that is fed", coupling__oil=_OIL_FLOW),
+    "gearboxes.*.bearing_oil.inlet_temperature": _at(
+        rig__oil_supply="temperature of the oil that is fed",
+        coupling__bearing_films="viscosity of the film, its heat balance",
+    ),
+    "gearboxes.*.bearings.*": _at(
+        coupling__bearing_films="film, drag torque and heat of the bearing",
+        case__geometry="journal and bore in the housing",
+    ),
+    "gearboxes.*.bearings.*.diametral_clearance": _at(
+        coupling__bearing_films="film of the bearing",
+        coupling__expansion="clearance that thermal expansion changes",
+    ),
+    "gearboxes.*.bearings.*.locating": _at(case__geometry="point from which the shaft expands axially"),
+    "gearboxes.*.bearings.*.axial_play": _at(
+        records__warm_gearbox="axial play that thermal expansion uses up"
+    ),
+    "gearboxes.*.bearings.*.shell_conductance": _at(rig__joints="joint between shell and housing"),
+    "gearboxes.*.bearings.*.torsional_damping": _at(
+        coupling__bearing_films="drag torque where losses.bearing_drag is constant"
+    ),
+    "gearboxes.*.bearings.*.radial_stiffness": _at(case__gearbox="kept for the record, enters nothing"),
+    "gearboxes.*.bearings.*.radial_damping": _at(case__gearbox="kept for the record, enters nothing"),
+    "gearboxes.*.seals.*": _at(
+        coupling__losses="loss of the seals",
+        case__geometry="gap between shaft and wall",
+        checks__clearances="warm gap and travel",
+    ),
+    "gearboxes.*.seals.*.rubbing_torque": _at(
+        coupling__losses="friction heat of the seals and drag of the shaft"
+    ),
+    "gearboxes.*.seals.*.axial_travel": _at(checks__clearances=_LIMIT),
+    "gearboxes.*.heat_split": _at(
+        coupling__losses="share of a loss that heats bodies",
+        coupling__boundary="heat sources on surfaces of the field",
+    ),
+    "gearboxes.*.heat_split.mesh_pinion_share": _at(
+        coupling__flank_heat="friction heat between pinion and wheel"
+    ),
+    "gearboxes.*.heat_split.mesh": _at(
+        case__gearbox="by which rule the friction heat divides",
+        coupling__flank_heat="friction heat between gears and oil",
+    ),
+    "gearboxes.*.heat_split.mesh_into_gears": _at(coupling__flank_heat="friction heat between gears and oil"),
+    "gearboxes.*.loss_factors": _at(
+        coupling__losses="losses of the gearbox: heat and drag torque",
+        coupling__loads="friction of the teeth in the loop",
+    ),
+    "gearboxes.*.oil_paths": _at(coupling__oil="ways of the gear oil: which heat which part of it takes up"),
+    "gearboxes.*.oil_paths.bypass": _at(
+        rig__oil_supply="flow that reaches the jets", coupling__oil="part of the oil that takes up no heat"
+    ),
+    "gearboxes.*.oil_state": _at(
+        rig__oil_supply="properties of the oil as it runs: viscosity, heat capacity, conductivity"
+    ),
+    "gearboxes.*.housing": _at(case__geometry=_BOX),
+    "gearboxes.*.housing.material": _at(rig__model="heat conduction and thermal expansion of the housing"),
+    "gearboxes.*.housing.mesh_file": _at(rig__user_mesh="mesh in place of the parametric box"),
+    "gearboxes.*.housing.ambient_film_factor": _at(coupling__boundary="films to room air"),
+    "gearboxes.*.housing.bearing_film_factor": _at(
+        coupling__boundary="conductance between bearing films and walls"
+    ),
+    "gearboxes.*.housing.radiation_included": _at(
+        coupling__boundary="whether radiation is added to films to room air"
+    ),
+    "gearboxes.*.housing.foot_contact": _at(rig__joints="thermal contact between foot and clamping field"),
+    "gearboxes.*.housing.foot_contact.joint": _at(
+        rig__joints="conductance of two rough faces under pressure"
+    ),
+    "gearboxes.*.housing.field": _at(
+        case__geometry="plate the gearbox stands on: heat path and hold of the foot"
+    ),
+    "gearboxes.*.housing.mesh": _at(
+        case__mesh="element sizes of the temperature field: discretisation error"
+    ),
+    "gearboxes.*.housing.shafts.*": _at(
+        case__geometry="shaft in the temperature field, diameters of its seals"
+    ),
+    "gearboxes.*.housing.boundary.*": _at(coupling__boundary=_BOUNDARY),
+    "gearboxes.*.housing.boundary.*.taken_from": _at(
+        coupling__boundary="doubt of a printed coefficient: warns where the field differs from what was assumed"
+    ),
+    "drivetrain.shafts.*": _at(rig__drivetrain="shaft of the torsional model"),
+    "drivetrain.shafts.*.sections.*": _at(
+        rig__drivetrain="torsional stiffness and inertia of the shaft",
+        rig__shaft_torsion="torsional stress of the shaft",
+    ),
+    "drivetrain.shafts.*.discs.*": _at(rig__drivetrain="inertia on the shaft"),
+    "drivetrain.couplings.*": _at(rig__drivetrain="spring and damper between two shafts"),
+    "drivetrain.couplings.*.excitation.*": _at(rig__drivetrain="alternating torque between two shafts"),
+    "drivetrain.couplings.*.radial_offset_maximum": _at(checks__alignment=_LIMIT),
+    "drivetrain.couplings.*.angle_maximum": _at(checks__alignment=_LIMIT),
+    "drivetrain.couplings.*.cold_offset_lateral": _at(
+        coupling__alignment="place of the shafts before they warm up"
+    ),
+    "drivetrain.couplings.*.cold_offset_vertical": _at(
+        coupling__alignment="place of the shafts before they warm up"
+    ),
+    "drivetrain.motor": _at(rig__drivetrain="inertia and place of the drive"),
+    "drivetrain.motor.torque_limit": _at(
+        coupling__time_run="most torque of the speed control over the schedule"
+    ),
+    "drivetrain.motor.ripple.*": _at(rig__drivetrain="alternating torque of the drive"),
+    "drivetrain.bracing": _at(coupling__loads="how the torque is locked in: what is held while parts expand"),
+    "drivetrain.torque_at": _at(rig__model="gear at which torque and speed of the schedule count"),
+    "drivetrain.mesh_stiffness": _at(coupling__loads="analytic mesh stiffness"),
+    "losses": _at(coupling__losses="which losses are computed"),
+    "losses.chamber_density": _at(
+        coupling__losses="windage and seal losses", coupling__boundary="films in oil mist"
+    ),
+    "losses.mesh_damping_heats_oil": _at(coupling__losses="whether work of the mesh dampers heats the oil"),
+    "losses.bearing_drag": _at(coupling__bearing_films="drag torque of the bearings"),
+    "losses.given.*": _at(coupling__given_losses="loss in place of a computed one"),
+    "losses.friction": _at(
+        coupling__loads="friction coefficient of the teeth: drag in the loop and heat of the mesh"
+    ),
+    "losses.friction.doleschel": _at(
+        coupling__loads="friction coefficient of the teeth: constants of the oil"
+    ),
+    "schedule": _at(coupling__time_run="speed and torque over time"),
+    "schedule.simulation_only": _at(run__main="doubt in the report that the rig cannot run so"),
+    "schedule.stages.*": _at(
+        case__schedule="speed and torque over time", coupling__time_run="time run over the schedule"
+    ),
+    "schedule.stages.*.held": _at(
+        coupling__time_run="points at which temperatures are coupled with loads and losses"
+    ),
+    "schedule.stages.*.drive_torque": _at(
+        coupling__time_run="run-up at constant torque instead of speed control"
+    ),
+    "test_plan": _at(checks__strength="load cycles of the teeth", transient__phases="length of the dwell"),
+    "limits.clearances": _at(checks__clearances=_LIMIT, transient__limits="limit over the thermal history"),
+    "limits.alignment": _at(checks__alignment=_LIMIT),
+    "limits.temperatures": _at(checks__temperatures=_LIMIT),
+    "limits.oil": _at(checks__oil=_LIMIT),
+    "limits.bearing": _at(checks__films=_LIMIT, checks__ramp="torque below the transition speed"),
+    "limits.dynamics": _at(checks__dynamics=_LIMIT),
+    "limits.dynamics.dangerous_amplification": _at(records__resonances="which resonances are dangerous"),
+    "limits.dynamics.dangerous_force_share": _at(records__resonances="which resonances are dangerous"),
+    "limits.strength": _at(checks__strength=_LIMIT),
+    "limits.specimen": _at(checks__strength=_LIMIT),
+    "limits.ramp": _at(checks__ramp=_LIMIT),
+    "limits.bought_parts.*": _at(checks__component_limits=_LIMIT),
+    "numerics": _at(coupling__convergence="end of the coupling loop"),
+    "numerics.sample_rate": _at(coupling__time_run="samples of the time run"),
+    "numerics.internal_steps": _at(coupling__time_run="integration steps of the time run"),
+    "numerics.slices_spur": _at(coupling__loads="slices over the face of spur gears"),
+    "numerics.slices_helical": _at(coupling__loads="slices over the face of helical gears"),
+    "numerics.shaft_element_length": _at(rig__resolution="elements of the torsional model"),
+    "numerics.curve_speed_start": _at(records__curves="first speed of the response over speed"),
+    "numerics.curve_speed_end": _at(records__curves="last speed of the response over speed"),
+    "numerics.curve_speeds": _at(records__curves="density of the response over speed"),
+    "numerics.response_period": _at(
+        coupling__tooth_deviations="which tooth deviations the periodic response holds"
+    ),
+    "transient": _at(transient__phases="phases of the thermal history"),
+    "transient.events": _at(transient__thermal_history="what is followed in addition to the schedule"),
+    "transient.still_film": _at(transient__oil="least film of surfaces in still air"),
+    "transient.settled_share": _at(run__transient="time until a quantity is steady"),
+    "transient.tolerance": _at(transient__thermal_history="time steps of the thermal history"),
+    "transient.probes.*": _at(transient__places="places whose temperature is kept"),
+}
+"""Path of a key or of its table -> where it enters."""

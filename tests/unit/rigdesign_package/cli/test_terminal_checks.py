@@ -1,0 +1,194 @@
+"""The terminal of check: one screen that loses no failing check, or everything."""
+
+import io
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from rigdesign.cli.application import print_json
+from rigdesign.cli.terminal.checks import print_checks
+from rigdesign.cli.terminal.console import plain_streams, verbosity
+from rigdesign.cli.terminal.warning_groups import warning_groups
+from rigdesign.results.check import Check
+from rigdesign.results.ranges import RangesResult
+from rigdesign.results.result import Finding, RunResult
+from tests.builders.report import make_check, small_result
+
+Printed = Callable[..., list[str]]
+NO_HOUSING = "walls of gearbox reference: it has no housing"
+UNEXPANDED = "thermal expansion of gearbox reference: its housing is not expanded"
+
+
+@pytest.fixture
+def printed(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Printed:
+    """Lines of a result in a terminal of 80 columns."""
+    monkeypatch.setenv("COLUMNS", "80")
+
+    def lines(result: RunResult, *, everything: bool = False, out: Path | None = None) -> list[str]:
+        print_checks(result, out, everything=everything)
+        return capsys.readouterr().out.splitlines()
+
+    return lines
+
+
+def left_out(number: int, *texts: str) -> list[Check]:
+    """Checks that warn because of what their values leave out."""
+    reason = "; ".join(f"leaves out {text}" for text in texts)
+    return [
+        make_check(
+            f"left.out_{n}", 1.0, 4.0 + n, verdict="warn", left_out=texts, reason=f"somewhere; {reason}"
+        )
+        for n in range(number)
+    ]
+
+
+def notes(number: int) -> list[Finding]:
+    return [Finding(id="loss", text=f"note {n} " + "x" * 200) for n in range(number)]
+
+
+def failing(number: int) -> list[Check]:
+    return [
+        make_check(f"failing.check_{n}", 3.0, 1.0, title=f"failing check {n}", reason="word " * 30 + "; more")
+        for n in range(number)
+    ]
+
+
+def test_a_screen_of_eighty_columns_holds_what_decides(printed: Printed) -> None:
+    near = [make_check(f"near.check_{n}", 0.5 + 0.05 * n, 1.0) for n in range(8)]
+    checks = [*failing(2), *left_out(16, NO_HOUSING), *left_out(3, "a long word " * 5 + ": why"), *near]
+    lines = printed(small_result(checks=checks, warnings=notes(26)), out=Path("out"))
+    assert len(lines) < 30 and all(len(line) <= 80 for line in lines)
+    assert lines[1] == "verdict: fail (2 fail, 19 warn, 8 pass)"
+    assert sum(line.startswith("fail: ") for line in lines) == 2
+    assert any("16 checks leave out walls of gearbox reference: it has no housing" in line for line in lines)
+    table = next(number for number, line in enumerate(lines) if line.startswith("nearest margins"))
+    assert [line.split()[0] for line in lines[table + 1 : table + 6]] == [
+        f"near.check_{n}" for n in (7, 6, 5, 4, 3)
+    ]
+    assert lines[-2:] == ["notes: 26 loss; --all prints them and every check", "report: out/report.html"]
+
+
+def test_every_failing_check_is_printed_with_value_limit_and_reason(printed: Printed) -> None:
+    lines = printed(small_result(checks=failing(40)))
+    for number in range(40):
+        [at] = [
+            n for n, line in enumerate(lines) if line == f"fail: failing check {number}: 3 mm, limit ≤ 1 mm"
+        ]
+        assert lines[at + 1].startswith("      word word") and "more" not in lines[at + 2]
+
+
+def test_everything_prints_every_check_and_every_note(printed: Printed) -> None:
+    checks = [*failing(1), *left_out(2, NO_HOUSING), make_check("held.check", 0.2, 1.0, title="holds")]
+    absent = make_check("no.limit", 1.0, 1.0, verdict="not applicable", reason="the case states no limit")
+    lines = printed(small_result(checks=[*checks, absent], warnings=notes(3)), everything=True)
+    text = "\n".join(lines)
+    assert "holds" in text and text.count("note loss: ") == 3
+    assert text.count("warn: left.out") == 2
+    assert "not applicable: no.limit: the case states no limit" in text
+
+
+def test_stated_inputs_at_their_limit_are_no_near_margins(printed: Printed) -> None:
+    stated = make_check("ramp.test_torque", 180.0, 180.0, unit="N m")
+    lines = printed(small_result(checks=[stated, make_check("near.check", 0.9, 1.0)]))
+    assert not any(line.startswith("ramp.test_torque") for line in lines)
+    assert "stated inputs at their limit, left out here: 1" in lines
+
+
+def test_what_does_not_apply_is_counted_by_its_reason(printed: Printed) -> None:
+    checks = [
+        make_check(f"absent.{n}", 1.0, 1.0, verdict="not applicable", reason=reason)
+        for n, reason in enumerate(["no limit"] * 3 + ["no housing"] * 2 + ["a", "b"])
+    ]
+    lines = printed(small_result(checks=checks))
+    assert lines[2:5] == [
+        "3 not applicable: no limit",
+        "2 not applicable: no housing",
+        "2 not applicable for other reasons",
+    ]
+
+
+def test_quiet_leaves_the_line_of_the_verdict(printed: Printed) -> None:
+    before = verbosity.set("quiet")
+    try:
+        assert printed(small_result(checks=failing(2)), out=Path("out")) == ["verdict: fail (2 fail)"]
+    finally:
+        verbosity.reset(before)
+
+
+def test_ends_of_ranges_without_a_result_are_named(printed: Printed) -> None:
+    ranges = RangesResult(
+        fidelity="quick",
+        method="two ends",
+        inputs=[],
+        checks=[],
+        margins=[],
+        max_temperature=None,
+        left_out=[],
+    )
+    lines = printed(replace(small_result(checks=failing(1)), ranges=ranges), everything=True)
+    assert "ranges: two ends" in lines
+
+
+# ---------------------------------------------------------------------------- warnings by their reason
+
+
+def texts(*checks: Check) -> list[str]:
+    return [group.text for group in warning_groups(checks)]
+
+
+def test_warnings_of_one_gearbox_are_one_group() -> None:
+    checks = [*left_out(2, NO_HOUSING), *(replace(c, id=f"x{c.id}") for c in left_out(3, UNEXPANDED))]
+    assert texts(*checks) == ["5 checks leave out effects in gearbox reference: it has no housing"]
+
+
+def test_two_gearboxes_that_the_same_checks_leave_out_are_one_group() -> None:
+    checks = left_out(3, NO_HOUSING, NO_HOUSING.replace("reference", "test"))
+    assert texts(*checks) == ["3 checks leave out effects in gearbox reference and test: it has no housing"]
+
+
+def test_every_cause_of_a_warning_is_named() -> None:
+    near = make_check("near", 0.97, 1.0, verdict="warn")
+    mesh = make_check("mesh", 0.5, 1.0, verdict="warn", discretisation_error=0.7)
+    decided = make_check(
+        "decided", 0.5, 1.0, verdict="warn", reason="there; decided by assumption a.b = 3 mm"
+    )
+    broken = make_check("broken", 2.0, 1.0, verdict="warn")
+    doubt = make_check("doubt", 0.5, 1.0, verdict="warn", reason="there; outside of the range of the formula")
+    assert texts(near, mesh, decided, broken, doubt) == [
+        "near uses more than 95 % of its limit",
+        "mesh has a margin below the error of the mesh",
+        "decided is decided by assumption a.b = 3 mm",
+        "broken breaks a rule of good practice",
+        "doubt warns: outside of the range of the formula",
+    ]
+
+
+def test_no_warning_is_lost() -> None:
+    checks = [*left_out(4, NO_HOUSING, "the rest"), make_check("near", 0.97, 1.0, verdict="warn")]
+    grouped = {check.id for group in warning_groups(checks) for check in group.checks}
+    assert grouped == {check.id for check in checks}
+    assert texts(make_check("held", 0.5, 1.0)) == []
+
+
+# ---------------------------------------------------------------------------- streams without the signs
+
+
+def test_a_stream_in_ascii_prints_words_for_signs(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    monkeypatch.setattr("sys.stdout", stream)
+    plain_streams()
+    print("5.032 × 10⁸ ≥ 1\u202f000 N/mm², 20 °C, 3 µm, −4 … 5, 10⁻³, 漢", flush=True)
+    printed = stream.buffer.getvalue().decode("ascii")  # type: ignore[attr-defined]
+    assert printed == "5.032 x 10^8 >= 1 000 N/mm2, 20 degC, 3 um, -4 ... 5, 10^-3, ?\n"
+
+
+def test_json_stays_whole_in_a_stream_in_ascii(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
+    monkeypatch.setattr("sys.stdout", stream)
+    plain_streams()
+    print_json({"unit": "°C"})
+    stream.flush()
+    assert json.loads(stream.buffer.getvalue()) == {"unit": "°C"}  # type: ignore[attr-defined]
