@@ -130,6 +130,22 @@ class Ledger:
         self._points[key] = (failed, json.loads(content))
 
 
+def read_points(path: Path) -> dict[str, tuple[bool, Record]]:
+    """Points of a ledger that another process may be writing; none of one that cannot be read at this moment.
+
+    Nothing is repaired here: whoever owns the ledger does it.
+    """
+    with suppress(sqlite3.Error, OSError, TypeError, ValueError):
+        with closing(
+            sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=30.0)
+        ) as connection:
+            if connection.execute("PRAGMA user_version").fetchone()[0] != FORMAT:
+                return {}
+            rows = [_Row(*row) for row in connection.execute(f"SELECT {', '.join(_Row._fields)} FROM points")]
+        return {row.key: (bool(row.failed), json.loads(row.record)) for row in rows if row.sound}
+    return {}
+
+
 def _checksum(row: tuple[object, ...]) -> str:
     return hashlib.sha256(json.dumps(row).encode()).hexdigest()
 

@@ -1,0 +1,117 @@
+"""One point of a study in a worker: the case with its values, computed, and what is kept of it."""
+
+import pickle
+import threading
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal, Protocol
+
+from threadpoolctl import threadpool_limits
+
+from rigdesign.base.errors import MissingLibraryError, RigdesignError
+from rigdesign.base.fidelity import Fidelity
+from rigdesign.base.json_text import to_plain
+from rigdesign.base.parallel import one_core
+from rigdesign.results.result import RunResult
+from rigdesign.studies.result import Record
+
+if TYPE_CHECKING:
+    from rigdesign.case import Case
+
+CHECK_KEYS = (
+    "id", "title", "group", "value", "limit", "upper_limit", "unit", "comparison", "margin", "utilisation", "verdict",
+)  # fmt: skip
+NO_MEMORY = "the worker has no memory left; give it more, or start fewer workers"
+
+Status = Literal["done", "failed", "library missing", "defect"]
+
+
+class Run(Protocol):
+    """What computes one point; `rigdesign.run_case` or a stand-in."""
+
+    def __call__(self, case: "Case", *, fidelity: Fidelity) -> RunResult:
+        """Compute one case."""
+
+
+Prepare = Callable[["Case", Fidelity], Run]
+"""Called once in every worker with the case of the study: what it returns computes the points there."""
+
+
+@dataclass(frozen=True)
+class PointSetup:
+    """What all points of a study share; goes to the workers packed, and is unpacked once in each.
+
+    run, prepare : one of them may stand in for `rigdesign.run_case`; picklable
+    """
+
+    case: "Case"
+    fidelity: Fidelity
+    run: Run | None = None
+    prepare: Prepare | None = None
+
+    def packed(self) -> bytes:
+        """As `solve_point` takes it."""
+        return pickle.dumps(self, protocol=pickle.HIGHEST_PROTOCOL)
+
+
+@dataclass(frozen=True)
+class PointOutcome:
+    """What became of a point: a record of it (done, failed), or why the study has to stop.
+
+    A point that cannot be computed is a result; a library that is missing is not the point's fault, and an error
+    that nobody raised on purpose is a defect of the tool.
+    """
+
+    status: Status
+    record: Record
+
+
+_ONE_POINT = threading.Lock()
+"""Meshing and compiled threads allow one point at a time in a process, whatever threads the executor has."""
+
+
+def solve_point(changes: Mapping[str, str], *, setup: bytes) -> PointOutcome:
+    """Compute the case of ``setup`` with some of its values changed; never raises an `Exception`."""
+    try:
+        with _ONE_POINT, one_core(), threadpool_limits(limits=1):
+            case, fidelity, run = _unpacked(setup)
+            return PointOutcome("done", record_of(run(case.with_values(changes), fidelity=fidelity)))
+    except MissingLibraryError as error:
+        return PointOutcome("library missing", {"error": str(error)})
+    except RigdesignError as error:
+        return PointOutcome("failed", {"error": str(error), "kind": type(error).__name__})
+    except MemoryError:
+        return PointOutcome("failed", {"error": NO_MEMORY, "kind": "MemoryError"})
+    except Exception as error:
+        return PointOutcome(
+            "defect", {"error": f"{type(error).__name__}: {error}", "traceback": traceback.format_exc()}
+        )
+
+
+@lru_cache(maxsize=1)
+def _unpacked(setup: bytes) -> tuple["Case", Fidelity, Run]:
+    """Case and fidelity of a study and what computes its points, made once in a process."""
+    shared: PointSetup = pickle.loads(setup)
+    if shared.prepare is not None:
+        return shared.case, shared.fidelity, shared.prepare(shared.case, shared.fidelity)
+    if shared.run is not None:
+        return shared.case, shared.fidelity, shared.run
+    return shared.case, shared.fidelity, _run_on_one_thread
+
+
+def _run_on_one_thread(case: "Case", *, fidelity: Fidelity) -> RunResult:
+    from rigdesign.run.main import run_case
+    from thermal.fe.kernels import one_thread
+
+    with one_thread():
+        return run_case(case, fidelity=fidelity)
+
+
+def record_of(result: RunResult) -> Record:
+    """What the ledger keeps of a result."""
+    hottest = max((item.max_temperature_degC for item in result.thermal), default=None)
+    checks = [{key: getattr(check, key) for key in CHECK_KEYS} for check in result.checks]
+    record: Record = to_plain({"verdict": result.verdict, "max_temperature_degC": hottest, "checks": checks})
+    return record
