@@ -133,7 +133,7 @@ class Workers:
                 done, _ = wait(pending, LOOK_AFTER, FIRST_COMPLETED)
                 if not done:
                     self._look()
-                for future in done:
+                for future in sorted(done, key=pending.__getitem__):
                     yield pending.pop(future), self._outcome(future)
         finally:
             for future in pending:

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from rigdesign.base.errors import MissingLibraryError, UsageError
+from rigdesign.base.errors import CONTROL, MissingLibraryError, UsageError
 from rigdesign.base.output_folder import staged
 from rigdesign.base.version import __version__
 from rigdesign.report.pages.study import study_csv
@@ -156,6 +156,9 @@ def _fill_points(book: "Workbook", columns: Sequence[Column]) -> None:
     sheet.append([column.unit or "" for column in columns])
     for row in zip(*(column.values for column in columns), strict=True):
         sheet.append([_cell(value) for value in row])
+        for cell in sheet[sheet.max_row]:
+            if cell.data_type == "f":
+                cell.data_type = "s"  # a text that begins like a formula
     for number, column in enumerate(columns, 1):
         sheet.cell(1, number).font = Font(bold=True)
         sheet.cell(1, number).alignment = Alignment(wrap_text=True, vertical="top")
@@ -166,8 +169,8 @@ def _fill_points(book: "Workbook", columns: Sequence[Column]) -> None:
 
 
 def _cell(value: float | str | None) -> float | str | None:
-    """A text that begins like a formula stays a text."""
-    return f"'{value}" if isinstance(value, str) and value.startswith("=") else value
+    """A value without the control characters that a sheet cannot hold."""
+    return CONTROL.sub("", value) if isinstance(value, str) else value
 
 
 def _ranges(study: StudyResult) -> dict[str, str]:

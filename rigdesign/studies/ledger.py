@@ -20,6 +20,8 @@ from rigdesign.studies.result import Record
 
 FORMAT = 3
 """Of the table below, kept in the file as user_version; raise it with any change."""
+SYNCHRONOUS = "EXTRA"
+"""A stored point is on the disk and not with the operating system: it stays when the power fails."""
 SCHEMA = """
 CREATE TABLE IF NOT EXISTS points (
     key TEXT PRIMARY KEY,
@@ -160,7 +162,7 @@ def _opened(path: Path) -> tuple[sqlite3.Connection, dict[str, tuple[bool, Recor
     try:
         connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_RECORD)
         connection.execute("PRAGMA journal_mode=DELETE")
-        connection.execute("PRAGMA synchronous=EXTRA")
+        connection.execute(f"PRAGMA synchronous={SYNCHRONOUS}")
         if connection.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()[0] == 0:
             connection.execute(SCHEMA)
             connection.execute(f"PRAGMA user_version={FORMAT}")

@@ -107,4 +107,5 @@ def _indices(pages: Array) -> tuple[Array, Array]:
             func={"f_A": pages[:, 0], "f_B": pages[:, 1], "f_AB": np.swapaxes(pages[:, 2:], 0, 1)},
             n=pages.shape[2],
         )
-    return np.asarray(found.first_order), np.asarray(found.total_order)
+    shape = (pages.shape[0], pages.shape[1] - 2)
+    return np.reshape(found.first_order, shape), np.reshape(found.total_order, shape)
