@@ -39,6 +39,13 @@ class Cluster:
         self.workers.append(worker)
         return worker
 
+    def await_workers(self) -> None:
+        """Until all have reached the scheduler."""
+        from distributed import Client
+
+        with Client(self.address, set_as_default=False) as client:
+            client.wait_for_workers(len(self.workers), timeout=STARTED_WITHIN)
+
     def stop_workers(self) -> None:
         for worker in self.workers:
             worker.terminate()
@@ -66,7 +73,7 @@ def cluster(folder: Path, *, before: dict[str, str] | None = None) -> Iterator[C
     running = None
     try:
         until = time.monotonic() + STARTED_WITHIN
-        while not file.exists():
+        while not (file.exists() and file.read_text().endswith("}")):
             assert scheduler.poll() is None and time.monotonic() < until, (
                 folder / "scheduler.log"
             ).read_text()

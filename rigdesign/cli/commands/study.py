@@ -29,7 +29,7 @@ def study(
     workers: int | str | None = None,
     shard: str | None = None,
     table: Annotated[list[Literal["parquet", "xlsx"]] | None, Several] = None,
-    retry: bool = False,
+    retry: Annotated[bool, Switch] = False,
 ) -> int:
     """Run a case over values of its inputs; resumes where it stopped.
 
@@ -57,7 +57,7 @@ def study(
     tolerance
         Of these values, such as '0.5 K'; default 1/200 of the range.
     checks
-        Patterns on the ids of the checks to look at ('temperature.*'); '!' leaves out ('!specimen.root_stress*').
+        Patterns on the ids of the checks to look at: `temperature.*` takes, `!specimen.root_stress*` leaves out.
     fidelity
         Size of the models.
     workers

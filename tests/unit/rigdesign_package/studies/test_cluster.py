@@ -10,12 +10,16 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign import api
 from rigdesign.base import cluster as base_cluster
 from rigdesign.base import worker_pool
 from rigdesign.base.cluster import ClusterWorkers
 from rigdesign.base.errors import MissingLibraryError, UsageError
 from rigdesign.base.version import __version__
 from rigdesign.base.worker_pool import LostWorkersError
+from rigdesign.case import load_case
+from rigdesign.studies.run import Execution
+from tests.builders.commands import SMALL
 from tests.builders.dask_cluster import NO_RIGDESIGN, OTHER_VERSION, cluster
 from tests.builders.study import InProcess, run_study
 from tests.builders.study_functions import CURVES, curves, deadly, slow
@@ -55,9 +59,14 @@ def undisturbed(tmp_path_factory):
     return out
 
 
-def begun(folder: Path) -> list[int]:
-    """Process of every point that was begun."""
-    return [int(path.name.split("-")[1]) for path in folder.glob("begun-*")]
+def processes(folder: Path, what: str) -> list[int]:
+    """Process of every point that was begun, or ended."""
+    return [int(path.name.split("-")[1]) for path in folder.glob(f"{what}-*")]
+
+
+def amid_a_point(folder: Path, process: int) -> bool:
+    ended = processes(folder, "ended").count(process)
+    return processes(folder, "begun").count(process) > ended >= 1
 
 
 def test_a_worker_killed_amid_its_point_costs_nothing(dask, undisturbed, tmp_path):
@@ -65,8 +74,10 @@ def test_a_worker_killed_amid_its_point_costs_nothing(dask, undisturbed, tmp_pat
     trace.mkdir()
     workers = [dask.add_worker("--no-nanny"), dask.add_worker("--no-nanny")]
 
+    dask.await_workers()
+
     def kill():
-        while len(begun(trace)) < 4 or workers[0].pid not in begun(trace):
+        while not amid_a_point(trace, workers[0].pid):
             time.sleep(0.01)
         workers[0].send_signal(signal.SIGKILL)
 
@@ -76,8 +87,8 @@ def test_a_worker_killed_amid_its_point_costs_nothing(dask, undisturbed, tmp_pat
     )
     assert workers[0].wait(timeout=20) == -signal.SIGKILL
     assert (outcome.completed, outcome.failed) == (11, [])
-    assert set(begun(trace)) == {worker.pid for worker in workers}
-    assert len(begun(trace)) > len(list(trace.glob("ended-*"))) == 11
+    assert set(processes(trace, "begun")) == {worker.pid for worker in workers}
+    assert len(processes(trace, "begun")) == len(processes(trace, "ended")) + 1 == 12
     assert same_files(tmp_path / "out", undisturbed)
 
 
@@ -162,6 +173,25 @@ def test_a_scheduler_lost_amid_a_study_ends_it_and_the_points_stay(tmp_path, mon
     stored = int(re.search(r"(\d+) of 11 points are computed", str(stopped.value))[1])
     outcome = run_study(CURVES, VARY, out, run=curves, executor=InProcess())
     assert 1 <= stored < 11 and outcome.reused == stored
+
+
+def test_a_real_case_on_a_cluster_equals_worker_processes_to_the_byte(dask, write, tmp_path):
+    case = load_case(write(SMALL))
+    vary = [
+        "gearboxes.test.oil.inlet_temperature=90 degC,120 degC",
+        "gearboxes.test.gears.pinion.face_width=6:8:1 mm",
+    ]
+    for name, workers in (("here", 2), ("there", dask.address)):
+        if name == "there":
+            dask.add_worker("--no-nanny")
+            dask.add_worker("--no-nanny", "--nthreads", "2")
+        outcome = api.study(
+            case, vary, tmp_path / name, fidelity="quick", execution=Execution(workers=workers)
+        )
+        assert (outcome.completed, outcome.failed) == (6, [])
+    assert same_files(tmp_path / "here", tmp_path / "there")
+    values = {tuple(check["value"] for check in point.record["checks"]) for point in outcome.points}
+    assert len(values) > 1
 
 
 @pytest.mark.parametrize("text", ["four", "host:8786", "http://host:8786", "tcp://host", "-"])
