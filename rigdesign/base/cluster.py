@@ -1,6 +1,7 @@
 """Workers of a dask cluster, by the address of its scheduler: reached, asked what they are, used as an executor."""
 
 import re
+import time
 from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING
@@ -18,6 +19,8 @@ REACHED_WITHIN = 8.0
 """Time a scheduler has to answer, and then to have a worker [s]."""
 SILENT_AFTER = 30.0
 """Time a scheduler in use has to answer before it counts as lost [s]."""
+DESERTED_AFTER = 120.0
+"""Time without any worker after which nobody is expected to come [s]."""
 ASKED_VERSION = (
     "__import__('importlib').import_module('rigdesign.base.version').__version__ "
     "if __import__('importlib.util').util.find_spec('rigdesign') else ''"
@@ -47,15 +50,15 @@ class ClusterWorkers(Workers):
                 f"write --workers 4 or --workers {EXAMPLE}"
             )
         try:
-            from distributed import KilledWorker
+            import distributed  # noqa: F401
         except ImportError as error:
             raise MissingLibraryError(
                 f"--workers {address}: the workers of a cluster need dask; run: pip install 'rigdesign[cluster]'"
             ) from error
-        self.lost = (KilledWorker,)
         self._address = address
         self._client: Client | None = None
         self._threads: Mapping[str, int] = {}
+        self._deserted: float | None = None
 
     def __str__(self) -> str:
         return f"workers of {self._address}"
@@ -94,16 +97,25 @@ class ClusterWorkers(Workers):
                 self._client.close(timeout=1.0 if at_once else 5.0)
 
     def _look(self) -> None:
-        """Ask the scheduler for a sign of life."""
+        """Ask the scheduler for a sign of life, and for its workers."""
         assert self._client is not None
         try:
             if self._client.status != "running":
                 raise OSError(f"the connection is {self._client.status}")
-            self._client.sync(self._client.scheduler.identity, callback_timeout=SILENT_AFTER)
+            found = self._client.sync(self._client.scheduler.identity, callback_timeout=SILENT_AFTER)
         except Exception as error:
             raise LostWorkersError(
                 f"scheduler {self._address} is lost ({error or type(error).__name__}); start it again with its workers"
             ) from error
+        if found["workers"]:
+            self._deserted = None
+            return
+        self._deserted = self._deserted or time.monotonic()
+        if time.monotonic() - self._deserted > DESERTED_AFTER:
+            raise LostWorkersError(
+                f"scheduler {self._address} has had no worker for {DESERTED_AFTER:g} s; start some with 'dask worker "
+                f"{self._address} --nthreads 1'"
+            )
 
 
 def _connected(address: str) -> "Client":

@@ -66,11 +66,9 @@ class Workers:
     executor : any; it is not shut down here
     """
 
-    lost: tuple[type[BaseException], ...] = ()
-    """What a future raises whose worker died."""
-
     def __init__(self, executor: Executor) -> None:
         self._executor = executor
+        self._lost = _lost_worker(executor)
 
     def __enter__(self) -> Self:
         return self
@@ -99,6 +97,7 @@ class Workers:
     ) -> Generator[tuple[int, Outcome | None], None, None]:
         """Compute every task and give (index, outcome) as they finish; None for a task whose worker died.
 
+        A cluster suspects all tasks that a dying worker held: they are computed again at the end, one at a time.
         ``work`` and the tasks must be picklable; ``work`` must not raise.
 
         Raises
@@ -106,8 +105,15 @@ class Workers:
         LostWorkersError
             If the executor ends before the work is done.
         """
+        suspected = []
         try:
-            yield from self._submitted(self._executor, work, tasks, range(len(tasks)))
+            for index, outcome in self._submitted(self._executor, work, tasks, range(len(tasks))):
+                if outcome is None:
+                    suspected.append(index)
+                else:
+                    yield index, outcome
+            for index in suspected:
+                yield from self._submitted(self._executor, work, tasks, [index])
         except (BrokenExecutor, CancelledError) as error:
             raise LostWorkersError(
                 f"{self} ended before the work was done ({type(error).__name__}: {error}); start them again"
@@ -142,7 +148,7 @@ class Workers:
     def _outcome(self, future: Future[Outcome]) -> Outcome | None:
         try:
             return future.result()
-        except self.lost:
+        except self._lost:
             return None
 
     def _starting(self) -> AbstractContextManager[None]:
@@ -153,6 +159,15 @@ class Workers:
         """Raise if the workers are gone; called when nothing has finished for a while."""
 
 
+def _lost_worker(executor: Executor) -> tuple[type[BaseException], ...]:
+    """What a future of an executor raises whose worker died again and again, where the others go on."""
+    if not type(executor).__module__.startswith("distributed."):
+        return ()
+    from distributed import KilledWorker
+
+    return (KilledWorker,)
+
+
 class ProcessWorkers(Workers):
     """Processes on this machine, one thread each, started when they are needed and kept from call to call.
 
@@ -160,6 +175,8 @@ class ProcessWorkers(Workers):
     the first ``count`` unfinished ones did it: they are computed again alone, one by one, and new processes go on
     with the rest.
     """
+
+    _lost = ()
 
     def __init__(self, count: int) -> None:
         self.size = count

@@ -149,6 +149,7 @@ def run_study(
             "leave --shard out, or give several --workers"
         )
     plan = planned(case, design)
+    execution.say(f"{len(plan.points)} points: are they valid cases")
     tasks = tasks_of(case, plan.points, fidelity)
     workers = _workers(execution)
     prepare_output(out)

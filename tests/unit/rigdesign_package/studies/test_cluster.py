@@ -24,7 +24,7 @@ from tests.builders.dask_cluster import NO_RIGDESIGN, OTHER_VERSION, cluster
 from tests.builders.study import InProcess, run_study
 from tests.builders.study_functions import CURVES, curves, deadly, slow
 
-pytest.importorskip("distributed")
+distributed = pytest.importorskip("distributed")
 pytestmark = [
     pytest.mark.whole_run,
     pytest.mark.filterwarnings("ignore::ResourceWarning"),
@@ -97,6 +97,19 @@ def test_a_point_that_kills_every_worker_is_a_failed_point(dask, tmp_path):
     outcome = run_study(CURVES, "oil.inlet=90:110:10 degC", tmp_path, run=deadly, workers=dask.address)
     assert [point.failed for point in outcome.points] == [False, True, False]
     assert "the worker process died" in outcome.failed[0]
+    with distributed.Client(dask.address, set_as_default=False) as client:
+        again = run_study(CURVES, VARY, tmp_path / "given", run=deadly, executor=client.get_executor())
+    assert [point.values["oil.inlet"] for point in again.points if point.failed] == ["100 degC"]
+
+
+def test_a_study_whose_workers_are_all_gone_ends(dask, tmp_path, monkeypatch):
+    monkeypatch.setattr(worker_pool, "LOOK_AFTER", 0.5)
+    monkeypatch.setattr(base_cluster, "DESERTED_AFTER", 2.0)
+    dask.add_worker("--no-nanny")
+    with pytest.raises(
+        LostWorkersError, match=r"has had no worker for 2 s; start some .* 1 of 3 points are computed"
+    ):
+        run_study(CURVES, "oil.inlet=90:110:10 degC", tmp_path, run=deadly, workers=dask.address)
 
 
 def test_a_worker_of_several_threads_computes_one_point_at_a_time_and_says_so(dask, tmp_path):
