@@ -23,16 +23,20 @@ if TYPE_CHECKING:
     from rigdesign.case import Case, load_case
     from rigdesign.prediction.predict import predict
     from rigdesign.results.result import RunResult
+    from rigdesign.studies.design import StudyDesign
+    from rigdesign.studies.run import Execution
 
 __all__ = [
     "Case",
     "CaseError",
+    "Execution",
     "MeasurementError",
     "MissingLibraryError",
     "NotConvergedError",
     "OutputError",
     "RigdesignError",
     "RunResult",
+    "StudyDesign",
     "UsageError",
     "__version__",
     "compare",
@@ -46,7 +50,9 @@ __all__ = [
 
 _HOMES = {
     "Case": "rigdesign.case",
+    "Execution": "rigdesign.studies.run",
     "RunResult": "rigdesign.results.result",
+    "StudyDesign": "rigdesign.studies.design",
     "compare": "rigdesign.api",
     "diagnose": "rigdesign.api",
     "load_case": "rigdesign.case",

@@ -3,7 +3,8 @@
 Nothing is printed. Files are written where a function has ``out``, and by :func:`save`.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 
 from rigdesign.base.fidelity import Fidelity
@@ -17,9 +18,13 @@ from rigdesign.prediction.predict import Thermal
 from rigdesign.reanalysis.flips import with_flips
 from rigdesign.report import write_results
 from rigdesign.report.pages.study import write_study
+from rigdesign.report.study_tables import TableFormat, require_table_libraries, write_tables
 from rigdesign.results.result import RunResult
 from rigdesign.run import main
-from rigdesign.studies.run import Execution, StudyOutcome, parse_variation, run_study
+from rigdesign.studies.design import StudyDesign
+from rigdesign.studies.result import StudyResult
+from rigdesign.studies.run import DEFAULT as ONE_PROCESS_A_CORE
+from rigdesign.studies.run import Execution, StudyOutcome, run_study
 from rigdesign.uncertainty.run import with_ranges
 
 Progress = Callable[[str], None]
@@ -69,33 +74,42 @@ def save(result: RunResult, out: str | Path) -> None:
 
 def study(
     case: Case,
-    vary: str | Iterable[str],
+    design: StudyDesign | str | Iterable[str],
     out: str | Path,
     *,
     fidelity: Fidelity = "standard",
-    workers: int | None = None,
-    retry: bool = False,
-    progress: Progress | None = None,
+    execution: Execution = ONE_PROCESS_A_CORE,
+    tables: Sequence[TableFormat] = (),
 ) -> StudyOutcome:
-    """Run a case over a grid of values; what ``out`` holds already is not computed again.
+    """Compute a case over values of its inputs; what ``out`` holds already is not computed again.
 
     Parameters
     ----------
-    vary : ``"PATH=START:STOP:STEP"`` or ``"PATH=v1,v2"``, one or several that make a grid
-    out : folder of the ledger, results.csv and the plot of margins
-    workers : processes, one thread each; None for one per core
-    retry : compute points again that failed before
+    design : a `StudyDesign`, or the values of a grid: ``"PATH=START:STOP:STEP"`` or ``"PATH=v1,v2"``, one or
+        several
+    out : folder of the ledger, results.csv and the page
+    execution : workers or any `concurrent.futures.Executor`, share of the points, progress
+    tables : ``"parquet"`` and ``"xlsx"`` beside results.csv
 
     Raises
     ------
     UsageError
-        A text that is no variation, a grid that is too large, a folder that cannot be written.
+        A design that cannot be made, workers that do not exist, a folder that cannot be written.
     CaseError
-        No point of the grid is a valid case.
+        No point is a valid case.
+    MissingLibraryError
+        A library of ``tables`` or of the workers that is not installed.
     """
-    variations = [parse_variation(text) for text in ([vary] if isinstance(vary, str) else vary)]
-    execution = Execution(workers=workers, retry=retry, progress=progress)
-    return run_study(case, variations, Path(out), write=write_study, fidelity=fidelity, execution=execution)
+    require_table_libraries(tables)
+    if not isinstance(design, StudyDesign):
+        design = StudyDesign(vary=(design,) if isinstance(design, str) else tuple(design))
+    write = partial(_write_study, tables=tables)
+    return run_study(case, design, Path(out), write=write, fidelity=fidelity, execution=execution)
+
+
+def _write_study(study: StudyResult, out: Path, tables: Sequence[TableFormat]) -> None:
+    write_tables(study, out, tables)
+    write_study(study, out)
 
 
 def compare(

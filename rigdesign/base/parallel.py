@@ -10,8 +10,8 @@ import os
 import pickle
 import signal
 import warnings
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import parent_process
 from typing import BinaryIO, Generic, Self, TypeVar
@@ -19,9 +19,24 @@ from typing import BinaryIO, Generic, Self, TypeVar
 T = TypeVar("T")
 
 
+_taken = False
+"""Whether the other cores have work of their own, see `one_core`."""
+
+
+@contextmanager
+def one_core() -> Iterator[None]:
+    """For a point of a study in a process that is no child of ours, such as a worker of a cluster: no copies."""
+    global _taken
+    before, _taken = _taken, True
+    try:
+        yield
+    finally:
+        _taken = before
+
+
 def cores() -> int:
     """Cores this process may use; one in a worker process, whose pool already uses the others."""
-    if parent_process() is not None or not hasattr(os, "fork"):
+    if _taken or parent_process() is not None or not hasattr(os, "fork"):
         return 1
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

@@ -1,15 +1,28 @@
-"""Worker processes of a study: one thread each, none outlives its parent, a dying one costs one point."""
+"""Work on other cores and machines, through any `concurrent.futures.Executor`.
+
+The pool of this module: processes of one thread each, none outlives its parent, a dying one costs one task.
+"""
 
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    wait,
+)
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
-from multiprocessing import get_context
-from multiprocessing.connection import Connection, wait
-from typing import TypeVar
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from itertools import islice
+from multiprocessing import connection, get_context
+from multiprocessing.connection import Connection
+from types import TracebackType
+from typing import Self, TypeVar
 
 from rigdesign.base.errors import UsageError
 
@@ -20,6 +33,14 @@ ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "BLIS_NUM_THREADS"),
     "1",
 )
+IN_FLIGHT = 256
+"""Tasks handed to an executor and not finished: enough for its workers, little in the memory of a scheduler."""
+LOOK_AFTER = 5.0
+"""Time without a finished task after which the executor is looked at [s]."""
+
+
+class LostWorkersError(UsageError):
+    """Workers that are gone, all of them, before the work is done."""
 
 
 def worker_count(workers: int | None) -> int:
@@ -37,62 +58,194 @@ def worker_count(workers: int | None) -> int:
     return workers
 
 
-def compute_all(
-    work: Callable[[Task], Outcome], tasks: Sequence[Task], workers: int
-) -> Iterator[tuple[int, Outcome | None]]:
-    """Compute every task in a pool of processes and give (index, outcome) as they finish.
+class Workers:
+    """Computes tasks on an executor. A context manager.
 
-    The outcome is None for a task whose process died (killed, out of memory, crash in a compiled library).
-    Tasks start in their order, so one of the first ``workers`` unfinished ones did it: they are computed again
-    alone, one by one, and the pool goes on with the rest.
-    ``work`` and the tasks must be picklable; ``work`` must not raise.
+    Parameters
+    ----------
+    executor : any; it is not shut down here
     """
-    with _one_thread_each():
+
+    def __init__(self, executor: Executor) -> None:
+        self._executor = executor
+        self._lost = _lost_worker(executor)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close(at_once=kind is not None)
+
+    def __str__(self) -> str:
+        return f"workers of {type(self._executor).__name__}"
+
+    def open(self) -> None:
+        """Reach the workers; called before the first task, and again before others."""
+
+    @property
+    def remark(self) -> str:
+        """What the user should know of the workers; empty if nothing."""
+        return ""
+
+    def close(self, *, at_once: bool = False) -> None:
+        """End what this object started; ``at_once``: without waiting for what is being computed."""
+
+    def compute(
+        self, work: Callable[[Task], Outcome], tasks: Sequence[Task]
+    ) -> Generator[tuple[int, Outcome | None], None, None]:
+        """Compute every task and give (index, outcome) as they finish; None for a task whose worker died.
+
+        A cluster suspects all tasks that a dying worker held: they are computed again at the end, one at a time.
+        ``work`` and the tasks must be picklable; ``work`` must not raise.
+
+        Raises
+        ------
+        LostWorkersError
+            If the executor ends before the work is done.
+        """
+        suspected = []
+        try:
+            for index, outcome in self._submitted(self._executor, work, tasks, range(len(tasks))):
+                if outcome is None:
+                    suspected.append(index)
+                else:
+                    yield index, outcome
+            for index in suspected:
+                yield from self._submitted(self._executor, work, tasks, [index])
+        except (BrokenExecutor, CancelledError) as error:
+            raise LostWorkersError(
+                f"{self} ended before the work was done ({type(error).__name__}: {error}); start them again"
+            ) from error
+
+    def _submitted(
+        self,
+        executor: Executor,
+        work: Callable[[Task], Outcome],
+        tasks: Sequence[Task],
+        indices: Sequence[int],
+    ) -> Generator[tuple[int, Outcome | None], None, None]:
+        """The tasks of ``indices`` in their order, never more than `IN_FLIGHT` of them handed over."""
+        waiting = iter(indices)
+        pending: dict[Future[Outcome], int] = {}
+        try:
+            while True:
+                with self._starting():
+                    for index in islice(waiting, IN_FLIGHT - len(pending)):
+                        pending[executor.submit(work, tasks[index])] = index
+                if not pending:
+                    return
+                done, _ = wait(pending, LOOK_AFTER, FIRST_COMPLETED)
+                if not done:
+                    self._look()
+                for future in sorted(done, key=pending.__getitem__):
+                    yield pending.pop(future), self._outcome(future)
+        finally:
+            for future in pending:
+                future.cancel()
+
+    def _outcome(self, future: Future[Outcome]) -> Outcome | None:
+        try:
+            return future.result()
+        except self._lost:
+            return None
+
+    def _starting(self) -> AbstractContextManager[None]:
+        """Holds while tasks are handed over."""
+        return nullcontext()
+
+    def _look(self) -> None:
+        """Raise if the workers are gone; called when nothing has finished for a while."""
+
+
+def _lost_worker(executor: Executor) -> tuple[type[BaseException], ...]:
+    """What a future of an executor raises whose worker died again and again, where the others go on."""
+    if not type(executor).__module__.startswith("distributed."):
+        return ()
+    from distributed import KilledWorker
+
+    return (KilledWorker,)
+
+
+class ProcessWorkers(Workers):
+    """Processes on this machine, one thread each, started when they are needed and kept from call to call.
+
+    Tasks start in their order, so when a process dies (killed, out of memory, crash in a compiled library) one of
+    the first ``count`` unfinished ones did it: they are computed again alone, one by one, and new processes go on
+    with the rest.
+    """
+
+    _lost = ()
+
+    def __init__(self, count: int) -> None:
+        self.size = count
+        self._pool: _ProcessPool | None = None
+
+    def __str__(self) -> str:
+        return f"{self.size} worker process{'es' if self.size > 1 else ''}"
+
+    def close(self, *, at_once: bool = False) -> None:
+        """End the processes."""
+        if self._pool is not None:
+            self._pool.end(at_once=at_once)
+            self._pool = None
+
+    def compute(
+        self, work: Callable[[Task], Outcome], tasks: Sequence[Task]
+    ) -> Generator[tuple[int, Outcome | None], None, None]:
+        """As of `Workers`; the outcome is None only for a task that kills a process of its own."""
         unfinished = list(range(len(tasks)))
         while unfinished:
+            self._pool = self._pool or _ProcessPool(self.size)
             try:
-                for index, outcome in _pool(work, tasks, tuple(unfinished), workers):
+                for index, outcome in self._submitted(self._pool.executor, work, tasks, tuple(unfinished)):
                     unfinished.remove(index)
                     yield index, outcome
             except BrokenProcessPool:
-                under_way, unfinished = unfinished[:workers], unfinished[workers:]
+                self.close(at_once=True)
+                under_way, unfinished = unfinished[: self.size], unfinished[self.size :]
                 for index in under_way:
-                    yield index, _alone(work, tasks, index)
+                    yield index, self._alone(work, tasks, index)
+
+    def _alone(self, work: Callable[[Task], Outcome], tasks: Sequence[Task], index: int) -> Outcome | None:
+        pool = _ProcessPool(1)
+        try:
+            return next(outcome for _, outcome in self._submitted(pool.executor, work, tasks, [index]))
+        except BrokenProcessPool:
+            return None
+        finally:
+            pool.end(at_once=True)
+
+    @contextmanager
+    def _starting(self) -> Iterator[None]:
+        with _one_thread_each(), _interrupts_held():
+            yield
 
 
-def _alone(work: Callable[[Task], Outcome], tasks: Sequence[Task], index: int) -> Outcome | None:
-    try:
-        return next(outcome for _, outcome in _pool(work, tasks, [index], 1))
-    except BrokenProcessPool:
-        return None
+class _ProcessPool:
+    """Fresh processes; they end when their lifeline closes, so none outlives a pool left early."""
+
+    def __init__(self, count: int) -> None:
+        context = get_context("spawn")
+        self._end_of_workers, self._end_of_parent = context.Pipe(duplex=False)
+        self.executor = ProcessPoolExecutor(
+            count, mp_context=context, initializer=_begin_worker, initargs=(self._end_of_workers,)
+        )
+
+    def end(self, *, at_once: bool) -> None:
+        """Stop the processes; ``at_once``: what they compute is lost."""
+        self.executor.shutdown(wait=not at_once, cancel_futures=True)
+        self._end_of_parent.close()
+        self._end_of_workers.close()
 
 
-def _pool(
-    work: Callable[[Task], Outcome], tasks: Sequence[Task], indices: Sequence[int], workers: int
-) -> Iterator[tuple[int, Outcome]]:
-    """Compute in fresh processes; they end when their lifeline closes, so none outlives a pool left early."""
-    context = get_context("spawn")
-    end_of_workers, end_of_parent = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(
-        max(1, min(workers, len(indices))),
-        mp_context=context,
-        initializer=_begin_worker,
-        initargs=(end_of_workers,),
-    )
-    try:
-        with _interrupts_held():
-            futures: dict[Future[Outcome], int] = {
-                pool.submit(work, tasks[index]): index for index in indices
-            }
-        for future in as_completed(futures):
-            yield futures[future], future.result()
-        pool.shutdown()
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        raise
-    finally:
-        end_of_parent.close()
-        end_of_workers.close()
+def compute_all(
+    work: Callable[[Task], Outcome], tasks: Sequence[Task], workers: int
+) -> Generator[tuple[int, Outcome | None], None, None]:
+    """Compute every task in processes of this machine, as `ProcessWorkers.compute`."""
+    with ProcessWorkers(min(workers, max(1, len(tasks)))) as pool:
+        yield from pool.compute(work, tasks)
 
 
 @contextmanager
@@ -139,5 +292,5 @@ def _begin_worker(lifeline: Connection) -> None:
 
 
 def _end_with(lifeline: Connection) -> None:
-    wait([lifeline])
+    connection.wait([lifeline])
     os._exit(1)

@@ -1,6 +1,5 @@
 """Loads a case: file -> tree -> marks off -> validated -> rules that span keys; every fault at once."""
 
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from rigdesign.base import units
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.case.faults import faults_of, written
 from rigdesign.case.model import Case, Origin
-from rigdesign.case.paths import Slot, known_paths, nearest_paths, slot_at
+from rigdesign.case.paths import Slot, known_paths, nearest_paths, places, slot_at
 from rigdesign.case.provenance import Mark, is_marked, item_name, take_off
 from rigdesign.case.rules.gathered import broken_rules
 from rigdesign.case.source import case_file, read_tree
@@ -44,24 +43,14 @@ def changed_together(case: Case, values: Mapping[str, object]) -> Case:
     tree = case.origin.tree
     plain, _, _ = take_off(dict(tree))
     for path, value in values.items():
-        places = _places(path, plain)
-        if not places:
+        found = places(Case, path, plain)
+        if not found:
             meant = nearest_paths(path, known_paths(Case, plain))
             remedy = "did you mean " + " or ".join(meant) + "?" if meant else "see the schema for its paths"
             raise CaseError([Fault(path, "", "no such path in this case", remedy)], str(case.path))
-        for place, slot in places.items():
+        for place, slot in found.items():
             tree = _replaced(tree, place.split("."), _coerced(value, slot))
     return _build(tree, case.path)
-
-
-def _places(path: str, plain: Mapping[str, Any]) -> dict[str, Slot]:
-    """The place a path names, or all that fit it where ``*`` stands for any name."""
-    names = [path]
-    if "*" in path:
-        expression = re.compile(re.escape(path).replace(r"\*", r"[^.]+"))
-        names = [known for known in known_paths(Case, plain) if expression.fullmatch(known)]
-    slots = {name: slot_at(Case, plain, name.split(".")) for name in names}
-    return {name: slot for name, slot in slots.items() if slot is not None}
 
 
 def _build(tree: Mapping[str, Any], file: Path) -> Case:

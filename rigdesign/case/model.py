@@ -17,10 +17,14 @@ from rigdesign.case.inputs import InputRow, input_rows
 from rigdesign.case.limits import Limits
 from rigdesign.case.losses import Losses
 from rigdesign.case.numerics import Numerics
-from rigdesign.case.provenance import Mark
+from rigdesign.case.paths import places
+from rigdesign.case.provenance import Mark, take_off
 from rigdesign.case.schedule import ScheduleInput, TestPlan
 from rigdesign.case.substances import Ambient, CustomMaterial, CustomOil
 from rigdesign.case.transient import Transient
+
+InputKind = Literal["number", "whole number", "other"]
+"""A number with or without a unit; a whole number; a name, a choice, true or false, a table."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +149,27 @@ class Case(Part):
         CaseError
             The path does not exist (the nearest ones are named), or the changed case has faults.
         """
-        return self._origin.change(self, {path: value})
+        return self.with_values({path: value})
+
+    def with_values(self, values: Mapping[str, object]) -> "Case":
+        """A copy with several values changed by path and validated once, as they may have to agree.
+
+        Raises
+        ------
+        CaseError
+            As :meth:`with_value`.
+        """
+        return self._origin.change(self, values)
+
+    def input_kind(self, path: str) -> InputKind | None:
+        """What a path (or the first that fits one with ``*``) holds; None where there is no such path."""
+        plain, _, _ = take_off(dict(self._origin.tree))
+        slot = next(iter(places(Case, path, plain).values()), None)
+        if slot is None:
+            return None
+        if slot.quantity is not None or float in slot.plain_types:
+            return "number"
+        return "whole number" if int in slot.plain_types else "other"
 
 
 def _rounded(content: Any) -> Any:

@@ -5,6 +5,7 @@ or by its number (``drivetrain.shafts.test_pinion.sections.2.length``).
 """
 
 import difflib
+import re
 import types
 import typing
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -96,6 +97,19 @@ def known_paths(model: type[BaseModel], tree: Mapping[str, Any]) -> list[str]:
 
     visit(slot_of(model), tree, "")
     return paths
+
+
+def places(model: type[BaseModel], path: str, tree: Mapping[str, Any]) -> dict[str, Slot]:
+    """The place a path names, or all that fit it where ``*`` stands for any name; empty where there is none.
+
+    tree : plain tree (no marks)
+    """
+    names = [path]
+    if "*" in path:
+        expression = re.compile(re.escape(path).replace(r"\*", r"[^.]+"))
+        names = [known for known in known_paths(model, tree) if expression.fullmatch(known)]
+    slots = {name: slot_at(model, tree, name.split(".")) for name in names}
+    return {name: slot for name, slot in slots.items() if slot is not None}
 
 
 def nearest(wanted: str, known: Iterable[str], count: int = 3) -> list[str]:

@@ -23,15 +23,18 @@ class Variation:
     """One varied input.
 
     path : dotted path into the case
-    values : what the case file would hold, in the order of the study (``"90 degC"``, ``"0.4"``)
+    values : what the case file would hold, in the order of the study (``"90 degC"``, ``"0.4"``); of a range its
+        two ends
+    distribution : of a sampled range, in words; empty for values that are listed
     """
 
     path: str
     values: tuple[str, ...]
+    distribution: str = ""
 
     def numbers(self) -> tuple[list[float], str] | None:
         """Values as numbers with their common unit, or None for values that are not."""
-        parts = [_number(value) for value in self.values]
+        parts = [number_match(value) for value in self.values]
         units = {part[2] or "" for part in parts if part}
         if not all(parts) or len(units) != 1:
             return None
@@ -56,7 +59,7 @@ def parse_variation(text: str) -> Variation:
     text = shortened(text)
     if not equals or not path or not right:
         raise UsageError(f"--vary '{text}': {'a value' if path else 'a path'} is missing; {EXAMPLE}")
-    bounds = [_number(part) for part in right.split(":")]
+    bounds = [number_match(part) for part in right.split(":")]
     if len(bounds) > 1 and all(bounds):
         values = _range(text, [(Decimal(part[1]), part[2] or "") for part in bounds if part])
     else:
@@ -74,12 +77,17 @@ def parse_variation(text: str) -> Variation:
     return Variation(path, tuple(values))
 
 
-def _number(text: str) -> re.Match[str] | None:
+def number_match(text: str) -> re.Match[str] | None:
     """Number and unit of a text, None for any other; no number is longer than LONGEST characters."""
     return NUMBER.fullmatch(text) if len(text) <= LONGEST else None
 
 
 def _range(text: str, bounds: list[tuple[Decimal, str]]) -> list[str]:
+    if len(bounds) == 2:
+        raise UsageError(
+            f"--vary '{text}': 2 numbers between colons make a range, a grid needs a step as well "
+            "(START:STOP:STEP); or add --sample lhs:200, --tornado or --boundary"
+        )
     if len(bounds) != 3:
         raise UsageError(f"--vary '{text}': {len(bounds)} numbers between colons, 3 are needed; {EXAMPLE}")
     unit = _common_unit(text, [unit for _, unit in bounds])

@@ -20,6 +20,8 @@ from rigdesign.studies.result import Record
 
 FORMAT = 3
 """Of the table below, kept in the file as user_version; raise it with any change."""
+SYNCHRONOUS = "EXTRA"
+"""A stored point is on the disk and not with the operating system: it stays when the power fails."""
 SCHEMA = """
 CREATE TABLE IF NOT EXISTS points (
     key TEXT PRIMARY KEY,
@@ -67,9 +69,9 @@ class _DamagedError(Exception):
     """A file that is no ledger of this version, or one with rows that are not sound; says what it is."""
 
 
-def point_key(case_hash: str, fidelity: str) -> str:
-    """What makes two points the same computation: resolved case, tool version, fidelity."""
-    return hashlib.sha256(f"{case_hash}\n{__version__}\n{fidelity}".encode()).hexdigest()
+def point_key(case_hash: str, fidelity: str, base_hash: str) -> str:
+    """What makes two points the same computation: resolved case, that of the base they start from, tool, fidelity."""
+    return hashlib.sha256(f"{case_hash}\n{base_hash}\n{__version__}\n{fidelity}".encode()).hexdigest()
 
 
 class Ledger:
@@ -130,6 +132,22 @@ class Ledger:
         self._points[key] = (failed, json.loads(content))
 
 
+def read_points(path: Path) -> dict[str, tuple[bool, Record]]:
+    """Points of a ledger that another process may be writing; none of one that cannot be read at this moment.
+
+    Nothing is repaired here: whoever owns the ledger does it.
+    """
+    with suppress(sqlite3.Error, OSError, TypeError, ValueError):
+        with closing(
+            sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=30.0)
+        ) as connection:
+            if connection.execute("PRAGMA user_version").fetchone()[0] != FORMAT:
+                return {}
+            rows = [_Row(*row) for row in connection.execute(f"SELECT {', '.join(_Row._fields)} FROM points")]
+        return {row.key: (bool(row.failed), json.loads(row.record)) for row in rows if row.sound}
+    return {}
+
+
 def _checksum(row: tuple[object, ...]) -> str:
     return hashlib.sha256(json.dumps(row).encode()).hexdigest()
 
@@ -144,7 +162,7 @@ def _opened(path: Path) -> tuple[sqlite3.Connection, dict[str, tuple[bool, Recor
     try:
         connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, LARGEST_RECORD)
         connection.execute("PRAGMA journal_mode=DELETE")
-        connection.execute("PRAGMA synchronous=EXTRA")
+        connection.execute(f"PRAGMA synchronous={SYNCHRONOUS}")
         if connection.execute("SELECT COUNT(*) FROM sqlite_master").fetchone()[0] == 0:
             connection.execute(SCHEMA)
             connection.execute(f"PRAGMA user_version={FORMAT}")

@@ -1,115 +1,113 @@
-"""One point of a study: from the solved base case where its inputs touch a part of the model only, else in full.
+"""One point of a study in a worker: the case with its values, computed, and what is kept of it."""
 
-Every point starts from the base case and from no other point, so that its numbers depend on neither order nor
-workers. What the base case is solved for once: meshes and their errors, the response over speed and the time run.
-"""
-
-from collections.abc import Collection
-from dataclasses import dataclass, replace
+import pickle
+import threading
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Literal, Protocol
 
 from threadpoolctl import threadpool_limits
 
-from rigdesign.base.errors import NotConvergedError
+from rigdesign.base.errors import MissingLibraryError, RigdesignError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.json_text import to_plain
-from rigdesign.case.model import Case
-from rigdesign.checks import estimated_checks
-from rigdesign.checks.rules import overall
-from rigdesign.reanalysis.affected_parts import PARTS, parts_of, through_heat
-from rigdesign.reanalysis.modified_rig import Modification, TimeRun, modified_rig
-from rigdesign.reanalysis.reference import Reference, restored, solve_reference
-from rigdesign.results.check import Check
-from rigdesign.results.units import ZERO
-from rigdesign.rig.model import build_rig
-from rigdesign.rig.reuse import same_housings
-from rigdesign.run.main import Progress, run_case
-from rigdesign.run.solver_errors import solver_errors
-from rigdesign.studies.result import Record
+from rigdesign.base.parallel import one_core
+from rigdesign.results.result import RunResult
+from rigdesign.studies.result import CheckedPoint, Record, checked_point
+
+if TYPE_CHECKING:
+    from rigdesign.case import Case
 
 CHECK_KEYS = (
     "id", "title", "group", "value", "limit", "upper_limit", "unit", "comparison", "margin", "utilisation", "verdict",
 )  # fmt: skip
+NO_MEMORY = "the worker has no memory left; give it more, or start fewer workers"
+
+Status = Literal["done", "failed", "library missing", "defect"]
 
 
-@dataclass(frozen=True, kw_only=True)
-class StudyBase:
-    """What all points of a study start from; made once, sent to every worker.
+class Run(Protocol):
+    """What computes one point: `from_base.FromBase`, `rigdesign.run_case` or a stand-in."""
 
-    paths : inputs that the study varies; reference : of the base case, None where every point is solved in full
+    def __call__(self, case: "Case", *, fidelity: Fidelity) -> RunResult | CheckedPoint:
+        """Compute one case."""
+
+
+Prepare = Callable[["Case", Fidelity], Run]
+"""Called once in every worker with the case of the study: what it returns computes the points there."""
+
+
+@dataclass(frozen=True)
+class PointSetup:
+    """What all points of a study share; goes to the workers packed, and is unpacked once in each.
+
+    run, prepare : one of them may stand in for `from_base.FromBase`; picklable
     """
 
+    case: "Case"
     fidelity: Fidelity
-    paths: tuple[str, ...]
-    reference: Reference | None
+    run: Run | None = None
+    prepare: Prepare | None = None
+
+    def packed(self) -> bytes:
+        """As `solve_point` takes it."""
+        return pickle.dumps(self, protocol=pickle.HIGHEST_PROTOCOL)
 
 
-def study_base(
-    case: Case, fidelity: Fidelity, paths: Collection[str], say: Progress = lambda message: None
-) -> StudyBase:
-    """Solve the base case if points of these inputs can start from it.
+@dataclass(frozen=True)
+class PointOutcome:
+    """What became of a point: a record of it (done, failed), or why the study has to stop.
 
-    Raises
-    ------
-    CaseError, NotConvergedError
-        As `run_case`: the base case itself has no result.
+    A point that cannot be computed is a result; a library that is missing is not the point's fault, and an error
+    that nobody raised on purpose is a defect of the tool.
     """
-    ordered = tuple(sorted(paths))
-    if not all(_in_part(path) for path in ordered):
-        return StudyBase(fidelity=fidelity, paths=ordered, reference=None)
-    reference, _ = solve_reference(case, fidelity, say)
-    return StudyBase(fidelity=fidelity, paths=ordered, reference=reference)
+
+    status: Status
+    record: Record
 
 
-def _in_part(path: str) -> bool:
-    return through_heat(path) or parts_of(path) != PARTS
+_ONE_POINT = threading.Lock()
+"""Meshing and compiled threads allow one point at a time in a process, whatever threads the executor has."""
 
 
-def solve_study_point(case: Case, *, base: StudyBase) -> Record:
-    """Checks of one point.
-
-    A point with other housings, and one whose loop does not converge from the base case, is solved in full.
-
-    Raises
-    ------
-    RigdesignError
-        The point has no result.
-    """
-    if base.reference is not None:
-        found = _modified(case, base, base.reference)
-        if found is not None:
-            return found
-    result = run_case(case, base.fidelity)
-    hottest = max((item.max_temperature_degC for item in result.thermal), default=None)
-    return _record(result.checks, hottest)
-
-
-def _modified(case: Case, base: StudyBase, reference: Reference) -> Record | None:
-    """The point from the base case; None where its housings are other ones or the loop does not converge from there."""
-    parts = tuple(part for part in PARTS if any(part in parts_of(path) for path in base.paths))
-    time_run: TimeRun = "shifted" if all(_through_heat(path) for path in base.paths) else "marched"
-    with solver_errors(case), threadpool_limits(limits=1):
-        stated = restored(reference)
-        if not same_housings(build_rig(case, base.fidelity), stated.rig):
-            return None
-        try:
-            solved, _ = modified_rig(
-                stated, Modification(case=case, parts=parts, time_run=time_run), reference.motor_losses
-            )
-        except NotConvergedError:
-            return None
-        solved = replace(solved, discretisation=reference.discretisation)
-        hottest = max((found.highest - ZERO for found in solved.temperatures), default=None)
-        return _record(estimated_checks(solved), hottest)
+def solve_point(changes: Mapping[str, str], *, setup: bytes) -> PointOutcome:
+    """Compute the case of ``setup`` with some of its values changed; never raises an `Exception`."""
+    try:
+        with _ONE_POINT, one_core(), threadpool_limits(limits=1):
+            case, fidelity, run = _unpacked(setup)
+            return PointOutcome("done", record_of(run(case.with_values(changes), fidelity=fidelity)))
+    except MissingLibraryError as error:
+        return PointOutcome("library missing", {"error": str(error)})
+    except RigdesignError as error:
+        return PointOutcome("failed", {"error": str(error), "kind": type(error).__name__})
+    except MemoryError:
+        return PointOutcome("failed", {"error": NO_MEMORY, "kind": "MemoryError"})
+    except Exception as error:
+        return PointOutcome(
+            "defect", {"error": f"{type(error).__name__}: {error}", "traceback": traceback.format_exc()}
+        )
 
 
-def _through_heat(path: str) -> bool:
-    """Whether the time run need not be marched for this input: heat moves it, or nothing does."""
-    return through_heat(path) or "time run" not in parts_of(path)
+@lru_cache(maxsize=1)
+def _unpacked(setup: bytes) -> tuple["Case", Fidelity, Run]:
+    """Case and fidelity of a study and what computes its points, made once in a process."""
+    shared: PointSetup = pickle.loads(setup)
+    if shared.prepare is not None:
+        return shared.case, shared.fidelity, shared.prepare(shared.case, shared.fidelity)
+    if shared.run is not None:
+        return shared.case, shared.fidelity, shared.run
+    from rigdesign.studies.from_base import FromBase
+
+    return shared.case, shared.fidelity, FromBase(shared.case, shared.fidelity)
 
 
-def _record(checks: Collection[Check], hottest: float | None) -> Record:
-    rows = [{key: getattr(check, key) for key in CHECK_KEYS} for check in checks]
+def record_of(found: RunResult | CheckedPoint) -> Record:
+    """What the ledger keeps of a computed case."""
+    point = checked_point(found) if isinstance(found, RunResult) else found
+    checks = [{key: getattr(check, key) for key in CHECK_KEYS} for check in point.checks]
     record: Record = to_plain(
-        {"verdict": overall(list(checks)), "max_temperature_degC": hottest, "checks": rows}
+        {"verdict": point.verdict, "max_temperature_degC": point.max_temperature_degC, "checks": checks}
     )
     return record

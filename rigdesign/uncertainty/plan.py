@@ -49,13 +49,13 @@ def plan(case: Case, checks: Sequence[Check]) -> tuple[list[RangeEnd], list[Left
         if record.path not in decisive:
             left.append(LeftOut(path=record.path, reason="no check that applies depends on it"))
             continue
-        ends += _ends(case, record, _tied(case, record))
+        ends += _ends(case, record, tied_inputs(case, record))
         moved |= {end_path for end in ends[-2:] for end_path in (end.path, *end.together_with)}
     return ends, left
 
 
-def _tied(case: Case, record: AssumptionRecord) -> tuple[str, ...]:
-    """Paths that must have the same value as that of ``record``: the other bearings of its shaft, if so ranged."""
+def tied_inputs(case: Case, record: AssumptionRecord) -> tuple[str, ...]:
+    """Paths that have the value of ``record`` in every valid case: the other bearings of its shaft, if so ranged."""
     names = record.path.split(".")
     if len(names) != 5 or names[2] != "bearings" or names[4] not in ALIKE:
         return ()

@@ -4,44 +4,82 @@ import json
 import os
 import sqlite3
 import time
+from concurrent.futures import Executor, Future
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from pathlib import Path
 
 from rigdesign.base.errors import CaseError, NotConvergedError
+from rigdesign.case.assumptions import AssumptionRecord
+from rigdesign.case.inputs import InputRow
 from rigdesign.report.pages.study import write_study
 from rigdesign.studies import run as study
-from rigdesign.studies.run import parse_variation
+from rigdesign.studies.design import StudyDesign
 from tests.builders.report import make_check, make_result
 
 
-def run_study(case, variations, out, *, fidelity="standard", **execution):
-    """A study with the page of the report, its execution by keywords."""
+def run_study(case, design, out, *, fidelity="standard", write=write_study, **execution):
+    """A study with the page of the report, its execution by keywords; ``design`` may be the values of a grid."""
+    if not isinstance(design, StudyDesign):
+        design = StudyDesign(vary=(design,) if isinstance(design, str) else tuple(design))
     return study.run_study(
-        case, variations, out, write=write_study, fidelity=fidelity, execution=study.Execution(**execution)
+        case, design, out, write=write, fidelity=fidelity, execution=study.Execution(**execution)
     )
+
+
+class InProcess(Executor):
+    """Computes where it is called, one task after the other."""
+
+    def submit(self, work, /, *arguments, **keywords):
+        future = Future()
+        try:
+            future.set_result(work(*arguments, **keywords))
+        except BaseException as error:
+            future.set_exception(error)
+        return future
+
+
+STATED = {"oil.inlet": "80 degC", "gear.width": "7 mm", "oil.name": "FVA 3", "gear.teeth": "20"}
 
 
 @dataclass(frozen=True)
 class ExampleCase:
-    """Has what a study needs of a case: name, title, hash, with_value."""
+    """Has what a study needs of a case: name, title, hash, values to change, what they are."""
 
     log: str
     name: str = "example"
     title: str = "Example <rig>"
-    values: dict[str, str] = field(default_factory=lambda: {"oil.inlet": "80 degC", "gear.width": "7 mm"})
+    values: dict[str, str] = field(default_factory=lambda: {**STATED})
+    ranges: dict[str, tuple] = field(default_factory=lambda: {"gear.width": ("6 mm", "8 mm")})
 
     @property
     def hash(self) -> str:
         return sha256(json.dumps(self.values, sort_keys=True).encode()).hexdigest()
 
-    def with_value(self, path, value):
+    def with_values(self, values):
+        for path, value in values.items():
+            if path not in self.values:
+                raise CaseError(f"{path}: no such key; the nearest is oil.inlet")
+            if value.startswith("-"):
+                raise CaseError(f"{path} = {value}: below 0; give a positive value")
+        return replace(self, values={**self.values, **values})
+
+    def input_kind(self, path):
         if path not in self.values:
-            raise CaseError(f"{path}: no such key; the nearest is oil.inlet")
-        if value.startswith("-"):
-            raise CaseError(f"{path} = {value}: below 0; give a positive value")
-        return replace(self, values={**self.values, path: value})
+            return None
+        return {"oil.name": "other", "gear.teeth": "whole number"}.get(path, "number")
+
+    @property
+    def inputs(self):
+        return tuple(InputRow(path=path, value=value) for path, value in self.values.items())
+
+    @property
+    def assumptions(self):
+        return tuple(
+            AssumptionRecord(path=path, value=self.values[path], reason="example", range=ends)
+            for path, ends in self.ranges.items()
+        )
 
 
 def run_example(case, *, fidelity):
@@ -73,26 +111,19 @@ def _log(case, what):
         log.write(f"{what} {os.getpid()} {case.values['oil.inlet']} {case.values['gear.width']}\n")
 
 
-VARIED = [parse_variation("oil.inlet=90 degC,100 degC,110 degC")]
-
-
-def in_process(work, tasks, workers):  # type: ignore[no-untyped-def]
-    """Stands in for the pool of processes."""
-    for index, task in enumerate(tasks):
-        yield index, work(task)
+VARIED = "oil.inlet=90 degC,100 degC,110 degC"
 
 
 DRIVER = """
 import sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from rigdesign.studies.run import parse_variation
 from tests.builders.study import ExampleCase, run_example, run_study
 
 if __name__ == "__main__":
     out = Path(sys.argv[1])
     case = ExampleCase(log=str(out.parent / (out.name + ".log")))
-    run_study(case, [parse_variation("{values}")], out, workers=2, run=run_example)
+    run_study(case, "{values}", out, workers=2, run=run_example)
 """
 
 

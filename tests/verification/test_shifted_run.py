@@ -12,7 +12,7 @@ from rigdesign.reanalysis.modified_rig import Modification, modified_rig
 from rigdesign.reanalysis.reference import Reference, restored, solve_reference
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.loads import StageLoad
-from rigdesign.studies.point import solve_study_point, study_base
+from rigdesign.studies.from_base import FromBase
 
 INLET = "gearboxes.test.oil.inlet_temperature"
 START_TORQUE = {"loop_1to1": 60.0, "uhcf_prototype": 90.0}
@@ -80,14 +80,14 @@ def test_a_study_point_is_the_check_of_its_case() -> None:
     """What heat moves, within the tolerances of the coupling loop: one in a thousand of a limit."""
     case = load_case("loop_1to1")
     moved = case.with_value(INLET, "75 degC")
-    point = solve_study_point(moved, base=study_base(case, "quick", [INLET]))
+    point = FromBase(case, "quick")(moved, fidelity="quick")
     whole = run_case(moved, fidelity="quick")
-    rows = {row["id"]: row for row in point["checks"]}
+    rows = {check.id: check for check in point.checks}
     assert rows.keys() == {check.id for check in whole.checks}
     for check in whole.checks:
         row = rows[check.id]
         if check.utilisation is None:
-            assert row["utilisation"] is None
+            assert row.utilisation is None
         elif np.isfinite(check.utilisation):
-            assert row["utilisation"] == pytest.approx(check.utilisation, abs=5e-3), check.id
-    assert point["verdict"] == whole.verdict
+            assert row.utilisation == pytest.approx(check.utilisation, abs=5e-3), check.id
+    assert point.verdict == whole.verdict

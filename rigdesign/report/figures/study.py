@@ -25,12 +25,13 @@ FLOOR = -100.0
 
 
 def study_figure(variations: "Sequence[Variation]", points: "Sequence[StudyPoint]") -> "Figure | None":
-    """Margin of every check in percent of its limit over the first varied input; None if no point is done.
+    """Margin of every check in percent of its limit over the first varied input; None if no point is done, or
+    for ranges.
 
     With one varied input a curve per check; with several the smallest margin of all checks, a curve per
     combination of the others.
     """
-    if all(point.failed for point in points):
+    if all(point.failed for point in points) or any(variation.distribution for variation in variations):
         return None
     figure = new_figure(4.0)
     axes = figure.subplots()

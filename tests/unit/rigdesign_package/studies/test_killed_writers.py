@@ -10,12 +10,11 @@ import pytest
 
 from rigdesign.base.errors import OutputError
 from rigdesign.report import write_results
-from rigdesign.studies import run as study
-from rigdesign.studies.run import LEDGER_NAME
+from rigdesign.studies.shards import LEDGER_NAME
 from tests.builders.killed_writer import REFUSED, WRITTEN
 from tests.builders.output import attempts, held_against, published
 from tests.builders.report import small_result
-from tests.builders.study import VARIED, ExampleCase, in_process, run_example, run_study
+from tests.builders.study import VARIED, ExampleCase, InProcess, run_example, run_study
 
 pytestmark = pytest.mark.whole_run
 
@@ -59,19 +58,16 @@ def test_a_disk_that_fills_up_amid_a_file_leaves_nothing(tmp_path: Path) -> None
     held_against(out, whole)
 
 
-def test_a_study_whose_disk_fills_up_says_so_and_resumes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(study, "compute_all", in_process)
+def test_a_study_whose_disk_fills_up_says_so_and_resumes(tmp_path: Path) -> None:
     case = ExampleCase(log=str(tmp_path / "log"))
-    run_study(case, VARIED, tmp_path / "whole", run=run_example)
+    run_study(case, VARIED, tmp_path / "whole", run=run_example, executor=InProcess())
     largest = max(path.stat().st_size for path in (tmp_path / "whole").iterdir())
     for size in (0, 100, 5000, 13_000, largest - 1):
         out = tmp_path / str(size)
         with files_of_at_most(size), pytest.raises(OutputError):
-            run_study(case, VARIED, out, run=run_example)
+            run_study(case, VARIED, out, run=run_example, executor=InProcess())
         assert not {"results.csv", "study.svg", "study.html"} & {path.name for path in out.iterdir()}
-        run_study(case, VARIED, out, run=run_example)
+        run_study(case, VARIED, out, run=run_example, executor=InProcess())
         for name in ("results.csv", "study.svg", "study.html"):
             assert (out / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
         assert {path.name for path in out.iterdir()} == {

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from rigdesign.base import worker_pool
 from rigdesign.base.errors import OutputError
 from rigdesign.base.file_lock import FileLock, HeldError
 from rigdesign.base.output_folder import staged
-from rigdesign.studies import run as study
-from rigdesign.studies.run import LEDGER_NAME, LOCK_NAME
+from rigdesign.studies.shards import LEDGER_NAME, LOCK_NAME
 from tests.builders.ledger_damage import (
     DAMAGE,
     POINTS,
@@ -26,7 +26,7 @@ from tests.builders.ledger_damage import (
     write_ledger,
 )
 from tests.builders.paths import ROOT
-from tests.builders.study import VARIED, ExampleCase, in_process, run_example, run_study
+from tests.builders.study import VARIED, ExampleCase, InProcess, run_example, run_study
 
 
 @pytest.fixture(scope="module")
@@ -83,21 +83,18 @@ def test_a_file_that_is_no_ledger_is_kept_under_another_name(tmp_path: Path) -> 
     assert (tmp_path / "l.sqlite.damaged-2").read_text(encoding="utf-8") == "again"
 
 
-def test_a_study_on_a_damaged_ledger_computes_the_damaged_point_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(study, "compute_all", in_process)
+def test_a_study_on_a_damaged_ledger_computes_the_damaged_point_again(tmp_path: Path) -> None:
     case = ExampleCase(log=str(tmp_path / "log"))
     out = tmp_path / "out"
-    run_study(case, VARIED, out, run=run_example)
+    run_study(case, VARIED, out, run=run_example, executor=InProcess())
     before = (out / "results.csv").read_bytes()
     harm_rows(out / LEDGER_NAME, "UPDATE points SET record = substr(record, 1, 99) WHERE rowid = 2")
     notes: list[str] = []
-    again = run_study(case, VARIED, out, run=run_example, note=notes.append)
+    again = run_study(case, VARIED, out, run=run_example, executor=InProcess(), note=notes.append)
     assert (again.completed, again.reused) == (1, 2)
     assert (out / "results.csv").read_bytes() == before
     assert len(notes) == 1 and "2 points read from it are used" in notes[0]
-    run_study(case, VARIED, out, run=run_example, note=notes.append)
+    run_study(case, VARIED, out, run=run_example, executor=InProcess(), note=notes.append)
     assert len(notes) == 1
 
 
@@ -123,29 +120,25 @@ def holder(path: Path) -> subprocess.Popen[str]:
     return process
 
 
-def test_a_second_study_in_a_folder_is_refused_by_the_name_of_the_first(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(study, "compute_all", in_process)
+def test_a_second_study_in_a_folder_is_refused_by_the_name_of_the_first(tmp_path: Path) -> None:
     case = ExampleCase(log=str(tmp_path / "log"))
     with holder(tmp_path / LOCK_NAME) as other:
         try:
             with pytest.raises(OutputError, match=rf"process {other.pid} on \S+ since 20\d\d-") as refused:
-                run_study(case, VARIED, tmp_path, run=run_example)
+                run_study(case, VARIED, tmp_path, run=run_example, executor=InProcess())
         finally:
             other.kill()
     assert refused.value.exit_code == 2 and "--out" in str(refused.value)
     assert not (tmp_path / "log").exists()
 
 
-def test_the_lock_of_a_dead_process_is_taken_over_and_removed_at_the_end(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(study, "compute_all", in_process)
+def test_the_lock_of_a_dead_process_is_taken_over_and_removed_at_the_end(tmp_path: Path) -> None:
     with holder(tmp_path / LOCK_NAME) as other:
         other.send_signal(signal.SIGKILL)
     assert json.loads((tmp_path / LOCK_NAME).read_text())["pid"] == other.pid
-    outcome = run_study(ExampleCase(log=str(tmp_path / "log")), VARIED, tmp_path, run=run_example)
+    outcome = run_study(
+        ExampleCase(log=str(tmp_path / "log")), VARIED, tmp_path, run=run_example, executor=InProcess()
+    )
     assert outcome.completed == 3
     assert not (tmp_path / LOCK_NAME).exists()
 
@@ -215,13 +208,17 @@ def test_staging_folders_of_the_dead_go_and_those_of_the_living_stay(tmp_path: P
 def test_an_interrupt_says_what_is_stored_and_how_to_go_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def stopped(work, tasks, workers):  # type: ignore[no-untyped-def]
-        yield 0, work(tasks[0])
-        raise KeyboardInterrupt
+    class Stopped(InProcess):
+        def submit(self, work, /, *arguments, **keywords):  # type: ignore[no-untyped-def]
+            if (tmp_path / "log").exists():
+                raise KeyboardInterrupt
+            return super().submit(work, *arguments, **keywords)
 
-    monkeypatch.setattr(study, "compute_all", stopped)
+    monkeypatch.setattr(worker_pool, "IN_FLIGHT", 1)
     with pytest.raises(KeyboardInterrupt) as stop:
-        run_study(ExampleCase(log=str(tmp_path / "log")), VARIED, tmp_path, run=run_example)
+        run_study(
+            ExampleCase(log=str(tmp_path / "log")), VARIED, tmp_path, run=run_example, executor=Stopped()
+        )
     (note,) = stop.value.__notes__
     assert note == (
         f"1 of 3 points are computed ({tmp_path / LEDGER_NAME}); the same command computes the other 2"

@@ -1,0 +1,81 @@
+"""What follows from the points of a study: crossings, swings, probabilities, Sobol indices."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from rigdesign.results.result import Finding
+from rigdesign.studies.crossings import crossings_over
+from rigdesign.studies.design import Plan
+from rigdesign.studies.result import StudyPoint, StudyResult, check_ids
+from rigdesign.studies.tornado import swings
+
+if TYPE_CHECKING:
+    from rigdesign.case import Case
+
+
+def analysed(case: "Case", fidelity: str, plan: Plan, points: Sequence[StudyPoint]) -> StudyResult:
+    """The result of a study whose points are all known, in the order of the design (a boundary: rising values)."""
+    checks = plan.selection.of(check_ids(points))
+    result = StudyResult(
+        case=case,
+        fidelity=fidelity,
+        design=plan.kind,
+        method=plan.method,
+        variations=plan.variations,
+        points=points,
+        checks=plan.selection,
+        warnings=list(_failed(plan, points)),
+    )
+    if plan.search is not None:
+        search = plan.search
+        ordered = sorted(points, key=lambda point: search.entry.number(point.values[search.entry.path]))
+        variation = search.variation(ordered)
+        found = list(crossings_over(variation, ordered, checks))
+        return replace(
+            result, variations=[variation], points=ordered, crossings=found, tolerance=search.tolerance
+        )
+    if plan.kind == "grid":
+        found = [
+            entry for variation in plan.variations for entry in crossings_over(variation, points, checks)
+        ]
+        return replace(result, crossings=found)
+    if plan.kind == "one at a time":
+        return replace(result, swings=list(swings(plan.ranges, points, checks)))
+    return _with_probabilities(result, plan, checks)
+
+
+def _with_probabilities(result: StudyResult, plan: Plan, checks: Sequence[str]) -> StudyResult:
+    from rigdesign.studies.statistics import pass_probabilities, probability_of_all, variance_shares
+
+    points = result.points
+    # of the design of Sobol indices the first two pages are independent samples
+    samples = points[: 2 * len(points) // (len(plan.ranges) + 2)] if plan.indices else points
+    result = replace(
+        result,
+        probabilities=list(pass_probabilities(samples, checks)),
+        all_hold=probability_of_all(samples, checks),
+    )
+    if not plan.indices:
+        return result
+    failed = [point for point in points if point.failed]
+    if failed:
+        text = (
+            f"Sobol indices are not given: {len(failed)} of {len(points)} points have no result (the first: "
+            f"{str(failed[0].record['error']).partition(chr(10))[0]}), and they need every one; narrow the ranges "
+            "to where the case can be computed, or mend the points and run again with --retry"
+        )
+        return replace(result, warnings=[*result.warnings, Finding(id="study.indices", text=text)])
+    paths = [entry.path for entry in plan.ranges]
+    return replace(result, indices=list(variance_shares(points, checks, paths, plan.seed)))
+
+
+def _failed(plan: Plan, points: Sequence[StudyPoint]) -> Iterator[Finding]:
+    """Points without result that a count leaves out."""
+    failed = [point for point in points if point.failed]
+    if failed and plan.kind in ("latin hypercube", "sobol"):
+        yield Finding(
+            id="study.failed_points",
+            text=f"{len(failed)} of {len(points)} points have no result and do not count in the probabilities: what "
+            "they would be is not known, and they may lie where checks are broken",
+        )

@@ -1,0 +1,106 @@
+"""Points from the solved base case, where their inputs touch a part of the model only; all others in full.
+
+Every point starts from the base case and from no other point, so that its numbers depend on neither order nor
+workers. Solved once, for the base case: meshes and their errors, the time run over the schedule.
+"""
+
+from dataclasses import replace
+from functools import cached_property
+
+from rigdesign.base.errors import CaseError, NotConvergedError, RigdesignError
+from rigdesign.base.fidelity import Fidelity
+from rigdesign.case.model import Case
+from rigdesign.checks import estimated_checks
+from rigdesign.checks.rules import overall
+from rigdesign.reanalysis.affected_parts import PARTS, parts_of, through_heat
+from rigdesign.reanalysis.modified_rig import Modification, TimeRun, modified_rig
+from rigdesign.reanalysis.reference import Reference, restored, solve_reference
+from rigdesign.results.units import ZERO
+from rigdesign.rig.model import build_rig
+from rigdesign.rig.reuse import same_housings
+from rigdesign.run.main import run_case
+from rigdesign.run.solver_errors import solver_errors
+from rigdesign.studies.result import CheckedPoint, checked_point
+from thermal.fe.kernels import one_thread
+
+
+class FromBase:
+    """Computes the points of a study; the base case is solved when the first point can start from it.
+
+    Parameters
+    ----------
+    case : the base case; fidelity : of base case and points
+    """
+
+    def __init__(self, case: Case, fidelity: Fidelity) -> None:
+        self._case = case
+        self._fidelity = fidelity
+        self._stated = {row.path: row.value for row in case.inputs}
+
+    def __call__(self, case: Case, *, fidelity: Fidelity) -> CheckedPoint:
+        """One point.
+
+        A point with other housings, and one whose loop does not converge from the base case, is solved in full.
+
+        Raises
+        ------
+        RigdesignError
+            The point has no result.
+        """
+        with one_thread():
+            return self._point(case, fidelity)
+
+    def _point(self, case: Case, fidelity: Fidelity) -> CheckedPoint:
+        changed = self._changed(case)
+        if all(through_heat(path) or parts_of(path) != PARTS for path in changed):
+            found = self._modified(case, changed)
+            if found is not None:
+                return found
+        return checked_point(run_case(case, fidelity=fidelity))
+
+    @cached_property
+    def _reference(self) -> Reference | None:
+        """The base case solved; None where it has no result."""
+        try:
+            return solve_reference(self._case, self._fidelity)[0]
+        except RigdesignError:
+            return None
+
+    def _changed(self, case: Case) -> list[str]:
+        """Paths of the values that the base case states otherwise, or not at all."""
+        values = {row.path: row.value for row in case.inputs}
+        paths = [path for path in {**self._stated, **values} if self._stated.get(path) != values.get(path)]
+        return [path for path in paths if path not in values or not self._same(path, values[path])]
+
+    def _same(self, path: str, value: str) -> bool:
+        """Whether the base case has this value in another spelling."""
+        try:
+            return self._case.with_value(path, value).hash == self._case.hash
+        except CaseError:
+            return False
+
+    def _modified(self, case: Case, changed: list[str]) -> CheckedPoint | None:
+        """The point from the base case; None where that tells nothing of it."""
+        reference = self._reference
+        if reference is None:
+            return None
+        parts = tuple(part for part in PARTS if any(part in parts_of(path) for path in changed))
+        time_run: TimeRun = "shifted" if all(_unmarched(path) for path in changed) else "marched"
+        with solver_errors(case):
+            stated = restored(reference)
+            if not same_housings(build_rig(case, self._fidelity), stated.rig):
+                return None
+            try:
+                solved, _ = modified_rig(
+                    stated, Modification(case=case, parts=parts, time_run=time_run), reference.motor_losses
+                )
+            except NotConvergedError:
+                return None
+            checks = estimated_checks(replace(solved, discretisation=reference.discretisation))
+        hottest = max((found.highest - ZERO for found in solved.temperatures), default=None)
+        return CheckedPoint(verdict=overall(checks), max_temperature_degC=hottest, checks=checks)
+
+
+def _unmarched(path: str) -> bool:
+    """Whether the time run need not be marched for this input: heat moves it, or nothing does."""
+    return through_heat(path) or "time run" not in parts_of(path)

@@ -1,0 +1,214 @@
+"""Points of a study through workers and ledger: nothing that is stored is computed again."""
+
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rigdesign.base.errors import CaseError, MissingLibraryError
+from rigdesign.base.worker_pool import Workers
+from rigdesign.studies.design import DesignPoint
+from rigdesign.studies.ledger import point_key
+from rigdesign.studies.point import PointOutcome, PointSetup, solve_point
+from rigdesign.studies.result import Record, StudyPoint
+from rigdesign.studies.shards import Shard, StudyLedgers
+
+if TYPE_CHECKING:
+    from rigdesign.base.fidelity import Fidelity
+    from rigdesign.case import Case
+
+DIED = "the worker process died; look for a lack of memory"
+
+
+class PointDefectError(Exception):
+    """An error of the tool itself while it computed a point; the study stops, the note holds the traceback."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A point as a case: its key, or why it is no valid one."""
+
+    point: DesignPoint
+    key: str = ""
+    case_hash: str = ""
+    fault: str = ""
+
+
+def tasks_of(case: "Case", points: Sequence[DesignPoint], fidelity: "Fidelity") -> list[Task]:
+    """The points as cases; one that is no valid case carries its fault.
+
+    Raises
+    ------
+    CaseError
+        If none is a valid case, or a value is one its place can never hold.
+    """
+    tasks: list[Task] = []
+    first: CaseError | None = None
+    for point in points:
+        try:
+            found = case.with_values(point.changes).hash
+        except CaseError as error:
+            if any(fault.impossible for fault in error.faults):
+                raise
+            first = first or error
+            tasks.append(Task(point, fault=str(error)))
+        else:
+            tasks.append(Task(point, point_key(found, fidelity, case.hash), found))
+    if first is not None and all(task.fault for task in tasks):
+        raise first
+    return tasks
+
+
+@dataclass(frozen=True, kw_only=True)
+class Listeners:
+    """Who is told of finished points.
+
+    count : called with points done, points in all, and the last one in words
+    checks : called with the ids of the checks of the first point that has a result
+    remark : called with what is to know of the workers
+    """
+
+    count: Callable[[int, int, str], None]
+    checks: Callable[[Sequence[str]], None]
+    remark: Callable[[str], None]
+
+
+class PointSolver:
+    """Computes the points that are not stored, and stores each the moment it is finished.
+
+    Parameters
+    ----------
+    setup : case, fidelity and what computes a point
+    ledgers : where points are stored
+    workers : compute them
+    retry : compute points again that failed before
+    shard : share of the points that is computed here, None for all
+    """
+
+    def __init__(
+        self, setup: PointSetup, ledgers: StudyLedgers, workers: Workers, *, retry: bool, shard: Shard | None
+    ) -> None:
+        self.workers = workers
+        self._setup = setup
+        self._ledgers = ledgers
+        self._shard = shard
+        self.known = {key: entry for key, entry in ledgers.stored().items() if not (retry and entry[0])}
+        """Stored points: key -> (failed, record)."""
+        self.computed: set[str] = set()
+        """Keys of the points computed now."""
+
+    @property
+    def ledger(self) -> Path:
+        """File of the points computed here."""
+        return self._ledgers.path
+
+    def tasks_of(self, points: Sequence[DesignPoint]) -> list[Task]:
+        """Points of this study as cases."""
+        return tasks_of(self._setup.case, points, self._setup.fidelity)
+
+    def share(self, tasks: Sequence[Task]) -> Sequence[Task]:
+        """The tasks that are for this process, each once."""
+        unique = list({task.key: task for task in tasks if not task.fault}.values())
+        return unique if self._shard is None else self._shard.of(unique)
+
+    def missing(self, tasks: Sequence[Task]) -> list[Task]:
+        """The tasks to compute here."""
+        return [task for task in self.share(tasks) if task.key not in self.known]
+
+    def solve(self, tasks: Sequence[Task], listeners: Listeners, left: int = 0) -> None:
+        """Compute what is missing of ``tasks``; ``left``: points that will follow, for the count.
+
+        Raises
+        ------
+        PointDefectError
+            An error that nobody raised on purpose; the point is not stored.
+        MissingLibraryError
+            A system library that a worker lacks.
+        LostWorkersError
+            If the workers are gone.
+        OutputError
+            If the ledger cannot be written.
+        """
+        missing = self.missing(tasks)
+        named = self._name_checks(tasks, listeners)
+        if not missing:
+            return
+        self.workers.open()
+        if self.workers.remark and not self.computed:
+            listeners.remark(self.workers.remark)
+        work = partial(solve_point, setup=self._setup.packed())
+        whole = len(self.computed) + len(missing) + left
+        with closing(self.workers.compute(work, [dict(task.point.changes) for task in missing])) as finished:
+            for index, outcome in finished:
+                task = missing[index]
+                failed, record = _entry(task, outcome)
+                self._store(task, failed, record)
+                listeners.count(len(self.computed), whole, _progress_line(task, failed, record))
+                named = named or self._name_checks([task], listeners)
+
+    def _name_checks(self, tasks: Sequence[Task], listeners: Listeners) -> bool:
+        """Pass on the ids of the checks of the first of ``tasks`` with a result; False if none has one."""
+        for task in tasks:
+            failed, record = self.known.get(task.key, (True, {}))
+            if not failed:
+                listeners.checks([check["id"] for check in record["checks"]])
+                return True
+        return False
+
+    def points(self, tasks: Sequence[Task]) -> list[StudyPoint]:
+        """The tasks that are known, with what came of them."""
+        found = []
+        for task in tasks:
+            values = dict(task.point.values)
+            if task.fault:
+                found.append(StudyPoint(values=values, failed=True, record={"error": task.fault}))
+            elif task.key in self.known:
+                failed, record = self.known[task.key]
+                found.append(StudyPoint(values=values, failed=failed, record=record))
+        return found
+
+    def look_again(self) -> None:
+        """Take over what the other shares have stored since; nothing to do without shares."""
+        if self._shard is None:
+            return
+        self._ledgers.read_others()
+        self.known = {**self._ledgers.stored(), **{key: self.known[key] for key in self.computed}}
+
+    def _store(self, task: Task, failed: bool, record: Record) -> None:
+        self._ledgers.ledger.store(
+            task.key,
+            fidelity=self._setup.fidelity,
+            case_hash=task.case_hash,
+            inputs=dict(task.point.values),
+            failed=failed,
+            record=record,
+        )
+        self.known[task.key] = (failed, record)
+        self.computed.add(task.key)
+
+
+def _entry(task: Task, outcome: PointOutcome | None) -> tuple[bool, Record]:
+    """What the ledger keeps of an outcome; raises for one that stops the study."""
+    if outcome is None:
+        return True, {"error": DIED}
+    if outcome.status == "library missing":
+        raise MissingLibraryError(str(outcome.record["error"]))
+    if outcome.status == "defect":
+        defect = PointDefectError(f"point {_words(task)}: {outcome.record['error']}")
+        defect.add_note(f"in the worker:\n{outcome.record['traceback']}")
+        raise defect
+    return outcome.status == "failed", outcome.record
+
+
+def _words(task: Task) -> str:
+    changed = task.point.changes.items()
+    return ", ".join(f"{path} = {value}" for path, value in changed) or "as stated"
+
+
+def _progress_line(task: Task, failed: bool, record: Record) -> str:
+    values = [f"{path.rsplit('.', 1)[-1]} {value}" for path, value in task.point.changes.items()]
+    more = f" and {len(values) - 3} more" if len(values) > 3 else ""
+    outcome = str(record["error"]).partition("\n")[0] if failed else record["verdict"]
+    return f"{', '.join(values[:3]) or 'as stated'}{more}: {outcome}"
