@@ -1,15 +1,15 @@
-"""The command line: `rigdesign check | study | compare | diagnose | validate | new | mesh | schema | doctor`.
+"""The command line: `rigdesign check | study | compare | diagnose | diff | validate | new | mesh | schema | doctor`.
 
-Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; validate: no gate missed), 1 a
-check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is missing, 5 measured
-data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy imports happen inside the commands, so that
-`--help` answers at once.
+Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; diff: both can be read; validate: no
+gate missed), 1 a check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is
+missing, 5 measured data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy imports happen inside
+the commands, so that `--help` answers at once.
 """
 
 import sys
 
 from rigdesign.cli.application import app
-from rigdesign.cli.commands import check, compare, diagnose, doctor, mesh, new, schema, study, validate
+from rigdesign.cli.commands import check, compare, diagnose, diff, doctor, mesh, new, schema, study, validate
 from rigdesign.cli.ending import exit_status
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "check",
     "compare",
     "diagnose",
+    "diff",
     "doctor",
     "main",
     "mesh",

@@ -44,31 +44,32 @@ def curve_look(number: int) -> CurveLook:
     return CurveLook(SERIES[number % len(SERIES)], LINES[number % len(LINES)], MARKERS[number % len(MARKERS)])
 
 
-def margin_axis(axes: "Axes", margins: Iterable[float], *, label: str = MARGIN_LABEL) -> None:
-    """Scale the upright axis to all ``margins`` [%], zero included; the side below zero is shaded.
+def margin_axis(
+    axes: "Axes", margins: Iterable[float], *, label: str = MARGIN_LABEL, upright: bool = True
+) -> None:
+    """Scale an axis to all ``margins`` [%], zero included; the side below zero is shaded.
 
     Linear down to -50 %, logarithmic below, so that a check that fails by far leaves room for those near their limit.
     """
     known = np.asarray([margin for margin in margins if np.isfinite(margin)] or [0.0])
     low, high = min(float(known.min()), 0.0), max(float(known.max()), 0.0)
     far = low < -2.0 * LINEAR_TO
+    along = axes.yaxis if upright else axes.xaxis
     if far:
-        axes.set_yscale("function", functions=(_drawn, _margin))
+        rescale = axes.set_yscale if upright else axes.set_xscale
+        rescale("function", functions=(_drawn, _margin))
     span = float(_drawn(np.array(high)) - _drawn(np.array(low))) or 1.0
-    bottom = float(_margin(_drawn(np.array(low)) - 0.06 * span))
-    axes.set_ylim(bottom, high + 0.08 * span)
+    bottom, top = float(_margin(_drawn(np.array(low)) - 0.06 * span)), high + 0.08 * span
+    (axes.set_ylim if upright else axes.set_xlim)(bottom, top)
     if far:
         ticks = [*(tick for tick in BELOW if tick >= bottom), -50, 0, 50, 100]
-        axes.set_yticks([tick for tick in ticks if tick <= high + 0.08 * span])
-        axes.set_ylabel(f"{label}\nlogarithmic below −50 %")
-    else:
-        axes.set_ylabel(label)
-    axes.yaxis.set_major_formatter(
-        lambda value, _: f"{value:,.0f}".replace("-", "\u2212").replace(",", "\u202f")
-    )
-    axes.yaxis.minorticks_off()
-    axes.axhspan(bottom, 0.0, color=VERDICT_COLOURS["fail"], alpha=0.06, linewidth=0)
-    axes.axhline(0.0, color=INK, linewidth=1.2, zorder=2.5)
+        along.set_ticks([tick for tick in ticks if tick <= top])
+    along.set_label_text(f"{label}\nlogarithmic below −50 %" if far else label)
+    along.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "\u2212").replace(",", "\u202f"))
+    axes.minorticks_off()
+    shade, line = (axes.axhspan, axes.axhline) if upright else (axes.axvspan, axes.axvline)
+    shade(bottom, 0.0, color=VERDICT_COLOURS["fail"], alpha=0.06, linewidth=0)
+    line(0.0, color=INK, linewidth=1.2, zorder=2.5)
 
 
 def input_axis(axes: "Axes", axis: "StudyAxis", *, upright: bool = False, unit: bool = True) -> None:
