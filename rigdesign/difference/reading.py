@@ -177,8 +177,8 @@ def _quantities(document: Mapping[str, Any]) -> list[tuple[tuple[str, str], tupl
     for row in document["oil"]:
         place = f"{row['consumer']}, stage {row['stage']}"
         found.append((("oil outlet", place), (_number(row["outlet_degC"]), "degC")))
-    for (what, place), power in _powers(document["losses"]).items():
-        found.append(((what, place), (power, "W")))
+    total, single = _powers(document["losses"])
+    found += [(("losses in all", place), (power, "W")) for place, power in total.items()]
     for row in document["growth"]:
         for gap in row["seal_gaps"]:
             place = f"{gap['seal']}, stage {row['stage']}"
@@ -192,20 +192,20 @@ def _quantities(document: Mapping[str, Any]) -> list[tuple[tuple[str, str], tupl
         peak = row["dynamic_torque_peak_Nm"]
         if peak is not None:
             found.append((("peak torque of the ramp", gearbox), (_number(peak), "Nm")))
-    return found
+    return found + [((what, place), (power, "W")) for (what, place), power in single.items()]
 
 
-def _powers(rows: list[Mapping[str, Any]]) -> dict[tuple[str, str], float]:
-    """Losses of every stage in all, then by place and kind."""
-    total: dict[tuple[str, str], float] = {}
+def _powers(rows: list[Mapping[str, Any]]) -> tuple[dict[str, float], dict[tuple[str, str], float]]:
+    """Losses of every stage in all, and by kind and place."""
+    total: dict[str, float] = {}
     single: dict[tuple[str, str], float] = {}
     for row in rows:
         power = _number(row["power_W"])
-        in_all = ("losses in all", f"stage {row['stage']}")
+        in_all = f"stage {row['stage']}"
         at_place = (f"{row['kind']} loss", f"{row['place']}, stage {row['stage']}")
         total[in_all] = total.get(in_all, 0.0) + power
         single[at_place] = single.get(at_place, 0.0) + power
-    return total | single
+    return total, single
 
 
 def _text(value: object) -> str:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 WIDTH = 80
 """Columns of a line at most."""
-SHOWN = {"flipped": 8, "inputs": 6, "checks": 5, "results": 5, "texts": 2}
+SHOWN = {"flipped": 8, "inputs": 6, "checks": 5, "results": 6, "texts": 2}
 """Lines of a part without --all."""
 STYLES = {"fail": "bold red", "warn": "yellow", "pass": "green"}
 
