@@ -47,11 +47,16 @@ class Run(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class StudyOutcome:
-    """All points in the order of the grid; how many were computed now and how many were found done."""
+    """What a study found; how many of its points were computed now and how many were found done."""
 
-    points: list[StudyPoint]
+    result: StudyResult
     completed: int
     reused: int
+
+    @property
+    def points(self) -> Sequence[StudyPoint]:
+        """All points in the order of the grid."""
+        return self.result.points
 
     @property
     def failed(self) -> list[str]:
@@ -169,7 +174,7 @@ def run_study(
         )
         write(found, out)
     reused = sum(task is not None for task in tasks) - len(missing)
-    return StudyOutcome(points=computed, completed=len(missing), reused=reused)
+    return StudyOutcome(result=found, completed=len(missing), reused=reused)
 
 
 @contextmanager

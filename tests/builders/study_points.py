@@ -89,5 +89,5 @@ def study_of(points, design="grid", **found):
 
 def written(points, out, *patterns, design="grid", **found):
     """Files of the study in ``out``."""
-    write_study(study_of(points, design, **found), out, CheckSelection(patterns))
+    write_study(study_of(points, design, checks=CheckSelection(patterns), **found), out)
     return out

@@ -3,12 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from rigdesign.report.margins.axis import StudyAxis, study_axis
 from rigdesign.report.margins.passing import Passing, passing, quoted
-from rigdesign.report.margins.table import MarginTable, margin_table, study_ids
-from rigdesign.studies.result import Crossing, StudyPoint
+from rigdesign.report.margins.table import MarginTable, margin_table
+from rigdesign.studies.result import StudyPoint, StudyResult, check_ids
 from rigdesign.studies.selection import CheckSelection
 
+MOST_SLICES = 40
+"""Values of a second input that are listed one by one."""
 MOST_NAMED = 3
 """Checks named in a sentence."""
 
@@ -35,18 +39,17 @@ class StudyAnswer:
     sentences: tuple[str, ...]
 
 
-def study_answer(
-    points: Sequence[StudyPoint], selection: CheckSelection, crossings: Sequence[Crossing] = ()
-) -> StudyAnswer:
-    """Read the points of a study for the selected checks.
+def study_answer(study: StudyResult) -> StudyAnswer:
+    """Read the points of a study for the checks it is read for.
 
     Raises
     ------
     UsageError
         If a pattern of the selection matches no check of the study.
     """
+    points, selection = study.points, study.checks
     axes = tuple(study_axis(path, points) for path in (points[0].values if points else ()))
-    selected = margin_table(points, selection.of(study_ids(points)), crossings)
+    selected = margin_table(points, selection.of(check_ids(points)))
     always, rest = selected.of(selected.always_failing), selected.of(~selected.always_failing)
     found = None
     if len(axes) == 1:
@@ -61,6 +64,27 @@ def study_answer(
         passing=found,
         sentences=sentences,
     )
+
+
+def slices(points: Sequence[StudyPoint], answer: StudyAnswer) -> list[tuple[str, str]]:
+    """Where the first of two inputs passes at every value of the second: (value, sentence); empty for other studies."""
+    if len(answer.axes) != 2 or not answer.rest.checks:
+        return []
+    first, second = answer.axes
+    rows: dict[str, list[int]] = {text: [] for text in second.texts}
+    for number, point in enumerate(points):
+        rows[point.values[second.path]].append(number)
+    if len(rows) > MOST_SLICES or any(len(numbers) < 2 for numbers in rows.values()):
+        return []
+    return [
+        (
+            second.shown(text),
+            passing(
+                first, [first.position(points[row]) for row in numbers], answer.rest.at(np.array(numbers))
+            ).sentence,
+        )
+        for text, numbers in rows.items()
+    ]
 
 
 def _sentences(

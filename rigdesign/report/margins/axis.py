@@ -8,7 +8,7 @@ from typing import Literal
 
 from rigdesign.base import units
 from rigdesign.report.numbers import number_text, unit_text
-from rigdesign.studies.grid import NUMBER
+from rigdesign.studies.grid import LONGEST, NUMBER
 from rigdesign.studies.result import StudyPoint
 
 READ_OFF = 20.0
@@ -98,7 +98,7 @@ def study_axis(path: str, points: Sequence[StudyPoint]) -> StudyAxis:
 
 def _numbers(texts: Sequence[str]) -> tuple[list[float], str] | None:
     """Numbers and their unit, None for values that are no numbers of one kind."""
-    found = [NUMBER.fullmatch(text) for text in texts]
+    found = [NUMBER.fullmatch(text) if len(text) <= LONGEST else None for text in texts]
     if not all(found) or not found:
         return None
     parts = [(float(match[1]), match[2] or "") for match in found if match]

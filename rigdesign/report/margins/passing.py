@@ -61,7 +61,7 @@ def passing(axis: StudyAxis, positions: Sequence[float], table: MarginTable) -> 
         return Passing(outcome="no result", ranges=(), sentence="no point has a result")
     if not holds.any():
         return Passing(outcome="nowhere", ranges=(), sentence=_nowhere(axis, x, sorted_table))
-    ranges = _ranges(axis, x, sorted_table, holds) if axis.numeric else ()
+    ranges = _ranges(x, sorted_table, holds) if axis.numeric else ()
     if holds.all():
         return Passing(outcome="everywhere", ranges=ranges, sentence=_everywhere(axis, x, sorted_table))
     if not axis.numeric:
@@ -69,7 +69,7 @@ def passing(axis: StudyAxis, positions: Sequence[float], table: MarginTable) -> 
     return Passing(outcome="partly", ranges=ranges, sentence=_partly(axis, ranges, sorted_table))
 
 
-def _ranges(axis: StudyAxis, x: np.ndarray, table: MarginTable, holds: np.ndarray) -> tuple[PassRange, ...]:
+def _ranges(x: np.ndarray, table: MarginTable, holds: np.ndarray) -> tuple[PassRange, ...]:
     found = []
     first = 0
     for place in range(len(x)):
@@ -78,12 +78,12 @@ def _ranges(axis: StudyAxis, x: np.ndarray, table: MarginTable, holds: np.ndarra
         if place == 0 or not holds[place - 1]:
             first = place
         if place == len(x) - 1 or not holds[place + 1]:
-            low = _end(axis, x, table, first, first - 1)
-            found.append(PassRange(low=low, high=_end(axis, x, table, place, place + 1)))
+            low = _end(x, table, first, first - 1)
+            found.append(PassRange(low=low, high=_end(x, table, place, place + 1)))
     return tuple(found)
 
 
-def _end(axis: StudyAxis, x: np.ndarray, table: MarginTable, held: int, beyond: int) -> RangeEnd:
+def _end(x: np.ndarray, table: MarginTable, held: int, beyond: int) -> RangeEnd:
     """The end of a range towards the point ``beyond`` the last one that holds."""
     if not 0 <= beyond < len(x):
         return RangeEnd(value=float(x[held]), cause="end")
@@ -91,29 +91,19 @@ def _end(axis: StudyAxis, x: np.ndarray, table: MarginTable, held: int, beyond: 
         return RangeEnd(value=float(x[held]), cause="no result")
     low, high = sorted((float(x[held]), float(x[beyond])))
     places = {
-        int(column): _crossing(axis, x, table, held, beyond, int(column))
+        int(column): _crossing(x, table, held, beyond, int(column))
         for column in np.flatnonzero(table.fails[beyond])
     }
     check = min(places, key=lambda column: abs(places[column] - float(x[held])))
     return RangeEnd(value=places[check], cause="crossing", check=check, low=low, high=high)
 
 
-def _crossing(
-    axis: StudyAxis, x: np.ndarray, table: MarginTable, held: int, beyond: int, column: int
-) -> float:
-    """Where the margin of a check is zero between two points: as the study found it, else on a straight line.
+def _crossing(x: np.ndarray, table: MarginTable, held: int, beyond: int, column: int) -> float:
+    """Where the margin of a check is zero between two points, on a straight line in the unit of the check.
 
     The last point that holds where the check has no number there.
     """
     start, end = float(x[held]), float(x[beyond])
-    for crossing in table.crossings:
-        same = (
-            crossing.check == table.checks[column].id
-            and crossing.path == axis.path
-            and crossing.unit == axis.unit
-        )
-        if same and min(start, end) <= crossing.value <= max(start, end):
-            return crossing.value
     inside, outside = table.own[held, column], table.own[beyond, column]
     if np.isnan(inside) or np.isnan(outside) or inside <= 0.0 or outside >= 0.0:
         return start

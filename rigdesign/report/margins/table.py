@@ -1,13 +1,13 @@
 """Margins of the checks at every point of a study, as arrays."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.studies.result import Crossing, StudyPoint
+from rigdesign.studies.result import StudyPoint
 
 LEAST_MOVE = 0.1
 """Change of a margin over the study from which it counts as moved [% of the limit]."""
@@ -31,7 +31,6 @@ class MarginTable:
     own : margin in the unit of the check, linear in its value, shape (points, checks); NaN likewise
     fails : whether the verdict is fail, shape (points, checks)
     computed : whether a point has a result, shape (points,)
-    crossings : values at which a study found a check to change from held to broken
     """
 
     checks: tuple[CheckColumn, ...]
@@ -39,7 +38,6 @@ class MarginTable:
     own: NDArray[np.float64]
     fails: NDArray[np.bool_]
     computed: NDArray[np.bool_]
-    crossings: tuple[Crossing, ...] = ()
 
     @cached_property
     def always_failing(self) -> NDArray[np.bool_]:
@@ -109,14 +107,7 @@ class MarginTable:
         return np.where(np.isnan(margin), -1, column), margin
 
 
-def study_ids(points: Iterable[StudyPoint]) -> tuple[str, ...]:
-    """Ids of all checks that some point has, in the order of their appearance."""
-    return tuple(dict.fromkeys(check["id"] for point in points for check in point.record.get("checks", ())))
-
-
-def margin_table(
-    points: Sequence[StudyPoint], identities: Sequence[str], crossings: Iterable[Crossing] = ()
-) -> MarginTable:
+def margin_table(points: Sequence[StudyPoint], identities: Sequence[str]) -> MarginTable:
     """Margins of the checks ``identities`` at all points."""
     column = {identity: number for number, identity in enumerate(identities)}
     shape = len(points), len(column)
@@ -143,7 +134,6 @@ def margin_table(
         own=own,
         fails=fails,
         computed=np.array([not point.failed for point in points], dtype=bool),
-        crossings=tuple(crossings),
     )
 
 

@@ -11,24 +11,21 @@ from rigdesign.base.output_folder import staged
 from rigdesign.report.csv_text import csv_text
 from rigdesign.report.figures.drawing import drawing_style
 from rigdesign.report.margins.answer import study_answer
-from rigdesign.report.margins.table import MarginTable, margin_table, study_ids
+from rigdesign.report.margins.table import MarginTable, margin_table
 from rigdesign.report.numbers import margin_unit
 from rigdesign.studies.grid import Variation
-from rigdesign.studies.result import StudyPoint, StudyResult
-from rigdesign.studies.selection import CheckSelection
-
-EVERY_CHECK = CheckSelection()
+from rigdesign.studies.result import StudyPoint, StudyResult, check_ids
 
 
-def write_study(study: StudyResult, out: Path, selection: CheckSelection = EVERY_CHECK) -> None:
+def write_study(study: StudyResult, out: Path) -> None:
     """Write the three files whole; they depend on the points alone, so an interrupted study ends the same.
 
-    Page and picture show the checks of ``selection``; the table holds all checks.
+    Page and picture show the checks that the study is read for; the table holds all checks.
 
     Raises
     ------
     UsageError
-        If a pattern of the selection matches no check; results.csv is written then, the others are not.
+        If a pattern on the checks matches no check; results.csv is written then, the others are not.
     OutputError
         If ``out`` cannot be written.
     """
@@ -37,7 +34,7 @@ def write_study(study: StudyResult, out: Path, selection: CheckSelection = EVERY
 
     table = study_csv(study.variations, study.points)
     try:
-        answer = study_answer(study.points, selection, study.crossings)
+        answer = study_answer(study)
     except UsageError as error:
         with staged(out) as scratch:
             _write(scratch / "results.csv", table)
@@ -51,7 +48,7 @@ def write_study(study: StudyResult, out: Path, selection: CheckSelection = EVERY
         if pictures.first is not None:
             svg = f'<?xml version="1.0" encoding="utf-8"?>\n{pictures.first.svg}\n'
             _write(scratch / "study.svg", svg)
-        _write(scratch / "study.html", study_page(study, answer, pictures, selection))
+        _write(scratch / "study.html", study_page(study, answer, pictures))
 
 
 def _write(path: Path, text: str) -> None:
@@ -72,7 +69,7 @@ def study_csv(variations: Sequence[Variation], points: Sequence[StudyPoint]) -> 
         header += [f"{identity} value [{unit}]", f"{identity} margin [{margin_unit(unit)}]"]
         header += [f"{identity} utilisation [1]"]
         header += [f"{identity} verdict"]
-    table = margin_table(points, study_ids(points))
+    table = margin_table(points, check_ids(points))
     groups = {group: table.of(columns) for group, columns in table.groups().items()}
     for group in groups:
         header += [f"{group}: smallest margin [%]", f"{group}: limiting check"]

@@ -7,15 +7,18 @@ from typing import Any
 import numpy as np
 
 from rigdesign.base.version import __version__
-from rigdesign.report.margins.answer import StudyAnswer
+from rigdesign.report.margins.answer import StudyAnswer, slices
 from rigdesign.report.margins.passing import passing
 from rigdesign.report.margins.table import MarginTable
 from rigdesign.report.pages.study_pictures import MAP, StudyPictures
 from rigdesign.studies.result import StudyPoint, StudyResult
-from rigdesign.studies.selection import CheckSelection
 
 MOST_ROWS = 2000
 """Points listed on the page; results.csv has all."""
+MOST_CELLS = 40_000
+"""Values of inputs listed on the page."""
+MOST_NAMED = 3
+"""Inputs by whose values a point is named; with more it has its number."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,9 +52,7 @@ class PointRow:
     margin: float | None
 
 
-def study_page(
-    study: StudyResult, answer: StudyAnswer, pictures: StudyPictures, selection: CheckSelection
-) -> str:
+def study_page(study: StudyResult, answer: StudyAnswer, pictures: StudyPictures) -> str:
     """The page as one self-contained document."""
     from rigdesign.report.pages.report import environment
 
@@ -65,13 +66,13 @@ def study_page(
             outcome=_outcome(answer),
             pictures=pictures,
             map_note=MAP,
-            selection=selection,
             groups=_group_rows(study.points, answer),
             checks=_check_rows(study.points, answer),
-            slices=_slices(study.points, answer),
+            slices=slices(study.points, answer),
             titles={check.id: check.title for check in answer.selected.checks},
             failed=[point for point in study.points if point.failed],
-            rows=_point_rows(study.points, answer)[:MOST_ROWS],
+            rows=_point_rows(study.points, answer)[: min(MOST_ROWS, MOST_CELLS // len(answer.axes))],
+            numbered=len(answer.axes) > MOST_NAMED,
             tool_version=__version__,
         )
     )
@@ -142,28 +143,9 @@ def _least(points: Sequence[StudyPoint], answer: StudyAnswer, table: MarginTable
     if np.isnan(smallest).all():
         return float("nan"), ""
     row = int(np.nanargmin(smallest))
+    if len(answer.axes) > MOST_NAMED:
+        return float(smallest[row]), f"point {row + 1}"
     return float(smallest[row]), ", ".join(axis.shown(points[row].values[axis.path]) for axis in answer.axes)
-
-
-def _slices(points: Sequence[StudyPoint], answer: StudyAnswer) -> list[tuple[str, str]]:
-    """Where the first of two inputs passes at every value of the second; empty for other studies."""
-    if len(answer.axes) != 2 or not answer.rest.checks:
-        return []
-    first, second = answer.axes
-    found = []
-    for text in second.texts if len(second.texts) <= MOST_SLICES else ():
-        rows = np.array(
-            [n for n, point in enumerate(points) if point.values[second.path] == text], dtype=np.intp
-        )
-        if len(rows) < 2:
-            return []
-        positions = [first.position(points[row]) for row in rows]
-        found.append((second.shown(text), passing(first, positions, answer.rest.at(rows)).sentence))
-    return found
-
-
-MOST_SLICES = 40
-"""Values of a second input that are listed one by one."""
 
 
 def _point_rows(points: Sequence[StudyPoint], answer: StudyAnswer) -> list[PointRow]:

@@ -5,6 +5,9 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rigdesign.report.figures import study, study_map, study_samples
 from rigdesign.report.figures.drawing import inline_svg
 from rigdesign.report.margins.answer import StudyAnswer
@@ -16,6 +19,8 @@ if TYPE_CHECKING:
 
 MOST_PAIRS = 15
 """Pair maps on one page: those of six inputs."""
+MOST_SCATTER = 8
+"""Inputs with a scatter plot."""
 MOST_CHECKS = 6
 """Checks with a tornado plot or a plot of indices, the nearest to their limits first."""
 MOST_CURVES = 8
@@ -60,7 +65,8 @@ def study_pictures(found: StudyResult, answer: StudyAnswer) -> StudyPictures:
     if len(answer.axes) == 1:
         _curves(pictures, svg, found, answer)
     elif found.design != "one at a time":
-        _maps(pictures, svg, found, answer)
+        if found.design in ("grid", "boundary"):
+            _maps(pictures, svg, found, answer)
         if not pictures.main:
             _scatter(pictures, svg, found, answer)
     _by_check(pictures.tornado, svg, answer, _per_check(found.swings), study_samples.tornado_figure, TORNADO)
@@ -125,12 +131,27 @@ def _maps(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer: S
 
 
 def _scatter(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer: StudyAnswer) -> None:
+    """Margins over every input; of many inputs over those along which the smallest margin changes most."""
     if not answer.rest.checks:
         return
-    for axis in answer.axes:
-        positions = [axis.position(point) for point in found.points]
-        figure = study_samples.scatter_figure(axis, positions, answer.deciding)
+    positions = {axis.path: [axis.position(point) for point in found.points] for axis in answer.axes}
+    axes = list(answer.axes)
+    if len(axes) > MOST_SCATTER:
+        _, margins = answer.deciding.limiting()
+        axes.sort(key=lambda axis: -abs(_rank_correlation(positions[axis.path], margins)))
+    for axis in axes[:MOST_SCATTER]:
+        figure = study_samples.scatter_figure(axis, positions[axis.path], answer.deciding)
         pictures.main.append(Picture(svg(figure, f"Smallest margin over {axis.label}"), ""))
+
+
+def _rank_correlation(positions: Sequence[float], margins: NDArray[np.float64]) -> float:
+    """Spearman's, over the points with a margin; 0 where it is not defined."""
+    known = np.isfinite(margins)
+    if known.sum() < 3 or np.ptp(np.asarray(positions)[known]) == 0.0 or np.ptp(margins[known]) == 0.0:
+        return 0.0
+    from scipy.stats import spearmanr
+
+    return float(spearmanr(np.asarray(positions)[known], margins[known]).statistic)
 
 
 def _per_check(records: Iterable[T]) -> dict[str, list[T]]:

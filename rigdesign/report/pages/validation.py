@@ -53,6 +53,7 @@ def validation_page(rows: Sequence[ValidationRow]) -> str:
         main = (
             None if deviations is None else _svg(deviations, "deviations", "Deviation over what is allowed")
         )
+    notes = list(dict.fromkeys(row.assumptions for row in rows if row.assumptions))
     shares = {row.id: share_of_tolerance(row) for row in rows}
 
     def place(row: ValidationRow) -> tuple[int, float]:
@@ -69,6 +70,7 @@ def validation_page(rows: Sequence[ValidationRow]) -> str:
             sources=drawn,
             shares=shares,
             colours=COLOURS,
+            notes={text: number for number, text in enumerate(notes, start=1)},
             infinity=math.inf,
             tool_version=__version__,
         )

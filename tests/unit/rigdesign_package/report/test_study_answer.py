@@ -4,18 +4,21 @@ import numpy as np
 import pytest
 
 from rigdesign.base.errors import UsageError
-from rigdesign.report.margins.answer import study_answer
+from rigdesign.report.margins.answer import slices, study_answer
 from rigdesign.report.margins.axis import study_axis
 from rigdesign.report.margins.regions import region_map
-from rigdesign.studies.result import Crossing
 from rigdesign.studies.selection import CheckSelection
-from tests.builders.study_points import OIL, TORQUE, check_record, map_points, oil_points, point
+from tests.builders.study_points import OIL, TORQUE, check_record, map_points, oil_points, point, study_of
 
 ROOT = "!specimen.root*"
 
 
-def said(points, *patterns, crossings=()):
-    return " ".join(study_answer(points, CheckSelection(patterns), crossings).sentences)
+def answered(points, *patterns):
+    return study_answer(study_of(points, checks=CheckSelection(patterns)))
+
+
+def said(points, *patterns):
+    return " ".join(answered(points, *patterns).sentences)
 
 
 def test_a_check_that_always_fails_is_named_and_hides_nothing():
@@ -27,7 +30,7 @@ def test_a_check_that_always_fails_is_named_and_hides_nothing():
 
 def test_the_crossing_is_where_the_value_meets_the_limit_not_where_a_line_through_utilisations_does():
     """The clearance is linear in the temperature, its utilisation limit/value is not."""
-    answer = study_answer(oil_points((90, 125)), CheckSelection(("clearance.*",)))
+    answer = answered(oil_points((90, 125)), "clearance.*")
     assert answer.passing.ranges[0].high.value == pytest.approx(118.0, rel=1e-12)
     assert (answer.passing.ranges[0].high.low, answer.passing.ranges[0].high.high) == (90.0, 125.0)
 
@@ -109,12 +112,17 @@ def test_names_are_listed_not_interpolated():
     )
 
 
-def test_a_crossing_that_the_study_found_is_taken_as_it_is():
-    found = Crossing(
-        check="clearance.tip", path=OIL, value=117.25, low=117.0, high=117.5, unit="degC", holds="below"
-    )
-    answer = study_answer(oil_points((90, 130)), CheckSelection(("clearance.*",)), [found])
-    assert answer.passing.ranges[0].high.value == 117.25
+def test_two_inputs_are_answered_at_every_value_of_the_second():
+    points = map_points((90, 110, 130), (100, 160, 220))
+    assert slices(points, answered(points)) == [
+        ("100 N m", "passes up to 118 °C; the limiting check is “hot tip clearance”"),
+        ("160 N m", "passes up to 117 °C; the limiting check is “hot tip clearance”"),
+        (
+            "220 N m",
+            "fails at every point, because of “contact stress” (3 of 3 points), “hot tip clearance” (1 of 3 points)",
+        ),
+    ]
+    assert slices(oil_points((90, 110)), answered(oil_points((90, 110)))) == []
 
 
 def test_a_selection_that_matches_nothing_is_an_error():
@@ -145,7 +153,7 @@ def test_an_axis_of_names_keeps_their_order(texts):
 
 def a_map(failed=(), temperatures=(90, 110, 130), torques=(100, 160, 220)):
     points = map_points(temperatures, torques, failed)
-    answer = study_answer(points, CheckSelection())
+    answer = answered(points)
     return region_map(answer.axes, points, answer.deciding), answer.deciding
 
 
@@ -171,7 +179,7 @@ def test_the_map_is_blank_around_a_point_without_result():
 
 def test_scattered_points_make_no_map():
     points = map_points((90, 110), (100, 160))[:3]
-    answer = study_answer(points, CheckSelection())
+    answer = answered(points)
     assert region_map(answer.axes, points, answer.deciding) is None
 
 
@@ -185,7 +193,7 @@ def test_a_map_of_two_of_three_inputs_shows_the_worst_of_the_third():
         for torque in (100, 160)
         for c in ("0", "50")
     ]
-    answer = study_answer(points, CheckSelection())
+    answer = answered(points)
     found = region_map(answer.axes[:2], points, answer.deciding)
     assert found.margin[0, 0] == pytest.approx(100.0 * (1.0 - 240.0 / 300.0))
     assert found.fails[-1, -1] and not found.fails[0, 0]

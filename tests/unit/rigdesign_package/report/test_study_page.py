@@ -9,6 +9,7 @@ import pytest
 from rigdesign.base.errors import UsageError
 from rigdesign.report.figures.drawing import drawing_style, new_figure
 from rigdesign.report.figures.margin_axes import margin_axis
+from rigdesign.results.result import Finding
 from rigdesign.studies.result import Crossing, PassProbability, SobolIndex, Swing
 from tests.builders.browser import browser  # noqa: F401 - a fixture
 from tests.builders.study_points import (
@@ -44,6 +45,9 @@ def pages(tmp_path_factory):
             for number, path in enumerate(inputs)
         ],
         "probabilities": [PassProbability(check="clearance.tip", probability=0.42, low=0.4, high=0.44, samples=990)],
+        "all_hold": PassProbability(check="all", probability=0.125, low=0.1, high=0.15, samples=990),
+        "method": "1000 points of a Latin hypercube",
+        "warnings": [Finding(id="study.failed_points", text="11 of 1000 points have no result")],
         "indices": [
             SobolIndex(check="clearance.tip", path=path, first_order=0.3, first_order_interval=(0.2, 0.4), total=0.35,
                        total_interval=(0.25, 0.45))
@@ -138,6 +142,27 @@ def test_samples_show_probability_tornado_and_indices(browser, pages):  # noqa: 
     ):
         assert heading in headings
     assert len(browser.find("figure")) == 5
+    text = browser.find("main")[0].text
+    assert "Every check holds in 12.5 % of 990 samples (95 %: 10 … 15 %)." in text
+    assert "1000 points of a Latin hypercube" in text and "11 of 1000 points have no result" in text
+
+
+def test_of_many_inputs_those_that_move_the_margin_are_drawn(browser, tmp_path):  # noqa: F811
+    rng = random.Random(3)
+    points = []
+    for _ in range(60):
+        values = {f"input_{n}": rng.uniform(90, 110) for n in range(20)}
+        oil = 0.6 * values["input_1"] + values["input_7"] - 50.0
+        points.append(point({path: f"{value:.6g} degC" for path, value in values.items()}, rig_checks(oil)))
+    browser.open(written(points, tmp_path, design="latin hypercube") / "study.html")
+    drawn = [figure.get_attribute("aria-label") for figure in browser.find("figure svg")]
+    assert len(drawn) == 8
+    assert drawn[0].startswith("Smallest margin over input 7") and drawn[1].startswith(
+        "Smallest margin over input 1 "
+    )
+    assert browser.find("h2")[0].text == "Margins over 20 inputs"
+    assert browser.find("table.points tbody td")[0].text == "1"
+    assert browser.overflow() == 0
 
 
 def test_a_thousand_points_are_sorted_and_narrowed(browser, pages):  # noqa: F811
