@@ -119,7 +119,7 @@ def _mark_range(axes: "Axes", axis: "StudyAxis", item: "PassRange") -> None:
     axes.axvspan(
         item.low.value, item.high.value, ymin=0.985, color=VERDICT_COLOURS["pass"], alpha=0.8, linewidth=0
     )
-    for end, side in ((item.low, "up"), (item.high, "down")):
+    for end in (item.low, item.high):
         if end.cause == "crossing":
             axes.axvline(
                 end.value, color=VERDICT_COLOURS["pass"], linewidth=1.3, linestyle=(0, (5, 2)), zorder=1.8
@@ -128,7 +128,7 @@ def _mark_range(axes: "Axes", axis: "StudyAxis", item: "PassRange") -> None:
                 [end.value], [0.0], "o", markersize=8, markerfacecolor="white", markeredgecolor=INK, zorder=5
             )
             axes.annotate(
-                plain(axis.read_off(end.value, end.high - end.low, "down" if side == "down" else "up")),
+                plain(axis.read_off(end.value, end.held, end.beyond)),
                 (end.value, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 3), textcoords="offset points",
                 ha="center", fontweight="bold", color=VERDICT_COLOURS["pass"],
             )  # fmt: skip

@@ -24,6 +24,8 @@ LETTERS = "ABCDEFGH"
 PASS_TINT, FAIL_TINT = 0.22, 0.62
 LEVELS = (10, 20, 30, 40, 50, 60, 70, 80, 90)
 """Contours of the smallest margin [%]."""
+FEW_POINTS = 200
+"""Points of a map up to which each has a clear mark."""
 LEAST_REGION = 0.004
 """Share of the map below which a region gets no letter."""
 
@@ -103,10 +105,11 @@ def _contours(axes: "Axes", found: "RegionMap") -> None:
 
 
 def _points(axes: "Axes", found: "RegionMap") -> None:
+    size = 5.0 if len(found.points) <= FEW_POINTS else 1.5
     for fails, face in ((False, "white"), (True, INK)):
         chosen = [point for point in found.points if not point.failed and point.fails == fails]
         axes.plot(
-            [point.x for point in chosen], [point.y for point in chosen], "o", markersize=5, markeredgecolor=INK,
+            [point.x for point in chosen], [point.y for point in chosen], "o", markersize=size, markeredgecolor=INK,
             markerfacecolor=face, zorder=5, clip_on=False,
         )  # fmt: skip
     failed = [point for point in found.points if point.failed]

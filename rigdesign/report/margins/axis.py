@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
 
 from rigdesign.base import units
 from rigdesign.report.numbers import number_text, unit_text
@@ -54,23 +53,26 @@ class StudyAxis:
         """A computed position with its unit, or the name that stands there."""
         if not self.numeric:
             return self.texts[round(position)]
-        return f"{number_text(position)} {unit_text(self.unit)}".strip()
+        return f"{number_text(position, 6)} {unit_text(self.unit)}".strip()
 
     def shown(self, text: str) -> str:
         """A value as printed: ``60 degC`` as 60 °C, with all its digits."""
         match = NUMBER.fullmatch(text) if self.numeric else None
         return text if match is None else f"{match[1]} {unit_text(match[2] or '')}".strip()
 
-    def read_off(self, position: float, bracket: float, side: Literal["down", "up"]) -> str:
-        """A value between two computed points, with the digits that their distance ``bracket`` allows.
+    def read_off(self, position: float, held: float, beyond: float) -> str:
+        """A value between the computed points ``held`` and ``beyond``, with the digits that their distance allows.
 
-        Rounded to the given side, the one on which the checks hold.
+        Rounded to the side of ``held``, on which the checks hold, though not past it.
         """
-        if bracket <= 0.0:
+        bracket = abs(beyond - held)
+        if bracket == 0.0:
             return self.text(position)
         step = 10.0 ** math.floor(math.log10(bracket / READ_OFF) + 0.5)
-        steps = position / step
-        whole = math.floor(steps + 1e-9) if side == "down" else math.ceil(steps - 1e-9)
+        down = held <= beyond
+        whole = math.floor(position / step + 1e-9) if down else math.ceil(position / step - 1e-9)
+        if (whole * step < held) if down else (whole * step > held):
+            return self.text(held)
         decimals = max(0, -math.floor(math.log10(step) + 0.5))
         return f"{whole * step:.{decimals}f} {unit_text(self.unit)}".strip().replace("-", "\u2212")
 

@@ -20,14 +20,14 @@ class RangeEnd:
     value : position on the axis
     cause : the study ends there, a check begins to fail, or the next point has no result
     check : column of the check that begins to fail first
-    low, high : the computed points between which it begins to fail
+    held, beyond : the computed points between which it begins to fail
     """
 
     value: float
     cause: Cause
     check: int = -1
-    low: float = 0.0
-    high: float = 0.0
+    held: float = 0.0
+    beyond: float = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,13 +89,14 @@ def _end(x: np.ndarray, table: MarginTable, held: int, beyond: int) -> RangeEnd:
         return RangeEnd(value=float(x[held]), cause="end")
     if not table.computed[beyond]:
         return RangeEnd(value=float(x[held]), cause="no result")
-    low, high = sorted((float(x[held]), float(x[beyond])))
     places = {
         int(column): _crossing(x, table, held, beyond, int(column))
         for column in np.flatnonzero(table.fails[beyond])
     }
     check = min(places, key=lambda column: abs(places[column] - float(x[held])))
-    return RangeEnd(value=places[check], cause="crossing", check=check, low=low, high=high)
+    return RangeEnd(
+        value=places[check], cause="crossing", check=check, held=float(x[held]), beyond=float(x[beyond])
+    )
 
 
 def _crossing(x: np.ndarray, table: MarginTable, held: int, beyond: int, column: int) -> float:
@@ -159,9 +160,7 @@ def _partly(axis: StudyAxis, ranges: Sequence[PassRange], table: MarginTable) ->
     ):
         if end.cause == "crossing" and len(table.checks) > 1:
             several = len(ranges) > 1 or ranges[0].low.cause == ranges[0].high.cause
-            where = (
-                f" {'below' if side == 'low' else 'above'} {_end_text(axis, end, side)}" if several else ""
-            )
+            where = f" {'below' if side == 'low' else 'above'} {_end_text(axis, end)}" if several else ""
             causes.append(f"the limiting check{where} is {_named(table, end.check)}")
         if end.cause == "no result":
             causes.append(
@@ -172,7 +171,7 @@ def _partly(axis: StudyAxis, ranges: Sequence[PassRange], table: MarginTable) ->
 
 def _range_text(axis: StudyAxis, item: PassRange) -> str:
     """``up to 118 °C``, ``from 80 °C``, ``from 80 °C to 118 °C``; ``at 100 °C`` for a single point."""
-    low, high = _end_text(axis, item.low, "low"), _end_text(axis, item.high, "high")
+    low, high = _end_text(axis, item.low), _end_text(axis, item.high)
     if item.low.cause == "end" and item.high.cause != "end":
         return f"up to {high}"
     if item.high.cause == "end" and item.low.cause != "end":
@@ -180,10 +179,10 @@ def _range_text(axis: StudyAxis, item: PassRange) -> str:
     return f"at {low}" if low == high else f"from {low} to {high}"
 
 
-def _end_text(axis: StudyAxis, end: RangeEnd, side: str) -> str:
+def _end_text(axis: StudyAxis, end: RangeEnd) -> str:
     if end.cause != "crossing":
         return axis.text(end.value)
-    return axis.read_off(end.value, end.high - end.low, "up" if side == "low" else "down")
+    return axis.read_off(end.value, end.held, end.beyond)
 
 
 def _named(table: MarginTable, column: int) -> str:

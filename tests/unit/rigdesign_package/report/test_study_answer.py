@@ -32,7 +32,7 @@ def test_the_crossing_is_where_the_value_meets_the_limit_not_where_a_line_throug
     """The clearance is linear in the temperature, its utilisation limit/value is not."""
     answer = answered(oil_points((90, 125)), "clearance.*")
     assert answer.passing.ranges[0].high.value == pytest.approx(118.0, rel=1e-12)
-    assert (answer.passing.ranges[0].high.low, answer.passing.ranges[0].high.high) == (90.0, 125.0)
+    assert (answer.passing.ranges[0].high.held, answer.passing.ranges[0].high.beyond) == (90.0, 125.0)
 
 
 def test_order_of_the_points_changes_nothing():
@@ -69,6 +69,11 @@ def test_both_ends_of_a_range_are_named_and_rounded_to_the_side_that_passes():
         "Everything passes from 81 °C to 118 °C; the limiting check below 81 °C is “too cold”; the limiting check "
         "above 118 °C is “too warm”."
     )
+
+
+def test_rounding_stops_at_the_point_that_is_known_to_pass():
+    points = [point({OIL: f"{oil} degC"}, [check_record("a.warm", oil, 117.8)]) for oil in (90, 117.5, 137)]
+    assert said(points) == "Everything passes up to 117.5 °C."
 
 
 def test_a_range_from_the_cold_side():
