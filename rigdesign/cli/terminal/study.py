@@ -28,8 +28,9 @@ def print_study(outcome: "StudyOutcome", out: Path) -> None:
     answer = study_answer(found)
     for sentence in answer.sentences:
         console.print(Text(sentence, "bold"))
-    for text, sentence in slices(found.points, answer)[:MOST_SLICES]:
-        console.print(f"  {answer.axes[1].name} {text}: {sentence}")
+    if (ranges := slices(found.points, answer)) is not None:
+        for text, sentence in ranges.rows[:MOST_SLICES]:
+            console.print(f"  {ranges.over.name} {text}: {sentence}")
     for line in _probabilities(found):
         console.print(line)
     for warning in found.warnings:

@@ -105,12 +105,12 @@ def _contours(axes: "Axes", found: "RegionMap") -> None:
 
 
 def _points(axes: "Axes", found: "RegionMap") -> None:
-    size = 5.0 if len(found.points) <= FEW_POINTS else 1.5
+    size, edge = (5.0, 1.0) if len(found.points) <= FEW_POINTS else (1.6, 0.3)
     for fails, face in ((False, "white"), (True, INK)):
         chosen = [point for point in found.points if not point.failed and point.fails == fails]
         axes.plot(
             [point.x for point in chosen], [point.y for point in chosen], "o", markersize=size, markeredgecolor=INK,
-            markerfacecolor=face, zorder=5, clip_on=False,
+            markeredgewidth=edge, markerfacecolor=face, zorder=5, clip_on=False,
         )  # fmt: skip
     failed = [point for point in found.points if point.failed]
     axes.plot([point.x for point in failed], [point.y for point in failed], "x", color=INK, markersize=9,

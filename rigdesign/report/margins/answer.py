@@ -66,25 +66,38 @@ def study_answer(study: StudyResult) -> StudyAnswer:
     )
 
 
-def slices(points: Sequence[StudyPoint], answer: StudyAnswer) -> list[tuple[str, str]]:
-    """Where the first of two inputs passes at every value of the second: (value, sentence); empty for other studies."""
+@dataclass(frozen=True, kw_only=True)
+class Slices:
+    """Where one of two inputs passes at every value of the other.
+
+    along : the input whose range is given, one of numbers where there is one
+    over : the other input
+    rows : value of ``over`` and where the checks pass along ``along``
+    """
+
+    along: StudyAxis
+    over: StudyAxis
+    rows: tuple[tuple[str, str], ...]
+
+
+def slices(points: Sequence[StudyPoint], answer: StudyAnswer) -> Slices | None:
+    """The ranges of one input at every value of the other; None with another number of inputs."""
     if len(answer.axes) != 2 or not answer.rest.checks:
-        return []
-    first, second = answer.axes
-    rows: dict[str, list[int]] = {text: [] for text in second.texts}
+        return None
+    along, over = sorted(answer.axes, key=lambda axis: not axis.numeric)
+    rows: dict[str, list[int]] = {text: [] for text in over.texts}
     for number, point in enumerate(points):
-        rows[point.values[second.path]].append(number)
+        rows[point.values[over.path]].append(number)
     if len(rows) > MOST_SLICES or any(len(numbers) < 2 for numbers in rows.values()):
-        return []
-    return [
-        (
-            second.shown(text),
-            passing(
-                first, [first.position(points[row]) for row in numbers], answer.rest.at(np.array(numbers))
-            ).sentence,
-        )
-        for text, numbers in rows.items()
+        return None
+    said = [
+        passing(along, [along.position(points[row]) for row in numbers], answer.rest.at(np.array(numbers)))
+        for numbers in rows.values()
     ]
+    texts = (over.shown(text) for text in rows)
+    return Slices(
+        along=along, over=over, rows=tuple(zip(texts, (found.sentence for found in said), strict=True))
+    )
 
 
 def _sentences(

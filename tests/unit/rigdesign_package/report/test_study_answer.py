@@ -119,15 +119,26 @@ def test_names_are_listed_not_interpolated():
 
 def test_two_inputs_are_answered_at_every_value_of_the_second():
     points = map_points((90, 110, 130), (100, 160, 220))
-    assert slices(points, answered(points)) == [
+    assert slices(points, answered(points)).rows == (
         ("100 N m", "passes up to 118 °C; the limiting check is “hot tip clearance”"),
         ("160 N m", "passes up to 117 °C; the limiting check is “hot tip clearance”"),
         (
             "220 N m",
             "fails at every point, because of “contact stress” (3 of 3 points), “hot tip clearance” (1 of 3 points)",
         ),
+    )
+    assert slices(oil_points((90, 110)), answered(oil_points((90, 110)))) is None
+
+
+def test_of_a_name_and_a_number_the_range_is_of_the_number():
+    points = [
+        point({"oil": name, OIL: f"{oil} degC"}, [check_record("a", oil + shift, 120.0)])
+        for name, shift in (("FVA 3", 0.0), ("FVA 2", 10.0))
+        for oil in (90, 130)
     ]
-    assert slices(oil_points((90, 110)), answered(oil_points((90, 110)))) == []
+    found = slices(points, answered(points))
+    assert found.over.path == "oil"
+    assert found.rows == (("FVA 3", "passes up to 120 °C"), ("FVA 2", "passes up to 110 °C"))
 
 
 def test_a_selection_that_matches_nothing_is_an_error():
