@@ -1,6 +1,7 @@
 """Figures of sampled designs: margins over each input, tornado bars, Sobol indices."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from textwrap import fill
 from typing import TYPE_CHECKING
 
@@ -77,7 +78,7 @@ def tornado_figure(title: str, swings: "Sequence[Swing]") -> "Figure | None":
         axes.barh(place - 0.17, bar.low - bar.stated, left=bar.stated, height=0.32, color=SERIES[0])
         axes.barh(place + 0.17, bar.high - bar.stated, left=bar.stated, height=0.32, color=SERIES[1], hatch="////",
                   edgecolor="white", linewidth=0)  # fmt: skip
-        for offset, tip, text in ((-0.17, bar.low, bar.low_text), (0.17, bar.high, bar.high_text)):
+        for offset, tip, text in ((-0.17, bar.low, bar.swing.low), (0.17, bar.high, bar.swing.high)):
             left = tip < bar.stated
             axes.annotate(
                 plain(text), (tip, place + offset), xytext=(-3 if left else 3, 0), textcoords="offset points",
@@ -90,7 +91,7 @@ def tornado_figure(title: str, swings: "Sequence[Swing]") -> "Figure | None":
         axes.axvspan(start, 0.0, color=VERDICT_COLOURS["fail"], alpha=0.06, linewidth=0)
         axes.axvline(0.0, color=VERDICT_COLOURS["fail"], linewidth=1.2, linestyle="--")
         axes.set_xlim(start, end)
-    axes.set_yticks(range(len(bars)), [plain(fill(bar.name, 26)) for bar in bars])
+    axes.set_yticks(range(len(bars)), [plain(fill(input_name(bar.swing.path), 26)) for bar in bars])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     finish(axes, MARGIN_LABEL, "", plain(fill(title, 66)))
@@ -98,25 +99,26 @@ def tornado_figure(title: str, swings: "Sequence[Swing]") -> "Figure | None":
     return figure
 
 
+@dataclass(frozen=True)
 class _Bar:
-    """One input of a tornado plot, margins in percent."""
+    """One input of a tornado plot; margins in percent, stated and at both ends."""
 
-    def __init__(self, swing: "Swing", stated: float, low: float, high: float) -> None:
-        self.name = input_name(swing.path)
-        self.low_text, self.high_text = swing.low, swing.high
-        self.stated, self.low, self.high = stated, low, high
-        self.reach = max(low, high, stated) - min(low, high, stated)
+    swing: "Swing"
+    stated: float
+    low: float
+    high: float
+
+    @property
+    def reach(self) -> float:
+        return max(self.low, self.high, self.stated) - min(self.low, self.high, self.stated)
 
 
 def _bar(swing: "Swing") -> _Bar | None:
     """None where an end has no result, or neither moves the check."""
-    known = [
-        u for u in (swing.utilisation_stated, swing.utilisation_low, swing.utilisation_high) if u is not None
-    ]
-    if len(known) < 3 or known[0] == known[1] == known[2]:
+    stated, low, high = swing.utilisation_stated, swing.utilisation_low, swing.utilisation_high
+    if stated is None or low is None or high is None or stated == low == high:
         return None
-    stated, low, high = (100.0 * (1.0 - utilisation) for utilisation in known)
-    return _Bar(swing, stated, low, high)
+    return _Bar(swing, *(100.0 * (1.0 - utilisation) for utilisation in (stated, low, high)))
 
 
 def indices_figure(title: str, indices: "Sequence[SobolIndex]") -> "Figure":
