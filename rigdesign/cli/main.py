@@ -1,12 +1,12 @@
 """The command line, `rigdesign COMMAND`.
 
-Commands: check, study, compare, diagnose, validate, explain, new, mesh, schema, doctor, completion; ``--verbose`` and
-``--quiet`` go with each.
+Commands: check, study, compare, diagnose, diff, validate, explain, new, mesh, schema, doctor, completion; ``--verbose``
+and ``--quiet`` go with each.
 
-Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; validate: no gate missed), 1 a
-check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is missing, 5 measured
-data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy imports happen inside the commands, so that
-`--help` answers at once.
+Exit status: 0 all checks pass (study: complete; compare, diagnose: any verdict; diff: both can be read; validate: no
+gate missed), 1 a check fails or a gate is missed, 2 usage or case error, 3 no convergence, 4 a system library is
+missing, 5 measured data cannot be used, 70 a defect of the tool, 130 stopped by Ctrl-C. Heavy imports happen inside
+the commands, so that `--help` answers at once.
 """
 
 import sys
@@ -17,6 +17,7 @@ from rigdesign.cli.commands import (
     compare,
     completion,
     diagnose,
+    diff,
     doctor,
     explain,
     mesh,
@@ -34,6 +35,7 @@ __all__ = [
     "compare",
     "completion",
     "diagnose",
+    "diff",
     "doctor",
     "explain",
     "main",

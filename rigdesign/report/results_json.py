@@ -4,10 +4,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from rigdesign.base.json_text import to_plain
-from rigdesign.base.version import __version__
+from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
 from rigdesign.results.result import CouplingHistory, RunResult
-
-SCHEMA_VERSION = "1"
 
 
 def results_document(result: RunResult) -> dict[str, Any]:
@@ -21,7 +19,7 @@ def results_document(result: RunResult) -> dict[str, Any]:
         If a number is NaN or infinite; names the key.
     """
     document: dict[str, Any] = {
-        "schema_version": SCHEMA_VERSION,
+        "schema_version": RESULTS_SCHEMA_VERSION,
         "tool_version": __version__,
         "case": result.case,
         "fidelity": result.fidelity,

@@ -8,10 +8,17 @@ found out about the publication.
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from rigdesign.validation.document import headline, validation_document, write_validation
+from rigdesign.validation.document import headline, validation_csv, validation_document, validation_json
 from rigdesign.validation.rows import ValidationRow
 
-__all__ = ["ValidationRow", "headline", "validation_document", "validation_rows", "write_validation"]
+__all__ = [
+    "ValidationRow",
+    "headline",
+    "validation_csv",
+    "validation_document",
+    "validation_json",
+    "validation_rows",
+]
 
 Topic = tuple[str, Callable[[], Iterable[ValidationRow]]]
 

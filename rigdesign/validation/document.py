@@ -1,4 +1,4 @@
-"""The rows as a document and as files."""
+"""The rows as a document and as the text of files."""
 
 import csv
 import io
@@ -6,10 +6,8 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import fields
-from pathlib import Path
 from typing import Any, get_args
 
-from rigdesign.base.output_folder import staged
 from rigdesign.base.version import __version__
 from rigdesign.validation.rows import Basis, ValidationRow
 
@@ -67,20 +65,19 @@ def validation_document(rows: Sequence[ValidationRow]) -> dict[str, Any]:
     }
 
 
-def write_validation(rows: Sequence[ValidationRow], out: Path) -> None:
-    """Write validation.json and validation.csv to ``out``, whole or not at all.
+def validation_json(rows: Sequence[ValidationRow]) -> str:
+    """Text of validation.json."""
+    return json.dumps(validation_document(rows), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
-    Raises OutputError if the folder cannot be made or written.
-    """
+
+def validation_csv(rows: Sequence[ValidationRow]) -> str:
+    """Text of validation.csv, a row each; published numbers as printed."""
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
     names = [field.name for field in fields(ValidationRow) if field.name not in ("published", "window")]
     writer.writerow(names)
     writer.writerows([_cell(getattr(row, name)) for name in names] for row in rows)
-    document = json.dumps(validation_document(rows), indent=2, ensure_ascii=False, allow_nan=False)
-    with staged(out) as scratch:
-        (scratch / "validation.json").write_text(document + "\n", encoding="utf-8", newline="\n")
-        (scratch / "validation.csv").write_text(table.getvalue(), encoding="utf-8", newline="\n")
+    return table.getvalue()
 
 
 def _plain(row: ValidationRow) -> dict[str, Any]:

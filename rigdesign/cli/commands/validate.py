@@ -13,7 +13,7 @@ def validate(*, out: Path | None = None, json: bool = False, quick: bool = False
     Parameters
     ----------
     out
-        Folder for validation.json and validation.csv.
+        Folder for validation.html, validation.json and validation.csv.
     json
         Print the rows as JSON on stdout.
     quick
@@ -22,7 +22,8 @@ def validate(*, out: Path | None = None, json: bool = False, quick: bool = False
     from rigdesign.cli.terminal.progress import Progress
     from rigdesign.cli.terminal.validation import print_validation
     from rigdesign.report import prepare_output
-    from rigdesign.validation import validation_document, validation_rows, write_validation
+    from rigdesign.report.pages.validation import write_validation
+    from rigdesign.validation import validation_document, validation_rows
 
     if out is not None:
         prepare_output(out)
@@ -34,4 +35,6 @@ def validate(*, out: Path | None = None, json: bool = False, quick: bool = False
         print_json(validation_document(rows))
     else:
         print_validation(rows)
+        if out is not None:
+            print(out / "validation.html")
     return 1 if any(row.verdict == "gate missed" for row in rows) else 0

@@ -1,136 +1,147 @@
-"""The plot of a study: how much of every limit is left over the varied input."""
+"""Figures of a study over one input: how much of every limit is left."""
 
-from collections.abc import Iterable, Sequence
-from itertools import product
-from math import isnan, nan
+from collections.abc import Sequence
+from textwrap import fill
 from typing import TYPE_CHECKING
 
-from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain
-from rigdesign.report.numbers import unit_text
-from rigdesign.report.palette import GRID, INK, SERIES, VERDICT_COLOURS
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.report.figures.drawing import legend_right, new_figure, plain
+from rigdesign.report.figures.margin_axes import SHORT_LABEL, curve_look, input_axis, margin_axis, mark_failed
+from rigdesign.report.palette import INK, VERDICT_COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from rigdesign.studies.grid import Variation
-    from rigdesign.studies.result import StudyPoint
+    from rigdesign.report.margins.answer import StudyAnswer
+    from rigdesign.report.margins.axis import StudyAxis
+    from rigdesign.report.margins.passing import PassRange
+    from rigdesign.report.margins.table import MarginTable
 
 NAMED_CURVES = 8
-"""Checks drawn in colour with their name: those that move and come nearest to their limit or break it."""
-LEAST_MOVE = 0.05
-"""Change of a margin over the study from which it counts as moved [% of the limit]."""
-FLOOR = -100.0
-"""Lowest margin drawn [% of the limit]."""
+"""Checks in one picture: those that move and come nearest to their limit or break it."""
+LEGEND_WIDTH = 38
+"""Characters of a line of the legend beside a figure."""
+PANEL_WIDTH, PANEL_HEIGHT = 5.2, 2.5
+"""Size of the plot of a group [in], without its legend."""
+MOST_MARKERS = 60
+"""Points up to which each is marked on its curve."""
 
 
-def study_figure(variations: "Sequence[Variation]", points: "Sequence[StudyPoint]") -> "Figure | None":
-    """Margin of every check in percent of its limit over the first varied input; None if no point is done, or
-    for ranges.
+def margins_figure(answer: "StudyAnswer", positions: Sequence[float]) -> "Figure | None":
+    """Margins of the nearest checks that move over the varied input; None where there is none to draw.
 
-    With one varied input a curve per check; with several the smallest margin of all checks, a curve per
-    combination of the others.
+    The range in which everything passes (but what fails at every point) is marked at its ends.
     """
-    if all(point.failed for point in points) or any(variation.distribution for variation in variations):
+    table = answer.selected
+    columns = drawn_columns(table)[:NAMED_CURVES]
+    if not columns:
         return None
-    figure = new_figure(4.0)
+    figure = new_figure(4.3)
     axes = figure.subplots()
-    first = variations[0]
-    numbers = first.numbers()
-    positions = numbers[0] if numbers else [float(n) for n in range(len(first.values))]
-    if len(variations) == 1:
-        _curves_of_checks(axes, positions, points)
-    else:
-        _curves_of_minimum(axes, positions, variations, points)
-    _failed_points(axes, positions, first, points)
-    axes.axhline(0, color=INK, linewidth=1.2)
-    low = min(axes.get_ylim()[0], 0.0)
-    axes.axhspan(min(low, FLOOR), 0, color=VERDICT_COLOURS["fail"], alpha=0.06, linewidth=0)
-    axes.set_ylim(bottom=max(low, FLOOR), top=100)
-    if numbers is None:
-        axes.set_xticks(positions, [plain(value) for value in first.values])
-    unit = f" [{unit_text(numbers[1])}]" if numbers and numbers[1] else ""
-    finish(axes, f"{plain(first.path)}{unit}", "margin, 1 − utilisation [% of the limit]")
+    _curves(axes, answer.axes[0], positions, table, columns)
+    margin_axis(axes, table.margin[:, columns].ravel())
+    input_axis(axes, answer.axes[0])
+    mark_failed(axes, _failed(positions, table))
+    for item in answer.passing.ranges if answer.passing else ():
+        _mark_range(axes, answer.axes[0], item)
     legend_right(axes)
-    figure.subplots_adjust(left=0.08, right=0.68, top=0.93, bottom=0.12)
+    figure.subplots_adjust(left=0.105, right=0.69, top=0.93, bottom=0.12)
     return figure
 
 
-def _curves_of_checks(axes: "Axes", positions: list[float], points: "Sequence[StudyPoint]") -> None:
-    curves: dict[str, dict[float, float]] = {}
-    titles: dict[str, str] = {}
-    for x, point in zip(positions, points, strict=True):
-        for check in point.record.get("checks", ()):
-            if check["utilisation"] is not None:
-                curve = curves.setdefault(check["id"], dict.fromkeys(positions, nan))
-                curve[x] = _margin(check["utilisation"])
-                titles[check["id"]] = check["title"]
-    nearest = sorted(
-        curves, key=lambda identity: (not _moves(curves[identity]), _lowest(curves[identity].values()))
+def group_figure(answer: "StudyAnswer", positions: Sequence[float], columns: Sequence[int]) -> "Figure":
+    """Margins of the checks ``columns`` of one group over the varied input, its legend below."""
+    rows = sum(len(_label(_titled(answer.selected, column), 70).split("\n")) for column in columns) + bool(
+        _failed(positions, answer.selected)
     )
-    for identity in nearest[NAMED_CURVES:]:
-        axes.plot(*zip(*curves[identity].items(), strict=True), color=GRID, linewidth=1.0, zorder=1.5)
-    for colour, identity in zip(SERIES, nearest[:NAMED_CURVES], strict=False):
-        axes.plot(
-            *zip(*curves[identity].items(), strict=True),
-            "o-",
-            color=colour,
-            markersize=3.5,
-            label=_label(titles[identity]),
-        )
-    if len(nearest) > NAMED_CURVES:
-        axes.plot(
-            [],
-            [],
-            color=GRID,
-            label=f"{len(nearest) - NAMED_CURVES} checks with more margin or none that moves",
-        )
+    legend = 0.165 * rows + 0.12
+    height = PANEL_HEIGHT + legend
+    figure = new_figure(height, PANEL_WIDTH)
+    axes = figure.subplots()
+    _curves(axes, answer.axes[0], positions, answer.selected, columns, width=70)
+    margin_axis(axes, answer.selected.margin[:, list(columns)].ravel(), label=SHORT_LABEL)
+    input_axis(axes, answer.axes[0])
+    mark_failed(axes, _failed(positions, answer.selected))
+    axes.set_title(plain(answer.selected.checks[columns[0]].group))
+    figure.legend(loc="lower left", bbox_to_anchor=(0.06, 0.0), borderaxespad=0.1, handlelength=3.2)
+    figure.subplots_adjust(left=0.19, right=0.98, top=1.0 - 0.25 / height, bottom=(legend + 0.42) / height)
+    return figure
 
 
-def _moves(curve: dict[float, float]) -> bool:
-    """Whether the margin changes over the study; a rule the input does not touch is no news."""
-    known = [value for value in curve.values() if not isnan(value)]
-    return len(known) > 1 and max(known) - min(known) > LEAST_MOVE
+def drawn_columns(table: "MarginTable") -> list[int]:
+    """Columns that move, the nearest first; where none moves, the nearest of all."""
+    nearest = table.nearest_first()
+    moving = [column for column in nearest if table.moving[column]]
+    return moving or nearest[:NAMED_CURVES]
 
 
-def _curves_of_minimum(
-    axes: "Axes", positions: list[float], variations: "Sequence[Variation]", points: "Sequence[StudyPoint]"
+def _curves(
+    axes: "Axes",
+    axis: "StudyAxis",
+    positions: Sequence[float],
+    table: "MarginTable",
+    columns: Sequence[int],
+    *,
+    width: int = LEGEND_WIDTH,
 ) -> None:
-    others = list(product(*(variation.values for variation in variations[1:])))
-    for number, combination in enumerate(others):
-        margins = [_smallest(point) for point in points[number :: len(others)]]
-        colour = SERIES[number] if number < len(SERIES) else GRID
-        label = _label(", ".join(combination)) if number < len(SERIES) else None
-        axes.plot(positions, margins, "o-", markersize=3.5, color=colour, label=label)
-    names = ", ".join(variation.path for variation in variations[1:])
-    axes.set_title(f"Smallest margin of all checks; curves: {plain(names)}")
+    order = np.argsort(np.asarray(positions), kind="stable")
+    x = np.asarray(positions, dtype=float)[order]
+    for number, column in enumerate(columns):
+        look = curve_look(number)
+        margin, own = table.margin[order, column], table.own[order, column]
+        drawn = _through_zero(x, margin, own) if axis.numeric else (x, margin)
+        axes.plot(*drawn, color=look.colour, linestyle=look.line if axis.numeric else "none")
+        markers = look.marker if len(x) <= MOST_MARKERS or not axis.numeric else "none"
+        axes.plot(x, margin, color=look.colour, marker=markers, linestyle="none", markersize=4)
+        axes.plot(
+            [], [], color=look.colour, linestyle=look.line if axis.numeric else "none", marker=markers, markersize=4,
+            label=_label(_titled(table, column), width),
+        )  # fmt: skip
 
 
-def _failed_points(
-    axes: "Axes", positions: list[float], first: "Variation", points: "Sequence[StudyPoint]"
-) -> None:
-    places = dict(zip(first.values, positions, strict=True))
-    failed = sorted({places[point.values[first.path]] for point in points if point.failed})
-    if failed:
-        axes.plot(failed, [0.0] * len(failed), "x", color=VERDICT_COLOURS["fail"], markersize=7,
-                  label="a point without result")  # fmt: skip
+def _through_zero(
+    x: NDArray[np.float64], margin: NDArray[np.float64], own: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The curve with a vertex where the margin in the unit of the check, linear in its value, is zero."""
+    before, after = own[:-1], own[1:]
+    with np.errstate(invalid="ignore"):
+        crossed = np.flatnonzero(before * after < 0.0)
+    share = before[crossed] / (before[crossed] - after[crossed])
+    zeros = x[crossed] + (x[crossed + 1] - x[crossed]) * share
+    return np.insert(x, crossed + 1, zeros), np.insert(margin, crossed + 1, 0.0)
 
 
-def _smallest(point: "StudyPoint") -> float:
-    """Smallest margin of a point; NaN, a gap in the curve, where there is none."""
-    checks = point.record.get("checks", ())
-    return _lowest(_margin(check["utilisation"]) for check in checks if check["utilisation"] is not None)
+def _mark_range(axes: "Axes", axis: "StudyAxis", item: "PassRange") -> None:
+    """Ends of a range where everything passes, with the value at each that is no end of the study."""
+    axes.axvspan(
+        item.low.value, item.high.value, ymin=0.985, color=VERDICT_COLOURS["pass"], alpha=0.8, linewidth=0
+    )
+    for end in (item.low, item.high):
+        if end.cause == "crossing":
+            axes.axvline(
+                end.value, color=VERDICT_COLOURS["pass"], linewidth=1.3, linestyle=(0, (5, 2)), zorder=1.8
+            )
+            axes.plot(
+                [end.value], [0.0], "o", markersize=8, markerfacecolor="white", markeredgecolor=INK, zorder=5
+            )
+            axes.annotate(
+                plain(axis.read_off(end.value, end.held, end.beyond)),
+                (end.value, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 3), textcoords="offset points",
+                ha="center", fontweight="bold", color=VERDICT_COLOURS["pass"],
+            )  # fmt: skip
 
 
-def _lowest(margins: Iterable[float]) -> float:
-    return min((margin for margin in margins if not isnan(margin)), default=nan)
+def _failed(positions: Sequence[float], table: "MarginTable") -> list[float]:
+    return [position for position, computed in zip(positions, table.computed, strict=True) if not computed]
 
 
-def _margin(utilisation: float) -> float:
-    return 100.0 * (1.0 - utilisation)
+def _titled(table: "MarginTable", column: int) -> str:
+    never = " (fails at every point)" if table.always_failing[column] else ""
+    return table.checks[column].title + never
 
 
-def _label(text: str) -> str:
-    from textwrap import fill
-
-    return plain(fill(text, 38))
+def _label(text: str, width: int) -> str:
+    return plain(fill(text, width))

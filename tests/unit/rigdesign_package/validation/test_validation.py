@@ -15,6 +15,7 @@ from rigdesign.case import load_case
 from rigdesign.case.shipped import case_folder
 from rigdesign.cli.commands.validate import validate
 from rigdesign.cli.terminal.validation import print_validation
+from rigdesign.report.pages.validation import write_validation
 from rigdesign.results.result import RunResult
 from rigdesign.results.thermal import HeatRow
 from rigdesign.validation import (
@@ -30,7 +31,6 @@ from rigdesign.validation import (
     response,
     validation_document,
     validation_rows,
-    write_validation,
 )
 from rigdesign.validation.prototype import Prototype
 from rigdesign.validation.rows import (
@@ -401,7 +401,11 @@ def test_document_keeps_the_contract_and_is_strict_json(rows):
 
 def test_files_are_written_whole(rows, tmp_path):
     write_validation(rows, tmp_path / "out")
-    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["validation.csv", "validation.json"]
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [
+        "validation.csv",
+        "validation.html",
+        "validation.json",
+    ]
     with (tmp_path / "out" / "validation.csv").open(newline="") as file:
         table = list(csv.DictReader(file))
     assert [line["id"] for line in table] == [r.id for r in rows]

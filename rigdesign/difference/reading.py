@@ -1,0 +1,224 @@
+"""results.json of a check, read as far as two of them are compared."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rigdesign.base.errors import WIDEST_PLACE, UsageError, shortened
+from rigdesign.base.version import RESULTS_SCHEMA_VERSION, __version__
+
+RESULTS = "results.json"
+TAKES = "diff takes two folders that `rigdesign check --out` wrote, or their results.json"
+AGAIN = f"run `rigdesign check` again with version {__version__}"
+OTHER_FOLDERS = {
+    "ledger.sqlite": "is the folder of a study",
+    "diagnosis.json": "is the folder of a diagnosis",
+    "compare.json": "is the folder of a comparison",
+    "validation.json": "is the folder of a validation",
+    "case.toml": "is a case, not its results",
+    "failure.json": "holds a run that did not converge",
+}
+"""File that tells what a folder without results.json is."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class InputValue:
+    """Value of an input as the case writes it, and where it is from."""
+
+    value: str
+    basis: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckValue:
+    """A check of one result; numbers are None where it does not apply."""
+
+    id: str
+    title: str
+    group: str
+    unit: str
+    verdict: str
+    value: float | None
+    limit: float | None
+    margin: float | None
+    utilisation: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckedResults:
+    """What one results.json says.
+
+    inputs : by path
+    checks : by id
+    quantities : number and unit by what it is and where
+    assumptions : reason by path
+    """
+
+    path: Path
+    name: str
+    title: str
+    hash: str
+    tool_version: str
+    fidelity: str
+    verdict: str
+    inputs: Mapping[str, InputValue]
+    checks: Mapping[str, CheckValue]
+    quantities: Mapping[tuple[str, str], tuple[float, str]]
+    assumptions: Mapping[str, str]
+    warnings: tuple[tuple[str, str], ...]
+    not_modelled: tuple[str, ...]
+
+
+def read_results(path: Path) -> CheckedResults:
+    """Read a folder of a check, or its results.json.
+
+    Raises
+    ------
+    UsageError
+        If there is none, it is damaged, of another schema version or without inputs; says what to do.
+    """
+    file = _file(path)
+    place = shortened(str(file), WIDEST_PLACE)
+    document = _document(file, place)
+    version = document.get("schema_version")
+    if version is None or "checks" not in document:
+        raise UsageError(f"{place}: is no results.json of a check; {TAKES}")
+    if str(version) != RESULTS_SCHEMA_VERSION:
+        raise UsageError(
+            f"{place}: schema_version {shortened(str(version))}, this version reads {RESULTS_SCHEMA_VERSION}; {AGAIN}"
+        )
+    if "inputs" not in document:
+        by = shortened(str(document.get("tool_version", "an earlier version")))
+        raise UsageError(f"{place}: lists no inputs (written by rigdesign {by}); {AGAIN}")
+    try:
+        return _results(file, document)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise UsageError(
+            f"{place}: is damaged ({type(error).__name__}: {shortened(str(error))}); {AGAIN}"
+        ) from None
+
+
+def _file(path: Path) -> Path:
+    place = shortened(str(path), WIDEST_PLACE)
+    try:
+        if path.is_file():
+            return path
+        if not path.is_dir():
+            raise UsageError(f"{place}: no such file or folder; {TAKES}")
+        if (path / RESULTS).is_file():
+            return path / RESULTS
+        found = (text for name, text in OTHER_FOLDERS.items() if (path / name).exists())
+        raise UsageError(f"{place}: {next(found, f'holds no {RESULTS}')}; {TAKES}")
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{place}: {getattr(error, 'strerror', None) or error}; {TAKES}") from None
+
+
+def _document(file: Path, place: str) -> dict[str, Any]:
+    try:
+        document = json.loads(file.read_text(encoding="utf-8"), parse_constant=_not_finite)
+    except OSError as error:
+        raise UsageError(f"{place}: {error.strerror}; {TAKES}") from None
+    except (ValueError, RecursionError) as error:
+        raise UsageError(f"{place}: is damaged ({shortened(str(error))}); {AGAIN}") from None
+    if not isinstance(document, dict):
+        raise UsageError(f"{place}: is no results.json of a check; {TAKES}")
+    return document
+
+
+def _not_finite(text: str) -> float:
+    raise ValueError(f"{text} is no number of a result")
+
+
+def _results(file: Path, document: Mapping[str, Any]) -> CheckedResults:
+    case = document["case"]
+    return CheckedResults(
+        path=file,
+        name=_text(case["name"]),
+        title=_text(case["title"]),
+        hash=_text(case["hash"]),
+        tool_version=_text(document["tool_version"]),
+        fidelity=_text(document["fidelity"]),
+        verdict=_text(document["verdict"]),
+        inputs={
+            _text(row["path"]): InputValue(value=_text(row["value"]), basis=_text(row["basis"]))
+            for row in document["inputs"]
+        },
+        checks={_text(row["id"]): _check(row) for row in document["checks"]},
+        quantities=dict(_quantities(document)),
+        assumptions={_text(row["path"]): _text(row["reason"]) for row in document["assumptions"]},
+        warnings=tuple((_text(row["id"]), _text(row["text"])) for row in document["warnings"]),
+        not_modelled=tuple(_text(item) for item in document["not_modelled"]),
+    )
+
+
+def _check(row: Mapping[str, Any]) -> CheckValue:
+    return CheckValue(
+        id=_text(row["id"]),
+        title=_text(row["title"]),
+        group=_text(row["group"]),
+        unit=_text(row["unit"]),
+        verdict=_text(row["verdict"]),
+        value=_number_or_none(row["value"]),
+        limit=_number_or_none(row["limit"]),
+        margin=_number_or_none(row["margin"]),
+        utilisation=_number_or_none(row["utilisation"]),
+    )
+
+
+def _quantities(document: Mapping[str, Any]) -> list[tuple[tuple[str, str], tuple[float, str]]]:
+    """Temperatures, losses, seal gaps, dynamic factors: (what, where) and (number, unit)."""
+    found = []
+    for row in document["thermal"]:
+        place = f"{row['gearbox']}, stage {row['stage']}"
+        found.append((("highest temperature", place), (_number(row["max_temperature_degC"]), "degC")))
+    for row in document["oil"]:
+        place = f"{row['consumer']}, stage {row['stage']}"
+        found.append((("oil outlet", place), (_number(row["outlet_degC"]), "degC")))
+    total, single = _powers(document["losses"])
+    found += [(("losses in all", place), (power, "W")) for place, power in total.items()]
+    for row in document["growth"]:
+        for gap in row["seal_gaps"]:
+            place = f"{gap['seal']}, stage {row['stage']}"
+            found.append((("smallest hot seal gap", place), (_number(gap["hot_min_mm"]), "mm")))
+    for gearbox, row in document["dynamics"]["gearboxes"].items():
+        factors = [
+            _number(item["simulated"]) for item in row["dynamic_factor"] if item["simulated"] is not None
+        ]
+        if factors:
+            found.append((("largest K_V over speed", gearbox), (max(factors), "-")))
+        peak = row["dynamic_torque_peak_Nm"]
+        if peak is not None:
+            found.append((("peak torque of the ramp", gearbox), (_number(peak), "Nm")))
+    return found + [((what, place), (power, "W")) for (what, place), power in single.items()]
+
+
+def _powers(rows: list[Mapping[str, Any]]) -> tuple[dict[str, float], dict[tuple[str, str], float]]:
+    """Losses of every stage in all, and by kind and place."""
+    total: dict[str, float] = {}
+    single: dict[tuple[str, str], float] = {}
+    for row in rows:
+        power = _number(row["power_W"])
+        in_all = f"stage {row['stage']}"
+        at_place = (f"{row['kind']} loss", f"{row['place']}, stage {row['stage']}")
+        total[in_all] = total.get(in_all, 0.0) + power
+        single[at_place] = single.get(at_place, 0.0) + power
+    return total, single
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{shortened(repr(value))} where a text belongs")
+    return value
+
+
+def _number(value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise TypeError(f"{shortened(repr(value))} where a number belongs")
+    return float(value)
+
+
+def _number_or_none(value: object) -> float | None:
+    return None if value is None else _number(value)

@@ -1,0 +1,124 @@
+"""Checks and other results that differ between two runs."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from rigdesign.difference.reading import CheckValue
+
+LEAST = 1e-6
+"""Relative change from which a result counts as moved: above the last digits of another machine."""
+RANKS = {"not applicable": 0, "pass": 1, "warn": 2, "fail": 3}
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckChange:
+    """A check that differs; ``before`` or ``after`` is None where one result has it not."""
+
+    id: str
+    change: Literal["flipped", "moved", "added", "removed"]
+    before: CheckValue | None
+    after: CheckValue | None
+
+    @property
+    def known(self) -> CheckValue:
+        """The later of both."""
+        found = self.after or self.before
+        assert found is not None
+        return found
+
+    @property
+    def worse(self) -> bool:
+        """Whether the verdict flipped to a worse one."""
+        if self.before is None or self.after is None:
+            return False
+        return RANKS.get(self.after.verdict, 0) > RANKS.get(self.before.verdict, 0)
+
+    @property
+    def utilisation_change(self) -> float | None:
+        """Change of the utilisation, None where one has none."""
+        if self.before is None or self.after is None:
+            return None
+        if self.before.utilisation is None or self.after.utilisation is None:
+            return None
+        return self.after.utilisation - self.before.utilisation
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuantityChange:
+    """Another result that differs; None where one result has it not."""
+
+    quantity: str
+    place: str
+    unit: str
+    before: float | None
+    after: float | None
+
+    @property
+    def relative(self) -> float | None:
+        """Change over the value before; None for temperatures (their zero means nothing) and without a value."""
+        if self.before is None or self.after is None or self.before == 0.0 or self.unit == "degC":
+            return None
+        return (self.after - self.before) / abs(self.before)
+
+
+def changed_checks(
+    before: Mapping[str, CheckValue], after: Mapping[str, CheckValue]
+) -> tuple[CheckChange, ...]:
+    """Verdicts that flipped first, to the worse before the better, then by change of utilisation."""
+    found = []
+    for identity in dict.fromkeys([*before, *after]):
+        old, new = before.get(identity), after.get(identity)
+        if old is None or new is None:
+            change: Literal["flipped", "moved", "added", "removed"] = "added" if old is None else "removed"
+        elif old.verdict != new.verdict:
+            change = "flipped"
+        elif any(_moved(getattr(old, key), getattr(new, key)) for key in ("value", "limit", "utilisation")):
+            change = "moved"
+        else:
+            continue
+        found.append(CheckChange(id=identity, change=change, before=old, after=new))
+    order = ("flipped", "moved", "added", "removed")
+    return tuple(
+        sorted(
+            found,
+            key=lambda row: (
+                order.index(row.change),
+                not row.worse,
+                -abs(row.utilisation_change or 0.0),
+                row.id,
+            ),
+        )
+    )
+
+
+def changed_quantities(
+    before: Mapping[tuple[str, str], tuple[float, str]], after: Mapping[tuple[str, str], tuple[float, str]]
+) -> tuple[QuantityChange, ...]:
+    """Quantities that moved: by kind in the order of the result, the largest change of a kind first."""
+    found: dict[str, list[QuantityChange]] = {}
+    for key in dict.fromkeys([*before, *after]):
+        old, new = before.get(key), after.get(key)
+        unit = (new or old or (0.0, ""))[1]
+        if old is None or new is None or _moved(old[0], new[0]):
+            row = QuantityChange(
+                quantity=key[0], place=key[1], unit=unit, before=old and old[0], after=new and new[0]
+            )
+            found.setdefault(row.quantity, []).append(row)
+    return tuple(row for rows in found.values() for row in sorted(rows, key=_by_size))
+
+
+def _by_size(row: QuantityChange) -> tuple[float, str]:
+    return -abs((row.after or 0.0) - (row.before or 0.0)), row.place
+
+
+def _moved(first: float | None, second: float | None) -> bool:
+    if first is None or second is None:
+        return first is not second
+    return abs(first - second) > LEAST * max(abs(first), abs(second))
+
+
+def added_and_gone(before: Sequence[str], after: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Texts that only the second has, and only the first, in their order and once each."""
+    added = tuple(dict.fromkeys(text for text in after if text not in set(before)))
+    return added, tuple(dict.fromkeys(text for text in before if text not in set(after)))

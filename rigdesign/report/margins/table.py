@@ -1,0 +1,142 @@
+"""Margins of the checks at every point of a study, as arrays."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.studies.result import StudyPoint
+
+LEAST_MOVE = 0.1
+"""Change of a margin over the study from which it counts as moved [% of the limit]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckColumn:
+    """What a check is called."""
+
+    id: str
+    title: str
+    group: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class MarginTable:
+    """Checks (columns) over points (rows).
+
+    checks : one a column
+    margin : 1 - utilisation [%], shape (points, checks); NaN where a check has no number
+    own : margin in the unit of the check, linear in its value, shape (points, checks); NaN likewise
+    fails : whether the verdict is fail, shape (points, checks)
+    computed : whether a point has a result, shape (points,)
+    """
+
+    checks: tuple[CheckColumn, ...]
+    margin: NDArray[np.float64]
+    own: NDArray[np.float64]
+    fails: NDArray[np.bool_]
+    computed: NDArray[np.bool_]
+
+    @cached_property
+    def always_failing(self) -> NDArray[np.bool_]:
+        """Checks that fail at every computed point, shape (checks,)."""
+        if not self.computed.any():
+            return np.zeros(len(self.checks), dtype=bool)
+        return np.asarray(self.fails[self.computed].all(axis=0), dtype=bool)
+
+    @cached_property
+    def moving(self) -> NDArray[np.bool_]:
+        """Checks whose margin or verdict changes over the points, shape (checks,)."""
+        margin, fails = self.margin[self.computed], self.fails[self.computed]
+        if len(margin) == 0:
+            return np.zeros(len(self.checks), dtype=bool)
+        span = np.nan_to_num(_reduced(np.fmax, margin) - _reduced(np.fmin, margin))
+        return np.asarray((span > LEAST_MOVE) | (fails.any(axis=0) & ~fails.all(axis=0)), dtype=bool)
+
+    @cached_property
+    def least(self) -> NDArray[np.float64]:
+        """Smallest margin of every check over the points [%], shape (checks,); NaN where it has none."""
+        return _reduced(np.fmin, self.margin) if len(self.margin) else np.full(len(self.checks), np.nan)
+
+    def of(self, chosen: Sequence[int] | NDArray[np.bool_]) -> "MarginTable":
+        """The table of some checks."""
+        columns = np.flatnonzero(chosen) if isinstance(chosen, np.ndarray) else np.array(chosen, dtype=int)
+        return replace(
+            self,
+            checks=tuple(self.checks[column] for column in columns),
+            margin=self.margin[:, columns],
+            own=self.own[:, columns],
+            fails=self.fails[:, columns],
+        )
+
+    def at(self, rows: NDArray[np.intp]) -> "MarginTable":
+        """The table of some points, in the order of ``rows``."""
+        return replace(
+            self,
+            margin=self.margin[rows],
+            own=self.own[rows],
+            fails=self.fails[rows],
+            computed=self.computed[rows],
+        )
+
+    def groups(self) -> dict[str, list[int]]:
+        """Columns by group, in the order of the checks."""
+        found: dict[str, list[int]] = {}
+        for column, check in enumerate(self.checks):
+            found.setdefault(check.group, []).append(column)
+        return found
+
+    def nearest_first(self) -> list[int]:
+        """Columns by their smallest margin, those that move before those that do not; without a number left out."""
+        known = [column for column in range(len(self.checks)) if not np.isnan(self.least[column])]
+        return sorted(known, key=lambda column: (not self.moving[column], self.least[column]))
+
+    def limiting(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+        """Column and margin [%] of the check that limits every point: a failing one before all others.
+
+        Shapes (points,); -1 and NaN where no check has a number.
+        """
+        if not self.checks:
+            return np.full(len(self.computed), -1), np.full(len(self.computed), np.nan)
+        ranked = np.where(np.isnan(self.margin), np.inf, self.margin)
+        ranked = np.where(self.fails & np.isfinite(ranked), np.minimum(ranked, 0.0) - 1e12, ranked)
+        column = np.argmin(ranked, axis=1)
+        margin = np.take_along_axis(self.margin, column[:, None], axis=1)[:, 0]
+        return np.where(np.isnan(margin), -1, column), margin
+
+
+def margin_table(points: Sequence[StudyPoint], identities: Sequence[str]) -> MarginTable:
+    """Margins of the checks ``identities`` at all points."""
+    column = {identity: number for number, identity in enumerate(identities)}
+    shape = len(points), len(column)
+    margin, own, fails = np.full(shape, np.nan), np.full(shape, np.nan), np.zeros(shape, dtype=bool)
+    named: dict[str, CheckColumn] = {}
+    for row, point in enumerate(points):
+        for check in point.record.get("checks", ()):
+            number = column.get(check["id"])
+            if number is None:
+                continue
+            if check["id"] not in named:
+                named[check["id"]] = CheckColumn(
+                    id=check["id"],
+                    title=check["title"],
+                    group=check.get("group") or check["id"].partition(".")[0],
+                )
+            fails[row, number] = check["verdict"] == "fail"
+            if check["utilisation"] is not None:
+                margin[row, number] = 100.0 * (1.0 - check["utilisation"])
+                own[row, number] = check["margin"]
+    return MarginTable(
+        checks=tuple(named[identity] for identity in identities),
+        margin=margin,
+        own=own,
+        fails=fails,
+        computed=np.array([not point.failed for point in points], dtype=bool),
+    )
+
+
+def _reduced(function: np.ufunc, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Over the points; NaN only where all are."""
+    return np.asarray(function.reduce(values, axis=0), dtype=float)

@@ -1,0 +1,52 @@
+"""diff.json and diff.html: two results of a check against each other."""
+
+from pathlib import Path
+
+from rigdesign.base.json_text import to_plain, to_text
+from rigdesign.base.output_folder import staged
+from rigdesign.base.version import __version__
+from rigdesign.difference.document import ResultsDifference, difference_document, headline
+from rigdesign.report.figures.drawing import drawing_style, inline_svg
+
+
+def write_difference(difference: ResultsDifference, out: Path) -> None:
+    """Write both files, each whole or not at all.
+
+    Raises
+    ------
+    OutputError
+        If ``out`` cannot be written.
+    """
+    page = difference_page(difference)
+    with staged(out) as scratch:
+        (scratch / "diff.html").write_text(page, encoding="utf-8", newline="\n")
+        text = to_text(to_plain(difference_document(difference)))
+        (scratch / "diff.json").write_text(text, encoding="utf-8", newline="\n")
+
+
+def difference_page(difference: ResultsDifference) -> str:
+    """The page as one self-contained HTML document."""
+    from markupsafe import Markup
+
+    from rigdesign.report.figures.difference import margins_figure
+    from rigdesign.report.pages.report import environment
+
+    with drawing_style():
+        figure = margins_figure(difference.checks)
+        svg = (
+            None
+            if figure is None
+            else Markup(inline_svg(figure, "margins", "Margins of the checks before and after"))
+        )
+    return (
+        environment()
+        .get_template("difference.html.j2")
+        .render(
+            difference=difference,
+            headline=headline(difference),
+            worse=any(row.worse for row in difference.flipped),
+            figure=svg,
+            rest=[row for row in difference.checks if row.change != "flipped"],
+            tool_version=__version__,
+        )
+    )
