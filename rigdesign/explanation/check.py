@@ -10,6 +10,7 @@ from rigdesign.checks.assumptions import influences_of
 from rigdesign.checks.registry import RuleFamily
 from rigdesign.checks.rules import Rule, not_applicable
 from rigdesign.explanation.finished import FinishedCheck
+from rigdesign.explanation.keys import entry_at
 from rigdesign.explanation.rules import declared_rules, depends_on
 from rigdesign.results.check import Check
 
@@ -120,8 +121,12 @@ def _met(case: Case, needs: tuple[str, ...]) -> bool:
 
 
 def _stated(case: Case, path: str) -> str:
-    """The value of a key as the case writes it; empty where it does not."""
-    return next((row.value for row in case.inputs if row.path == path), "")
+    """The value of a key as the case writes it, else its default; empty where there is neither."""
+    stated = next((row.value for row in case.inputs if row.path == path), None)
+    if stated is not None:
+        return stated
+    entry = entry_at(path)
+    return "" if entry is None or entry.default is None else f"{entry.default} by default"
 
 
 def _inputs(case: Case, family: RuleFamily, rule: Rule, finished: FinishedCheck | None) -> Iterator[Input]:

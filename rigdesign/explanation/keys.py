@@ -95,7 +95,7 @@ def entry_of(path: str, field: FieldInfo, law: str = "") -> KeyEntry:
         path=path,
         law=law,
         kind=kind_text(slot),
-        units=() if quantity is None else tuple(KINDS[quantity.kind].units),
+        units=() if quantity is None else tuple(KINDS[quantity.kind].like(quantity.shown_example).units),
         bounds=_bounds(slot),
         default=_default(field, quantity),
         required=field.is_required(),
@@ -168,7 +168,7 @@ def value_text(value: Any, quantity: Quantity | None) -> str:
     if isinstance(value, tuple | list):
         return ", ".join(value_text(item, quantity) for item in value)
     if isinstance(value, float) and quantity is not None:
-        return units.show(value, quantity.kind)
+        return units.show(value, quantity.kind, quantity.shown_example.partition(" ")[2])
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 

@@ -181,6 +181,12 @@ def test_a_check_says_rule_procedure_source_and_inputs(rigdesign: Rigdesign) -> 
     assert "needs a drivetrain" in words and "sigma_F of ISO 6336-3:2006 at every held stage" in words
 
 
+def test_a_limit_that_has_a_default_is_shown_with_it(prototype: Case) -> None:
+    found = explain_check(prototype, "transient.soak.test")
+    assert found.applicable and found.needs == ("check --transient",)
+    assert found.limits[0].path == "transient.warm_up" and found.limits[0].value == "4 h by default"
+
+
 def test_a_check_without_a_limit_says_so(rigdesign: Rigdesign) -> None:
     out = rigdesign("explain", LOOP, "--check", "clearance.backlash").out
     assert "the case states no limit" in out and "the check does not apply to this case" in out
