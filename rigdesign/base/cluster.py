@@ -1,5 +1,6 @@
 """Workers of a dask cluster, by the address of its scheduler: reached, asked what they are, used as an executor."""
 
+import logging
 import re
 import time
 from collections.abc import Mapping
@@ -19,6 +20,8 @@ REACHED_WITHIN = 8.0
 """Time a scheduler has to answer, and then to have a worker [s]."""
 SILENT_AFTER = 30.0
 """Time a scheduler in use has to answer before it counts as lost [s]."""
+LOGGERS = ("distributed", "tornado.application")
+"""Report what dask retries on its own; what matters of it is raised."""
 DESERTED_AFTER = 120.0
 """Time without any worker after which nobody is expected to come [s]."""
 ASKED_VERSION = (
@@ -59,6 +62,7 @@ class ClusterWorkers(Workers):
         self._client: Client | None = None
         self._threads: Mapping[str, int] = {}
         self._deserted: float | None = None
+        self._levels = {logger: logger.level for logger in map(logging.getLogger, LOGGERS)}
 
     def __str__(self) -> str:
         return f"workers of {self._address}"
@@ -73,6 +77,8 @@ class ClusterWorkers(Workers):
             rigdesign or with none.
         """
         if self._client is None:
+            for logger in self._levels:
+                logger.setLevel(logging.CRITICAL)
             self._client = _connected(self._address)
             _check(self._client, self._address)
             self._threads = self._client.nthreads()
@@ -95,6 +101,9 @@ class ClusterWorkers(Workers):
         if self._client is not None:
             with suppress(Exception):
                 self._client.close(timeout=1.0 if at_once else 5.0)
+        if not at_once:  # else tasks that are withdrawn still report
+            for logger, level in self._levels.items():
+                logger.setLevel(level)
 
     def _look(self) -> None:
         """Ask the scheduler for a sign of life, and for its workers."""
