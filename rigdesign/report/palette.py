@@ -17,8 +17,8 @@ VERDICT_COLOURS = {"pass": "#0b8556", "warn": "#9d6a09", "fail": "#930b16", "not
 """Text on white, or background of white text: contrast at least 4.5 (WCAG 2.1, 1.4.3)."""
 WARM, COLD = SERIES[1], SERIES[0]
 """The two sides of a middle: above and below, warmer and colder."""
-FIELD_COLOURS = "viridis"
-"""matplotlib's map of a field: perceptually uniform, readable in grey and by colour-blind readers."""
+TEMPERATURE_COLOURS, DISPLACEMENT_COLOURS, HEAT_FLUX_COLOURS = "viridis", "cividis", "magma"
+"""matplotlib's maps of the fields: perceptually uniform, readable in grey and by colour-blind readers."""
 
 LineStyle = str | tuple[int, tuple[float, ...]]
 
