@@ -208,7 +208,7 @@
       ? { orientation: "h", x: 0.5, y: -0.02, yanchor: "top", len: 0.95, thickness: 11, title: { text: label, side: "top" } }
       : { x: 1, xanchor: "left", len: 0.9, thickness: 14, title: { text: label, side: "right" } };
     const axis = (number) => ({
-      title: { text: AXIS_TITLES[number], font: { size: 11 } }, range: room[number], nticks: 5, tickfont: { size: 10 }, hoverformat: ".0f",
+      title: { text: narrow() ? `${AXES[number]} [mm]` : AXIS_TITLES[number], font: { size: 11 } }, range: room[number], nticks: 5, tickfont: { size: 10 }, hoverformat: ".0f",
       gridcolor: GRID, zeroline: false, showbackground: false, showspikes: false, tickformat: ".0f",
     });
     return {
