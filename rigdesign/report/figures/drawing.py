@@ -95,7 +95,7 @@ def inline_svg(figure: "Figure", name: str, description: str) -> str:
     from html import escape
 
     buffer = io.StringIO()
-    figure.savefig(buffer, format="svg", metadata=NO_METADATA, dpi=200)
+    figure.savefig(buffer, format="svg", metadata=NO_METADATA, dpi=160)
     svg = buffer.getvalue()
     svg = svg[svg.index("<svg") :]
     svg = re.sub(r"<metadata>.*?</metadata>", "", svg, count=1, flags=re.DOTALL)

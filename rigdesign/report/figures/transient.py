@@ -107,7 +107,7 @@ def transient_figure(
     _phase_names(grid[0], columns)
     grid[0].set_ylabel("temperature [°C]")
     legend_right(grid[0])
-    figure.subplots_adjust(left=0.085, right=0.83, top=1 - 0.62 / height, bottom=0.5 / height, hspace=0.12)
+    figure.subplots_adjust(left=0.1, right=0.83, top=1 - 0.62 / height, bottom=0.5 / height, hspace=0.12)
     return figure
 
 
@@ -143,7 +143,7 @@ def _divide(axes: "Axes", columns: Sequence[FigureColumn]) -> None:
     for column in columns[1:]:
         axes.axvspan(column.start - APART, column.start, color="white", linewidth=0, zorder=1.5)
         axes.axvline(column.start - 0.5 * APART, color=MUTED, linewidth=0.6)
-    axes.yaxis.set_label_coords(-0.075, 0.5)
+    axes.yaxis.set_label_coords(-0.068, 0.5)
 
 
 def _places(curve: TransientCurve) -> list[str]:

@@ -241,7 +241,7 @@
       drawn = Plotly.react(get("plot"), traces(), layout(), {
         responsive: true, displaylogo: false, displayModeBar: false, scrollZoom: false,
       });
-      drawn.then(() => { root.dataset.frame = String(Number(root.dataset.frame || 0) + 1); });
+      drawn.then(count);
     });
   }
 
@@ -281,7 +281,12 @@
     Plotly.relayout(get("plot"), { "scene.camera": camera() }).then(count);
   }
 
-  function count() { root.dataset.frame = String(Number(root.dataset.frame || 0) + 1); }
+  // Pictures on the screen so far: the library draws in the animation frame after its promise.
+  function count() {
+    requestAnimationFrame(() => requestAnimationFrame(() => {
+      root.dataset.frame = String(Number(root.dataset.frame || 0) + 1);
+    }));
+  }
 
   // The direction to which the mouse has turned the picture.
   function readCamera() {

@@ -2,6 +2,7 @@
 
 import io
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,12 +12,14 @@ from selenium.webdriver.support.select import Select
 
 from rigdesign.report.pages.report import report_html
 from tests.builders.browser import browser
-from tests.builders.report import make_result
+from tests.builders.report import gearbox_field, make_result
 
 __all__ = ["browser"]
 
 LONGEST = 90.0
 """Seconds for a picture without a graphics card."""
+CHANGED = 0.005
+"""Share of the pixels from which a picture counts as another one; two of the same state do not differ at all."""
 UNTOUCHED = "GL Driver Message"
 """What Chromium says of its own software renderer when a picture is read back."""
 
@@ -48,6 +51,7 @@ class ViewerPage:
         """(height, width, 3) numbers 0 to 255 of the plot area, once two in a row are the same."""
         before = self._shot()
         for _ in range(40):
+            time.sleep(0.15)
             after = self._shot()
             if np.array_equal(before, after):
                 return after
@@ -70,7 +74,9 @@ class ViewerPage:
 @pytest.fixture(scope="module")
 def page(browser, tmp_path_factory):
     path = tmp_path_factory.mktemp("viewer") / "report.html"
-    path.write_text(report_html(make_result()), encoding="utf-8")
+    field = gearbox_field()
+    cooler = replace(field, stage="run_up", temperature=0.5 * (field.temperature + 300.0))
+    path.write_text(report_html(make_result(fields=[field, cooler])), encoding="utf-8")
     return ViewerPage(browser, path)
 
 
@@ -87,13 +93,14 @@ def test_it_is_drawn_turned_cut_and_deformed(page):
 
     plot = page.part("plot")
     ActionChains(page.window.driver).move_to_element(plot).click_and_hold().move_by_offset(
-        160, -40
+        160, 0
     ).release().perform()
     turned = page.picture()
-    assert moved(start, turned) > 0.05
+    assert moved(start, turned) > CHANGED
 
+    page.after(lambda: page.window.run("document.querySelector('[data-view=start]').click()"))
     keyed = page.after(lambda: plot.send_keys(Keys.ARROW_LEFT))
-    assert moved(turned, keyed) > 0.03
+    assert moved(turned, keyed) > CHANGED
 
     higher = page.after(
         lambda: page.window.run(
@@ -101,28 +108,42 @@ def test_it_is_drawn_turned_cut_and_deformed(page):
             page.part("position"),
         )
     )
-    assert moved(keyed, higher) > 0.03
+    assert moved(keyed, higher) > CHANGED
     uncut = page.after(lambda: Select(page.part("axis")).select_by_value(""))
-    assert moved(higher, uncut) > 0.03
+    assert moved(higher, uncut) > CHANGED
     assert not page.part("position").is_enabled()
     assert "no cut" in page.part("words").text
 
     shape = Select(page.part("factor"))
-    factor = shape.options[2].get_attribute("value")
-    deformed = page.after(lambda: shape.select_by_index(2))
-    assert moved(uncut, deformed) > 0.01
+    factor = shape.options[3].get_attribute("value")
+    deformed = page.after(lambda: shape.select_by_index(3))
+    assert moved(uncut, deformed) > CHANGED
     assert f"displacement drawn {factor} times as large" in page.part("words").text
     coloured = page.after(lambda: Select(page.part("quantity")).select_by_value("displacement"))
-    assert moved(deformed, coloured) > 0.05
+    assert moved(deformed, coloured) > CHANGED
 
     boxes = page.part("bodies").find_elements("css selector", "label")
     assert [box.text for box in boxes] == ["housing", "clamping field", "shaft pinion", "shaft wheel"]
     shafts = page.after(boxes[0].click)
-    assert moved(coloured, shafts) > 0.1
+    assert moved(coloured, shafts) > CHANGED
     page.after(boxes[0].click)
 
     again = page.after(lambda: page.window.run("document.querySelector('[data-view=top]').click()"))
-    assert moved(coloured, again) > 0.05
+    assert moved(coloured, again) > CHANGED
+
+
+def test_the_other_stage_and_the_other_side_of_the_cut_are_drawn(page):
+    page.after(lambda: page.window.run("document.querySelector('[data-view=start]').click()"))
+    stages = Select(page.part("field"))
+    assert [option.text for option in stages.options] == [
+        "gearbox test, stage dwell", "gearbox test, stage run up",
+    ]  # fmt: skip
+    assert stages.first_selected_option.text.endswith("dwell")
+    first = page.after(lambda: Select(page.part("axis")).select_by_value("y"))
+    second = page.after(lambda: stages.select_by_index(1))
+    assert moved(first, second) > CHANGED
+    assert page.part("words").text.startswith("Gearbox test, stage run up: shape as drawn; cut at y = ")
+    assert moved(second, page.after(page.part("side").click)) > CHANGED
 
 
 def test_it_asks_for_nothing_and_complains_of_nothing(page):
