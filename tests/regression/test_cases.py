@@ -18,6 +18,7 @@ import pytest
 from rigdesign import load_case, run_case
 from rigdesign.cli.terminal.checks import print_checks
 from rigdesign.report import results_document
+from rigdesign.report.pages.report import report_html
 from rigdesign.results.check import Check
 from rigdesign.results.result import RunResult
 from tests.regression import expected
@@ -118,6 +119,13 @@ def test_expected_results_are_carried_over_with_their_reasons() -> None:
         "gone: gone",
         "new: new, reason to be written",
     ]
+
+
+def test_the_report_of_the_prototype_stays_below_three_megabytes() -> None:
+    """With its turnable picture, the drawing library in it, and a still picture of every field."""
+    page = report_html(prototype())
+    assert 'id="viewer-library"' in page
+    assert len(page.encode("utf-8")) < 3e6
 
 
 def test_heat_of_the_rig_closes() -> None:

@@ -3,15 +3,19 @@
 import io
 import re
 import warnings
+from base64 import b64decode, b64encode
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from rigdesign.report.palette import GRID, INK, MUTED
+from rigdesign.report.numbers import NARROW_SPACE, unit_text
+from rigdesign.report.palette import GRID, INK, MUTED, CurveStyle
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.ticker import ScalarFormatter
 
 
 WIDTH = 9.2
@@ -54,7 +58,12 @@ top of the axes: to search a place for them takes a tenth of the drawing."""
 
 SUBSCRIPT = re.compile(r"\b([KYfnσ])_([A-Z]|z)\b")
 """Symbols of the field with their index."""
+DATA = "data:image/png;base64,"
+PNG = re.compile(DATA + r"([A-Za-z0-9+/=\s]+)")
+"""A picture inside a figure: facets and colour fields, which are drawn as pixels."""
 NO_METADATA = {"Date": None, "Creator": None, "Format": None, "Type": None}
+SAMPLE_ROOM = "\u2003" * 3
+"""In front of a title, as wide as the piece of line there."""
 FONT_STACK = "'DejaVu Sans', Verdana, Geneva, sans-serif"
 
 
@@ -93,8 +102,21 @@ def inline_svg(figure: "Figure", name: str, description: str) -> str:
     svg = re.sub(r'( id="|xlink:href="#|url\(#)', rf"\g<1>{name}-", svg)
     svg = svg.replace("'DejaVu Sans'", FONT_STACK)
     svg = re.sub(r"(?<=>)[^<>]*[A-Za-zσ]_(?:[A-Z]|z)\b[^<>]*(?=</text>)", lambda m: _lowered(m[0]), svg)
+    svg = PNG.sub(lambda found: _leaner(found[1]), svg)
     label = escape(description, quote=True)
     return svg.replace("<svg ", f'<svg role="img" aria-label="{label}" ', 1)
+
+
+def _leaner(picture: str) -> str:
+    """A PNG in base64 on white with 256 colours, a third of its size, as an address of the page."""
+    from PIL import Image
+
+    found = Image.open(io.BytesIO(b64decode(picture))).convert("RGBA")
+    white = Image.new("RGBA", found.size, "white")
+    few = Image.alpha_composite(white, found).convert("RGB").quantize(256, dither=Image.Dither.NONE)
+    buffer = io.BytesIO()
+    few.save(buffer, format="png")
+    return f"{DATA}{b64encode(buffer.getvalue()).decode('ascii')}"
 
 
 def _lowered(text: str) -> str:
@@ -112,12 +134,58 @@ def plain(text: str) -> str:
     return text.replace("$", r"\$")
 
 
+def words(name: str) -> str:
+    """A name of the case as it reads: ``test.pinion_rear`` -> ``test pinion rear``."""
+    return plain(re.sub(r"_|(?<=\D)\.(?=\D)", " ", name))
+
+
+def stated_quantity(text: str) -> str:
+    """A quantity as the case writes it, its unit as printed: ``180 Nm``."""
+    value, _, unit = text.rpartition(" ")
+    return f"{value} {unit_text(unit)}" if value else plain(text)
+
+
 def finish(axes: "Axes", xlabel: str = "", ylabel: str = "", title: str = "") -> None:
-    """Labels (with unit and convention) and title of one plot."""
+    """Labels (with unit and convention) and title of one plot; large ticks in groups of three digits."""
+    from matplotlib.ticker import ScalarFormatter
+
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
     if title:
         axes.set_title(title)
+    for axis in (axes.xaxis, axes.yaxis):
+        if type(axis.get_major_formatter()) is ScalarFormatter:
+            axis.set_major_formatter(_grouped_digits()())
+
+
+@cache
+def _grouped_digits() -> "type[ScalarFormatter]":
+    """Ticks as matplotlib writes them, from 10 000 on in groups, as in tables."""
+    from matplotlib.ticker import ScalarFormatter
+
+    class GroupedDigits(ScalarFormatter):
+        """Ticks of a linear axis."""
+
+        def __call__(self, x: float, pos: int | None = None) -> str:
+            text = str(super().__call__(x, pos))
+            return f"{x:,.0f}".replace(",", NARROW_SPACE) if abs(x) >= 10000 and text.isdigit() else text
+
+    return GroupedDigits
+
+
+def gearbox_title(axes: "Axes", text: str, style: CurveStyle) -> None:
+    """The title of a plot that shows one gearbox, behind a piece of line in the style of that gearbox."""
+    from matplotlib.lines import Line2D
+    from matplotlib.transforms import ScaledTranslation
+
+    axes.set_title(f"{SAMPLE_ROOM}{text}")
+    figure: Any = axes.get_figure()
+    onto_axes: Any = axes.transAxes
+    corner = figure.dpi_scale_trans + ScaledTranslation(0.0, 1.0, onto_axes)
+    sample = Line2D(
+        [0.0, 0.32], [0.115, 0.115], transform=corner, clip_on=False, linewidth=2.0, **style.drawn
+    )
+    axes.add_artist(sample)
 
 
 def legend_right(axes: "Axes") -> None:

@@ -1,12 +1,26 @@
 """Figures of the drivetrain: K_V(n), order crossings, root stress over the mesh."""
 
-from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain
-from rigdesign.report.palette import INK, MUTED, SERIES, VERDICT_COLOURS
+from rigdesign.report.figures.drawing import (
+    finish,
+    gearbox_title,
+    legend_right,
+    new_figure,
+    stated_quantity,
+    words,
+)
+from rigdesign.report.palette import (
+    INK,
+    LINES,
+    MUTED,
+    VERDICT_COLOURS,
+    CurveStyle,
+    curve_style,
+    gearbox_colours,
+)
 from rigdesign.results.dynamics import DynamicFactorPoint, DynamicsResult, GearboxDynamics
 
 if TYPE_CHECKING:
@@ -22,49 +36,51 @@ def dynamic_factor_figure(dynamics: DynamicsResult) -> "Figure":
     count = len(dynamics.gearboxes)
     figure = new_figure(0.4 + 2.6 * count)
     axes_list = figure.subplots(count, 1, squeeze=False)[:, 0]
+    styles = gearbox_colours(dynamics.gearboxes)
     for axes, (name, gearbox) in zip(axes_list, dynamics.gearboxes.items(), strict=True):
-        _dynamic_factor(axes, gearbox)
-        finish(
-            axes,
-            "pinion speed n [rpm]",
-            f"dynamic factor {KV} [–]",
-            f"Gearbox {plain(name)} ({gearbox.role})",
-        )
+        _dynamic_factor(axes, gearbox, styles[name], len(styles))
+        finish(axes, "pinion speed n [rpm]", f"dynamic factor {KV} [–]")
+        gearbox_title(axes, f"Gearbox {words(name)} ({gearbox.role})", styles[name])
         legend_right(axes)
     _margins(figure, count, right=0.72)
     return figure
 
 
-def _dynamic_factor(axes: "Axes", gearbox: GearboxDynamics) -> None:
+def _dynamic_factor(axes: "Axes", gearbox: GearboxDynamics, style: CurveStyle, others_from: int) -> None:
+    """One gearbox; others_from : number of the style of the first curve at another torque or of a variant."""
+    torque = stated_quantity(gearbox.torque)
     points = gearbox.dynamic_factor
     speed = [point.speed_rpm for point in points]
     main = _with_gaps(gearbox, gearbox.torque, points)
     axes.plot(
         [p.speed_rpm for p in main],
         [p.simulated for p in main],
-        color=SERIES[0],
-        label=f"simulated at {gearbox.torque}, max / mean",
+        **style.drawn,
+        label=f"simulated at {torque}, max / mean",
         zorder=4,
     )
     axes.plot(
         [p.speed_rpm for p in main],
         [p.simulated_half_peak_to_peak for p in main],
-        color=SERIES[0],
+        color=style.colour,
         linewidth=0.8,
-        linestyle=(0, (3, 2)),
+        linestyle=LINES[2],
         label="simulated, 1 + half peak-to-peak / mean",
     )
-    others = {f"simulated at {key}": (key, curve) for key, curve in gearbox.dynamic_factor_at.items()}
+    others = {
+        f"simulated at {stated_quantity(key)}": (key, curve)
+        for key, curve in gearbox.dynamic_factor_at.items()
+    }
     others |= {
-        f"variant {plain(key.replace('_', ' '))} at {gearbox.torque}": (key, curve)
+        f"variant {words(key)} at {torque}": (key, curve)
         for key, curve in gearbox.dynamic_factor_variants.items()
     }
-    for colour, (label, (key, curve)) in zip(cycle(SERIES[1:]), others.items(), strict=False):
+    for number, (label, (key, curve)) in enumerate(others.items(), start=others_from):
         shown = _with_gaps(gearbox, key, curve)
         axes.plot(
             [point.speed_rpm for point in shown],
             [point.simulated for point in shown],
-            color=colour,
+            **curve_style(number).drawn,
             linewidth=0.9,
             label=_wrapped(f"{label}, max / mean"),
         )
@@ -115,20 +131,27 @@ def _with_gaps(
 def campbell_figure(dynamics: DynamicsResult) -> "Figure":
     """Tooth-mesh orders of every gearbox over speed against the modes of the closed loop and of its shafts alone."""
     names = list(dynamics.gearboxes)
-    figure = new_figure(3.5)
+    figure = new_figure(4.1)
+    styles = gearbox_colours(names)
     axes_list = figure.subplots(1, max(1, len(names)), squeeze=False)[0]
     top_speed = _top_speed(dynamics)
     for axes, name in zip(axes_list, names, strict=True):
         crossings = [item for item in dynamics.crossings if item.get("gearbox") == name]
         _orders(axes, crossings, top_speed)
-        _natural_frequencies(axes, crossings, top_speed)
+        _natural_frequencies(axes, crossings, name, top_speed)
         _loop_modes(axes, [item for item in dynamics.loop_crossings if item["order_of"] == name], top_speed)
         _crossing_marks(axes, crossings, dynamics.gearboxes[name], top_speed)
         axes.set_xlim(0, top_speed)
         axes.set_ylim(bottom=0)
-        finish(axes, "pinion speed n [rpm]", "frequency [Hz]", f"Gearbox {plain(name)}")
-        axes.legend(loc="lower right", fontsize=7)
-    figure.subplots_adjust(left=0.075, right=0.985, top=0.92, bottom=0.14, wspace=0.2)
+        finish(axes, "pinion speed n [rpm]", "frequency [Hz]")
+        gearbox_title(axes, f"Gearbox {words(name)}", styles[name])
+    shown = {
+        label: handle
+        for axes in axes_list
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    figure.legend(shown.values(), shown.keys(), loc="lower center", ncols=3, fontsize=7.5)
+    figure.subplots_adjust(left=0.085, right=0.985, top=0.93, bottom=0.26, wspace=0.22)
     return figure
 
 
@@ -158,13 +181,17 @@ def _orders(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> 
     axes.set_ylim(0, 1.16 * ceiling)
 
 
-def _natural_frequencies(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> None:
-    shafts = list(dict.fromkeys(item["shaft"] for item in crossings))
-    for colour, shaft in zip(SERIES, shafts, strict=False):
+def _natural_frequencies(
+    axes: "Axes", crossings: list[dict[str, Any]], gearbox: str, top_speed: float
+) -> None:
+    """Every shaft alone, in one style in all plots: its name without that of its gearbox."""
+    for number, shaft in enumerate(sorted({item["shaft"] for item in crossings})):
+        style = curve_style(number + 2)
+        name = words(shaft).removeprefix(f"{words(gearbox)} ")
         frequencies = sorted({item["frequency_Hz"] for item in crossings if item["shaft"] == shaft})
-        for number, frequency in enumerate(frequencies):
-            label = f"torsion of {plain(shaft)}, free-free" if number == 0 else None
-            axes.plot([0, top_speed], [frequency, frequency], color=colour, linewidth=0.8, label=label)
+        for place, frequency in enumerate(frequencies):
+            label = f"torsion of the {name} shaft, free-free" if place == 0 else None
+            axes.plot([0, top_speed], [frequency, frequency], **style.drawn, linewidth=1.0, label=label)
 
 
 def _loop_modes(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float) -> None:
@@ -172,7 +199,7 @@ def _loop_modes(axes: "Axes", crossings: list[dict[str, Any]], top_speed: float)
     excited = [item for item in crossings if item["kind"] == "mesh" and item["excited"]]
     for number, frequency in enumerate(sorted({item["frequency_Hz"] for item in excited})):
         label = "mode of the closed loop" if number == 0 else None
-        axes.plot([0, top_speed], [frequency, frequency], "--", color=INK, linewidth=0.8, label=label)
+        axes.plot([0, top_speed], [frequency, frequency], color=INK, linewidth=0.6, label=label)
     if excited:
         speeds, frequencies = ([item[key] for item in excited] for key in ("speed_rpm", "frequency_Hz"))
         axes.plot(speeds, frequencies, "s", color=INK, markersize=3.5, label="crossing, closed loop")
@@ -206,34 +233,41 @@ def _crossing_marks(
         )
 
 
-def root_stress_figure(gearbox: GearboxDynamics) -> "Figure":
-    """sigma_F over the rolling angle, dynamic against quasi-static, and the stress ratio over speed."""
+def root_stress_figure(gearbox: GearboxDynamics, style: CurveStyle | None = None) -> "Figure":
+    """sigma_F over the rolling angle, dynamic against quasi-static, and the stress ratio over speed.
+
+    style : of the gearbox in all figures of the report; that of the first gearbox if left out
+    """
+    style = style or curve_style(0)
     histories = gearbox.root_stress
     columns = len(histories) + bool(gearbox.root_stress_factor)
     figure = new_figure(2.9)
     axes_list = list(figure.subplots(1, columns, squeeze=False)[0])
     for axes, history in zip(axes_list, histories, strict=False):
         angle = history.rolling_angle_deg
-        axes.plot(angle, history.quasi_static_MPa, color=INK, linewidth=1.0, label="quasi-static")
-        axes.plot(angle, history.dynamic_MPa, color=SERIES[1], label="dynamic")
+        axes.plot(angle, history.quasi_static_MPa, color=INK, linewidth=0.9, label="quasi-static")
+        axes.plot(angle, history.dynamic_MPa, **style.drawn, label="dynamic")
         axes.set_ylim(bottom=0)
-        title = f"{plain(history.gear)}, stage {plain(history.stage)}"
-        finish(axes, "rolling angle φ [°]", f"root stress {SIGMA_F}(φ) [N/mm²]", title)
+        finish(axes, "rolling angle φ [°]", f"root stress {SIGMA_F}(φ), 0-peak [N/mm²]")
+        gearbox_title(axes, f"{words(history.gear).capitalize()}, stage {words(history.stage)}", style)
         axes.legend(loc="best")
     if gearbox.root_stress_factor:
-        _stress_ratio(axes_list[-1], gearbox.root_stress_factor, gearbox.dynamic_factor)
+        _stress_ratio(axes_list[-1], gearbox.root_stress_factor, gearbox.dynamic_factor, style)
     figure.subplots_adjust(left=0.075, right=0.985, top=0.90, bottom=0.17, wspace=0.3)
     return figure
 
 
-def _stress_ratio(axes: "Axes", rows: list[dict[str, float]], points: list[DynamicFactorPoint]) -> None:
+def _stress_ratio(
+    axes: "Axes", rows: list[dict[str, float]], points: list[DynamicFactorPoint], style: CurveStyle
+) -> None:
     speed = [row["speed_rpm"] for row in rows]
     gears = [key for key in rows[0] if key != "speed_rpm"]
     axes.plot(
         [p.speed_rpm for p in points], [p.simulated for p in points], color=MUTED, linewidth=0.9, label=KV
     )
-    for colour, gear in zip(SERIES, gears, strict=False):
-        axes.plot(speed, [row[gear] for row in rows], color=colour, label=f"{SIGMA_F} ratio, {plain(gear)}")
+    for line, colour, gear in zip(LINES, (style.colour, INK), gears, strict=False):
+        values = [row[gear] for row in rows]
+        axes.plot(speed, values, color=colour, linestyle=line, label=f"{SIGMA_F} ratio, {words(gear)}")
     axes.set_xlim(left=0)
     axes.locator_params(axis="x", nbins=4)
     finish(

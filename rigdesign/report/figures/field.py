@@ -17,7 +17,7 @@ from rigdesign.report.figures.mesh_views import (
     view_outside,
 )
 from rigdesign.report.numbers import number_text
-from rigdesign.report.palette import INK, MUTED
+from rigdesign.report.palette import DISPLACEMENT_COLOURS, HEAT_FLUX_COLOURS, INK, MUTED, TEMPERATURE_COLOURS
 from rigdesign.results.thermal import TemperatureField
 from thermal.fe.mesh import FloatArray, NamedMesh
 
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap, Normalize
     from matplotlib.figure import Figure
 
-COLOUR_RANGE = (0.07, 0.96)
-"""Part of matplotlib's turbo map in use: its ends are too dark to tell apart under shading."""
 LEVELS = 15
 MM, UM, KW = 1e3, 1e6, 1e-3
 DRAWN = 0.06
@@ -123,9 +121,8 @@ def magnification(field: TemperatureField, views: MeshViews) -> float:
 
 def _temperature(field: TemperatureField) -> Shade:
     from matplotlib import colormaps
-    from matplotlib.colors import ListedColormap
 
-    colours = ListedColormap(colormaps["turbo"](np.linspace(*COLOUR_RANGE, 256)))
+    colours = colormaps[TEMPERATURE_COLOURS]
     return _linear(field.temperature - ZERO_CELSIUS, colours, "temperature, steady [°C]")
 
 
@@ -133,7 +130,9 @@ def _displacement(field: TemperatureField) -> Shade:
     from matplotlib import colormaps
 
     return _linear(
-        UM * np.linalg.norm(field.displacement, axis=1), colormaps["viridis"], "displacement, size [µm]"
+        UM * np.linalg.norm(field.displacement, axis=1),
+        colormaps[DISPLACEMENT_COLOURS],
+        "displacement, size [µm]",
     )
 
 
@@ -155,7 +154,7 @@ def _heat_flux(flux: FloatArray) -> Shade:
     low = top - DECADES
     values = np.log10(np.clip(size, 10.0**low, 10.0**top))
     levels = np.linspace(low, top, 2 * LEVELS)
-    return Shade(values, levels, Normalize(low, top), colormaps["magma"], "heat flux, size [kW/m²]")
+    return Shade(values, levels, Normalize(low, top), colormaps[HEAT_FLUX_COLOURS], "heat flux, size [kW/m²]")
 
 
 def _figure(views: MeshViews, shade: Shade, moved: FloatArray | None = None, factor: float = 0.0) -> "Figure":

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rigdesign.report.figures.drawing import new_figure, plain
+from rigdesign.report.figures.heat import power_in_words
 from rigdesign.report.figures.sankey import NODE_WIDTH, Flow, SankeyLayout, layout, spread
-from rigdesign.report.numbers import number_text
 from rigdesign.report.palette import INK, SERIES
 from rigdesign.results.thermal import LossRow, OilRow, ThermalResult
 
@@ -133,7 +133,7 @@ def _boxes(axes: "Axes", found: SankeyLayout, colours: Mapping[str, str]) -> Non
             size = box.high - box.low
             colour = colours.get(box.name, INK)
             axes.add_patch(Rectangle((box.x, box.low), NODE_WIDTH, size, facecolor=colour, edgecolor="none"))
-            text = f"{plain(box.name.strip())}  {_power(box.value)}"
+            text = f"{plain(box.name.strip())}  {power_in_words(box.value)}"
             if column in (0, last):
                 _outer_label(axes, box.x, 0.5 * (box.low + box.high), height, text, left=column == 0)
             else:
@@ -144,10 +144,6 @@ def _boxes(axes: "Axes", found: SankeyLayout, colours: Mapping[str, str]) -> Non
                     fontsize=8, fontweight="bold",
                     bbox={"facecolor": "white", "alpha": 0.8, "linewidth": 0.0, "pad": 1.0},
                 )  # fmt: skip
-
-
-def _power(value: float) -> str:
-    return f"{number_text(1e-3 * value)} kW" if value >= 1e4 else f"{number_text(value, 3)} W"
 
 
 def _outer_label(axes: "Axes", x: float, at: float, height: float, text: str, *, left: bool) -> None:

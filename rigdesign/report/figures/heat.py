@@ -1,10 +1,10 @@
 """Figures of losses, oil, heat flows, clearances and convergence."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain
-from rigdesign.report.numbers import power_text
-from rigdesign.report.palette import MUTED, SERIES
+from rigdesign.report.figures.drawing import finish, legend_right, new_figure, words
+from rigdesign.report.numbers import WORDS, number_text, power_text, split_key
+from rigdesign.report.palette import COLD, MUTED, SERIES, WARM, curve_style
 from rigdesign.results.result import CouplingHistory
 from rigdesign.results.thermal import LossRow, OilRow
 
@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-WARM, COLD = "#b3452c", "#2b6ca3"
+SEPARATED: dict[str, Any] = {"edgecolor": "white", "linewidth": 0.6}
+"""Parts of a bar, told apart without their colours too."""
 
 
 def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
@@ -23,17 +24,20 @@ def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
     figure = new_figure(height)
     axes = figure.subplots()
     left = [0.0] * len(stages)
-    for colour, kind in zip(_colours(len(kinds)), kinds, strict=True):
+    for number, kind in enumerate(kinds):
+        colour = SERIES[number % len(SERIES)]
         power = [
             sum(row.power_W for row in losses if row.stage == stage and row.kind == kind) for stage in stages
         ]
-        axes.barh(range(len(stages)), power, left=left, color=colour, height=0.65, label=plain(_words(kind)))
+        axes.barh(
+            range(len(stages)), power, left=left, color=colour, height=0.65, label=words(kind), **SEPARATED
+        )
         left = [start + width for start, width in zip(left, power, strict=True)]
     for row, total in enumerate(left):
         axes.annotate(
-            f"{total:.0f} W", (total, row), textcoords="offset points", xytext=(4, -3), fontsize=7.5
+            power_in_words(total), (total, row), textcoords="offset points", xytext=(4, -3), fontsize=7.5
         )
-    axes.set_yticks(range(len(stages)), [plain(stage) for stage in stages])
+    axes.set_yticks(range(len(stages)), [words(stage) for stage in stages])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.margins(x=0.1)
@@ -50,7 +54,9 @@ def losses_by_place_figure(losses: list[LossRow], stage: str) -> "Figure":
     figure = new_figure(height)
     axes = figure.subplots()
     places = range(len(rows))
-    axes.barh(places, [r.into_oil_W for r in rows], color=SERIES[0], height=0.65, label="into the oil")
+    axes.barh(
+        places, [r.into_oil_W for r in rows], color=SERIES[0], height=0.65, label="into the oil", **SEPARATED
+    )
     axes.barh(
         places,
         [r.into_body_W for r in rows],
@@ -58,6 +64,7 @@ def losses_by_place_figure(losses: list[LossRow], stage: str) -> "Figure":
         color=SERIES[1],
         height=0.65,
         label="into the body",
+        **SEPARATED,
     )
     if any(r.not_heat_W > 0.0 for r in rows):
         heat = [r.into_oil_W + r.into_body_W for r in rows]
@@ -68,11 +75,13 @@ def losses_by_place_figure(losses: list[LossRow], stage: str) -> "Figure":
             color=SERIES[2],
             height=0.65,
             label="no heat (mesh damper)",
+            **SEPARATED,
         )
-    axes.set_yticks(places, [plain(_words(f"{row.place}, {row.kind}")) for row in rows])
+    axes.set_yticks(places, [words(f"{row.place}, {row.kind}") for row in rows])
+    axes.set_xlim(right=1.04 * max((row.power_W for row in rows), default=1.0))
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
-    finish(axes, f"power loss at stage {plain(stage)} [W]")
+    finish(axes, f"power loss at stage {words(stage)} [W]")
     axes.legend(loc="lower right")
     figure.subplots_adjust(left=0.32, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
     return figure
@@ -87,12 +96,12 @@ def oil_figure(oil: list[OilRow], stage: str) -> "Figure":
     for place, row in enumerate(rows):
         axes.plot([row.inlet_degC, row.outlet_degC], [place, place], color=MUTED, linewidth=1.6, zorder=2)
     places = range(len(rows))
-    axes.plot([r.inlet_degC for r in rows], places, "o", color=COLD, markersize=5, label="inlet")
-    axes.plot([r.outlet_degC for r in rows], places, "o", color=WARM, markersize=5, label="outlet")
-    axes.set_yticks(places, [plain(_words(row.consumer)) for row in rows])
+    axes.plot([r.inlet_degC for r in rows], places, "o", color=COLD, markersize=5.5, label="inlet")
+    axes.plot([r.outlet_degC for r in rows], places, "s", color=WARM, markersize=5, label="outlet")
+    axes.set_yticks(places, [words(row.consumer) for row in rows])
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.margins(x=0.08)
-    finish(axes, f"oil temperature at stage {plain(stage)}, mixed mean [°C]")
+    finish(axes, f"oil temperature at stage {words(stage)}, mixed mean [°C]")
     axes.legend(loc="best")
     figure.subplots_adjust(left=0.26, right=0.975, top=1 - 0.1 / height, bottom=0.47 / height)
     return figure
@@ -101,27 +110,28 @@ def oil_figure(oil: list[OilRow], stage: str) -> "Figure":
 def convergence_figure(histories: list[CouplingHistory]) -> "Figure":
     """Residuals of the coupling loop by iteration, logarithmic."""
     quantities = list(dict.fromkeys(key for history in histories for row in history.residuals for key in row))
-    figure = new_figure(2.3)
+    figure = new_figure(2.4)
     axes_list = figure.subplots(1, max(1, len(quantities)), squeeze=False)[0]
     for axes, quantity in zip(axes_list, quantities, strict=False):
-        for colour, history in zip(_colours(len(histories)), histories, strict=True):
+        for number, history in enumerate(histories):
+            style = curve_style(number)
             values = [
                 (n, row[quantity]) for n, row in enumerate(history.residuals, start=1) if row.get(quantity)
             ]
             axes.plot(
                 [n for n, _ in values],
                 [abs(v) for _, v in values],
-                "o-",
+                **style.drawn,
+                marker=style.marker,
                 markersize=3,
-                color=colour,
-                label=plain(history.stage),
+                label=words(history.stage),
             )
         if any(row.get(quantity) for history in histories for row in history.residuals):
             _logarithmic(axes)
         axes.xaxis.get_major_locator().set_params(integer=True)
-        finish(axes, "iteration [–]", _residual_label(quantity))
+        finish(axes, "iteration [–]", *_residual_labels(quantity))
         axes.legend(loc="best")
-    figure.subplots_adjust(left=0.085, right=0.985, top=0.94, bottom=0.21, wspace=0.32)
+    figure.subplots_adjust(left=0.085, right=0.985, top=0.88, bottom=0.2, wspace=0.32)
     return figure
 
 
@@ -135,16 +145,13 @@ def _logarithmic(axes: "Axes") -> None:
     axes.yaxis.set_minor_locator(NullLocator())
 
 
-def _residual_label(key: str) -> str:
-    from rigdesign.report.numbers import split_key
-
-    words, unit = split_key(key)
-    return f"change of {words.replace(' relative', '')}, max [{unit or '–'}]"
-
-
-def _colours(count: int) -> list[str]:
-    return [SERIES[index % len(SERIES)] for index in range(count)]
+def _residual_labels(key: str) -> tuple[str, str]:
+    """Label of the axis and title."""
+    quantity, unit = split_key(key)
+    quantity = " ".join(WORDS.get(word, word) for word in quantity.replace(" relative", "").split())
+    return f"largest change [{unit or '–'}]", quantity.capitalize()
 
 
-def _words(name: str) -> str:
-    return name.replace("_", " ")
+def power_in_words(value: float) -> str:
+    """A power with its unit: kilowatts from 10 kW on."""
+    return f"{number_text(1e-3 * value)} kW" if value >= 1e4 else f"{number_text(value, 3)} W"

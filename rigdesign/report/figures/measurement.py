@@ -11,9 +11,9 @@ from rigdesign.measurement.comparison.compare import Comparison, display_residua
 from rigdesign.measurement.comparison.locate import Located, leading_variables
 from rigdesign.measurement.quantities import CHANNELS
 from rigdesign.prediction.model import ORDER_QUANTITIES
-from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain
+from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain, words
 from rigdesign.report.numbers import unit_text
-from rigdesign.report.palette import GRID, INK, MUTED, SERIES
+from rigdesign.report.palette import GRID, INK, MUTED, SERIES, curve_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,7 +34,7 @@ AXES = {
     "constant": ("speed", "speed [rpm]"),
     "speed": ("speed", "speed [rpm]"),
     "speed_squared": ("speed", "speed [rpm]"),
-    "torque": ("torque", "torque [N m]"),
+    "torque": ("torque", f"torque [{unit_text('Nm')}]"),
     "torque_speed": ("torque_speed", "torque times speed [kW]"),
     "oil_temperature": ("oil_temperature", "oil inlet above ambient, share of the largest"),
     "": ("speed", "speed [rpm]"),
@@ -136,7 +136,7 @@ def agreement_figure(comparison: Comparison) -> "Figure":
             chosen = [i for i, f in enumerate(data.features) if f.channel == name and data.usable[i]]
             x = [units.display(float(comparison.expected[i]), kind, unit) for i in chosen]
             y = [units.display(float(data.values[i]), kind, unit) for i in chosen]
-            axes.plot(x, y, "o", markersize=3.2, color=SERIES[number % len(SERIES)], label=plain(name))
+            axes.plot(x, y, **curve_style(number).marked, markersize=3.4, label=words(name))
         ends = (*axes.get_xlim(), *axes.get_ylim())
         low, high = min(ends), max(ends)
         axes.plot([low, high], [low, high], color=MUTED, linewidth=0.9, zorder=1)
@@ -225,7 +225,7 @@ def leading_figure(comparison: Comparison, item: Located) -> "Figure | None":
         bars = [display_residual(float(comparison.spread[i]), quantity, entry.unit)[0] for i in chosen]
         unit = display_residual(0.0, quantity, entry.unit)[1]
         axes.errorbar(
-            x, y, yerr=bars, fmt="o", markersize=3.2, linewidth=0.8, color=SERIES[number % len(SERIES)],
+            x, y, yerr=bars, **curve_style(number).marked, markersize=3.4, elinewidth=0.8,
             label=plain(name) if number < 14 else None,
         )  # fmt: skip
     axes.axhline(0.0, color=INK, linewidth=0.9)

@@ -63,13 +63,12 @@ class PlaneCut:
         start, end = values[self.nodes[:, 0]], values[self.nodes[:, 1]]
         return np.asarray(start + self.weights * (end - start))
 
-    def outlines(self) -> Indices:
-        """(e, 2) point pairs of the edges where a body ends."""
-        sides = np.concatenate(
-            [self.triangles[:, [0, 1]], self.triangles[:, [1, 2]], self.triangles[:, [2, 0]]]
-        )
+    def outlines(self, shown: NDArray[np.bool_] | slice = slice(None)) -> Indices:
+        """(e, 2) point pairs of the edges where a body ends; shown : (k,) which triangles count, all if left out."""
+        triangles, bodies = self.triangles[shown], self.bodies[shown]
+        sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
         size = len(self.points)
-        pairs = np.sort(sides, axis=1) @ np.array([size, 1]) + size**2 * np.tile(self.bodies, 3)
+        pairs = np.sort(sides, axis=1) @ np.array([size, 1]) + size**2 * np.tile(bodies, 3)
         found, counts = np.unique(pairs, return_counts=True)
         first, second = np.divmod(found[counts == 1] % size**2, size)
         return np.column_stack([first, second])
@@ -150,7 +149,7 @@ def view_outside(
     points : (n_nodes, 3) places of the nodes [m], those of the mesh when left out
     """
     places = mesh.points if points is None else points
-    right, up, towards = _camera(np.radians(azimuth_deg), np.radians(elevation_deg))
+    right, up, towards = camera(np.radians(azimuth_deg), np.radians(elevation_deg))
     facets = surface_triangles(mesh)
     corners = places[facets]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -179,13 +178,20 @@ def surface_triangles(mesh: NamedMesh) -> Indices:
 
 def _standing_nodes(mesh: NamedMesh) -> Indices:
     """Nodes of all bodies but the field under them; of all where there is nothing else."""
-    bodies = [cells for name, cells in mesh.bodies.items() if "field" not in name and len(cells)]
+    bodies = list(mesh.bodies.values())
     held = np.zeros(len(mesh.points), dtype=bool)
-    held[mesh.cells[np.concatenate(bodies)] if bodies else mesh.cells] = True
+    held[mesh.cells[np.concatenate([bodies[number] for number in standing_bodies(mesh)])]] = True
     return np.flatnonzero(held).astype(np.int64)
 
 
-def _camera(azimuth: float, elevation: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+def standing_bodies(mesh: NamedMesh) -> Indices:
+    """Numbers of all bodies but the clamping field, which is several times as large as what stands on it."""
+    names = list(mesh.bodies)
+    standing = [number for number, name in enumerate(names) if "field" not in name and len(mesh.bodies[name])]
+    return np.array(standing or range(len(names)), dtype=np.int64)
+
+
+def camera(azimuth: float, elevation: float) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Unit vectors to the right, up, and towards the viewer."""
     towards = np.array(
         [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]

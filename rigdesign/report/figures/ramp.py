@@ -3,15 +3,16 @@
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from rigdesign.report.figures.drawing import finish, new_figure, plain
-from rigdesign.report.palette import INK, MUTED, SERIES
+from rigdesign.report.figures.drawing import finish, gearbox_title, new_figure, words
+from rigdesign.report.numbers import unit_text
+from rigdesign.report.palette import INK, MUTED, CurveStyle, curve_style, gearbox_colours
 from rigdesign.results.dynamics import RampHistory
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-MAX_POINTS = 2500
+MAX_POINTS = 900
 """Points drawn of one curve; an envelope keeps the extremes of the slots it merges."""
 
 
@@ -24,9 +25,10 @@ def ramp_figure(ramp: RampHistory) -> "Figure":
     step = max(1, -(-len(ramp.time_s) // MAX_POINTS))
     _speed(axes_list[0], ramp, step)
     _torque(axes_list[1], ramp, step)
-    for axes, colour, (name, curves) in zip(axes_list[2:], SERIES, ramp.torque.items(), strict=False):
-        _envelope(axes, ramp, curves, colour, step)
-        axes.set_title(f"Dynamic torque in {plain(name)}: mean, maximum and minimum of each time slot")
+    styles = gearbox_colours(ramp.torque)
+    for axes, (name, curves) in zip(axes_list[2:], ramp.torque.items(), strict=True):
+        _envelope(axes, ramp, curves, styles[name], step)
+        gearbox_title(axes, f"Dynamic torque in gearbox {words(name)}, in every slot of time", styles[name])
     for axes in axes_list:
         _stage_bands(axes, ramp)
         axes.yaxis.set_label_coords(-0.052, 0.5)
@@ -38,30 +40,32 @@ def ramp_figure(ramp: RampHistory) -> "Figure":
 
 
 def _speed(axes: "Axes", ramp: RampHistory, step: int) -> None:
-    axes.plot(ramp.time_s[::step], ramp.speed_rpm[::step], color=SERIES[0])
+    axes.plot(ramp.time_s[::step], ramp.speed_rpm[::step], color=INK)
     finish(axes, ylabel="pinion speed\nn [rpm]")
 
 
 def _torque(axes: "Axes", ramp: RampHistory, step: int) -> None:
     time = ramp.time_s[::step]
     axes.plot(time, ramp.target_torque_Nm[::step], color=INK, label="bracing torque, target")
-    axes.plot(time, ramp.drive_torque_Nm[::step], color=SERIES[1], label="drive torque")
-    finish(axes, ylabel="torque [Nm]\nmean")
+    drive = curve_style(len(ramp.torque))
+    axes.plot(time, ramp.drive_torque_Nm[::step], **drive.drawn, label="drive torque")
+    finish(axes, ylabel=f"torque, mean\n[{unit_text('Nm')}]")
     axes.legend(loc="upper left", ncols=2)
 
 
 def _envelope(
-    axes: "Axes", ramp: RampHistory, curves: dict[str, list[float]], colour: str, step: int
+    axes: "Axes", ramp: RampHistory, curves: dict[str, list[float]], style: CurveStyle, step: int
 ) -> None:
     time = ramp.time_s[::step]
     low = [min(curves["minimum"][i : i + step]) for i in range(0, len(ramp.time_s), step)]
     high = [max(curves["maximum"][i : i + step]) for i in range(0, len(ramp.time_s), step)]
+    colour = style.colour
     axes.fill_between(time, low, high, color=colour, alpha=0.28, linewidth=0, label="maximum to minimum")
     axes.plot(time, high, color=colour, linewidth=0.6)
     axes.plot(time, low, color=colour, linewidth=0.6)
     axes.plot(time, curves["mean"][::step], color=INK, linewidth=1.0, label="mean")
     axes.axhline(0, color=MUTED, linewidth=0.8)
-    finish(axes, ylabel="torque [Nm]\n0 to peak")
+    finish(axes, ylabel=f"torque, 0-peak\n[{unit_text('Nm')}]")
     axes.legend(loc="upper left", ncols=2)
 
 
@@ -85,7 +89,7 @@ def _stage_names(axes: "Axes", ramp: RampHistory) -> None:
     """Stage names over the top plot, on two levels so that short stages stay legible."""
     for number, (name, start, end) in enumerate(stage_spans(ramp)):
         axes.annotate(
-            plain(name),
+            words(name),
             ((start + end) / 2, 1.0),
             xycoords=("data", "axes fraction"),
             textcoords="offset points",

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rigdesign.report.figures.drawing import finish, new_figure, plain
-from rigdesign.report.palette import INK, MUTED, VERDICT_COLOURS
+from rigdesign.report.palette import COLD, INK, MUTED, VERDICT_COLOURS, WARM
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,7 +19,6 @@ LEAST_SHIFT = 0.1
 """Shift of the highest temperature below which an input is not drawn [K]."""
 LEAST_SPAN = 0.1
 """Range of a margin below which a check is not drawn [% of the limit]."""
-WARM, COLD = "#b3452c", "#2b6ca3"
 
 
 def margins_figure(ranges: "RangesResult", titles: dict[str, str]) -> "Figure | None":

@@ -1,12 +1,21 @@
 """Gaps of the contactless seals: over the angle, and enlarged round the shaft."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rigdesign.report.figures.drawing import finish, legend_right, new_figure, plain
+from rigdesign.report.figures.drawing import finish, gearbox_title, legend_right, new_figure, words
 from rigdesign.report.numbers import number_text
-from rigdesign.report.palette import INK, MUTED, SERIES
+from rigdesign.report.palette import (
+    INK,
+    MUTED,
+    SERIES,
+    VERDICT_COLOURS,
+    CurveStyle,
+    curve_style,
+    gearbox_colours,
+)
 from rigdesign.results.thermal import ExpansionResult
 from thermal.fe.mesh import FloatArray
 
@@ -23,19 +32,21 @@ PITCH = 2.75
 ROWS_APART = 2.85
 
 
-def seal_gap_figure(expansion: list[ExpansionResult]) -> "Figure":
-    """Radial gap of every seal over the angle, warm against as drawn [mm]."""
+def seal_gap_figure(
+    expansion: list[ExpansionResult], styles: Mapping[str, CurveStyle] | None = None
+) -> "Figure":
+    """Radial gap of every seal over the angle, warm against as drawn [mm].
+
+    styles : of all gearboxes of the report; of those in ``expansion`` if left out
+    """
+    styles = styles or gearbox_colours(item.gearbox for item in expansion)
     shown = [item for item in expansion if _seals(item)]
     height = 0.4 + 2.2 * len(shown)
     figure = new_figure(height)
     for axes, item in zip(figure.subplots(len(shown), 1, squeeze=False)[:, 0], shown, strict=True):
         _over_angle(axes, item)
-        finish(
-            axes,
-            "angle about the shaft axis [°]",
-            "radial gap, local [mm]",
-            f"Gearbox {plain(item.gearbox)}, stage {plain(item.stage)}",
-        )
+        finish(axes, "angle about the shaft axis [°]", "radial gap, local [mm]")
+        gearbox_title(axes, f"Gearbox {words(item.gearbox)}, stage {words(item.stage)}", styles[item.gearbox])
         legend_right(axes)
     figure.subplots_adjust(left=0.085, right=0.76, top=1 - 0.28 / height, bottom=0.47 / height, hspace=0.5)
     return figure
@@ -72,13 +83,9 @@ def _over_angle(axes: "Axes", item: ExpansionResult) -> None:
     seals = _seals(item)
     for number, seal in enumerate(seals):
         angle, gap = _closed(seal)
-        axes.plot(
-            angle, gap, color=SERIES[number % len(SERIES)], label=f"{plain(_words(str(seal['seal'])))}, hot"
-        )
+        axes.plot(angle, gap, **curve_style(number).drawn, label=f"{words(str(seal['seal']))}, warm")
     for number, cold in enumerate(sorted({seal["cold_mm"] for seal in seals})):
-        axes.axhline(
-            cold, color=INK, linewidth=1.0, linestyle=(0, (4, 2)), label=None if number else "as drawn"
-        )
+        axes.axhline(cold, color=MUTED, linewidth=1.6, alpha=0.6, label=None if number else "as drawn")
     axes.set_xlim(0, 360)
     axes.set_xticks(range(0, 361, 45))
 
@@ -103,7 +110,7 @@ def _round(axes: "Axes", seal: dict[str, Any], middle: FloatArray, top: float, l
     edge = middle + radius(gap)[:, None] * around
     axes.fill(edge[:, 0], edge[:, 1], facecolor="#dbe7f1", edgecolor=SERIES[0], linewidth=1.3)
     axes.add_patch(Circle(tuple(middle), SHAFT, facecolor="#b9c3cc", edgecolor=INK, linewidth=0.8, zorder=3))
-    for value, colour, style in ((seal["cold_mm"], INK, (0, (4, 2))), (limit, "#b3261e", ":")):
+    for value, colour, style in ((seal["cold_mm"], INK, (0, (4, 2))), (limit, VERDICT_COLOURS["fail"], ":")):
         if value is not None:
             axes.add_patch(
                 Circle(
@@ -113,19 +120,19 @@ def _round(axes: "Axes", seal: dict[str, Any], middle: FloatArray, top: float, l
             )  # fmt: skip
     least = int(np.argmin(np.abs(angle - seal["angle_of_min_deg"])))
     toward = np.array([middle + SHAFT * around[least], edge[least]])
-    axes.plot(toward[:, 0], toward[:, 1], color="#b3261e", linewidth=1.6, zorder=5)
+    axes.plot(toward[:, 0], toward[:, 1], color=VERDICT_COLOURS["fail"], linewidth=1.6, zorder=5)
     _scale(axes, middle, top)
     axes.text(
         middle[0],
         middle[1] + 1.3,
-        plain(_words(str(seal["seal"]))),
+        words(str(seal["seal"])),
         ha="center",
         fontsize=8,
         fontweight="bold",
     )
     least_words = f"least {seal['hot_min_mm']:.3f} mm at {seal['angle_of_min_deg']:.0f}°"
-    words = f"{least_words}, mean {seal['hot_mean_mm']:.3f}"
-    axes.text(middle[0], middle[1] + 1.12, words, ha="center", fontsize=7)
+    below = f"{least_words}, mean {seal['hot_mean_mm']:.3f} mm"
+    axes.text(middle[0], middle[1] + 1.12, below, ha="center", fontsize=7)
     axes.text(middle[0], middle[1], "shaft", ha="center", va="center", fontsize=6.5, zorder=6)
 
 
@@ -145,7 +152,3 @@ def _scale(axes: "Axes", middle: FloatArray, top: float) -> None:
         va="center",
         fontsize=6,
     )
-
-
-def _words(name: str) -> str:
-    return name.replace("_", " ")

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.report.figures.drawing import legend_right, new_figure, plain
-from rigdesign.report.palette import INK, MUTED, SERIES
+from rigdesign.report.figures.drawing import legend_right, new_figure, words
+from rigdesign.report.palette import COLD, INK, LINES, MUTED, WARM, CurveStyle, curve_style
 from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 
 if TYPE_CHECKING:
@@ -80,9 +80,15 @@ def columns_of(curve: CurveOverTime) -> list[FigureColumn]:
     return columns
 
 
-def transient_figure(result: TransientResult, curve: TransientCurve) -> "Figure":
+def transient_figure(
+    result: TransientResult, curve: TransientCurve, style: CurveStyle | None = None
+) -> "Figure":
     """One thermal history: a column for each phase on a logarithmic time of its own, since a ramp takes seconds
-    and a field days; the worst moment of a quantity is a ring."""
+    and a field days; the worst moment of a quantity is a ring.
+
+    style : of the gearbox in all figures of the report; that of the first gearbox if left out
+    """
+    style = style or curve_style(0)
     coupled = bool(curve.alignment.get("coupling_offset_mm"))
     rows = [*ROWS, OFFSET] if coupled else list(ROWS)
     columns = columns_of(curve)
@@ -93,7 +99,7 @@ def transient_figure(result: TransientResult, curve: TransientCurve) -> "Figure"
     )[:, 0]
     _temperatures(grid[0], curve, columns)
     for axes, (quantity, label) in zip(grid[1:], rows, strict=True):
-        _worst_of(axes, result.worst, curve, columns, quantity)
+        _worst_of(axes, result.worst, curve, columns, quantity, style)
         axes.set_ylabel(label)
     for axes in grid:
         _divide(axes, columns)
@@ -101,7 +107,7 @@ def transient_figure(result: TransientResult, curve: TransientCurve) -> "Figure"
     _phase_names(grid[0], columns)
     grid[0].set_ylabel("temperature [°C]")
     legend_right(grid[0])
-    figure.subplots_adjust(left=0.085, right=0.83, top=1 - 0.62 / height, bottom=0.5 / height, hspace=0.12)
+    figure.subplots_adjust(left=0.1, right=0.83, top=1 - 0.62 / height, bottom=0.5 / height, hspace=0.12)
     return figure
 
 
@@ -112,11 +118,12 @@ def oil_power_figure(result: TransientResult, curve: OilPowerCurve) -> "Figure":
     figure = new_figure(height)
     axes = figure.subplots()
     for quantity, values, color in (
-        ("heater_power", curve.heater_W, SERIES[1]),
-        ("cooler_power", curve.cooler_W, SERIES[0]),
+        ("heater_power", curve.heater_W, WARM),
+        ("cooler_power", curve.cooler_W, COLD),
     ):
         x, y = _joined(curve, columns, [1e-3 * value for value in values])
-        axes.plot(x, y, color=color, label=quantity.replace("_", " "))
+        line = "-" if color == WARM else LINES[1]
+        axes.plot(x, y, color=color, linestyle=line, label=words(quantity))
         for moment in (m for m in result.worst if (m.quantity, m.branch) == (quantity, curve.branch)):
             if moment.limit is not None:
                 axes.axhline(moment.limit, color=color, linewidth=0.8, linestyle=":")
@@ -136,7 +143,7 @@ def _divide(axes: "Axes", columns: Sequence[FigureColumn]) -> None:
     for column in columns[1:]:
         axes.axvspan(column.start - APART, column.start, color="white", linewidth=0, zorder=1.5)
         axes.axvline(column.start - 0.5 * APART, color=MUTED, linewidth=0.6)
-    axes.yaxis.set_label_coords(-0.075, 0.5)
+    axes.yaxis.set_label_coords(-0.068, 0.5)
 
 
 def _places(curve: TransientCurve) -> list[str]:
@@ -161,8 +168,7 @@ def _joined(
 def _temperatures(axes: "Axes", curve: TransientCurve, columns: Sequence[FigureColumn]) -> None:
     for number, place in enumerate(_places(curve)):
         x, y = _joined(curve, columns, curve.temperatures_degC[place])
-        style = "--" if place.endswith("outlet") else "-"
-        axes.plot(x, y, style, color=SERIES[number % len(SERIES)], label=plain(place.replace("_", " ")))
+        axes.plot(x, y, **curve_style(number).drawn, label=words(place))
 
 
 def _worst_of(
@@ -171,6 +177,7 @@ def _worst_of(
     curve: TransientCurve,
     columns: Sequence[FigureColumn],
     quantity: str,
+    style: CurveStyle,
 ) -> None:
     """The worst place of a quantity at every time, its limit, a ring where a history has its worst moment."""
     offset = quantity == OFFSET[0]
@@ -178,7 +185,7 @@ def _worst_of(
     values = (
         np.array(list(places.values())).max(axis=0) if offset else np.array(list(places.values())).min(axis=0)
     )
-    axes.plot(*_joined(curve, columns, values.tolist()), color=INK)
+    axes.plot(*_joined(curve, columns, values.tolist()), **style.drawn)
     for moment in (m for m in worst if (m.quantity, m.branch) == (quantity, curve.branch)):
         if moment.limit is not None:
             axes.axhline(moment.limit, color=MUTED, linewidth=0.8, linestyle=":")
@@ -193,7 +200,7 @@ def _ring(axes: "Axes", curve: CurveOverTime, columns: Sequence[FigureColumn], m
         exact = abs(curve.time_s[column.at[least]] - moment.time_s) < 1e-6
         if column.phase == moment.phase and exact:
             where = float(column.places(curve)[least])
-            axes.plot([where], [moment.value], "o", mfc="none", mec=SERIES[1], ms=8, mew=1.6)
+            axes.plot([where], [moment.value], "o", mfc="none", mec=INK, ms=8, mew=1.6)
 
 
 def _phase_names(axes: "Axes", columns: Sequence[FigureColumn]) -> None:
@@ -202,7 +209,7 @@ def _phase_names(axes: "Axes", columns: Sequence[FigureColumn]) -> None:
     height = 4
     for column in columns:
         room = int(per_decade * (column.end - column.start))
-        lines = textwrap.wrap(plain(column.phase.replace("_", " ")), max(room, NARROW))
+        lines = textwrap.wrap(words(column.phase), max(room, NARROW))
         axes.annotate(
             "\n".join(lines), (column.start, 1.0), xycoords=("data", "axes fraction"), textcoords="offset points",
             xytext=(2, height), va="bottom", fontsize=7.5, fontweight="bold",

@@ -16,6 +16,7 @@ from rigdesign.report.sections.section import ReportSection
 from rigdesign.report.sections.temperatures import TEMPERATURES
 from rigdesign.report.sections.transient import TRANSIENT
 from rigdesign.report.sections.verdict import DRIVERS, VERDICT
+from rigdesign.report.sections.viewer import VIEWER
 
 SECTIONS: tuple[ReportSection, ...] = (
     VERDICT,
@@ -23,6 +24,7 @@ SECTIONS: tuple[ReportSection, ...] = (
     LOADS,
     LOSSES,
     TEMPERATURES,
+    VIEWER,
     CLEARANCES,
     TRANSIENT,
     ASSUMPTIONS,

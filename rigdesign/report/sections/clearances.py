@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from rigdesign.report.sections.gearbox_styles import gearbox_styles
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
@@ -14,7 +15,10 @@ def _clearances(result: RunResult, draw: Draw) -> Values:
 
     gaps = None
     if any(seal.get("hot_mm") for expansion in result.expansion for seal in expansion.seal_gaps):
-        gaps = draw(seal_gap_figure(result.expansion), "Seal gap over the angle, as drawn and warm")
+        gaps = draw(
+            seal_gap_figure(result.expansion, gearbox_styles(result)),
+            "Seal gap over the angle, as drawn and warm",
+        )
     return {"seal_gaps": gaps, "seals_round": _seals_round(result, draw)}
 
 

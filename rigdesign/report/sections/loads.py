@@ -1,5 +1,6 @@
 """Ramp, dynamic factor, root stress, resonances."""
 
+from rigdesign.report.sections.gearbox_styles import gearbox_styles
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.dynamics import GearboxDynamics
 from rigdesign.results.result import RunResult
@@ -29,7 +30,7 @@ def _loads(result: RunResult, draw: Draw) -> Values:
     for name, gearbox in dynamics.gearboxes.items():
         if _has_root_stress(gearbox):
             shown["root_stress"][name] = draw(
-                figures.root_stress_figure(gearbox),
+                figures.root_stress_figure(gearbox, gearbox_styles(result)[name]),
                 f"Root stress of gearbox {name}, dynamic and quasi-static",
             )
     return shown

@@ -1,5 +1,6 @@
 """Thermal histories over the schedule and its events: figures by history, worst moments, settling times."""
 
+from rigdesign.report.sections.gearbox_styles import gearbox_styles
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
@@ -9,10 +10,11 @@ def _histories(result: RunResult, draw: Draw) -> Values:
 
     found = result.transient
     assert found is not None
+    styles = gearbox_styles(result)
     return {
         "transient_figures": {
             f"{curve.gearbox}, {curve.branch.replace('_', ' ')}": draw(
-                transient_figure(found, curve),
+                transient_figure(found, curve, styles.get(curve.gearbox)),
                 f"Temperatures and clearances of gearbox {curve.gearbox} over the thermal history {curve.branch}",
             )
             for curve in found.curves

@@ -16,6 +16,7 @@ from rigdesign.report.figures.transient import (
     transient_figure,
 )
 from rigdesign.report.numbers import power_text
+from rigdesign.report.palette import VERDICT_COLOURS
 from rigdesign.results.curves import transient_curves
 from rigdesign.results.transient import OilPowerCurve, TransientCurve, TransientResult, WorstMoment
 from tests.builders.report import thermal_and_expansion
@@ -141,7 +142,7 @@ def test_seals_are_closed_round_the_shaft_and_their_least_gap_is_marked() -> Non
     axes = round_figure.axes[0]
     texts = [text.get_text() for text in axes.texts]
     assert sum("least 0.571 mm at 90°" in text for text in texts) == len(expansion.seal_gaps)
-    marks = [line for line in axes.get_lines() if line.get_color() == "#b3261e"]
+    marks = [line for line in axes.get_lines() if line.get_color() == VERDICT_COLOURS["fail"]]
     for line in marks:
         x, y = line.get_xdata(), line.get_ydata()
         assert x[0] == pytest.approx(x[1])  # 90 degrees: straight up

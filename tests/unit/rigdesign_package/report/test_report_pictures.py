@@ -1,6 +1,7 @@
 """Cuts and views of a mesh, against areas and values that are known."""
 
 from dataclasses import replace
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -170,6 +171,41 @@ def test_fields_of_hexahedra_are_written_as_such(tmp_path):
     read = meshio.read(tmp_path / "field.vtu")
     assert read.cells[0].type == "hexahedron20"
     np.testing.assert_allclose(read.point_data["heat_flux_W_m2"], flux)
+
+
+@pytest.mark.parametrize("cell", ["tetra10", "hexahedron20", "hexahedron27"])
+def test_bodies_and_surfaces_are_blocks_by_name(cell, tmp_path):
+    """Bodies fill the mesh, surfaces its outside; a name with signs stays as it is in the list of blocks."""
+    import meshio
+
+    mesh = box_mesh((0.4, 0.3, 0.2), (2, 2, 1), cell=cell, name="housing")
+    half = len(mesh.cells) // 2
+    mesh = replace(
+        mesh,
+        bodies={"housing": np.arange(half), 'shaft <A> & "B"/1': np.arange(half, len(mesh.cells))},
+    )
+    field = TemperatureField("test", "run up", mesh, 300.0 + mesh.points[:, 0], 1e-4 * mesh.points)
+    entry = write_field(field, tmp_path / "test_run_up.vtu")
+    assert entry["blocks"] == "fields/test_run_up.vtm"
+    assert entry["bodies"] == list(mesh.bodies)
+    assert entry["surfaces"] == list(mesh.surfaces)
+    root = ElementTree.parse(tmp_path / "test_run_up.vtm").getroot()
+    assert root.get("type") == "vtkMultiBlockDataSet"
+    groups = {
+        group.get("name"): {block.get("name"): block for block in group} for group in root.iter("Block")
+    }
+    assert {name: list(blocks) for name, blocks in groups.items()} == {
+        "bodies": list(mesh.bodies), "surfaces": list(mesh.surfaces),
+    }  # fmt: skip
+    for name, block in {**groups["bodies"], **groups["surfaces"]}.items():
+        read = meshio.read(tmp_path / block.get("file"))
+        wanted = mesh.cells[mesh.bodies[name]] if name in mesh.bodies else mesh.surfaces[name]
+        np.testing.assert_allclose(read.points[read.cells[0].data], mesh.points[wanted], atol=1e-7)
+        np.testing.assert_allclose(read.point_data["temperature_degC"], 26.85 + read.points[:, 0], atol=1e-4)
+    files = {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*.vtu")}
+    assert files == {
+        "test_run_up.vtu", *(b.get("file") for blocks in groups.values() for b in blocks.values()),
+    }  # fmt: skip
 
 
 def test_fields_of_a_renumbered_mesh_keep_the_order_it_was_given_in(tmp_path):
