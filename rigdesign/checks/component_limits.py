@@ -14,7 +14,7 @@ from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.oil import FLOWS
 from rigdesign.checks.omissions import Omissions, constant_drag, warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Omission, Rule, exact, hold, not_applicable
+from rigdesign.checks.rules import Omission, Rule, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
@@ -24,8 +24,6 @@ from rigdesign.rig.shaft_seals import shaft_seals
 Found = tuple[float | None, str]
 """A result [SI] and where it occurs; None with the reason where there is none."""
 GROUP = "bought parts"
-EXACT = ("speed", "torque_mean", "oil_flow")
-"""Inputs of the case: at the limit they are not near it but on it."""
 
 
 def checks(solved: SolvedRig) -> Iterator[Check]:
@@ -38,6 +36,7 @@ def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
     rule = Rule(
         id=f"bought_part.{name}", title=f"{part.title} ({part.part})", unit=KINDS[part.kind].display_unit,
         source=part.source, group=GROUP, limit=display(part.limit_si, part.kind),
+        by_definition=FAMILY_OF[part.quantity if part.given is None else "given"].by_definition,
     )  # fmt: skip
     value: float | None
     value, reason = part.given_si, "given in the case"
@@ -45,8 +44,7 @@ def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
         value, reason = RESULTS[part.quantity](solved, part.part)
     if value is None:
         return not_applicable(rule, reason)
-    check = hold(rule, display(value, part.kind), reason)
-    return exact(check) if part.quantity in EXACT else check
+    return hold(rule, display(value, part.kind), reason)
 
 
 def _speed(solved: SolvedRig, part: str) -> Found:
@@ -231,8 +229,8 @@ def _family(quantity: ResultQuantity | Literal["given"], title: str) -> RuleFami
 
 FAMILIES = (
     replace(_family("torque_peak", "highest dynamic torque"), moved_by=frozenset({"time run"})),
-    replace(_family("torque_mean", "largest mean torque"), only_inputs=SPEEDS),
-    replace(_family("speed", "highest speed"), only_inputs=SPEEDS),
+    replace(_family("torque_mean", "largest mean torque"), only_inputs=SPEEDS, by_definition=True),
+    replace(_family("speed", "highest speed"), only_inputs=SPEEDS, by_definition=True),
     replace(
         _family("drive_torque", "highest torque of the motor"),
         leaves_out=(constant_drag, _saturated),
@@ -257,7 +255,7 @@ FAMILIES = (
         leaves_out=(warming, constant_drag),
         moved_by=frozenset({"housing"}),
     ),
-    replace(_family("oil_flow", "oil flow"), only_inputs=FLOWS),
+    replace(_family("oil_flow", "oil flow"), only_inputs=FLOWS, by_definition=True),
     replace(
         _family("temperature_maximum", "highest temperature"),
         leaves_out=(warming, constant_drag),
@@ -266,5 +264,6 @@ FAMILIES = (
     replace(_family("given", "value given in the case"), only_inputs=()),
 )
 """By quantity: the id of a check ends with the name of its part."""
+FAMILY_OF = {family.key.partition(".")[2]: family for family in FAMILIES}
 
 REGISTRY.register(Topic(order=60, families=FAMILIES, checks=checks))

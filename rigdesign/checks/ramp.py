@@ -8,7 +8,7 @@ from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT
 from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
-from rigdesign.checks.rules import exact, hold, not_applicable
+from rigdesign.checks.rules import hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig
 from rigdesign.results.check import Check
@@ -27,6 +27,7 @@ RAMP = RuleFamily(
     group="ramp",
     source="P2, Figure 9",
     only_inputs=("limits.ramp", "limits.bearing.start_torque_limit", *SPEEDS),
+    by_definition=True,
 )
 TRANSITION_SPEED = RuleFamily(
     key="bearing.transition_speed",
@@ -81,7 +82,7 @@ def ramp(solved: SolvedRig) -> Iterator[Check]:
         elif not entry.stage:
             yield not_applicable(rule, "no stage of the schedule runs there")
         else:
-            yield exact(hold(rule, entry.value, f"stage {entry.stage} at {entry.time:.2f} s"))
+            yield hold(rule, entry.value, f"stage {entry.stage} at {entry.time:.2f} s")
 
 
 def _transition(solved: SolvedRig) -> Check:
