@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
+from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.cli.application import app, loaded_case, print_json
 from rigdesign.cli.ending import NOTHING_KEPT, failure_kept, interrupted
@@ -18,6 +19,8 @@ def check(
     fidelity: Fidelity = "standard",
     transient: Annotated[bool, Parameter(negative=())] = False,
     ranges: Annotated[bool, Parameter(negative=())] = False,
+    pdf: Annotated[bool, Parameter(negative=())] = False,
+    author: str | None = None,
     json: bool = False,
     fail_on: Literal["fail", "warn"] = "fail",
 ) -> int:
@@ -35,6 +38,10 @@ def check(
         Follow temperatures and clearances over warm-up, schedule, stops and soak-back as well.
     ranges
         Move every assumed input to both ends of its range, one at a time: a check passes only if it holds there too.
+    pdf
+        Write the report as report.pdf to the folder of --out too (extra pdf: WeasyPrint).
+    author
+        Who prepares the report, in place of document.author of the case.
     json
         Print results.json on stdout; everything else goes to stderr.
     fail_on
@@ -43,11 +50,18 @@ def check(
     loaded = loaded_case(case)
     from rigdesign.cli.terminal.checks import print_checks
     from rigdesign.cli.terminal.progress import Progress
-    from rigdesign.report import prepare_output, results_document, write_results
+    from rigdesign.report import Issue, prepare_output, results_document, write_results
     from rigdesign.run.main import run_case
 
     if out is not None:
         prepare_output(out)
+    elif pdf or author is not None:
+        option = "--pdf" if pdf else "--author"
+        raise UsageError(f"{option} needs the folder of the report; add --out DIR")
+    if pdf:
+        from rigdesign.report.pdf import require_pdf
+
+        require_pdf()
     with Progress() as progress, interrupted(NOTHING_KEPT), failure_kept(out):
         result = run_case(loaded, fidelity=fidelity, progress=progress, transient=transient)
         if ranges:
@@ -56,7 +70,7 @@ def check(
             result = with_ranges(loaded, result, progress=progress, count=progress.count)
         if out is not None:
             progress("writing report")
-            write_results(result, out)
+            write_results(result, out, Issue(author=author or ""), pdf=pdf)
     if json:
         print_json(results_document(result))
     else:

@@ -13,20 +13,26 @@ LEAST_MOVE = 0.01
 
 
 def _ranges(result: RunResult, draw: Draw) -> Values:
-    from rigdesign.report.figures.ranges import margins_figure, temperature_figure
+    from rigdesign.report.figures.ranges import margins_figure
+
+    assert result.ranges is not None
+    margins = margins_figure(result.ranges, {check.id: check.title for check in result.checks})
+    words = "Margin of every check over the ranges of the assumed inputs"
+    return {"range_margins": None if margins is None else draw(margins, words)}
+
+
+def _details(result: RunResult, draw: Draw) -> Values:
+    from rigdesign.report.figures.ranges import temperature_figure
 
     ranges = result.ranges
     assert ranges is not None
-    shown: Values = {"range_margins": None, "range_temperature": None}
-    titles = {check.id: check.title for check in result.checks}
-    margins, temperatures = margins_figure(ranges, titles), temperature_figure(ranges)
-    if margins is not None:
-        shown["range_margins"] = draw(margins, "Margin of every check over the ranges of the assumed inputs")
-    if temperatures is not None:
-        shown["range_temperature"] = draw(temperatures, "Highest temperature over the ranges of the inputs")
+    temperatures = temperature_figure(ranges)
     stated = {row.check: row for row in ranges.checks}
-    shown["strong_margins"] = [row for row in ranges.margins if _moves(row, stated[row.check])]
-    return shown
+    words = "Highest temperature over the ranges of the inputs"
+    return {
+        "range_temperature": None if temperatures is None else draw(temperatures, words),
+        "strong_margins": [row for row in ranges.margins if _moves(row, stated[row.check])],
+    }
 
 
 def _moves(row: "RangeMargin", stated: "CheckRange") -> bool:
@@ -39,5 +45,13 @@ def _evaluated(result: RunResult) -> bool:
 
 
 RANGES = ReportSection(
-    id="ranges", template="ranges.html.j2", values=_ranges, applies=_evaluated, within="assumptions"
+    id="ranges",
+    title="Verdicts over the ranges",
+    template="ranges.html.j2",
+    values=_ranges,
+    applies=_evaluated,
 )
+RANGE_DETAILS = ReportSection(
+    id="range_details", title="Margins at the ends of the ranges", template="range_details.html.j2", values=_details,
+    applies=_evaluated, place="appendix",
+)  # fmt: skip
