@@ -68,7 +68,7 @@ def text_with_units(text: str) -> str:
 
 
 def stated_text(text: str) -> str:
-    """A value of the case as it reads: ``5.015539e-04 kg m2`` -> ``5.016 × 10⁻⁴ kg m²``, short ones as written."""
+    """A value of the case as it reads: ``5.015539e-04 kg m2`` -> ``0.0005016 kg m²``, short ones as written."""
     return text_with_units(STATED_NUMBER.sub(_stated_number, text))
 
 

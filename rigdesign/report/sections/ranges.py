@@ -12,25 +12,19 @@ LEAST_MOVE = 0.01
 """Shift of the utilisation from which a pair of check and input has a line in the report; results.json has more."""
 
 
-def _ranges(result: RunResult, draw: Draw) -> Values:
-    from rigdesign.report.figures.ranges import margins_figure
-
-    assert result.ranges is not None
-    margins = margins_figure(result.ranges, {check.id: check.title for check in result.checks})
-    words = "Margin of every check over the ranges of the assumed inputs"
-    return {"range_margins": None if margins is None else draw(margins, words)}
-
-
 def _details(result: RunResult, draw: Draw) -> Values:
-    from rigdesign.report.figures.ranges import temperature_figure
+    from rigdesign.report.figures.ranges import margins_figure, temperature_figure
 
     ranges = result.ranges
     assert ranges is not None
+    margins = margins_figure(ranges, {check.id: check.title for check in result.checks})
     temperatures = temperature_figure(ranges)
+    moved = "Margin of every check over the ranges of the assumed inputs"
+    hottest = "Highest temperature over the ranges of the inputs"
     stated = {row.check: row for row in ranges.checks}
-    words = "Highest temperature over the ranges of the inputs"
     return {
-        "range_temperature": None if temperatures is None else draw(temperatures, words),
+        "range_margins": None if margins is None else draw(margins, moved),
+        "range_temperature": None if temperatures is None else draw(temperatures, hottest),
         "strong_margins": [row for row in ranges.margins if _moves(row, stated[row.check])],
     }
 
@@ -45,11 +39,7 @@ def _evaluated(result: RunResult) -> bool:
 
 
 RANGES = ReportSection(
-    id="ranges",
-    title="Verdicts over the ranges",
-    template="ranges.html.j2",
-    values=_ranges,
-    applies=_evaluated,
+    id="ranges", title="Verdicts over the ranges", template="ranges.html.j2", applies=_evaluated
 )
 RANGE_DETAILS = ReportSection(
     id="range_details", title="Margins at the ends of the ranges", template="range_details.html.j2", values=_details,
