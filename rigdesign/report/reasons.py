@@ -129,23 +129,29 @@ def loaded_pitches(mesh: GearboxDynamics | None, gear: str) -> float | None:
     return None
 
 
+LEAVES_OUT = "leaves out "
+"""Where the reason of a check goes over to what its value does not count: no help to a limit that is missed."""
+
+
 def _limit_missed(failing: Sequence[Check]) -> Why:
     """The governing check and how it came about."""
     worst = failing[0]
     used = "" if worst.utilisation is None else f" ({percent_text(worst.utilisation)} of the limit used)"
     first = f"{_capital(worst.title)}: {value_text(worst)} against {limit_text(worst)}{used}{_others(failing, worst)}."
-    sentences = (first, f"{_capital(worst.reason)}.") if worst.reason else (first,)
-    if worst.left_out:
-        return Why(
-            sentences=sentences, decided_by=f"A model of what the value leaves out: {worst.left_out[0]}."
-        )
+    reason = worst.reason.partition(LEAVES_OUT)[0].rstrip("; ")
+    sentences = (first, f"{_capital(reason)}.") if reason else (first,)
     error, margin = worst.discretisation_error, worst.margin
     if error is not None and margin is not None and abs(margin) < error:
         text = f"A finer mesh: it leaves {quantity_text(error, worst.unit)} open, more than is missing."
         return Why(sentences=sentences, decided_by=text)
     if worst.by_definition:
         return Why(sentences=sentences, decided_by="The case itself: it states value and limit.")
-    return Why(sentences=sentences)
+    if not worst.assumptions:
+        return Why(sentences=sentences, decided_by="Another design, operating point or limit.")
+    number = len(worst.assumptions)
+    inputs = "the assumed input" if number == 1 else f"the {number} assumed inputs"
+    text = f"Measured values in place of {inputs} it depends on, or another design, operating point or limit."
+    return Why(sentences=sentences, decided_by=text)
 
 
 def _reserved(checks: Sequence[Check]) -> Why:

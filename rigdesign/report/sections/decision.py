@@ -4,7 +4,7 @@ from rigdesign.report import flips, reasons, views
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
 
-NEAREST = 6
+NEAREST = 5
 """Lines of the table of the first page."""
 NAMED = 4
 """Assumed inputs that the first page names."""

@@ -9,6 +9,7 @@ from rigdesign.report.pages.report import report_html
 from tests.builders.browser import Browser, browser
 from tests.builders.report import make_check, make_result
 from tests.builders.report_inputs import rig_inputs
+from tests.builders.report_ranges import ranges
 
 __all__ = ["browser"]
 
@@ -121,7 +122,7 @@ def test_checks_that_do_not_apply_are_folded_on_the_screen_and_printed(browser: 
 
 
 def test_a_long_report_keeps_its_first_page(browser: Browser, tmp_path: Path) -> None:
-    """Eight failing checks with long titles: the first page names six and the signatures stay on it."""
+    """Eight failing checks with long titles: the first page names five and the signatures stay on it."""
     many = [
         make_check(
             f"strength.x{n}", 9.0, 1.0 + n, title=f"safety of a part with a rather long name, place {n}"
@@ -129,8 +130,10 @@ def test_a_long_report_keeps_its_first_page(browser: Browser, tmp_path: Path) ->
         for n in range(8)
     ]
     path = tmp_path / "long.html"
-    path.write_text(report_html(replace(make_result(inputs=rig_inputs()), checks=many)), encoding="utf-8")
+    result = replace(make_result(inputs=rig_inputs()), checks=many, ranges=ranges())
+    path.write_text(report_html(result), encoding="utf-8")
     browser.open(path)
     pages = browser.print_pages()
+    assert "holds from about 160 N m" in pages[0]
     assert "approved" in pages[0]
     assert "Checks and margins" in pages[1]

@@ -13,9 +13,9 @@ from rigdesign.report.figures.schematic import rig_plan, schematic_figure
 from rigdesign.report.input_sheets import gear_sheets, joint_sheet, material_sheet, oil_sheet, shaft_sheet
 from rigdesign.report.issue import Issue, signatures
 from rigdesign.report.pages.report import css_string, report_html
-from rigdesign.results.ranges import CheckRange, RangedInput, RangeMargin, RangesResult
 from tests.builders.report import make_check, make_result
 from tests.builders.report_inputs import rig_inputs
+from tests.builders.report_ranges import ranges
 
 
 def two_methods(iso, path, **more):
@@ -69,14 +69,16 @@ def test_a_path_above_the_standard_has_its_own_reason():
     )
 
 
-def test_any_other_failing_check_says_what_it_is_and_what_it_leaves_out():
-    check = make_check("oil.room", 4.0, 3.0, unit="kW", title="heat to the room", reason="stage test")
-    why = reasons.why(make_result(checks=[replace(check, left_out=("walls of gearbox b",))]))
+def test_any_other_failing_check_says_what_it_is_and_what_would_decide_it():
+    check = make_check(
+        "oil.room", 4.0, 3.0, unit="kW", title="heat to the room", reason="stage test; leaves out b"
+    )
+    why = reasons.why(make_result(checks=[replace(check, left_out=("b",), assumptions=("x", "y"))]))
     assert why.sentences == (
         "Heat to the room: 4 kW against ≤ 3 kW (133 % of the limit used).",
         "Stage test.",
     )
-    assert "walls of gearbox b" in why.decided_by
+    assert "the 2 assumed inputs it depends on" in why.decided_by
     error = replace(check, discretisation_error=2.0)
     assert "finer mesh" in reasons.why(make_result(checks=[error])).decided_by
     stated = replace(check, by_definition=True)
@@ -97,37 +99,6 @@ def test_reservations_and_a_clean_pass_name_the_nearest_check():
         "All 2 checks that apply hold.", "Nearest to its limit is b: 0.99 mm against ≤ 1 mm, 99 % used.",
     )  # fmt: skip
     assert "No check applies" in reasons.why(make_result(checks=[])).sentences[0]
-
-
-def ranges():
-    """A failing check that a torque turns, one that nothing turns, and one that holds and that a gap breaks."""
-
-    def row(name, verdict, margin, decided):
-        return CheckRange(
-            check=name, unit="mm", verdict_stated=verdict, verdict=verdict, margin=margin, worst_margin=margin,
-            worst_path=None, worst_value=None, best_margin=None, best_path=None, utilisation=0.5,
-            worst_utilisation=None, best_utilisation=None, all_worst_margin=None, decided_by=decided,
-        )  # fmt: skip
-
-    def given(path, stated, low, high):
-        return RangedInput(
-            path=path, together_with=(), stated=stated, low=low, high=high, solved_again=(),
-            max_temperature_low_degC=None, max_temperature_high_degC=None,
-        )  # fmt: skip
-
-    def margin(check, path, low, high):
-        return RangeMargin(
-            check=check, path=path, unit="mm", margin_low=low, margin_high=high, utilisation_low=0.4,
-            utilisation_high=0.9, verdict_low=None, verdict_high=None,
-        )  # fmt: skip
-
-    return RangesResult(
-        fidelity="quick", method="solved",
-        inputs=[given("torque", "180 N m", "100 N m", "200 N m"), given("gap", "60 um", "40 um", "80 um")],
-        checks=[row("x", "fail", -1.0, ("torque",)), row("y", "fail", -1.0, ()), row("z", "pass", 1.0, ("gap",))],
-        margins=[margin("x", "torque", 3.0, -2.0), margin("y", "gap", -0.5, -0.8), margin("z", "gap", -1.0, 2.0)],
-        max_temperature=None, left_out=[],
-    )  # fmt: skip
 
 
 def test_inputs_that_turn_the_verdict_come_from_the_ranges():
