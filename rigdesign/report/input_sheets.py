@@ -75,6 +75,8 @@ def _gear_sheet(label: str, box: CaseSheet, mesh: CaseSheet, dynamics: GearboxDy
     def warm(cold: str, hot: str) -> list[str]:
         return [f"{a} / {b} mm" for a, b in zip(pair(cold), pair(hot), strict=True)]
 
+    given = str(computed.get("profile_shifts", ""))
+    shifts = [number_text(float(value)) for value in given.split(" / ") if value]
     rows: list[Row] = [
         ("number of teeth z", both("teeth")),
         ("normal module mₙ", [mesh.value("normal_module")]),
@@ -82,7 +84,7 @@ def _gear_sheet(label: str, box: CaseSheet, mesh: CaseSheet, dynamics: GearboxDy
             "pressure angle αₙ, helix angle β",
             [f"{mesh.value('pressure_angle')}, {mesh.value('helix_angle')}"],
         ),
-        ("profile shift coefficient x", pair("profile_shifts") or both("profile_shift")),
+        ("profile shift coefficient x", shifts or both("profile_shift")),
         ("centre distance a, drawn / warm", [_drawn_warm(dynamics, mesh)]),
         ("face width b", both("face_width")),
         ("reference diameter d", length("reference_diameters_mm")),

@@ -179,7 +179,7 @@ def signs(text: str) -> "Markup":
     from markupsafe import Markup, escape
 
     escaped = str(escape(numbers.text_with_units(text.replace("sigma_F", "σ_F"))))
-    return Markup(re.sub(r"\b([KYfdσ])_([A-Z]{1,2}|[fz]|Fbeta|Falpha)\b", _subscript, escaped))
+    return Markup(re.sub(r"\b([KYfdσε])_([A-Z]{1,2}|[fzα]|Fbeta|Falpha)\b", _subscript, escaped))
 
 
 def _subscript(found: re.Match[str]) -> str:

@@ -189,6 +189,22 @@ def test_data_sheets_echo_the_case():
     assert joints["coupling upper"][1] == "138\u202f000 N m/rad"
 
 
+def test_the_gear_sheet_has_the_computed_sizes_drawn_and_warm():
+    base = make_result(inputs=rig_inputs())
+    geometry = {
+        "profile_shifts": "0.0000 / -0.9610", "tip_diameters_cold_mm": "101.000 / 100.667",
+        "tip_diameters_hot_mm": "101.163 / 100.820", "centre_distance_hot_mm": 99.550092,
+        "transverse_contact_ratio": 1.26, "transverse_contact_ratio_hot": 1.327,
+    }  # fmt: skip
+    test = replace(base.dynamics.gearboxes["test"], geometry=geometry)
+    result = replace(base, dynamics=replace(base.dynamics, gearboxes={"test": test}))
+    rows = dict(gear_sheets(result)[0].rows)
+    assert rows["profile shift coefficient x"] == ["0", "−0.961"]
+    assert rows["tip diameter dₐ, drawn / warm"] == ["101.000 / 101.163 mm", "100.667 / 100.820 mm"]
+    assert rows["centre distance a, drawn / warm"] == ["99.5 / 99.550 mm"]
+    assert rows["contact ratio ε_α, drawn / warm"] == ["1.26 / 1.327"]
+
+
 def test_equal_gear_pairs_share_a_sheet():
     from rigdesign.case.inputs import input_rows
 
