@@ -10,6 +10,7 @@ from typing import Any, Literal
 from pydantic import Field, PrivateAttr
 
 from rigdesign.case.assumptions import AssumptionRecord, implied_assumptions
+from rigdesign.case.document import Document
 from rigdesign.case.drivetrain import DrivetrainInput
 from rigdesign.case.fields import Name, Part, Text
 from rigdesign.case.gearbox import Gearbox
@@ -73,6 +74,8 @@ class Case(Part):
     """Tolerances and sizes of the models."""
     transient: Transient = Transient()
     """Warm-up, dwell and stops that ``check --transient`` follows."""
+    document: Document = Document()
+    """Who answers for the report; moves no result and is left out of the hash."""
 
     _origin: Origin = PrivateAttr()
 
@@ -120,10 +123,11 @@ class Case(Part):
 
     @property
     def hash(self) -> str:
-        """SHA-256 of the resolved content: values in SI and marks, not file name or spelling of units."""
+        """SHA-256 of the resolved content: values in SI and marks, not file name, spelling of units or ``document``."""
+        marks = [mark for mark in self._origin.marks if not mark.path.startswith("document.")]
         content = {
-            "values": _rounded(self.model_dump(mode="json")),
-            "marks": [mark.as_record() for mark in sorted(self._origin.marks, key=lambda mark: mark.path)],
+            "values": _rounded(self.model_dump(mode="json", exclude={"document"})),
+            "marks": [mark.as_record() for mark in sorted(marks, key=lambda mark: mark.path)],
         }
         for name, box in self.gearboxes.items():
             if box.housing is not None and box.housing.mesh_file is not None:

@@ -15,7 +15,7 @@ from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.oil import FLOWS
 from rigdesign.checks.omissions import Omissions, constant_drag, warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic
-from rigdesign.checks.rules import Omission, Rule, exact, hold, not_applicable
+from rigdesign.checks.rules import Omission, Rule, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.solved_rig import NO_HOUSING, NO_LOADS, SolvedRig, worst
 from rigdesign.results.check import Check
@@ -25,8 +25,6 @@ from rigdesign.rig.shaft_seals import shaft_seals
 Found = tuple[float | None, str]
 """A result [SI] and where it occurs; None with the reason where there is none."""
 GROUP = "bought parts"
-EXACT = ("speed", "torque_mean", "oil_flow")
-"""Inputs of the case: at the limit they are not near it but on it."""
 
 
 def checks(solved: SolvedRig) -> Iterator[Check]:
@@ -43,14 +41,14 @@ def _check(solved: SolvedRig, name: str, part: BoughtPart) -> Check:
         value, reason = RESULTS[part.quantity](solved, part.part)
     if value is None:
         return not_applicable(rule, reason)
-    check = hold(rule, display(value, part.kind), reason)
-    return exact(check) if part.quantity in EXACT else check
+    return hold(rule, display(value, part.kind), reason)
 
 
 def _rule(name: str, part: BoughtPart) -> Rule:
     return Rule(
         id=f"bought_part.{name}", title=f"{part.title} ({part.part})", unit=KINDS[part.kind].display_unit,
         source=part.source, group=GROUP, limit=display(part.limit_si, part.kind),
+        by_definition=FAMILY_OF[part.quantity if part.given is None else "given"].by_definition,
     )  # fmt: skip
 
 
@@ -266,6 +264,7 @@ FAMILIES = (
             "Largest mean torque of the schedule at the gears of the part, by the ratios of the meshes.",
         ),
         only_inputs=SPEEDS,
+        by_definition=True,
     ),
     replace(
         _family(
@@ -274,6 +273,7 @@ FAMILIES = (
             "Largest speed of the schedule at the shafts of the part, by the ratios of the meshes.",
         ),
         only_inputs=SPEEDS,
+        by_definition=True,
     ),
     replace(
         _family(
@@ -328,7 +328,9 @@ FAMILIES = (
         moved_by=frozenset({"housing"}),
     ),
     replace(
-        _family("oil_flow", "oil flow", "Sum of the flows of the circuits of the part."), only_inputs=FLOWS
+        _family("oil_flow", "oil flow", "Sum of the flows of the circuits of the part."),
+        only_inputs=FLOWS,
+        by_definition=True,
     ),
     replace(
         _family(
@@ -343,5 +345,6 @@ FAMILIES = (
     replace(_family("given", "value given in the case", "The value that the case gives."), only_inputs=()),
 )
 """By quantity: the id of a check ends with the name of its part."""
+FAMILY_OF = {family.key.partition(".")[2]: family for family in FAMILIES}
 
 REGISTRY.register(Topic(order=60, families=FAMILIES, checks=checks))

@@ -7,7 +7,7 @@ from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT
 from rigdesign.checks.influences import SPEEDS
 from rigdesign.checks.omissions import warming
 from rigdesign.checks.registry import REGISTRY, RuleFamily, Topic, Values
-from rigdesign.checks.rules import Comparison, exact, hold, not_applicable
+from rigdesign.checks.rules import Comparison, hold, not_applicable
 from rigdesign.coupling.time_run import schedule_of
 from rigdesign.records.solved_rig import NO_LIMIT, SolvedRig
 from rigdesign.results.check import Check
@@ -26,6 +26,7 @@ def _family(name: str, title: str, limit: str, procedure: str, comparison: Compa
         source=limit,
         comparison=comparison,
         only_inputs=OF_SPEEDS,
+        by_definition=True,
     )
 
 
@@ -101,7 +102,7 @@ def ramp(solved: SolvedRig) -> Iterator[Check]:
         elif not entry.stage:
             yield not_applicable(rule, "no stage of the schedule runs there")
         else:
-            yield exact(hold(rule, entry.value, f"stage {entry.stage} at {entry.time:.2f} s"))
+            yield hold(rule, entry.value, f"stage {entry.stage} at {entry.time:.2f} s")
 
 
 def _transition(solved: SolvedRig) -> Check:

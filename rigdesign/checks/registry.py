@@ -70,6 +70,8 @@ class RuleFamily:
     """Groups of inputs that move the value, beyond those that move every check (`assumptions`)."""
     only_inputs: tuple[str, ...] | None = None
     """Inputs of a rule that is arithmetic of a few; None for all others."""
+    by_definition: bool = False
+    """Value and limit are both commanded by the case, by its schedule or its flows: nothing is predicted."""
 
     def rule(self, limit: float | None, place: str = "") -> Rule:
         """The rule of one place with its limit [SI]."""
@@ -81,6 +83,7 @@ class RuleFamily:
             group=self.group,
             limit=None if limit is None else self.unit.shown(limit),
             comparison=self.comparison,
+            by_definition=self.by_definition,
         )
 
     def rules(self, case: Case) -> Iterator[Rule]:

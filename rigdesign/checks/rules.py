@@ -37,6 +37,8 @@ class Rule:
     comparison: Comparison = "<="
     warn_only: bool = False
     """A broken rule warns instead of failing (a rule of good practice, not a limit)."""
+    by_definition: bool = False
+    """The case states the value as well: met to the digit it is met, not near its limit."""
 
     @property
     def datum(self) -> float:
@@ -79,6 +81,7 @@ def hold(rule: Rule, value: float, reason: str = "", *, doubt: str = "") -> Chec
         role=rule.role,
         reason="; ".join(part for part in (reason, doubt) if part),
         group=rule.group,
+        by_definition=rule.by_definition,
     )
 
 
@@ -99,6 +102,7 @@ def not_applicable(rule: Rule, reason: str) -> Check:
         role=rule.role,
         reason=reason,
         group=rule.group,
+        by_definition=rule.by_definition,
     )
 
 
@@ -147,14 +151,8 @@ def _lower_share(value: float, limit: float) -> float:
 def _verdict(rule: Rule, margin: float, utilisation: float, doubt: str) -> Verdict:
     if margin < 0:
         return "warn" if rule.warn_only else "fail"
-    return "warn" if doubt or utilisation > WARN_UTILISATION else "pass"
-
-
-def exact(check: Check) -> Check:
-    """A commanded or stated number is not predicted: met to the digit it is met, not near its limit."""
-    if check.verdict == "warn" and check.margin is not None and check.margin >= 0.0:
-        return replace(check, verdict="pass")
-    return check
+    near = utilisation > WARN_UTILISATION and not rule.by_definition
+    return "warn" if doubt or near else "pass"
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,12 @@ from rigdesign.base.errors import NonFiniteResultError, OutputError
 from rigdesign.base.json_text import to_text
 from rigdesign.base.output_folder import file_stem, prepare_output, remove_published, staged, write_whole
 from rigdesign.report.failure import FAILURE, write_failure
+from rigdesign.report.issue import Issue
 from rigdesign.report.results_json import results_document
 from rigdesign.results.result import RunResult
 
 __all__ = [
+    "Issue",
     "NonFiniteResultError",
     "OutputError",
     "prepare_output",
@@ -22,8 +24,10 @@ __all__ = [
 ]
 
 
-def write_results(result: RunResult, out: Path) -> None:
+def write_results(result: RunResult, out: Path, issue: Issue | None = None, *, pdf: bool = False) -> None:
     """Write results.json, report.html, junit.xml, fields/*.vtu and curves/*.csv to the folder ``out``.
+
+    issue : date and author of the report; today's without; pdf : the report as report.pdf as well
 
     Every file appears whole or not at all, results.json last. Files of an earlier run in the same folder that
     this run does not write are removed; other files are left alone.
@@ -34,13 +38,15 @@ def write_results(result: RunResult, out: Path) -> None:
         If the folder cannot be written.
     NonFiniteResultError
         If a result is NaN or infinite; nothing is written then.
+    MissingLibraryError
+        With ``pdf``: WeasyPrint or Pango is not installed.
     """
     document = results_document(result)
     earlier = _published_before(out)
     with staged(out) as scratch:
         document["fields"] = _write_fields(result, scratch)
         _write_curves(result, scratch)
-        _write_report(result, scratch)
+        _write_report(result, scratch, issue, pdf=pdf)
         files = [path.relative_to(scratch).as_posix() for path in scratch.rglob("*") if path.is_file()]
         document["files"] = sorted([*files, "results.json"])
         (scratch / "results.json").write_text(to_text(document), encoding="utf-8", newline="\n")
@@ -66,12 +72,17 @@ def _write_curves(result: RunResult, folder: Path) -> None:
         (folder / "curves" / name).write_text(text, encoding="utf-8", newline="\n")
 
 
-def _write_report(result: RunResult, folder: Path) -> None:
+def _write_report(result: RunResult, folder: Path, issue: Issue | None, *, pdf: bool) -> None:
     from rigdesign.report.junit import write_junit
     from rigdesign.report.pages.report import report_html
 
     write_junit(result, folder / "junit.xml")
-    (folder / "report.html").write_text(report_html(result), encoding="utf-8", newline="\n")
+    page = report_html(result, issue)
+    (folder / "report.html").write_text(page, encoding="utf-8", newline="\n")
+    if pdf:
+        from rigdesign.report.pdf import write_pdf
+
+        write_pdf(page, folder / "report.pdf")
 
 
 def _published_before(out: Path) -> list[str]:

@@ -1,20 +1,23 @@
-"""How numbers, units and keys read in a report."""
+"""How numbers, units and keys read: one style for report, junit.xml and terminal."""
 
 import math
+import re
 from typing import Any
 
 from rigdesign.results.check import Check
 
 UNIT_SIGNS = {
-    "degC": "°C", "deg": "°", "um": "µm", "N/mm2": "N/mm²", "MPa": "N/mm²", "m2": "m²",
-    "l_min": "l/min", "W_m2K": "W/(m²K)", "W/m2K": "W/(m²K)", "W/(m2 K)": "W/(m²K)", "N_um": "N/µm",
-    "mm2_s": "mm²/s", "kg_m3": "kg/m³", "m_s": "m/s", "Nm_deg": "Nm/°", "kgm2": "kg m²",
+    "degC": "°C", "deg": "°", "um": "µm", "N/mm2": "N/mm²", "MPa": "N/mm²", "m2": "m²", "m2/s": "m²/s",
+    "l_min": "l/min", "W_m2K": "W/(m² K)", "W/m2K": "W/(m² K)", "W/(m2 K)": "W/(m² K)", "N_um": "N/µm",
+    "mm2_s": "mm²/s", "mm2/s": "mm²/s", "kg_m3": "kg/m³", "kg/m3": "kg/m³", "m_s": "m/s", "Nm": "N m",
+    "Nm_deg": "N m/°", "kgm2": "kg m²", "kg m2": "kg m²", "W_mK": "W/(m K)", "GPa": "GPa", "1/K": "1/K",
+    "kNm_rad": "kN m/rad",
 }  # fmt: skip
 """Unit as stored -> as printed."""
 
 KEY_UNITS = (
-    "l_min", "W_m2K", "N_um", "mm2_s", "kg_m3", "m_s", "Nm_deg", "kgm2", "degC", "deg", "mrad", "MPa", "Nm", "rpm",
-    "Hz", "mm", "um", "m2", "kW", "kN", "kg", "Pa", "W", "N", "s", "K", "m",
+    "l_min", "W_m2K", "W_mK", "N_um", "mm2_s", "kg_m3", "m_s", "kNm_rad", "Nm_deg", "kgm2", "degC", "deg", "mrad",
+    "MPa", "Nm", "rpm", "Hz", "mm", "um", "m2", "kW", "kN", "kg", "Pa", "W", "N", "s", "K", "m",
 )  # fmt: skip
 """Units that may end a key, longest first."""
 
@@ -32,19 +35,55 @@ GREEK = {
 }
 
 
+UNIT_IN_TEXT = re.compile(r"(?<=\d )(?:degC|deg|um|N/mm2|MPa|W/\(m2 K\)|kg/m3|kg m2|mm2/s|m2|Nm)(?![\w/²])")
+"""A unit as cases and reasons write it, behind a number."""
+STATED_NUMBER = re.compile(r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?(?![\w.])")
+
+
 def number_text(value: float | None, digits: int = 4) -> str:
-    """A number with ``digits`` significant digits, large ones whole, powers of ten from 1e7; None: a dash."""
+    """``digits`` significant digits, powers of ten from 1e6; counts (int) stay whole up to 1e7, None is a dash."""
     if value is None:
         return "–"
     magnitude = abs(value)
-    text = f"{value:.0f}" if 10.0 ** (digits - 1) <= magnitude < 1e7 else f"{value:.{digits}g}"
+    if magnitude < 1e7 and isinstance(value, int):
+        text = str(value)
+    elif 10.0 ** (digits - 1) <= magnitude < 1e4:
+        text = f"{value:.0f}"
+    elif 1e4 <= magnitude < 999_950:
+        text = f"{float(f'{value:.{max(digits, 4)}g}'):.0f}"
+    else:
+        text = f"{value:.{digits}g}"
     if "e" in text:
         mantissa, exponent = text.split("e")
         power = str(int(exponent)).translate(SUPERSCRIPTS)
         return f"{mantissa} × 10{power}".replace("-", "\u2212")
-    if magnitude >= 10000:
-        text = f"{float(text):,.10g}".replace(",", NARROW_SPACE)
+    if abs(float(text)) >= 10000:
+        text = f"{float(text):,.0f}".replace(",", NARROW_SPACE)
     return text.replace("-", "\u2212")
+
+
+def text_with_units(text: str) -> str:
+    """A sentence with its units as printed: ``140 degC`` -> ``140 °C``."""
+    return re.sub(r"(?<=\d) °(?!C)", "°", UNIT_IN_TEXT.sub(lambda found: unit_text(found[0]), text))
+
+
+def stated_text(text: str) -> str:
+    """A value of the case as it reads: ``5.015539e-04 kg m2`` -> ``0.0005016 kg m²``, short ones as written."""
+    return text_with_units(STATED_NUMBER.sub(_stated_number, text))
+
+
+def _stated_number(found: re.Match[str]) -> str:
+    written = found[0]
+    plain = "e" not in written.lower() and len(written) <= 7
+    return written.replace("-", "\u2212") if plain else number_text(float(written))
+
+
+def percent_text(share: float) -> str:
+    """A share in per cent: three digits above 1 %, one decimal below, nothing finer than 0.1 %."""
+    percent = 100.0 * share
+    if 0.0 < abs(percent) < 0.1:
+        return "< 0.1 %"
+    return f"{number_text(percent, 3) if abs(percent) >= 1.0 else f'{percent:.1g}'} %"
 
 
 def power_text(value: float) -> str:
@@ -58,11 +97,30 @@ def unit_text(unit: str) -> str:
     return UNIT_SIGNS.get(unit, unit)
 
 
-def quantity_text(value: float | None, unit: str) -> str:
-    """Number and unit; a dimensionless number has none."""
+LEAST_KILOWATT = 1e4
+"""Power from which it is printed in kilowatts [W]."""
+
+
+def quantity_text(value: float | None, unit: str, digits: int = 4) -> str:
+    """Number and unit; a dimensionless number has none, a large power stands in kilowatts."""
     if value is None:
         return "–"
-    return number_text(value) if unit in ("", "1", "-") else f"{number_text(value)} {unit_text(unit)}"
+    if unit == "W" and abs(value) >= LEAST_KILOWATT:
+        value, unit = 1e-3 * value, "kW"
+    text = number_text(value, digits)
+    if unit in ("", "1", "-"):
+        return text
+    return f"{text}°" if unit == "deg" else f"{text} {unit_text(unit)}"
+
+
+def value_text(check: Check) -> str:
+    """The value of a check, with as many digits as it takes to tell it from a limit that it is not."""
+    limits = [limit for limit in (check.limit, check.upper_limit) if limit is not None]
+    for digits in (4, 5, 6, 7):
+        text = quantity_text(check.value, check.unit, digits)
+        if all(text != quantity_text(limit, check.unit, digits) or limit == check.value for limit in limits):
+            return text
+    return text
 
 
 def limit_text(check: Check) -> str:
@@ -77,7 +135,7 @@ def limit_text(check: Check) -> str:
 
 def margin_text(check: Check) -> str:
     """The distance to the limit; between two temperatures it is in kelvin."""
-    return quantity_text(check.margin, margin_unit(check.unit))
+    return quantity_text(check.margin, margin_unit(check.unit), digits=3)
 
 
 def margin_unit(unit: str) -> str:

@@ -12,23 +12,68 @@ from rigdesign.results.thermal import LossRow
 VERDICT_ORDER = ("fail", "warn", "pass", "not applicable")
 BAR_END = 1.5
 """Utilisation at the right end of a bar in the table of checks."""
-MAX_DRIVERS = 6
+MAX_DRIVERS = 4
 
 
-def sorted_checks(checks: list[Check]) -> list[Check]:
+def sorted_checks(checks: Sequence[Check]) -> list[Check]:
     """Failing checks first, then warnings; the most used-up first within each verdict."""
     return sorted(checks, key=lambda c: (VERDICT_ORDER.index(c.verdict), -(c.utilisation or 0.0)))
+
+
+def applicable(checks: Sequence[Check]) -> list[Check]:
+    """Those that apply to the rig."""
+    return [check for check in checks if check.verdict != "not applicable"]
+
+
+def predicted(checks: Sequence[Check]) -> list[Check]:
+    """Those that hold a computed value against a limit."""
+    return [check for check in applicable(checks) if not check.by_definition]
+
+
+def stated(checks: Sequence[Check]) -> list[Check]:
+    """Those that hold the case against itself."""
+    return [check for check in applicable(checks) if check.by_definition]
+
+
+def inapplicable(checks: Sequence[Check]) -> dict[str, list[Check]]:
+    """The others by their reason."""
+    found: dict[str, list[Check]] = {}
+    for check in checks:
+        if check.verdict == "not applicable":
+            found.setdefault(check.reason or "no reason given", []).append(check)
+    return found
+
+
+def reservations(checks: Sequence[Check]) -> dict[str, list[Check]]:
+    """Warning checks by what their value leaves out, the commonest first; a check may stand under several."""
+    found: dict[str, list[Check]] = {}
+    for check in checks:
+        for text in check.left_out if check.verdict == "warn" else ():
+            found.setdefault(text, []).append(check)
+    return dict(sorted(found.items(), key=lambda item: -len(item[1])))
+
+
+def own_warnings(checks: Sequence[Check]) -> list[Check]:
+    """Warning checks with a reason of their own, most used-up first."""
+    return [check for check in sorted_checks(checks) if check.verdict == "warn" and not check.left_out]
+
+
+def specific(result: RunResult, check: Check) -> list[AssumptionRecord]:
+    """The assumed inputs that a check depends on, those of few other checks and with a range first."""
+    mine = set(check.assumptions)
+    records = [record for record in result.assumptions if record.path in mine]
+    return sorted(records, key=lambda record: (len(record.decides), record.range is None))
 
 
 def drivers(result: RunResult) -> list[tuple[Check, list[AssumptionRecord]]]:
     """The checks that decide the verdict, each with the assumptions its value depends on.
 
-    Every failing and warning check, filled up with the most used-up passing ones to ``MAX_DRIVERS``.
+    Every failing check, filled up with the most used-up other ones to ``MAX_DRIVERS``.
     """
     records = {record.path: record for record in result.assumptions}
-    ordered = [check for check in sorted_checks(result.checks) if check.verdict != "not applicable"]
-    undecided = sum(check.verdict in ("fail", "warn") for check in ordered)
-    chosen = ordered[: max(MAX_DRIVERS, undecided)]
+    ordered = sorted_checks(predicted(result.checks)) or sorted_checks(stated(result.checks))
+    failing = sum(check.verdict == "fail" for check in ordered)
+    chosen = ordered[: max(MAX_DRIVERS, failing)]
     return [
         (check, [records.get(p, AssumptionRecord(path=p, value="", reason="")) for p in check.assumptions])
         for check in chosen
@@ -46,14 +91,6 @@ def main_stage(result: RunResult) -> str:
 def bar_width(utilisation: float) -> float:
     """Width of a utilisation bar [%]; it ends at ``BAR_END``."""
     return 100 * min(max(utilisation, 0.0), BAR_END) / BAR_END
-
-
-def check_families(identities: Sequence[str]) -> str:
-    """Checks by the group in their ids, ``dynamics (8), oil.room``: a group of one is written out."""
-    groups: dict[str, list[str]] = {}
-    for identity in identities:
-        groups.setdefault(identity.split(".")[0], []).append(identity)
-    return ", ".join(ids[0] if len(ids) == 1 else f"{group} ({len(ids)})" for group, ids in groups.items())
 
 
 def mesh_errors(result: RunResult) -> list[dict[str, Any]]:

@@ -39,6 +39,8 @@ class Check:
     """Second limit of a window (comparison ``within``)."""
     assumptions: tuple[str, ...] = ()
     """Case paths of the assumptions the value depends on."""
+    by_definition: bool = False
+    """Value and limit are both stated by the case: the check shows that it agrees with itself and predicts nothing."""
     left_out: tuple[str, ...] = ()
     """Known contributors that the value does not count: the check is at best a warning, unless they are small."""
     discretisation_error: float | None = None

@@ -21,6 +21,8 @@ def check(
     transient: Annotated[bool, Parameter(negative=())] = False,
     ranges: Annotated[bool, Parameter(negative=())] = False,
     everything: Annotated[bool, Parameter(name="--all", negative=())] = False,
+    pdf: Annotated[bool, Parameter(negative=())] = False,
+    author: str | None = None,
     json: bool = False,
     fail_on: Literal["fail", "warn"] = "fail",
 ) -> int:
@@ -40,6 +42,10 @@ def check(
         Move every assumed input to both ends of its range, one at a time: a check passes only if it holds there too.
     everything
         Print every check and every note, not only what decides.
+    pdf
+        Write the report as report.pdf to the folder of --out too (extra pdf: WeasyPrint).
+    author
+        Who prepares the report, in place of document.author of the case.
     json
         Print results.json on stdout; everything else goes to stderr.
     fail_on
@@ -55,11 +61,18 @@ def check(
     from rigdesign.cli.terminal.progress import Progress
     from rigdesign.cli.terminal.verbose import print_run
     from rigdesign.reanalysis.flips import with_flips
-    from rigdesign.report import prepare_output, results_document, write_results
+    from rigdesign.report import Issue, prepare_output, results_document, write_results
     from rigdesign.run.main import run_case
 
     if out is not None:
         prepare_output(out)
+    elif pdf or author is not None:
+        option = "--pdf" if pdf else "--author"
+        raise UsageError(f"{option} needs the folder of the report; add --out DIR")
+    if pdf:
+        from rigdesign.report.pdf import require_pdf
+
+        require_pdf()
     options = "".join(f" {name}" for name, on in (("transient", transient), ("ranges", ranges)) if on)
     times = step_times(f"check {loaded.hash[:16]} {fidelity}{options}")
     with Progress(times) as progress, interrupted(NOTHING_KEPT), failure_kept(out):
@@ -76,7 +89,7 @@ def check(
             result = with_ranges(loaded, result, progress=progress, count=progress.count)
         if out is not None:
             progress("writing report")
-            write_results(result, out)
+            write_results(result, out, Issue(author=author or ""), pdf=pdf)
     print_run(result)
     if json:
         print_json(results_document(result))

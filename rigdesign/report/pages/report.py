@@ -1,15 +1,16 @@
-"""report.html: one self-contained page in the order an engineer reads it."""
+"""report.html: one self-contained page in the order an engineer reads it, from the first page to the appendix."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rigdesign.base.version import __version__
-from rigdesign.report import numbers, views
+from rigdesign.report import numbers, palette, views
 from rigdesign.report.figures.drawing import drawing_style, inline_svg
+from rigdesign.report.issue import Issue, signatures
 from rigdesign.report.sections import SECTIONS
 from rigdesign.report.sections.section import Draw, ReportSection
 from rigdesign.results.result import RunResult
@@ -24,41 +25,78 @@ TEMPLATES = Path(__file__).parents[1] / "templates"
 
 @dataclass(frozen=True)
 class _Rendered:
-    """A numbered section with everything within it."""
+    """A section with everything within it."""
 
     id: str
     title: str
-    number: int
+    number: str
     body: "Markup"
 
 
-def report_html(result: RunResult) -> str:
+@dataclass(frozen=True)
+class _Page:
+    """What every section is made of."""
+
+    result: RunResult
+    issue: Issue
+    draw: Draw
+    number_of: Mapping[str, str]
+
+
+def report_html(result: RunResult, issue: Issue | None = None) -> str:
     """The whole report as one HTML document: no link, script, font or picture from elsewhere.
 
-    Everything from the case is escaped. Two runs give the same text but for the timings.
+    Everything from the case is escaped. Two runs give the same text but for the timings and the date of issue, today
+    unless ``issue`` says otherwise, which stands in the element ``issued`` and nowhere else.
     """
+    shown = [section for section in SECTIONS if section.applies(result)]
+    page = _Page(result, issue or Issue(), _Figures(), _numbers(shown))
     with drawing_style():
-        sections = _sections(result, _Figures())
-    page = environment().get_template("report.html.j2")
-    return page.render(result=result, tool_version=__version__, sections=sections)
+        parts = {
+            "first_page": _rendered(page, shown, "first page"),
+            "body": _rendered(page, shown, "body"),
+            "appendix": _rendered(page, shown, "appendix"),
+        }
+    return (
+        environment()
+        .get_template("report.html.j2")
+        .render(
+            result=result,
+            issue=page.issue,
+            tool_version=__version__,
+            running_title=running_title(result),
+            **parts,
+        )
+    )
 
 
-def _sections(result: RunResult, draw: Draw) -> list[_Rendered]:
-    """Every section that applies, numbered in their order, each followed by what stands within it."""
+def running_title(result: RunResult) -> str:
+    """What stands at the head of every printed page; the date stands opposite."""
+    return f"{result.case['name']} – {result.verdict} – rigdesign {__version__} – {result.case['hash'][:12]}"
+
+
+def _numbers(shown: Sequence[ReportSection]) -> dict[str, str]:
+    """1, 2, … in the body, A, B, … in the appendix; parts of a section and the first page have none."""
+    body = [section.id for section in shown if section.place == "body" and not section.within]
+    appendix = [section.id for section in shown if section.place == "appendix" and not section.within]
+    return {name: str(number) for number, name in enumerate(body, start=1)} | {
+        name: chr(ord("A") + number) for number, name in enumerate(appendix)
+    }
+
+
+def _rendered(page: _Page, shown: Sequence[ReportSection], place: str) -> list[_Rendered]:
+    """The sections of one place in their order, each followed by what stands within it."""
     from markupsafe import Markup
 
-    shown = [section for section in SECTIONS if section.applies(result)]
-    numbered = [section for section in shown if not section.within]
-    number_of = {section.id: number for number, section in enumerate(numbered, start=1)}
-    bodies = {section.id: _body(section, result, number_of, draw) for section in shown}
     return [
         _Rendered(
             section.id,
             section.title,
-            number_of[section.id],
-            bodies[section.id] + Markup("").join(bodies[s.id] for s in shown if s.within == section.id),
+            page.number_of.get(section.id, ""),
+            _body(section, page) + Markup("").join(_body(s, page) for s in shown if s.within == section.id),
         )
-        for section in numbered
+        for section in shown
+        if section.place == place and not section.within
     ]
 
 
@@ -77,15 +115,18 @@ def environment() -> "Environment":
     templates.filters.update(
         number=numbers.number_text,
         unit=numbers.unit_text,
+        percent=numbers.percent_text,
         heading=numbers.heading_text,
         cell=numbers.cell_text,
         words=lambda text: str(text).replace("_", " "),
         signs=signs,
         symbol=symbol,
-        check_families=views.check_families,
+        stated=lambda value: numbers.stated_text(str(value)),
+        css_string=css_string,
     )
     templates.globals.update(
         quantity=numbers.quantity_text,
+        value=numbers.value_text,
         limit=numbers.limit_text,
         margin=numbers.margin_text,
         margin_unit=numbers.margin_unit,
@@ -95,6 +136,9 @@ def environment() -> "Environment":
         is_number=views.is_number,
         loss_table=views.loss_table,
         crossing_table=views.crossing_table,
+        specific=views.specific,
+        signatures=signatures,
+        palette=palette,
     )
     return templates
 
@@ -112,7 +156,7 @@ class _Figures:
         return Markup(inline_svg(figure, f"f{self._count}", description))
 
 
-def _body(section: ReportSection, result: RunResult, number_of: Mapping[str, int], draw: Draw) -> "Markup":
+def _body(section: ReportSection, page: _Page) -> "Markup":
     """Text of a section, from its template."""
     from markupsafe import Markup
 
@@ -120,20 +164,34 @@ def _body(section: ReportSection, result: RunResult, number_of: Mapping[str, int
         environment()
         .get_template(section.template)
         .render(
-            result=result,
+            result=page.result,
+            issue=page.issue,
             tool_version=__version__,
-            number_of=number_of,
-            **section.values(result, draw),
+            number_of=page.number_of,
+            **section.values(page.result, page.draw),
         )
     )
     return Markup(text)
 
 
 def signs(text: str) -> "Markup":
-    """Escaped text in which K_V, f_z and the like carry a subscript."""
+    """Escaped text in which K_V, f_z and the like carry a subscript and units stand as printed."""
     from markupsafe import Markup, escape
 
-    return Markup(re.sub(r"\b([KYfnσ])_([A-Z]|z)\b", r"\1<sub>\2</sub>", str(escape(text))))
+    escaped = str(escape(numbers.text_with_units(text.replace("sigma_F", "σ_F"))))
+    return Markup(re.sub(r"\b([KYfdσε])_([A-Z]{1,2}|[fzα]|Fbeta|Falpha)\b", _subscript, escaped))
+
+
+def _subscript(found: re.Match[str]) -> str:
+    index = found[2].replace("beta", "β").replace("alpha", "α")
+    return f"{found[1]}<sub>{index}</sub>"
+
+
+def css_string(text: str) -> "Markup":
+    """A string of a style sheet: everything but letters and digits as its code."""
+    from markupsafe import Markup
+
+    return Markup('"' + "".join(c if c.isalnum() and c.isascii() else f"\\{ord(c):06x}" for c in text) + '"')
 
 
 def symbol(key: str) -> "Markup":

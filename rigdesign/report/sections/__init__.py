@@ -1,37 +1,43 @@
 """Sections of the report in the order an engineer reads them; the page and its contents follow from this list."""
 
-from rigdesign.report.sections.clearances import CLEARANCES
-from rigdesign.report.sections.ground import (
-    ASSUMPTIONS,
-    HAND_CHECKS,
-    NOT_MODELLED,
-    OVERRIDES,
-    PROVENANCE,
-    WARNINGS,
-)
-from rigdesign.report.sections.loads import LOADS
-from rigdesign.report.sections.losses import LOSSES
-from rigdesign.report.sections.ranges import RANGES
+from rigdesign.report.sections.assumptions import ALL_ASSUMPTIONS, ASSUMPTIONS, OVERRIDES
+from rigdesign.report.sections.checks import CHECK_BASIS, CHECKS, DRIVERS
+from rigdesign.report.sections.clearances import CLEARANCE_DETAILS, CLEARANCES
+from rigdesign.report.sections.decision import DECISION
+from rigdesign.report.sections.ground import HAND_CHECKS, NOT_MODELLED, PROVENANCE, WARNINGS
+from rigdesign.report.sections.inputs import DRIVETRAIN_INPUTS, INPUTS
+from rigdesign.report.sections.loads import LOAD_DETAILS, LOADS
+from rigdesign.report.sections.losses import LOSS_DETAILS, LOSSES
+from rigdesign.report.sections.ranges import RANGE_DETAILS, RANGES
 from rigdesign.report.sections.section import ReportSection
-from rigdesign.report.sections.temperatures import TEMPERATURES
+from rigdesign.report.sections.temperatures import TEMPERATURE_DETAILS, TEMPERATURES
 from rigdesign.report.sections.transient import TRANSIENT
-from rigdesign.report.sections.verdict import DRIVERS, VERDICT
 from rigdesign.report.sections.viewer import VIEWER
 
 SECTIONS: tuple[ReportSection, ...] = (
-    VERDICT,
+    DECISION,
+    CHECKS,
     DRIVERS,
+    RANGES,
     LOADS,
     LOSSES,
     TEMPERATURES,
     VIEWER,
     CLEARANCES,
-    TRANSIENT,
+    INPUTS,
     ASSUMPTIONS,
-    RANGES,
     OVERRIDES,
-    HAND_CHECKS,
     NOT_MODELLED,
+    CHECK_BASIS,
+    ALL_ASSUMPTIONS,
+    RANGE_DETAILS,
+    DRIVETRAIN_INPUTS,
+    LOAD_DETAILS,
+    LOSS_DETAILS,
+    TEMPERATURE_DETAILS,
+    CLEARANCE_DETAILS,
+    TRANSIENT,
+    HAND_CHECKS,
     WARNINGS,
     PROVENANCE,
 )

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from rigdesign.report.sections.gearbox_styles import gearbox_styles
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
+from rigdesign.results.thermal import ExpansionResult
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -19,7 +20,16 @@ def _clearances(result: RunResult, draw: Draw) -> Values:
             seal_gap_figure(result.expansion, gearbox_styles(result)),
             "Seal gap over the angle, as drawn and warm",
         )
-    return {"seal_gaps": gaps, "seals_round": _seals_round(result, draw)}
+    return {"seal_gaps": gaps, "shown": _last(result)}
+
+
+def _details(result: RunResult, draw: Draw) -> Values:
+    return {"seals_round": _seals_round(result, draw)}
+
+
+def _last(result: RunResult) -> list[ExpansionResult]:
+    """Of every gearbox the last held stage."""
+    return list({item.gearbox: item for item in result.expansion}.values())
 
 
 def _seals_round(result: RunResult, draw: Draw) -> dict[tuple[str, str], "Markup"]:
@@ -40,3 +50,7 @@ def _seals_round(result: RunResult, draw: Draw) -> dict[tuple[str, str], "Markup
 CLEARANCES = ReportSection(
     id="clearances", title="Clearances as drawn and warm", template="clearances.html.j2", values=_clearances
 )
+CLEARANCE_DETAILS = ReportSection(
+    id="clearance_details", title="Clearances in detail", template="clearance_details.html.j2", values=_details,
+    applies=lambda result: bool(result.expansion), place="appendix",
+)  # fmt: skip

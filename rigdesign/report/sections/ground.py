@@ -1,4 +1,6 @@
-"""What the verdicts depend on and where they come from: assumptions, hand checks, limits, warnings, provenance."""
+"""What the run leaves open and where it comes from: limits, warnings, hand checks, provenance."""
+
+from collections import Counter
 
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
@@ -16,13 +18,15 @@ def _convergence(result: RunResult, draw: Draw) -> Values:
     }
 
 
-ASSUMPTIONS = ReportSection(
-    id="assumptions", title="Assumptions behind the verdicts", template="assumptions.html.j2"
+def _topics(result: RunResult, draw: Draw) -> Values:
+    return {"topics": Counter(record.id.replace("_", " ") for record in result.warnings)}
+
+
+NOT_MODELLED = ReportSection(
+    id="limits", title="What is not modelled", template="limits.html.j2", values=_topics
 )
-OVERRIDES = ReportSection(id="overrides", template="overrides.html.j2", within="assumptions")
-HAND_CHECKS = ReportSection(id="hand", title="Hand checks", template="hand.html.j2")
-NOT_MODELLED = ReportSection(id="limits", title="What is not modelled", template="limits.html.j2")
-WARNINGS = ReportSection(id="warnings", title="Warnings", template="warnings.html.j2")
+HAND_CHECKS = ReportSection(id="hand", title="Hand checks", template="hand.html.j2", place="appendix")
+WARNINGS = ReportSection(id="warnings", title="Warnings", template="warnings.html.j2", place="appendix")
 PROVENANCE = ReportSection(
-    id="provenance", title="Provenance", template="provenance.html.j2", values=_convergence
+    id="provenance", title="Provenance", template="provenance.html.j2", values=_convergence, place="appendix"
 )

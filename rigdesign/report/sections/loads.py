@@ -1,16 +1,22 @@
 """Ramp, dynamic factor, root stress, resonances."""
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 from rigdesign.report.sections.gearbox_styles import gearbox_styles
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.dynamics import GearboxDynamics
 from rigdesign.results.result import RunResult
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
 
 
 def _loads(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures import dynamics as figures
     from rigdesign.report.figures.ramp import ramp_figure
 
-    shown: Values = {"ramp_figure": None, "kv_figure": None, "campbell": None, "root_stress": {}}
+    shown: Values = {"ramp_figure": None, "kv_figure": None, "root_stress": {}}
     dynamics = result.dynamics
     if dynamics is None:
         return shown
@@ -23,21 +29,58 @@ def _loads(result: RunResult, draw: Draw) -> Values:
             figures.dynamic_factor_figure(dynamics),
             "Dynamic factor over speed, simulated and by ISO 6336-1",
         )
-    if dynamics.crossings:
-        shown["campbell"] = draw(
-            figures.campbell_figure(dynamics), "Mesh orders and natural frequencies over speed"
-        )
-    for name, gearbox in dynamics.gearboxes.items():
-        if _has_root_stress(gearbox):
-            shown["root_stress"][name] = draw(
-                figures.root_stress_figure(gearbox, gearbox_styles(result)[name]),
-                f"Root stress of gearbox {name}, dynamic and quasi-static",
-            )
+    shown["root_stress"] = _root_stress(
+        result, draw, [name for name in dynamics.gearboxes if _shown_first(result, name)]
+    )
     return shown
+
+
+def _details(result: RunResult, draw: Draw) -> Values:
+    from rigdesign.report.figures import dynamics as figures
+
+    dynamics = result.dynamics
+    assert dynamics is not None
+    campbell = None
+    if dynamics.crossings:
+        campbell = draw(figures.campbell_figure(dynamics), "Mesh orders and natural frequencies over speed")
+    rest = [name for name in dynamics.gearboxes if not _shown_first(result, name)]
+    return {"campbell": campbell, "root_stress": _root_stress(result, draw, rest)}
+
+
+def _root_stress(result: RunResult, draw: Draw, names: Sequence[str]) -> "dict[str, Markup]":
+    from rigdesign.report.figures.dynamics import root_stress_figure
+
+    assert result.dynamics is not None
+    chosen = {name: result.dynamics.gearboxes[name] for name in names}
+    return {
+        name: draw(
+            root_stress_figure(gearbox, gearbox_styles(result)[name]),
+            f"Root stress of gearbox {name}, dynamic and quasi-static",
+        )
+        for name, gearbox in chosen.items()
+        if _has_root_stress(gearbox)
+    }
+
+
+def _shown_first(result: RunResult, name: str) -> bool:
+    """The mesh whose root stress stands in the body: the first specimen, else the first of all."""
+    assert result.dynamics is not None
+    gearboxes = result.dynamics.gearboxes
+    drawn = [other for other, gearbox in gearboxes.items() if _has_root_stress(gearbox)]
+    specimens = [other for other in drawn if gearboxes[other].role == "specimen"]
+    return name in (specimens or drawn)[:1]
 
 
 def _has_root_stress(gearbox: GearboxDynamics) -> bool:
     return bool(gearbox.root_stress or gearbox.root_stress_factor)
 
 
+def _turns(result: RunResult) -> bool:
+    return result.dynamics is not None
+
+
 LOADS = ReportSection(id="loads", title="Ramp and loads", template="loads.html.j2", values=_loads)
+LOAD_DETAILS = ReportSection(
+    id="load_details", title="Dynamics in detail", template="load_details.html.j2", values=_details, applies=_turns,
+    place="appendix",
+)  # fmt: skip

@@ -15,11 +15,24 @@ def _losses(result: RunResult, draw: Draw) -> Values:
 
     stage = views.main_stage(result)
     oil_stage = _oil_stage(result, stage)
-    shown: Values = {"losses_by_stage": None, "losses_by_place": None, "oil": None, "main_stage": stage}
+    by_stage = None
     if result.losses:
-        shown["losses_by_stage"] = draw(
-            figures.losses_by_stage_figure(result.losses), "Power loss by stage and kind"
-        )
+        by_stage = draw(figures.losses_by_stage_figure(result.losses), "Power loss by stage and kind")
+    return {
+        "losses_by_stage": by_stage,
+        "rig_flow": _rig_flow(result, oil_stage, draw),
+        "flow_stage": oil_stage,
+        "oil_rows": [row for row in result.oil if row.stage == oil_stage],
+    }
+
+
+def _details(result: RunResult, draw: Draw) -> Values:
+    from rigdesign.report.figures import heat as figures
+
+    stage = views.main_stage(result)
+    oil_stage = _oil_stage(result, stage)
+    shown: Values = {"losses_by_place": None, "oil": None, "main_stage": stage}
+    if result.losses:
         shown["losses_by_place"] = draw(
             figures.losses_by_place_figure(result.losses, stage), f"Power loss by place at stage {stage}"
         )
@@ -27,7 +40,7 @@ def _losses(result: RunResult, draw: Draw) -> Values:
         shown["oil"] = draw(
             figures.oil_figure(result.oil, oil_stage), f"Oil inlet and outlet at stage {oil_stage}"
         )
-    return shown | {"rig_flow": _rig_flow(result, oil_stage, draw), "flow_stage": oil_stage}
+    return shown
 
 
 def _oil_stage(result: RunResult, stage: str) -> str:
@@ -51,3 +64,7 @@ def _rig_flow(result: RunResult, stage: str, draw: Draw) -> "Markup | None":
 
 
 LOSSES = ReportSection(id="losses", title="Losses and oil", template="losses.html.j2", values=_losses)
+LOSS_DETAILS = ReportSection(
+    id="loss_details", title="Losses and oil in detail", template="loss_details.html.j2", values=_details,
+    applies=lambda result: bool(result.losses or result.oil), place="appendix",
+)  # fmt: skip

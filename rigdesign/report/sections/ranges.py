@@ -12,21 +12,21 @@ LEAST_MOVE = 0.01
 """Shift of the utilisation from which a pair of check and input has a line in the report; results.json has more."""
 
 
-def _ranges(result: RunResult, draw: Draw) -> Values:
+def _details(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures.ranges import margins_figure, temperature_figure
 
     ranges = result.ranges
     assert ranges is not None
-    shown: Values = {"range_margins": None, "range_temperature": None}
-    titles = {check.id: check.title for check in result.checks}
-    margins, temperatures = margins_figure(ranges, titles), temperature_figure(ranges)
-    if margins is not None:
-        shown["range_margins"] = draw(margins, "Margin of every check over the ranges of the assumed inputs")
-    if temperatures is not None:
-        shown["range_temperature"] = draw(temperatures, "Highest temperature over the ranges of the inputs")
+    margins = margins_figure(ranges, {check.id: check.title for check in result.checks})
+    temperatures = temperature_figure(ranges)
+    moved = "Margin of every check over the ranges of the assumed inputs"
+    hottest = "Highest temperature over the ranges of the inputs"
     stated = {row.check: row for row in ranges.checks}
-    shown["strong_margins"] = [row for row in ranges.margins if _moves(row, stated[row.check])]
-    return shown
+    return {
+        "range_margins": None if margins is None else draw(margins, moved),
+        "range_temperature": None if temperatures is None else draw(temperatures, hottest),
+        "strong_margins": [row for row in ranges.margins if _moves(row, stated[row.check])],
+    }
 
 
 def _moves(row: "RangeMargin", stated: "CheckRange") -> bool:
@@ -39,5 +39,9 @@ def _evaluated(result: RunResult) -> bool:
 
 
 RANGES = ReportSection(
-    id="ranges", template="ranges.html.j2", values=_ranges, applies=_evaluated, within="assumptions"
+    id="ranges", title="Verdicts over the ranges", template="ranges.html.j2", applies=_evaluated
 )
+RANGE_DETAILS = ReportSection(
+    id="range_details", title="Margins at the ends of the ranges", template="range_details.html.j2", values=_details,
+    applies=_evaluated, place="appendix",
+)  # fmt: skip

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from rigdesign.results.result import RunResult
 
@@ -14,6 +14,8 @@ Draw = Callable[["Figure", str], "Markup"]
 """Figure and its description for those who cannot see it -> SVG for the page."""
 Values = dict[str, Any]
 """Name in the template -> what stands there."""
+Place = Literal["first page", "body", "appendix"]
+"""The first page is read alone and signed, the body is for the meeting, the appendix for the question behind it."""
 
 
 def _always(result: RunResult) -> bool:
@@ -31,7 +33,8 @@ class ReportSection:
     id : anchor on the page; title : heading and entry in the contents, empty for a part of another section
     template : of ``templates``; it is given ``result``, ``tool_version``, ``number_of`` (id -> number) and ``values``
     values : picks and draws; applies : whether the section is on the page at all
-    within : id of the section it closes; empty for a numbered section of its own
+    place : sections of the body are numbered, those of the appendix lettered
+    within : id of the section it closes; empty for a section of its own
     """
 
     id: str
@@ -39,4 +42,5 @@ class ReportSection:
     title: str = ""
     values: Callable[[RunResult, Draw], Values] = _nothing
     applies: Callable[[RunResult], bool] = _always
+    place: Place = "body"
     within: str = ""

@@ -1,19 +1,43 @@
 """Temperature fields and heat balance of every housing."""
 
+from collections.abc import Sequence
+from itertools import islice
 from typing import TYPE_CHECKING
 
 from rigdesign.report.sections.section import Draw, ReportSection, Values
 from rigdesign.results.result import RunResult
+from rigdesign.results.thermal import TemperatureField, ThermalResult
 
 if TYPE_CHECKING:
     from markupsafe import Markup
 
 
+def hottest_stages(result: RunResult) -> list[ThermalResult]:
+    """Of every gearbox the stage with the highest temperature."""
+    found: dict[str, ThermalResult] = {}
+    for item in result.thermal:
+        if item.gearbox not in found or item.max_temperature_degC > found[item.gearbox].max_temperature_degC:
+            found[item.gearbox] = item
+    return list(found.values())
+
+
 def _temperatures(result: RunResult, draw: Draw) -> Values:
+    hottest = hottest_stages(result)
+    keys = [(item.gearbox, item.stage) for item in hottest]
+    pictures = _pictures(
+        [field for field in result.fields if (field.gearbox, field.stage) in keys], draw, slice(1)
+    )
+    return {"hottest": hottest, "pictures": pictures}
+
+
+def _details(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.figures.flow import body_flow_figure
 
+    keys = [(item.gearbox, item.stage) for item in hottest_stages(result)]
+    first = [field for field in result.fields if (field.gearbox, field.stage) in keys]
+    others = [field for field in result.fields if (field.gearbox, field.stage) not in keys]
     return {
-        "pictures": _pictures(result, draw),
+        "pictures": _pictures(first, draw, slice(1, None)) | _pictures(others, draw, slice(None)),
         "heat_flows": {
             (item.gearbox, item.stage): draw(
                 body_flow_figure(item), f"Heat through gearbox {item.gearbox} at stage {item.stage}"
@@ -24,20 +48,22 @@ def _temperatures(result: RunResult, draw: Draw) -> Values:
     }
 
 
-def _pictures(result: RunResult, draw: Draw) -> dict[tuple[str, str], list[tuple["Markup", str]]]:
-    """Temperature, heat flux and displacement with their captions, by gearbox and stage."""
+def _pictures(
+    fields: Sequence[TemperatureField], draw: Draw, which: slice
+) -> dict[tuple[str, str], list[tuple["Markup", str]]]:
+    """Some of temperature, heat flux and displacement with their captions, by gearbox and stage."""
     from rigdesign.report.figures.field import MeshViews, field_pictures
 
     views: dict[int, MeshViews] = {}
     shown: dict[tuple[str, str], list[tuple[Markup, str]]] = {}
-    for field in result.fields:
+    for field in fields:
         view = views.setdefault(id(field.mesh), MeshViews(field.mesh))
         shown[field.gearbox, field.stage] = [
             (
                 draw(picture.figure, f"{picture.title} of gearbox {field.gearbox} at stage {field.stage}"),
                 picture.caption,
             )
-            for picture in field_pictures(field, view)
+            for picture in islice(field_pictures(field, view), which.start, which.stop)
         ]
     return shown
 
@@ -45,3 +71,7 @@ def _pictures(result: RunResult, draw: Draw) -> dict[tuple[str, str], list[tuple
 TEMPERATURES = ReportSection(
     id="temperatures", title="Temperatures", template="temperatures.html.j2", values=_temperatures
 )
+TEMPERATURE_DETAILS = ReportSection(
+    id="temperature_details", title="Temperatures and heat in detail", template="temperature_details.html.j2",
+    values=_details, applies=lambda result: bool(result.thermal), place="appendix",
+)  # fmt: skip

@@ -34,5 +34,10 @@ def _computed(result: RunResult) -> bool:
 
 
 TRANSIENT = ReportSection(
-    id="transient", template="transient.html.j2", values=_histories, applies=_computed, within="clearances"
+    id="transient",
+    title="Over the schedule and its events",
+    template="transient.html.j2",
+    values=_histories,
+    applies=_computed,
+    place="appendix",
 )

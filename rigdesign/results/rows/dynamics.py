@@ -154,14 +154,24 @@ def bracing_row(bracing: StageBracing) -> dict[str, Any]:
     }
 
 
+def _diameters(radii: tuple[float, float]) -> str:
+    """Of pinion and wheel [mm], to the micrometre."""
+    return f"{2.0 * MM * radii[0]:.3f} / {2.0 * MM * radii[1]:.3f}"
+
+
 def geometry_row(drawn: GearPair, model: MeshModel) -> dict[str, float | str]:
     """Gear data of one mesh as drawn, with those of the warm ``model`` that differ."""
     warm = model.pair
     return {
         "teeth": f"{drawn.teeth[0]} / {drawn.teeth[1]}",
         "normal_module_mm": MM * drawn.normal_module,
+        "pressure_angle_deg": math.degrees(drawn.pressure_angle),
         "helix_angle_deg": math.degrees(drawn.helix_angle),
         "profile_shifts": f"{drawn.profile_shifts[0]:.4f} / {drawn.profile_shifts[1]:.4f}",
+        "reference_diameters_mm": _diameters(drawn.reference_radii),
+        "tip_diameters_cold_mm": _diameters(drawn.tip_radii),
+        "tip_diameters_hot_mm": _diameters(warm.tip_radii),
+        "root_diameters_mm": _diameters(drawn.root_radii),
         "transverse_contact_ratio": drawn.transverse_contact_ratio,
         "total_contact_ratio": drawn.total_contact_ratio,
         "centre_distance_cold_mm": MM * drawn.centre_distance,

@@ -290,3 +290,21 @@ def test_a_number_may_reach_its_limits_and_not_pass_them(
     for outside in (least - 1e-3, most + 1e-3):
         with pytest.raises(CaseError, match=path):
             prototype.with_value(path, outside)
+
+
+def test_who_answers_for_the_report_changes_no_result(variant: Variant, prototype: Case) -> None:
+    """The table document is an input like others, and the hash leaves it out."""
+    case = load_case(
+        variant(
+            """
+            [document]
+            project = "P 17"
+            number = "D-1"
+            author = "A. Engineer"
+            checked_by = { value = "B. Other", source = "quality manual" }
+            """
+        )
+    )
+    assert case.document.author == "A. Engineer"
+    assert {row.path: row.value for row in case.inputs}["document.checked_by"] == "B. Other"
+    assert case.hash == prototype.hash

@@ -144,3 +144,19 @@ def test_every_mesh_and_every_bearing_takes_its_flow(tmp_path: Path) -> None:
 def test_a_part_without_such_a_result_is_refused(part: str, quantity: str) -> None:
     with pytest.raises(CaseError, match="the run finds none at"):
         held(part, quantity)
+
+
+@pytest.mark.parametrize(
+    ("part", "quantity", "stated"),
+    [
+        ("gearboxes.test", "speed", True),
+        ("gearboxes.test", "torque_mean", True),
+        ("gearboxes.test", "oil_flow", True),
+        ("gearboxes.test", "torque_peak", False),
+        ("drivetrain.motor", "drive_torque", False),
+    ],
+)
+def test_what_the_schedule_commands_is_told_from_what_is_computed(
+    part: str, quantity: str, stated: bool
+) -> None:
+    assert held(part, quantity).by_definition is stated

@@ -274,3 +274,7 @@ def test_a_hotter_room_uses_no_less_of_a_temperature_limit() -> None:
         warm = build_rig(rig().case.with_value("ambient.temperature", room), "quick")
         checks = temperatures.checks(replace(solved(points), rig=warm))
         assert named(checks, "temperature.bearing_film").utilisation == pytest.approx(0.8)
+
+
+def test_the_rules_of_the_ramp_hold_the_case_against_itself() -> None:
+    assert all(check.by_definition for check in ramp.ramp(solved()))

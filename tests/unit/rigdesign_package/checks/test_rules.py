@@ -107,3 +107,11 @@ def test_the_worst_of_values_of_which_one_is_no_number_is_none(
 ) -> None:
     with pytest.raises(NonFiniteResultError, match="b = nan"):
         worst(items, smallest=smallest)
+
+
+@pytest.mark.parametrize(("value", "verdict"), [(2.0, "pass"), (1.96, "pass"), (2.1, "fail")])
+def test_a_value_that_the_case_states_is_not_near_its_limit_but_on_it(value: float, verdict: str) -> None:
+    stated = hold(rule(by_definition=True), value)
+    assert (stated.by_definition, stated.verdict) == (True, verdict)
+    assert not hold(rule(), value).by_definition
+    assert not_applicable(rule(by_definition=True), "no limit").by_definition

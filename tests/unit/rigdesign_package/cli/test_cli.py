@@ -473,3 +473,37 @@ def test_study_of_a_small_case(rigdesign: Rigdesign, write: Write, tmp_path: Pat
         rows = list(csv.DictReader(table))
     assert [bool(row["error"]) for row in rows] == [False, False, True]
     assert [row["verdict"] for row in rows[:2]] == ["pass", "pass"]
+
+
+@pytest.mark.parametrize(("options", "named"), [(("--pdf",), "--pdf"), (("--author", "A. B."), "--author")])
+def test_a_report_needs_a_folder(
+    rigdesign: Rigdesign, write: Write, options: tuple[str, ...], named: str
+) -> None:
+    ended = rigdesign("check", write(SMALL), *options)
+    assert ended.status == 2
+    assert f"{named} needs the folder of the report; add --out DIR" in ended.err
+
+
+def test_pdf_without_its_library_is_said_before_anything_is_computed(
+    rigdesign: Rigdesign, write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "weasyprint", None)
+    ended = rigdesign("check", write(SMALL), "--pdf", "--out", tmp_path / "out")
+    assert ended.status == 4
+    assert "pip install 'rigdesign[pdf]'" in ended.err
+    assert not (tmp_path / "out" / "results.json").exists()
+
+
+@pytest.mark.whole_run
+def test_check_writes_the_report_as_pdf_with_its_author(
+    rigdesign: Rigdesign, write: Write, tmp_path: Path
+) -> None:
+    from pypdf import PdfReader
+
+    out = tmp_path / "out"
+    ended = rigdesign(
+        "check", write(SMALL), "--fidelity", "quick", "--pdf", "--author", "A. Engineer", "--out", out
+    )
+    assert ended.status == 0, ended.err
+    assert "A. Engineer" in PdfReader(out / "report.pdf").pages[0].extract_text()
+    assert "report.pdf" in json.loads((out / "results.json").read_text())["files"]

@@ -218,7 +218,7 @@ def test_a_failing_writer_leaves_the_earlier_result(tmp_path, monkeypatch):
     write_results(small_result(), tmp_path)
     before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
 
-    def fail(result):
+    def fail(*_):
         raise RuntimeError("no picture")
 
     monkeypatch.setattr("rigdesign.report.pages.report.report_html", fail)

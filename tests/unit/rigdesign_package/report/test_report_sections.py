@@ -1,5 +1,6 @@
 """The report walks its list of sections: numbers, contents and cross references follow."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -25,11 +26,13 @@ def test_a_new_section_is_numbered_listed_and_drawn(monkeypatch: pytest.MonkeyPa
         id="extra", title="An extra section", template="limits.html.j2",
         values=lambda result, draw: {}, applies=lambda result: bool(result.not_modelled),
     )  # fmt: skip
-    monkeypatch.setattr(report, "SECTIONS", (SECTIONS[0], own, *SECTIONS[1:]))
+    late = replace(own, id="late", place="appendix")
+    monkeypatch.setattr(report, "SECTIONS", (SECTIONS[0], own, *SECTIONS[1:], late))
     page = report_html(make_result())
-    assert '<a href="#extra">2&ensp;An extra section</a>' in page
-    assert '<h2 id="extra">2&ensp;An extra section</h2>' in page
-    assert "listed in section 8" in page or "more assumed inputs" not in page
+    assert '<a href="#extra">1&ensp;An extra section</a>' in page
+    assert '<h2 id="extra">1&ensp;An extra section</h2>' in page
+    assert '<h2 id="verdict">2&ensp;' in page
+    assert re.search(r'<h2 id="late">[A-Z]&ensp;An extra section</h2>', page)
     assert "An extra section" not in report_html(replace(make_result(), not_modelled=[]))
 
 

@@ -1,0 +1,97 @@
+"""Which inputs would turn the verdict, by how much: from the ranges of a run, or as the run itself has found."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rigdesign.report.numbers import margin_unit, number_text, quantity_text, stated_text
+from rigdesign.results.ranges import CheckRange, RangedInput, RangeMargin, RangesResult
+from rigdesign.results.result import RunResult
+
+SHOWN = 3
+"""Inputs on the first page."""
+NUMBER = re.compile(r"\s*([-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?)\s*(.*)")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Flip:
+    """One input and what it would have to be for a check to change sides.
+
+    path, title : the input; stated, needed : its value as printed, ``needed`` empty where none is known
+    check : id of the check; reachable : whether ``needed`` lies within what the case calls plausible
+    """
+
+    path: str
+    title: str
+    unit: str
+    stated: str
+    needed: str
+    check: str
+    reachable: bool
+    text: str
+
+
+def flips(result: RunResult) -> list[Flip]:
+    """The inputs nearest to turning the verdict; empty where the run evaluated neither ranges nor sensitivities."""
+    if result.ranges is not None:
+        return from_ranges(result.ranges)[:SHOWN]
+    found: Sequence[Flip] | None = getattr(result, "flips", None)
+    return list(found or ())[:SHOWN]
+
+
+def evaluated(result: RunResult) -> bool:
+    """Whether the run can say what would turn its verdict."""
+    return result.ranges is not None or getattr(result, "flips", None) is not None
+
+
+def from_ranges(ranges: RangesResult) -> list[Flip]:
+    """Failing checks first, each with the input that moves it furthest; then what would break a check that holds."""
+    inputs = {row.path: row for row in ranges.inputs}
+    failing = [row for row in ranges.checks if row.verdict_stated == "fail"]
+    holding = [row for row in ranges.checks if row.verdict_stated != "fail" and row.decided_by]
+    found = [flip for row in failing for flip in _of_check(ranges, row, inputs)[:1]]
+    return found + [flip for row in holding for flip in _of_check(ranges, row, inputs)[:1] if flip.reachable]
+
+
+def _of_check(ranges: RangesResult, check: CheckRange, inputs: dict[str, RangedInput]) -> list[Flip]:
+    """Every input that moves one check to the other side or nearest to it, the strongest first."""
+    if check.margin is None:
+        return []
+    better = check.margin < 0.0
+    rows = [row for row in ranges.margins if row.check == check.check and row.path in inputs]
+    ends = [(end, row) for row in rows for end in ("low", "high") if _margin(row, end) is not None]
+    ends.sort(key=lambda item: _margin(item[1], item[0]) or 0.0, reverse=better)
+    return [_flip(check, inputs[row.path], row, end) for end, row in ends]
+
+
+def _margin(row: RangeMargin, end: str) -> float | None:
+    return row.margin_low if end == "low" else row.margin_high
+
+
+def _flip(check: CheckRange, given: RangedInput, row: RangeMargin, end: str) -> Flip:
+    """One end of one range: does the check change sides on the way there?"""
+    at_end = _margin(row, end)
+    assert at_end is not None and check.margin is not None
+    limit = given.low if end == "low" else given.high
+    turned = (at_end >= 0.0) != (check.margin >= 0.0)
+    share = check.margin / (check.margin - at_end) if turned else 1.0
+    needed = between(given.stated, limit, share) if turned else ""
+    side = "holds" if check.margin < 0.0 else "fails"
+    margin = quantity_text(at_end, margin_unit(check.unit))
+    if turned:
+        text = f"{side} from about {needed}" if needed else f"{side} at {stated_text(limit)}"
+    else:
+        text = f"still {'fails' if check.margin < 0.0 else 'holds'} at {stated_text(limit)}, margin {margin}"
+    return Flip(
+        path=given.path, title=given.path, unit="", stated=stated_text(given.stated), needed=needed,
+        check=check.check, reachable=turned, text=text,
+    )  # fmt: skip
+
+
+def between(stated: str, end: str, share: float) -> str:
+    """The value at ``share`` of the way between two of one unit; empty where they have no number or other units."""
+    first, last = NUMBER.fullmatch(stated), NUMBER.fullmatch(end)
+    if first is None or last is None or first[2] != last[2]:
+        return ""
+    value = float(first[1]) + share * (float(last[1]) - float(first[1]))
+    return stated_text(f"{number_text(value, 3)} {first[2]}".strip())

@@ -1,0 +1,184 @@
+"""Why a run ends as it does, in two sentences made from its records, and what would decide it."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from rigdesign.report.numbers import limit_text, number_text, percent_text, quantity_text, value_text
+from rigdesign.report.views import applicable, sorted_checks
+from rigdesign.results.check import Check
+from rigdesign.results.dynamics import GearboxDynamics
+from rigdesign.results.result import RunResult
+
+AGREEMENT = 1.15
+"""Ratio of two root stresses up to which the methods agree."""
+CARRIES = 0.01
+"""Share of the highest root stress above which a tooth counts as loaded."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Why:
+    """The first page of a report in words.
+
+    sentences : at most two; decided_by : what would tell which way it goes, empty where nothing is open
+    """
+
+    sentences: tuple[str, ...]
+    decided_by: str = ""
+
+
+def why(result: RunResult) -> Why:
+    """What decides the verdict of a run."""
+    checks = sorted_checks(applicable(result.checks))
+    if not checks:
+        return Why(
+            sentences=("No check applies: the case states no limit that this run could be held against.",)
+        )
+    if checks[0].verdict == "fail":
+        failing = [check for check in checks if check.verdict == "fail"]
+        methods = next((pair for check in failing if (pair := _two_methods(result.checks, check))), None)
+        return _methods_differ(result, failing, *methods) if methods else _limit_missed(failing)
+    if checks[0].verdict == "warn":
+        return _reserved(checks)
+    return Why(sentences=(f"All {len(checks)} checks that apply hold.", _nearest(checks)))
+
+
+def _two_methods(checks: Sequence[Check], failing: Check) -> tuple[Check, Check] | None:
+    """The root stress or safety of one gear by ISO 6336-3 and over the path of contact, if ``failing`` is of them."""
+    family, dot, place = failing.id.partition(".")[2].partition(".")
+    if not dot or family.rpartition("_")[0] not in ("root_stress", "root_safety"):
+        return None
+    ends = {
+        method: failing.id.replace(f".{family}.", f".{family.rpartition('_')[0]}_{method}.")
+        for method in METHODS
+    }
+    found = {check.id: check for check in checks if check.value}
+    iso, path = (found.get(ends[method]) for method in METHODS)
+    return None if iso is None or path is None or not place else (iso, path)
+
+
+METHODS = ("iso", "path")
+"""Ends of the families of root stress checks: ISO 6336-3 and over the path of contact."""
+
+
+def _methods_differ(result: RunResult, failing: Sequence[Check], iso: Check, path: Check) -> Why:
+    """Two values of one root: what each is, and what of the two models makes them differ."""
+    assert iso.value is not None and path.value is not None
+    subject = _capital(iso.title.partition(",")[0])
+    first = (
+        f"{subject} is {value_text(iso)} by ISO 6336-3 ({iso.verdict}) and {value_text(path)} over the path of contact "
+        f"({path.verdict}), against {limit_text(iso)}{_others(failing, iso, path)}."
+    )
+    stress = iso.id.startswith("specimen.")
+    ratio = iso.value / path.value if stress else path.value / iso.value
+    label, _, gear = iso.id.split(".", 2)[2].rpartition(".")
+    measured = f"strain gauges in the root fillet of {label} {gear}"
+    if 1.0 / AGREEMENT < ratio < AGREEMENT:
+        return Why(sentences=(first, f"Both methods agree within {100.0 * abs(ratio - 1.0):.0f} %."))
+    if ratio < 1.0:
+        second = (
+            f"The stress over the path is {number_text(1.0 / ratio, 2)} times that of ISO 6336-3: it follows the force "
+            "of the single tooth, where the standard spreads the load by factors."
+        )
+    else:
+        second = (
+            f"The stress of ISO 6336-3 is {number_text(ratio, 2)} times the other: it is a nominal stress with the "
+            "whole force on one tooth at the outer point of single contact"
+            f"{_contact_ratio(result, label)}, times load factors; "
+            f"over the path the deflected teeth meet early and share the force{_engagement(result, label, gear)}."
+        )
+    decided = f"A tooth contact analysis of the real pair by influence numbers, or {measured}."
+    return Why(sentences=(first, second), decided_by=decided)
+
+
+def _others(failing: Sequence[Check], *named: Check) -> str:
+    more = len([check for check in failing if check not in named])
+    return f"; {more} more {'check fails' if more == 1 else 'checks fail'}" if more else ""
+
+
+def _mesh(result: RunResult, label: str) -> GearboxDynamics | None:
+    return None if result.dynamics is None else result.dynamics.gearboxes.get(label)
+
+
+def _contact_ratio(result: RunResult, label: str) -> str:
+    """Of the rigid flanks, in brackets."""
+    mesh = _mesh(result, label)
+    ratio = None if mesh is None else mesh.geometry.get("transverse_contact_ratio")
+    return f" (contact ratio {number_text(float(ratio), 3)})" if isinstance(ratio, int | float) else ""
+
+
+def _engagement(result: RunResult, label: str, gear: str) -> str:
+    """Over how many pitches a tooth carries load in the run."""
+    pitches = loaded_pitches(_mesh(result, label), gear)
+    return "" if pitches is None else f" over {number_text(pitches, 2)} pitches"
+
+
+def loaded_pitches(mesh: GearboxDynamics | None, gear: str) -> float | None:
+    """Angle over which the root of a tooth is stressed, quasi-static, over the angle of a pitch."""
+    teeth = "" if mesh is None else str(mesh.geometry.get("teeth", ""))
+    if mesh is None or " / " not in teeth:
+        return None
+    for history, number in zip(mesh.root_stress, teeth.split(" / "), strict=False):
+        stress = history.quasi_static_MPa
+        if history.gear != gear or not stress:
+            continue
+        loaded = [
+            a for a, s in zip(history.rolling_angle_deg, stress, strict=True) if s > CARRIES * max(stress)
+        ]
+        return (loaded[-1] - loaded[0]) * int(number) / 360.0
+    return None
+
+
+LEAVES_OUT = "leaves out "
+"""Where the reason of a check goes over to what its value does not count: no help to a limit that is missed."""
+
+
+def _limit_missed(failing: Sequence[Check]) -> Why:
+    """The governing check and how it came about."""
+    worst = failing[0]
+    used = "" if worst.utilisation is None else f" ({percent_text(worst.utilisation)} of the limit used)"
+    first = f"{_capital(worst.title)}: {value_text(worst)} against {limit_text(worst)}{used}{_others(failing, worst)}."
+    reason = worst.reason.partition(LEAVES_OUT)[0].rstrip("; ")
+    sentences = (first, f"{_capital(reason)}.") if reason else (first,)
+    error, margin = worst.discretisation_error, worst.margin
+    if error is not None and margin is not None and abs(margin) < error:
+        text = f"A finer mesh: it leaves {quantity_text(error, worst.unit)} open, more than is missing."
+        return Why(sentences=sentences, decided_by=text)
+    if worst.by_definition:
+        return Why(sentences=sentences, decided_by="The case itself: it states value and limit.")
+    if not worst.assumptions:
+        return Why(sentences=sentences, decided_by="Another design, operating point or limit.")
+    number = len(worst.assumptions)
+    inputs = "the assumed input" if number == 1 else f"the {number} assumed inputs"
+    text = f"Measured values in place of {inputs} it depends on, or another design, operating point or limit."
+    return Why(sentences=sentences, decided_by=text)
+
+
+def _reserved(checks: Sequence[Check]) -> Why:
+    """Every limit is kept, and some checks say that they do not know enough."""
+    warned = [check for check in checks if check.verdict == "warn"]
+    reasons = Counter(text for check in warned for text in check.left_out)
+    partial = sum(bool(check.left_out) for check in warned)
+    words = f"No limit is missed; {len(warned)} of {len(checks)} checks carry a reservation"
+    if partial:
+        words += f", {partial} of them because the value leaves out a known contributor"
+    often = reasons.most_common(1)
+    decided = f"A model of what is left out most often: {often[0][0]}." if often else ""
+    return Why(sentences=(f"{words}.", _nearest(checks)), decided_by=decided)
+
+
+def _nearest(checks: Sequence[Check]) -> str:
+    """The check with the most of its limit used, those of the case against itself left out."""
+    real = [check for check in checks if not check.by_definition and check.utilisation is not None]
+    if not real:
+        return "No check comes near its limit."
+    first = max(real, key=lambda check: check.utilisation or 0.0)
+    assert first.utilisation is not None
+    return (
+        f"Nearest to its limit is {first.title}: {value_text(first)} against {limit_text(first)}, "
+        f"{percent_text(first.utilisation)} used."
+    )
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

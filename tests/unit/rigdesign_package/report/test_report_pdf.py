@@ -1,0 +1,53 @@
+"""report.pdf: the same pages by WeasyPrint, and what happens where it is missing."""
+
+import importlib
+from datetime import date
+from pathlib import Path
+
+import pytest
+from pypdf import PdfReader
+
+from rigdesign.base.errors import MissingLibraryError
+from rigdesign.report import Issue, write_results
+from rigdesign.report.pdf import require_pdf, write_pdf
+from tests.builders.report import make_result
+from tests.builders.report_inputs import rig_inputs
+
+
+def test_report_as_pdf_has_its_first_page_running_title_and_page_numbers(tmp_path: Path) -> None:
+    write_results(make_result(inputs=rig_inputs()), tmp_path / "out", Issue(date=date(2026, 1, 2)), pdf=True)
+    pages = [
+        " ".join(page.extract_text().split()) for page in PdfReader(tmp_path / "out" / "report.pdf").pages
+    ]
+    assert "approved" in pages[0]
+    assert "Checks and margins" not in pages[0]
+    appendix = next(
+        number for number, text in enumerate(pages) if number > 1 and "Basis of the checks" in text
+    )
+    assert appendix <= 8
+    for number, text in enumerate(pages, start=1):
+        assert f"page {number} of {len(pages)}" in text
+        assert "uhcf_prototype – fail" in text
+        assert "9c9c9c9c9c9c" in text
+        assert "2026-01-02" in text
+
+
+def test_a_page_fetches_nothing(tmp_path: Path) -> None:
+    write_pdf(
+        '<p>text</p><img src="file:///etc/hostname"><img src="http://127.0.0.1:9/x.png">', tmp_path / "x.pdf"
+    )
+    assert PdfReader(tmp_path / "x.pdf").pages[0].extract_text().strip() == "text"
+
+
+@pytest.mark.parametrize("error", [ImportError("no module"), OSError("cannot load library 'libpango-1.0-0'")])
+def test_a_missing_library_is_named_with_both_commands(
+    monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    def missing(name: str) -> object:
+        raise error
+
+    monkeypatch.setattr(importlib, "import_module", missing)
+    with pytest.raises(
+        MissingLibraryError, match=r"pip install 'rigdesign\[pdf\]'.*apt-get install.*libpango"
+    ):
+        require_pdf()
