@@ -160,13 +160,12 @@ def _flip(
     row = Flip(
         path=candidate.paths[0] if len(candidate.paths) == 1 else _shared(candidate.paths),
         title=candidate.title,
-        unit=candidate.unit,
         stated=stated,
         needed=value,
         check=target.id,
         holds=holds,
         reachable=True,
-        text=f"{candidate.title} {value} instead of {stated}: {_what(targets)} {_turn(targets)}",
+        effect=f"{_what(targets)} {_turn(targets)}",
     )
     return abs(math.log(factor)), row
 
@@ -241,8 +240,8 @@ def _limit(targets: Sequence[Check]) -> Flip:
     stated, needed = f"{limit:.4g} {unit}".strip(), f"{target.value:.4g} {unit}".strip()
     holds = target.utilisation <= 1.0
     return Flip(
-        path="", title="limit", unit=unit, stated=stated, needed=needed, check=target.id, holds=holds, reachable=True,
-        text=f"limit {needed} instead of {stated}: {_what(targets)} {_turn(targets)}",
+        path="", title="limit of the check", stated=stated, needed=needed, check=target.id, holds=holds, reachable=True,
+        effect=f"{_what(targets)} {_turn(targets)}",
     )  # fmt: skip
 
 

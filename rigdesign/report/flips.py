@@ -1,10 +1,9 @@
 """Which inputs would turn the verdict, by how much: from the ranges of a run, or as the run itself has found."""
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 from rigdesign.report.numbers import margin_unit, number_text, quantity_text, stated_text
+from rigdesign.results.flips import Flip
 from rigdesign.results.ranges import CheckRange, RangedInput, RangeMargin, RangesResult
 from rigdesign.results.result import RunResult
 
@@ -13,35 +12,17 @@ SHOWN = 3
 NUMBER = re.compile(r"\s*([-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?)\s*(.*)")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Flip:
-    """One input and what it would have to be for a check to change sides.
-
-    path, title : the input; stated, needed : its value as printed, ``needed`` empty where none is known
-    check : id of the check; reachable : whether ``needed`` lies within what the case calls plausible
-    """
-
-    path: str
-    title: str
-    unit: str
-    stated: str
-    needed: str
-    check: str
-    reachable: bool
-    text: str
-
-
 def flips(result: RunResult) -> list[Flip]:
-    """The inputs nearest to turning the verdict; empty where the run evaluated neither ranges nor sensitivities."""
-    if result.ranges is not None:
-        return from_ranges(result.ranges)[:SHOWN]
-    found: Sequence[Flip] | None = getattr(result, "flips", None)
-    return list(found or ())[:SHOWN]
+    """The inputs nearest to turning the verdict: as the run found them, else from its ranges."""
+    if result.flips or result.ranges is None:
+        return result.flips[:SHOWN]
+    return from_ranges(result.ranges)[:SHOWN]
 
 
-def evaluated(result: RunResult) -> bool:
-    """Whether the run can say what would turn its verdict."""
-    return result.ranges is not None or getattr(result, "flips", None) is not None
+def within_ranges(result: RunResult) -> list[Flip]:
+    """The assumed inputs that turn a check within their ranges, where the run evaluated them."""
+    found = [] if result.ranges is None else from_ranges(result.ranges)
+    return [flip for flip in found if flip.reachable][:SHOWN]
 
 
 def from_ranges(ranges: RangesResult) -> list[Flip]:
@@ -83,8 +64,8 @@ def _flip(check: CheckRange, given: RangedInput, row: RangeMargin, end: str) -> 
     else:
         text = f"still {'fails' if check.margin < 0.0 else 'holds'} at {stated_text(limit)}, margin {margin}"
     return Flip(
-        path=given.path, title=given.path, unit="", stated=stated_text(given.stated), needed=needed,
-        check=check.check, reachable=turned, text=text,
+        path=given.path, title=given.path, holds=check.margin >= 0.0, stated=stated_text(given.stated), needed=needed,
+        check=check.check, reachable=turned, effect=text,
     )  # fmt: skip
 
 

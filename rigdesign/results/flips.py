@@ -7,18 +7,18 @@ from dataclasses import dataclass
 class Flip:
     """One input at the value at which the governing check changes between held and broken, all others as stated.
 
-    path : of the input; empty for the limit of the check itself; several that move together share a ``*``
-    stated, needed : as the case would write them; ``needed`` is empty where none within the factor looked at does it
+    path : of the input; empty for the limit of the check itself; ``*`` where several move together
+    stated, needed : as the case would write them; ``needed`` is empty where no value is known
     check : the governing check; ``holds`` says whether it holds at the stated value
+    reachable : whether the check changes within what was looked at
+    effect : what follows, in words
     """
 
     path: str
     title: str
-    unit: str
     stated: str
     needed: str
     check: str
     holds: bool
     reachable: bool
-    text: str
-    """The row in words."""
+    effect: str

@@ -26,7 +26,7 @@ def _decision(result: RunResult, draw: Draw) -> Values:
         "nearest": nearest,
         "governing": governing,
         "flips": flips.flips(result),
-        "flips_evaluated": flips.evaluated(result),
+        "assumed_flips": flips.within_ranges(result),
         "depends_on": len(specific),
         "with_range": sum(record.range is not None for record in specific),
         "named": specific[:NAMED],

@@ -6,6 +6,7 @@ from datetime import date
 import pytest
 
 from rigdesign.report import flips, reasons
+from rigdesign.results.flips import Flip
 from rigdesign.report.assumption_groups import assumption_groups, in_braces, most_influential
 from rigdesign.report.case_sheet import CaseSheet
 from rigdesign.report.figures.drawing import drawing_style
@@ -104,20 +105,30 @@ def test_reservations_and_a_clean_pass_name_the_nearest_check():
 def test_inputs_that_turn_the_verdict_come_from_the_ranges():
     first, second, third = flips.from_ranges(ranges())
     assert (first.path, first.check, first.needed, first.reachable) == ("torque", "x", "160 N m", True)
-    assert first.text == "holds from about 160 N m"
+    assert first.effect == "holds from about 160 N m"
     assert (second.check, second.reachable) == ("y", False)
-    assert second.text == "still fails at 40 µm, margin −0.5 mm"
-    assert third.text == "fails from about 50 µm"
+    assert second.effect == "still fails at 40 µm, margin −0.5 mm"
+    assert third.effect == "fails from about 50 µm"
 
 
 def test_a_run_that_cannot_tell_says_how_to_find_out():
     plain = make_result(inputs=rig_inputs())
-    assert not flips.evaluated(plain)
     assert "--ranges" in report_html(plain)
-    told = replace(plain, ranges=ranges())
-    page = report_html(told)
+    page = report_html(replace(plain, ranges=ranges()))
     assert "holds from about 160 N m" in page
-    assert "Not evaluated in this run" not in page
+    assert "looks at the assumed inputs" not in page
+
+
+def test_inputs_the_run_has_found_stand_before_those_of_the_ranges():
+    found = Flip(
+        path="schedule.test_torque", title="test torque", stated="180 N m", needed="99 N m", check="x", holds=False,
+        reachable=True, effect="root stress holds",
+    )  # fmt: skip
+    page = report_html(make_result(inputs=rig_inputs(), flips=[found], ranges=ranges()))
+    first = page[page.index("Inputs that would turn the verdict") : page.index("The rig")]
+    assert "<td>test torque</td>" in first
+    assert "99 N m" in first and "root stress holds" in first
+    assert "Within their ranges, assumed inputs turn" in first
 
 
 @pytest.mark.parametrize(
