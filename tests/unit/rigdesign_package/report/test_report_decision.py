@@ -6,7 +6,6 @@ from datetime import date
 import pytest
 
 from rigdesign.report import flips, reasons
-from rigdesign.results.flips import Flip
 from rigdesign.report.assumption_groups import assumption_groups, in_braces, most_influential
 from rigdesign.report.case_sheet import CaseSheet
 from rigdesign.report.figures.drawing import drawing_style
@@ -14,6 +13,7 @@ from rigdesign.report.figures.schematic import rig_plan, schematic_figure
 from rigdesign.report.input_sheets import gear_sheets, joint_sheet, material_sheet, oil_sheet, shaft_sheet
 from rigdesign.report.issue import Issue, signatures
 from rigdesign.report.pages.report import css_string, report_html
+from rigdesign.results.flips import Flip
 from tests.builders.report import make_check, make_result
 from tests.builders.report_inputs import rig_inputs
 from tests.builders.report_ranges import ranges
