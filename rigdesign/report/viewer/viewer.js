@@ -12,10 +12,10 @@
   const VIEWS = {
     start: [-60, 32], front: [180, 4], rear: [0, 4], side: [-90, 4], top: [-90, 85],
   };
-  const TURN = 15, NEAREST = 0.6, FARTHEST = 5, START_DISTANCE = 2.15;
+  const TURN = 15, NEAREST = 0.6, FARTHEST = 5;
   // Kept side of the plane that turns the cut towards the first view.
   const KEPT = [1, -1, 1];
-  const state = { direction: [...VIEWS.start], distance: START_DISTANCE, hidden: new Set() };
+  const state = { direction: [...VIEWS.start], distance: 1, hidden: new Set() };
   let arrays = null, drawn = null, waiting = false;
 
   async function unpack(text) {
@@ -186,6 +186,7 @@
     });
   }
 
+  const startDistance = () => narrow() ? 2.5 : 2.15;
   const narrow = () => get("plot").clientWidth < 560;
 
   function camera() {
@@ -309,7 +310,7 @@
     for (const button of root.querySelectorAll("button[data-view]")) {
       button.addEventListener("click", () => {
         state.direction = [...VIEWS[button.dataset.view]];
-        state.distance = START_DISTANCE;
+        state.distance = startDistance();
         Plotly.relayout(get("plot"), { "scene.camera": camera() }).then(count);
       });
     }
@@ -355,6 +356,7 @@
     offerField();
     placeSlider();
     root.classList.add("live");
+    state.distance = startDistance();
     connect();
     draw();
   }
