@@ -305,5 +305,6 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "transient.settled_share": _at(run__transient="time until a quantity is steady"),
     "transient.tolerance": _at(transient__thermal_history="time steps of the thermal history"),
     "transient.probes.*": _at(transient__places="places whose temperature is kept"),
+    "document": _at(report__issue="printed on the first page of the report; no result depends on it"),
 }
 """Path of a key or of its table -> where it enters."""

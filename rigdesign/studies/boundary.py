@@ -86,15 +86,15 @@ class BoundarySearch:
 
 def _turn(left: CheckState, middle: CheckState, right: CheckState) -> float | None:
     """Value at which the parabola through three points turns beyond the limit; None where it does not."""
-    if left.utilisation is None or middle.utilisation is None or right.utilisation is None:
+    if left.margin is None or middle.margin is None or right.margin is None:
         return None
-    first = (middle.utilisation - left.utilisation) / (middle.value - left.value)
-    second = (right.utilisation - middle.utilisation) / (right.value - middle.value)
+    first = (middle.margin - left.margin) / (middle.value - left.value)
+    second = (right.margin - middle.margin) / (right.value - middle.value)
     curvature = (second - first) / (right.value - left.value)
-    if (curvature < 0.0) != left.holds or curvature == 0.0:
+    if (curvature > 0.0) != left.holds or curvature == 0.0:
         return None  # bends away from the limit
     turn = 0.5 * (left.value + middle.value) - 0.5 * first / curvature
     if not left.value < turn < right.value:
         return None
-    reached = left.utilisation + (turn - left.value) * (first + curvature * (turn - middle.value))
-    return turn if (reached > 1.0) == left.holds else None
+    reached = left.margin + (turn - left.value) * (first + curvature * (turn - middle.value))
+    return turn if (reached < 0.0) == left.holds else None

@@ -10,11 +10,11 @@ from rigdesign.studies.result import Crossing, Record, StudyPoint
 
 @dataclass(frozen=True)
 class CheckState:
-    """A check at one value of an input: whether it holds, and its utilisation where it has one."""
+    """A check at one value of an input: whether it holds, and its margin where it has one, in its unit."""
 
     value: float
     holds: bool
-    utilisation: float | None
+    margin: float | None
 
 
 def holds(check: Record | None) -> bool | None:
@@ -35,7 +35,7 @@ def check_states(identity: str, places: Sequence[tuple[float, StudyPoint]]) -> l
     for value, point in sorted(places, key=lambda place: place[0]):
         check = point.check(identity)
         if check is not None and (held := holds(check)) is not None:
-            states.append(CheckState(value, held, check["utilisation"]))
+            states.append(CheckState(value, held, check["margin"]))
     return states
 
 
@@ -45,10 +45,13 @@ def changes(states: Sequence[CheckState]) -> Iterator[tuple[CheckState, CheckSta
 
 
 def interpolated(left: CheckState, right: CheckState) -> float:
-    """The value at which the utilisation is 1, by a straight line; halfway where a utilisation is missing."""
-    if left.utilisation is None or right.utilisation is None:
+    """The value at which the margin is zero, by a straight line; halfway where a margin is missing.
+
+    The margin follows the value of a check; its utilisation does not where the limit is a lower one.
+    """
+    if left.margin is None or right.margin is None:
         return 0.5 * (left.value + right.value)
-    share = (1.0 - left.utilisation) / (right.utilisation - left.utilisation)
+    share = left.margin / (left.margin - right.margin)
     return left.value + min(max(share, 0.0), 1.0) * (right.value - left.value)
 
 
