@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rigdesign.coupling.acceleration import Acceleration, PlainRelaxation
+from rigdesign.coupling.acceleration import Acceleration, Anderson, Differences, PlainRelaxation
 from rigdesign.coupling.convergence import CaseTolerances, Residual
 from rigdesign.coupling.fixed_point import solve_fixed_point
 from rigdesign.coupling.iteration import IterationResult, PointProblem
@@ -20,6 +20,8 @@ class PointResult:
     last: IterationResult
     setting: BracingState | None
     residuals: tuple[Residual, ...]
+    differences: Differences | None = None
+    """Secants of the iterations, with which a neighbouring point starts; of an Anderson acceleration only."""
 
 
 def governing_point(points: Sequence[PointResult]) -> PointResult:
@@ -56,11 +58,18 @@ def solve_point(
         A loss, temperature, length or torque of an iteration is NaN or infinite.
     """
     problem = PointProblem.braced(rig, point, freeze=freeze)
+    steps = acceleration or PlainRelaxation()
     last, residuals = solve_fixed_point(
         problem,
-        acceleration or PlainRelaxation(),
+        steps,
         CaseTolerances(rig.case.numerics),
         problem.initial if start is None else start.freeze(freeze, problem.initial),
         before,
     )
-    return PointResult(point=point, last=last, setting=problem.bracing, residuals=tuple(residuals))
+    return PointResult(
+        point=point,
+        last=last,
+        setting=problem.bracing,
+        residuals=tuple(residuals),
+        differences=steps.differences if isinstance(steps, Anderson) else None,
+    )

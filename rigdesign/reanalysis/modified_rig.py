@@ -122,7 +122,11 @@ def _coupled(rig: Rig, stated: SolvedRig) -> Iterator[PointResult]:
     for point, near in zip(held_points(rig), stated.points, strict=True):
         start = near.last.coupling_state
         yield solve_point(
-            rig, point, start=start, before=near.last if same else None, acceleration=Anderson(start)
+            rig,
+            point,
+            start=start,
+            before=near.last if same else None,
+            acceleration=Anderson(start, known=near.differences),
         )
 
 

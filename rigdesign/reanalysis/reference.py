@@ -7,9 +7,11 @@ from threadpoolctl import threadpool_limits
 from dynamics.response.time_response import TimeResponse
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
+from rigdesign.coupling.acceleration import Anderson
+from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loads import BracingState
-from rigdesign.coupling.loop import solve_point
-from rigdesign.coupling.state import CouplingState
+from rigdesign.coupling.loop import PointResult, solve_point
+from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import held_points
 from rigdesign.reanalysis.modified_rig import with_records
 from rigdesign.reanalysis.motor_torque import Array, losses_on_motor, peaks_only
@@ -18,7 +20,7 @@ from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.result import DiscretisationRow
-from rigdesign.rig.model import build_rig
+from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.main import Progress, solve_case
 from rigdesign.run.solver_errors import solver_errors
 
@@ -79,7 +81,7 @@ def restored(reference: Reference) -> SolvedRig:
 def _restored(reference: Reference) -> SolvedRig:
     rig = build_rig(reference.case, reference.fidelity)
     points = [
-        solve_point(rig, point, start=coupling_state)
+        _point(rig, point, coupling_state)
         for point, coupling_state in zip(held_points(rig), reference.states, strict=True)
     ]
     run = None
@@ -87,3 +89,11 @@ def _restored(reference: Reference) -> SolvedRig:
         run = DynamicRun(points=tuple(points), curves=reference.curves, ramp=reference.ramp)
     solved = with_records(rig, points, run, reference.loads)
     return replace(solved, discretisation=reference.discretisation)
+
+
+def _point(rig: Rig, point: OperatingPoint, converged: CouplingState) -> PointResult:
+    """A held point at its converged coupling state, with the secants of the iterations that lead there."""
+    initial = initial_state(rig, point)
+    near = solve_point(rig, point, acceleration=Anderson(initial))
+    found = solve_point(rig, point, start=converged, before=near.last)
+    return replace(found, differences=near.differences)

@@ -106,13 +106,13 @@ def test_sections_stand_in_the_order_of_reading(page):
         "pinion speed n [rpm]",
         "frequency [Hz]",
         "time [s]",
-        "torque [Nm]",
+        "torque [N m]",
         "rolling angle φ [°]",
         "radial gap, local [mm]",
         "temperature, steady [°C]",
         "displacement, size [µm]",
         "heat flux, size [kW/m²]",
-        "simulated at 180 Nm, max / mean",
+        "simulated at 180 N m, max / mean",
         "simulated, 1 + half peak-to-peak / mean",
         "0 to peak",
         "iteration [–]",
@@ -224,8 +224,8 @@ def test_no_line_is_drawn_over_a_speed_without_solution():
     """The curve at 90 N m has a hole at 1800 rpm: its line breaks there, that of the test torque does not."""
     figure = dynamic_factor_figure(make_result().dynamics)
     lines = {line.get_label(): line for line in figure.axes[0].get_lines()}
-    broken = next(line for label, line in lines.items() if label.startswith("simulated at 90 Nm"))
-    whole = lines["simulated at 180 Nm, max / mean"]
+    broken = next(line for label, line in lines.items() if label.startswith("simulated at 90 N m"))
+    whole = lines["simulated at 180 N m, max / mean"]
     hole = np.isnan(np.asarray(broken.get_ydata(), dtype=float))
     assert np.asarray(broken.get_xdata())[hole].tolist() == [1800.0]
     assert not np.isnan(np.asarray(whole.get_ydata(), dtype=float)).any()
