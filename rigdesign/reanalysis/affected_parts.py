@@ -4,12 +4,17 @@ The table names what is known to touch only a part of the model. An input that s
 again in full and influences every check (`checks.assumptions`): a missing entry costs time, not truth.
 """
 
+from collections.abc import Collection
+from dataclasses import dataclass
 from typing import Literal
 
+from rigdesign.case.model import Case
 from rigdesign.checks.assumptions import is_under
 
 Part = Literal["coupling", "curves", "time run"]
 PARTS: tuple[Part, ...] = ("coupling", "curves", "time run")
+TimeRun = Literal["marched", "shifted"]
+"""How the time run follows loads that move."""
 
 SOLVED: dict[tuple[str, ...], tuple[Part, ...]] = {
     (
@@ -50,7 +55,10 @@ the motor follows its losses (`motor_torque`).
 THROUGH_HEAT = (
     "ambient",
     "oils",
-    "losses",
+    *(
+        f"losses.{key}"
+        for key in ("given", "chamber_density", "squeeze_share", "friction", "mesh_damping_heats_oil")
+    ),
     *(
         f"gearboxes.*.{key}"
         for key in (
@@ -65,8 +73,40 @@ THROUGH_HEAT = (
         )
     ),
 )
-"""Inputs that reach the dynamic loads through the temperatures of the gears and the drag torques alone: they change
-neither drivetrain nor schedule nor the teeth as drawn."""
+"""Inputs that reach the dynamic loads through the temperatures of the gears, the drag torques and the friction of the
+teeth: they change neither drivetrain nor schedule nor the teeth as drawn. `reanalysis` names the exceptions."""
+
+
+@dataclass(frozen=True)
+class Reanalysis:
+    """What is solved again of a case with changed inputs.
+
+    time_run : ``shifted`` where the periodic response may move its envelopes (`shifted_run`), else ``marched``
+    """
+
+    parts: tuple[Part, ...]
+    time_run: TimeRun
+
+
+def reanalysis(case: Case, changed: Collection[str]) -> Reanalysis | None:
+    """What is solved again of ``case`` where these inputs change; None where everything is.
+
+    The time run is marched where heat moves the mean torque of the loop: a bracing that holds twist or shift winds up
+    with warm gears, and one with a temperature drift follows the oil. With a constant bearing drag the factor of
+    that loss is part of the drivetrain.
+    """
+    parts = tuple(part for part in PARTS if any(part in parts_of(path) for path in changed))
+    in_heat = [path for path in changed if through_heat(path)]
+    if any(path not in in_heat and parts_of(path) == PARTS for path in changed):
+        return None
+    if case.losses.bearing_drag == "constant" and any(".loss_factors" in path for path in in_heat):
+        return None
+    power = case.drivetrain
+    steady = power is None or (
+        power.bracing.mode == "torque_controlled" and power.bracing.temperature_drift == 0.0
+    )
+    shifted = steady and all(path in in_heat or "time run" not in parts_of(path) for path in changed)
+    return Reanalysis(parts, "shifted" if shifted else "marched")
 
 
 def parts_of(path: str) -> tuple[Part, ...]:

@@ -6,12 +6,12 @@ Checks that need the time run or the response over speed are left out.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import partial
 
-from rigdesign.base.errors import RigdesignError
+from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.base.parallel import BackgroundTasks
 from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
@@ -44,8 +44,10 @@ BY_HEAT = (
 """Checks that follow the temperatures."""
 PROBE = 1.1
 """Factor of the first move; a temperature moves by its excess over `BASE`."""
-BASE = 20.0
-"""Temperature from which an inlet temperature counts [degC]."""
+BASE = {"degC": 20.0, "°C": 20.0, "K": 293.15, "degF": 68.0}
+"""Temperature from which an inlet temperature counts, in the unit it is stated in."""
+LEAST_EXCESS = 0.05
+"""Share of a temperature by which it has to differ from `BASE` to be moved by a factor."""
 FARTHEST = 5.0
 """Factor by which an input may move either way."""
 CLOSE = 0.01
@@ -68,13 +70,20 @@ class Candidate:
         """Value whose excess over the offset is ``factor`` times the stated one, to four digits."""
         return float(f"{self.offset + factor * (self.stated - self.offset):.4g}")
 
+    def case_at(self, case: Case, factor: float) -> Case:
+        """The case with the input moved; raises CaseError for a value it does not take."""
+        return changed_together(case, dict.fromkeys(self.paths, self.written(self.moved(factor))))
+
     def written(self, value: float) -> str:
         """As the case writes it."""
         return f"{value:g} {self.unit}"
 
 
-Solve = Callable[[Case], float]
-"""Highest utilisation of the governing checks of a case."""
+SIDE_STEPS = 3
+"""Steps of 1 % by which a value found on the wrong side of the limit is moved over it."""
+
+Solve = Callable[[Case], "Mapping[str, Check]"]
+"""The checks of a changed case, by id."""
 
 
 def with_flips(solved: SolvedRig, result: RunResult) -> RunResult:
@@ -83,23 +92,56 @@ def with_flips(solved: SolvedRig, result: RunResult) -> RunResult:
     if not targets:
         return result
     heat = any(_is(target, BY_HEAT) for target in targets)
-    solve = partial(_utilisation, solved, targets, through_heat=heat)
+    solve = partial(_checks, solved, through_heat=heat)
+    search = Search(targets, [check for check in result.checks if _held(check)], solve)
     works = [
-        partial(_flip, solved.case, candidate, targets, solve)
-        for candidate in _candidates(solved, targets, heat)
+        partial(_flip, solved.case, candidate, search) for candidate in _candidates(solved, targets, heat)
     ]
-    with BackgroundTasks(works) as tasks:
-        found = [flip for flip in tasks.results() if flip is not None]
-    flips = [flip for _, flip in sorted(found, key=lambda item: item[0])]
+    if heat:  # runs compiled threads, which a copy of this process has not
+        rows = [work() for work in works]
+    else:
+        with BackgroundTasks(works) as tasks:
+            rows = tasks.results()
+    found = sorted((row for row in rows if row is not None), key=lambda row: (not row[1].turns, row[0]))
     edges = {(target.limit, target.upper_limit, target.unit) for target in targets}
     limits = [_limit(targets)] if len(edges) == 1 else []
-    return replace(result, flips=[*flips[: SHOWN - len(limits)], *limits])
+    return replace(result, flips=[*(flip for _, flip in found[: SHOWN - len(limits)]), *limits])
+
+
+@dataclass(frozen=True)
+class Search:
+    """What an input has to turn: the governing checks, those that hold at the stated values, and how to solve them."""
+
+    targets: Sequence[Check]
+    held: Sequence[Check]
+    solve: Solve
+
+    def utilisation(self, case: Case) -> float | None:
+        """Highest of the governing checks; None where one of them has none, or the case no result."""
+        try:
+            found = self.solve(case)
+        except (CaseError, NotConvergedError):
+            return None
+        values = [found[target.id].utilisation if target.id in found else None for target in self.targets]
+        known = [value for value in values if value is not None]
+        return max(known) if len(known) == len(values) else None
+
+    def broken(self, case: Case) -> list[Check]:
+        """Checks that hold at the stated values and break in this case."""
+        found = self.solve(case)
+        own = {target.id for target in self.targets}
+        ids = [check.id for check in self.held if check.id in found and check.id not in own]
+        return [found[name] for name in ids if not _held(found[name])]
+
+
+def _held(check: Check) -> bool:
+    return check.utilisation is not None and check.utilisation <= 1.0
 
 
 def governing(checks: Sequence[Check]) -> list[Check]:
-    """All broken checks, the worst first; without one, the held one nearest to its limit of those looked at.
+    """All broken checks, the worst first; without one, the held one nearest to its limit.
 
-    Empty where a broken check is not looked at: no input could be shown to turn the verdict then.
+    Empty where one of them is not looked at: what turns the verdict is not known then.
     """
     used = sorted(
         (check for check in checks if check.utilisation is not None),
@@ -108,7 +150,8 @@ def governing(checks: Sequence[Check]) -> list[Check]:
     broken = [check for check in used if check.verdict == "fail"]
     if broken:
         return broken if all(_is(check, (*BY_LOADS, *BY_HEAT)) for check in broken) else []
-    return [check for check in used if _is(check, (*BY_LOADS, *BY_HEAT))][:1]
+    nearest = next((check for check in used if not check.by_definition), None)
+    return [nearest] if nearest is not None and _is(nearest, (*BY_LOADS, *BY_HEAT)) else []
 
 
 def _is(check: Check, patterns: Sequence[str]) -> bool:
@@ -118,7 +161,7 @@ def _is(check: Check, patterns: Sequence[str]) -> bool:
 def _candidates(solved: SolvedRig, targets: Sequence[Check], heat: bool) -> Iterator[Candidate]:
     """Inputs of the design that may move the checks; gears of one box with the same width move together."""
     written = {row.path: row.value for row in solved.case.inputs}
-    for title, paths, offset in _inputs(solved.case, targets, heat):
+    for title, paths, in_heat in _inputs(solved.case, targets, heat):
         by_text: dict[str, list[str]] = {}
         for path in paths:
             by_text.setdefault(written.get(path, ""), []).append(path)
@@ -129,59 +172,59 @@ def _candidates(solved: SolvedRig, targets: Sequence[Check], heat: bool) -> Iter
                 value = float(number)
             except ValueError:
                 continue
-            yield Candidate(tuple(together), f"{title}{' and '.join(own)}", value, unit, offset)
+            offset = BASE.get(unit, 0.0) if in_heat else 0.0
+            if abs(value - offset) > LEAST_EXCESS * abs(value):
+                yield Candidate(tuple(together), f"{title}{' and '.join(own)}", value, unit, offset)
 
 
-def _inputs(case: Case, targets: Sequence[Check], heat: bool) -> Iterator[tuple[str, list[str], float]]:
-    """Title, paths and offset of the inputs by what the checks follow."""
-    yield "test torque", ["schedule.test_torque"], 0.0
+def _inputs(case: Case, targets: Sequence[Check], heat: bool) -> Iterator[tuple[str, list[str], bool]]:
+    """Title and paths of the inputs by what the checks follow, and whether they are temperatures."""
+    yield "test torque", ["schedule.test_torque"], False
     for name, box in case.gearboxes.items():
         own = f"gearboxes.{name}"
         if heat and box.housing is not None:
-            yield f"oil inlet temperature of {name}", [f"{own}.oil.inlet_temperature"], BASE
-            yield f"bearing oil inlet temperature of {name}", [f"{own}.bearing_oil.inlet_temperature"], BASE
-            yield f"oil flow of {name}", [f"{own}.oil.flow"], 0.0
+            yield f"oil inlet temperature of {name}", [f"{own}.oil.inlet_temperature"], True
+            yield f"bearing oil inlet temperature of {name}", [f"{own}.bearing_oil.inlet_temperature"], True
+            yield f"oil flow of {name}", [f"{own}.oil.flow"], False
         if any(_is(target, BY_LOADS) and f".{name}." in target.id for target in targets):
-            yield f"face width of {name} ", [f"{own}.gears.{gear}.face_width" for gear in box.gears], 0.0
+            yield f"face width of {name} ", [f"{own}.gears.{gear}.face_width" for gear in box.gears], False
 
 
-def _flip(
-    case: Case, candidate: Candidate, targets: Sequence[Check], solve: Solve
-) -> tuple[float, Flip] | None:
+def _flip(case: Case, candidate: Candidate, search: Search) -> tuple[float, Flip] | None:
     """How far the input has to move (a logarithm) and its row; None where it does not turn the checks."""
-    target = targets[0]
-    assert target.utilisation is not None
-    factor = _factor(case, candidate, target.utilisation, solve)
+    targets = search.targets
+    factor = _factor(case, candidate, search)
     if factor is None:
         return None
-    value = candidate.written(candidate.moved(factor))
-    stated = candidate.written(candidate.stated)
-    holds = target.utilisation <= 1.0
+    moved = candidate.case_at(case, factor)
+    broken = [] if _held(targets[0]) else search.broken(moved)
+    then = f"; then {broken[0].title} breaks its limit" if broken else ""
     row = Flip(
         path=candidate.paths[0] if len(candidate.paths) == 1 else _shared(candidate.paths),
         title=candidate.title,
-        stated=stated,
-        needed=value,
-        check=target.id,
-        holds=holds,
-        reachable=True,
-        effect=f"{_what(targets)} {_turn(targets)}",
+        stated=candidate.written(candidate.stated),
+        needed=candidate.written(candidate.moved(factor)),
+        check=targets[0].id,
+        holds=_held(targets[0]),
+        turns=not broken,
+        effect=f"{_what(targets)} {_turn(targets)}{then}",
     )
     return abs(math.log(factor)), row
 
 
-def _factor(case: Case, candidate: Candidate, stated: float, solve: Solve) -> float | None:
-    """Factor of the input at which the utilisation is 1, by secants on the logarithms; None where none is found."""
+def _factor(case: Case, candidate: Candidate, search: Search) -> float | None:
+    """Factor of the input that brings the utilisation to 1, just beyond; by secants on the logarithms."""
+    stated = search.targets[0].utilisation
+    if not stated:
+        return None
 
     def at(logarithm: float) -> float | None:
-        value = candidate.written(candidate.moved(math.exp(logarithm)))
         try:
-            return math.log(solve(changed_together(case, dict.fromkeys(candidate.paths, value))))
-        except (RigdesignError, ValueError):
+            found = search.utilisation(candidate.case_at(case, math.exp(logarithm)))
+        except CaseError:
             return None
+        return math.log(found) if found else None
 
-    if stated <= 0.0:
-        return None
     before, y_before = 0.0, math.log(stated)
     here, y_here = math.log(PROBE), at(math.log(PROBE))
     for _ in range(STEPS):
@@ -192,12 +235,23 @@ def _factor(case: Case, candidate: Candidate, stated: float, solve: Solve) -> fl
             return None
         y_here = at(here)
         if y_here is not None and abs(y_here) < CLOSE:
-            return math.exp(here)
+            return _beyond(here, at, held=stated <= 1.0)
     return None
 
 
-def _utilisation(stated: SolvedRig, targets: Sequence[Check], case: Case, *, through_heat: bool) -> float:
-    """Highest utilisation of the checks of a changed case."""
+def _beyond(logarithm: float, at: Callable[[float], float | None], *, held: bool) -> float | None:
+    """Factor near this one at which a broken check holds, or a held one breaks."""
+    for step in range(SIDE_STEPS + 1):
+        moved = logarithm + math.copysign(CLOSE * step, logarithm)
+        found = at(moved)
+        if found is not None and (found > 0.0) == held:
+            return math.exp(moved)
+    return None
+
+
+def _checks(stated: SolvedRig, case: Case, *, through_heat: bool) -> dict[str, Check]:
+    """The checks of a changed case that follow what is solved again, by id."""
+    patterns = (*BY_LOADS, *BY_HEAT) if through_heat else BY_LOADS
     with solver_errors(case):
         rig = build_rig(case, stated.rig.fidelity)
         if not through_heat or same_housings(rig, stated.rig):
@@ -210,39 +264,52 @@ def _utilisation(stated: SolvedRig, targets: Sequence[Check], case: Case, *, thr
             run = DynamicRun(points=tuple(points), curves=stated.run.curves, ramp=stated.run.ramp)
         loads = None if run is None else dynamic_loads(rig, run, over_speed=False)
         solved = with_records(rig, points, run, loads)
-        topics = {topic.order: topic for topic in (REGISTRY.topic_of(case, target) for target in targets)}
-        wanted = {target.id for target in targets}
-        found = [check for topic in topics.values() for check in topic.checks(solved) if check.id in wanted]
-        return max(check.utilisation or 0.0 for check in found)
+        topics = [
+            topic for topic in REGISTRY.topics() if any(_follows(f.key, patterns) for f in topic.families)
+        ]
+        found = [check for topic in topics for check in topic.checks(solved)]
+    return {check.id: check for check in found if _is(check, patterns)}
+
+
+def _follows(key: str, patterns: Sequence[str]) -> bool:
+    """Whether checks of a family fit a pattern: its key or an id under it."""
+    return any(fnmatchcase(key, pattern) or fnmatchcase(f"{key}.", pattern) for pattern in patterns)
 
 
 def _point(rig: Rig, number: int, near: PointResult, *, through_heat: bool) -> PointResult:
     """A held point of the changed rig, coupled again or at the temperatures of the stated one."""
     point, start = held_points(rig)[number], near.last.coupling_state
     if through_heat:
-        same = all(name in near.last.fields for name in rig.models)
-        return solve_point(
-            rig, point, start=start, before=near.last if same else None, acceleration=Anderson(start)
-        )
+        before = near.last if all(name in near.last.fields for name in rig.models) else None
+        steps = Anderson(start, known=near.differences)
+        return solve_point(rig, point, start=start, before=before, acceleration=steps)
     problem = PointProblem.braced(rig, point)
     loads = solve_loads(problem, start)
     return replace(near, point=point, last=replace(near.last, **vars(loads)), setting=problem.bracing)
 
 
 def _limit(targets: Sequence[Check]) -> Flip:
-    """The limit that the checks share, at the value of the governing one."""
+    """The limit that the checks share, moved just past the value of the governing one."""
     target = targets[0]
-    assert target.value is not None and target.utilisation is not None
+    assert target.value is not None and target.margin is not None
+    upper = target.comparison == "<="
     limit = target.limit
     if target.upper_limit is not None and target.margin == target.upper_limit - target.value:
-        limit = target.upper_limit
+        limit, upper = target.upper_limit, True
     unit = "" if target.unit in ("1", "-") else target.unit
-    stated, needed = f"{limit:.4g} {unit}".strip(), f"{target.value:.4g} {unit}".strip()
-    holds = target.utilisation <= 1.0
+    needed = _rounded(target.value, up=upper != _held(target))
     return Flip(
-        path="", title="limit of the check", stated=stated, needed=needed, check=target.id, holds=holds, reachable=True,
-        effect=f"{_what(targets)} {_turn(targets)}",
+        path="", title="limit of the check", stated=f"{limit:.4g} {unit}".strip(), needed=f"{needed:g} {unit}".strip(),
+        check=target.id, holds=_held(target), turns=True, effect=f"{_what(targets)} {_turn(targets)}",
     )  # fmt: skip
+
+
+def _rounded(value: float, *, up: bool) -> float:
+    """To four digits, not to the other side."""
+    if value == 0.0:
+        return 0.0
+    unit = 10.0 ** (math.floor(math.log10(abs(value))) - 3)
+    return (math.ceil if up else math.floor)(value / unit) * unit
 
 
 def _what(targets: Sequence[Check]) -> str:

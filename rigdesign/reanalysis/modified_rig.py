@@ -2,14 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 from dynamics.response.time_response import TimeResponse
 from rigdesign.case.model import Case
 from rigdesign.coupling.acceleration import Anderson
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.time_run import held_points, run_ramp
-from rigdesign.reanalysis.affected_parts import PARTS, Part
+from rigdesign.reanalysis.affected_parts import PARTS, Part, TimeRun
 from rigdesign.reanalysis.motor_torque import Array, shifted_drive
 from rigdesign.reanalysis.shifted_run import shifted_run
 from rigdesign.records.curves import Curves, solve_curves
@@ -20,16 +19,11 @@ from rigdesign.results.loads import DynamicLoads
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.rig.reuse import HOUSINGS, same_housings, take_over
 
-DRIVE = ("drive_torque", "drive_power")
-"""Quantities of bought parts that follow the losses of the whole run."""
 ACTUATOR = ("actuator_force",)
 """Quantities of bought parts that follow the setting of the bracing, hot."""
 LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "axial_expansion": 2e-6}
 """Change of a field of `CouplingState` [K, m] beyond which the loads are solved again: on the prototype half a
 kelvin moves a check on loads by up to 0.001 of its limit, `verdicts.LEAST_MOVE`, and 5 um do."""
-
-TimeRun = Literal["marched", "shifted"]
-"""How the time run follows loads that move: marched again, or shifted by the periodic response (`shifted_run`)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,12 +77,12 @@ def _time_run(
 
     responses : of the stated rig, and the curves of the modified one
     """
-    (run, curves), case, parts = responses, modification.case, list(modification.parts)
+    (run, curves), parts = responses, list(modification.parts)
     ramp: TimeResponse | None = run.ramp
     if "time run" in parts and modification.time_run == "shifted":
         ramp = shifted_run(rig, run, curves)
         parts.remove("time run")
-    if ramp is not None and "time run" not in parts and "coupling" in parts and _asks_for(case, DRIVE):
+    if ramp is not None and "time run" not in parts and "coupling" in parts:
         assert motor_losses is not None
         ramp = shifted_drive(rig, test.last, ramp, motor_losses)
     if ramp is None or "time run" in parts:

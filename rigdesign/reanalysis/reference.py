@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 from threadpoolctl import threadpool_limits
 
 from dynamics.response.time_response import TimeResponse
+from rigdesign.base.errors import NotConvergedError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.coupling.acceleration import Anderson
 from rigdesign.coupling.initial_state import initial_state
-from rigdesign.coupling.loads import BracingState
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import held_points
@@ -32,7 +32,6 @@ class Reference:
     case: Case
     fidelity: Fidelity
     states: tuple[CouplingState, ...]
-    settings: tuple[BracingState | None, ...]
     curves: Curves | None
     ramp: TimeResponse | None
     motor_losses: Array | None
@@ -55,7 +54,6 @@ def solve_reference(
         case=case,
         fidelity=fidelity,
         states=tuple(point.last.coupling_state for point in solved.points),
-        settings=tuple(point.setting for point in solved.points),
         curves=None if run is None else run.curves,
         ramp=ramp,
         motor_losses=losses,
@@ -93,7 +91,9 @@ def _restored(reference: Reference) -> SolvedRig:
 
 def _point(rig: Rig, point: OperatingPoint, converged: CouplingState) -> PointResult:
     """A held point at its converged coupling state, with the secants of the iterations that lead there."""
-    initial = initial_state(rig, point)
-    near = solve_point(rig, point, acceleration=Anderson(initial))
+    try:
+        near = solve_point(rig, point, acceleration=Anderson(initial_state(rig, point)))
+    except NotConvergedError:
+        return solve_point(rig, point, start=converged)
     found = solve_point(rig, point, start=converged, before=near.last)
     return replace(found, differences=near.differences)

@@ -22,7 +22,7 @@ def flips(result: RunResult) -> list[Flip]:
 def within_ranges(result: RunResult) -> list[Flip]:
     """The assumed inputs that turn a check within their ranges, where the run evaluated them."""
     found = [] if result.ranges is None else from_ranges(result.ranges)
-    return [flip for flip in found if flip.reachable][:SHOWN]
+    return [flip for flip in found if flip.turns][:SHOWN]
 
 
 def from_ranges(ranges: RangesResult) -> list[Flip]:
@@ -31,7 +31,7 @@ def from_ranges(ranges: RangesResult) -> list[Flip]:
     failing = [row for row in ranges.checks if row.verdict_stated == "fail"]
     holding = [row for row in ranges.checks if row.verdict_stated != "fail" and row.decided_by]
     found = [flip for row in failing for flip in _of_check(ranges, row, inputs)[:1]]
-    return found + [flip for row in holding for flip in _of_check(ranges, row, inputs)[:1] if flip.reachable]
+    return found + [flip for row in holding for flip in _of_check(ranges, row, inputs)[:1] if flip.turns]
 
 
 def _of_check(ranges: RangesResult, check: CheckRange, inputs: dict[str, RangedInput]) -> list[Flip]:
@@ -65,7 +65,7 @@ def _flip(check: CheckRange, given: RangedInput, row: RangeMargin, end: str) -> 
         text = f"still {'fails' if check.margin < 0.0 else 'holds'} at {stated_text(limit)}, margin {margin}"
     return Flip(
         path=given.path, title=given.path, holds=check.margin >= 0.0, stated=stated_text(given.stated), needed=needed,
-        check=check.check, reachable=turned, effect=text,
+        check=check.check, turns=turned, effect=text,
     )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""What would turn the verdict: immutable records, named as they stand in results.json."""
+"""Inputs that would turn the verdict: immutable records, named as they stand in results.json."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ class Flip:
     path : of the input; empty for the limit of the check itself; ``*`` where several move together
     stated, needed : as the case would write them; ``needed`` is empty where no value is known
     check : the governing check; ``holds`` says whether it holds at the stated value
-    reachable : whether the check changes within what was looked at
+    turns : whether the verdict turns with it: within the range looked at, and no check breaks that held
     effect : what follows, in words
     """
 
@@ -20,5 +20,5 @@ class Flip:
     needed: str
     check: str
     holds: bool
-    reachable: bool
+    turns: bool
     effect: str

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rigdesign.results.result import Finding
 from rigdesign.studies.crossings import crossings_over
 from rigdesign.studies.design import Plan
-from rigdesign.studies.result import StudyPoint, StudyResult, check_ids
+from rigdesign.studies.result import Crossing, StudyPoint, StudyResult, check_ids
 from rigdesign.studies.tornado import swings
 
 if TYPE_CHECKING:
@@ -17,23 +17,19 @@ if TYPE_CHECKING:
 def analysed(case: "Case", fidelity: str, plan: Plan, points: Sequence[StudyPoint]) -> StudyResult:
     """The result of a study whose points are all known, in the order of the design (a boundary: rising values)."""
     checks = plan.selection.of(check_ids(points))
-    result = StudyResult(
-        case=case,
-        fidelity=fidelity,
-        design=plan.kind,
-        method=plan.method,
-        variations=plan.variations,
-        points=points,
-        checks=plan.selection,
-        warnings=list(_failed(plan, points)),
-    )
+    result = computed_so_far(case, fidelity, plan, points)
     if plan.search is not None:
         search = plan.search
         ordered = sorted(points, key=lambda point: search.entry.number(point.values[search.entry.path]))
         variation = search.variation(ordered)
         found = list(crossings_over(variation, ordered, checks))
         return replace(
-            result, variations=[variation], points=ordered, crossings=found, tolerance=search.tolerance
+            result,
+            variations=[variation],
+            points=ordered,
+            crossings=found,
+            tolerance=search.tolerance,
+            warnings=[*result.warnings, *_wide_brackets(found, search.tolerance)],
         )
     if plan.kind == "grid":
         found = [
@@ -43,6 +39,32 @@ def analysed(case: "Case", fidelity: str, plan: Plan, points: Sequence[StudyPoin
     if plan.kind == "one at a time":
         return replace(result, swings=list(swings(plan.ranges, points, checks)))
     return _with_probabilities(result, plan, checks)
+
+
+def computed_so_far(case: "Case", fidelity: str, plan: Plan, points: Sequence[StudyPoint]) -> StudyResult:
+    """The points that are known, without what follows from all of them."""
+    return StudyResult(
+        case=case,
+        fidelity=fidelity,
+        design=plan.kind,
+        method=plan.method,
+        variations=plan.variations,
+        points=points,
+        checks=plan.selection,
+        warnings=list(_failed(plan, points)),
+    )
+
+
+def _wide_brackets(crossings: Sequence[Crossing], tolerance: float) -> Iterator[Finding]:
+    """Boundaries between points that could not be brought nearer: a point between them has no result."""
+    for entry in crossings:
+        if entry.high - entry.low > tolerance * (1.0 + 1e-6):
+            yield Finding(
+                id="study.boundary",
+                text=f"{entry.check}: between {entry.low:g} and {entry.high:g} {entry.unit} only; a point between them "
+                f"has no result, so that the tolerance of {tolerance:g} is not reached and the value is that of a "
+                "straight line",
+            )
 
 
 def _with_probabilities(result: StudyResult, plan: Plan, checks: Sequence[str]) -> StudyResult:

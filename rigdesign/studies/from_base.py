@@ -7,13 +7,13 @@ workers. Solved once, for the base case: meshes and their errors, the time run o
 from dataclasses import replace
 from functools import cached_property
 
-from rigdesign.base.errors import CaseError, NotConvergedError, RigdesignError
+from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.checks import estimated_checks
 from rigdesign.checks.rules import overall
-from rigdesign.reanalysis.affected_parts import PARTS, parts_of, through_heat
-from rigdesign.reanalysis.modified_rig import Modification, TimeRun, modified_rig
+from rigdesign.reanalysis.affected_parts import Reanalysis, reanalysis
+from rigdesign.reanalysis.modified_rig import Modification, modified_rig
 from rigdesign.reanalysis.reference import Reference, restored, solve_reference
 from rigdesign.results.units import ZERO
 from rigdesign.rig.model import build_rig
@@ -38,7 +38,7 @@ class FromBase:
         self._stated = {row.path: row.value for row in case.inputs}
 
     def __call__(self, case: Case, *, fidelity: Fidelity) -> CheckedPoint:
-        """One point.
+        """One point, at the fidelity of the base case.
 
         A point with other housings, and one whose loop does not converge from the base case, is solved in full.
 
@@ -48,22 +48,19 @@ class FromBase:
             The point has no result.
         """
         with one_thread():
-            return self._point(case, fidelity)
+            return self._point(case)
 
-    def _point(self, case: Case, fidelity: Fidelity) -> CheckedPoint:
-        changed = self._changed(case)
-        if all(through_heat(path) or parts_of(path) != PARTS for path in changed):
-            found = self._modified(case, changed)
-            if found is not None:
-                return found
-        return checked_point(run_case(case, fidelity=fidelity))
+    def _point(self, case: Case) -> CheckedPoint:
+        again = reanalysis(case, self._changed(case))
+        found = None if again is None else self._modified(case, again)
+        return found or checked_point(run_case(case, fidelity=self._fidelity))
 
     @cached_property
     def _reference(self) -> Reference | None:
         """The base case solved; None where it has no result."""
         try:
             return solve_reference(self._case, self._fidelity)[0]
-        except RigdesignError:
+        except (CaseError, NotConvergedError):
             return None
 
     def _changed(self, case: Case) -> list[str]:
@@ -79,28 +76,20 @@ class FromBase:
         except CaseError:
             return False
 
-    def _modified(self, case: Case, changed: list[str]) -> CheckedPoint | None:
+    def _modified(self, case: Case, again: Reanalysis) -> CheckedPoint | None:
         """The point from the base case; None where that tells nothing of it."""
         reference = self._reference
         if reference is None:
             return None
-        parts = tuple(part for part in PARTS if any(part in parts_of(path) for path in changed))
-        time_run: TimeRun = "shifted" if all(_unmarched(path) for path in changed) else "marched"
+        modification = Modification(case=case, parts=again.parts, time_run=again.time_run)
         with solver_errors(case):
-            stated = restored(reference)
-            if not same_housings(build_rig(case, self._fidelity), stated.rig):
-                return None
             try:
-                solved, _ = modified_rig(
-                    stated, Modification(case=case, parts=parts, time_run=time_run), reference.motor_losses
-                )
+                stated = restored(reference)
+                if not same_housings(build_rig(case, self._fidelity), stated.rig):
+                    return None
+                solved, _ = modified_rig(stated, modification, reference.motor_losses)
             except NotConvergedError:
                 return None
             checks = estimated_checks(replace(solved, discretisation=reference.discretisation))
         hottest = max((found.highest - ZERO for found in solved.temperatures), default=None)
         return CheckedPoint(verdict=overall(checks), max_temperature_degC=hottest, checks=checks)
-
-
-def _unmarched(path: str) -> bool:
-    """Whether the time run need not be marched for this input: heat moves it, or nothing does."""
-    return through_heat(path) or "time run" not in parts_of(path)

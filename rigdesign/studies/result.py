@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Design = Literal["grid", "boundary", "one at a time", "latin hypercube", "sobol"]
 """How the points were chosen."""
 Record = dict[str, Any]
-"""What is kept of a point: {verdict, max_temperature_degC, checks: [...]} or {error, traceback}."""
+"""What is kept of a point: {verdict, max_temperature_degC, checks: [...]} or {error, kind}."""
 
 ALL_CHECKS = CheckSelection()
 

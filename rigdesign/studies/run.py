@@ -11,7 +11,7 @@ from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.output_folder import prepare_output
 from rigdesign.base.worker_pool import LostWorkersError, ProcessWorkers, Workers, worker_count
-from rigdesign.studies.analysis import analysed
+from rigdesign.studies.analysis import analysed, computed_so_far
 from rigdesign.studies.design import Plan, StudyDesign, planned
 from rigdesign.studies.point import PointSetup, Prepare, Run
 from rigdesign.studies.result import StudyPoint, StudyResult
@@ -69,7 +69,7 @@ class Execution:
     progress : called with what is being done, and with a line per finished point where there is no ``count``
     count : called with points done, points in all (of those to be computed) and the last one
     note : called with what the user has to know of, such as a damaged ledger; ``progress`` if left out
-    run : picklable stand-in for `rigdesign.run_case`
+    run : picklable stand-in for `from_base.FromBase`; not part of what makes two points the same
     prepare : picklable; called once in every worker with the case of the study, what it returns is its ``run``
     """
 
@@ -163,8 +163,9 @@ def run_study(
             _compute(plan, tasks, solver, execution)
         solver.look_again()
         points = solver.points(tasks)
-        result = analysed(case, fidelity, plan, points)
         missing = len(tasks) - len(points)
+        concluded = analysed if missing == 0 else computed_so_far
+        result = concluded(case, fidelity, plan, points)
         if missing == 0:
             with files_lock(out, execution.shard) as free:
                 if free:

@@ -36,13 +36,17 @@ class Task:
     fault: str = ""
 
 
-def tasks_of(case: "Case", points: Sequence[DesignPoint], fidelity: "Fidelity") -> list[Task]:
+def tasks_of(
+    case: "Case", points: Sequence[DesignPoint], fidelity: "Fidelity", *, one_valid: bool = True
+) -> list[Task]:
     """The points as cases; one that is no valid case carries its fault.
+
+    one_valid : whether one of them has to be a valid case; not in a later round of a search
 
     Raises
     ------
     CaseError
-        If none is a valid case, or a value is one its place can never hold.
+        If one has to be a valid case and none is, or a value is one its place can never hold.
     """
     tasks: list[Task] = []
     first: CaseError | None = None
@@ -56,7 +60,7 @@ def tasks_of(case: "Case", points: Sequence[DesignPoint], fidelity: "Fidelity") 
             tasks.append(Task(point, fault=str(error)))
         else:
             tasks.append(Task(point, point_key(found, fidelity, case.hash), found))
-    if first is not None and all(task.fault for task in tasks):
+    if one_valid and first is not None and all(task.fault for task in tasks):
         raise first
     return tasks
 
@@ -105,8 +109,8 @@ class PointSolver:
         return self._ledgers.path
 
     def tasks_of(self, points: Sequence[DesignPoint]) -> list[Task]:
-        """Points of this study as cases."""
-        return tasks_of(self._setup.case, points, self._setup.fidelity)
+        """Points of a later round of this study as cases."""
+        return tasks_of(self._setup.case, points, self._setup.fidelity, one_valid=False)
 
     def share(self, tasks: Sequence[Task]) -> Sequence[Task]:
         """The tasks that are for this process, each once."""

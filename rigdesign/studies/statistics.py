@@ -102,10 +102,14 @@ def _utilisations(points: Sequence[StudyPoint], identity: str) -> Array | None:
 
 def _indices(pages: Array) -> tuple[Array, Array]:
     """First-order and total indices, (checks, inputs), of values (checks, inputs + 2, size)."""
+    checks = len(pages)
+    if checks == 1:  # a single value of a single input is no array to scipy
+        pages = np.repeat(pages, 2, axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):  # a resample without spread has no index
         found = sobol_indices(
             func={"f_A": pages[:, 0], "f_B": pages[:, 1], "f_AB": np.swapaxes(pages[:, 2:], 0, 1)},
             n=pages.shape[2],
         )
     shape = (pages.shape[0], pages.shape[1] - 2)
-    return np.reshape(found.first_order, shape), np.reshape(found.total_order, shape)
+    first, total = (np.reshape(part, shape) for part in (found.first_order, found.total_order))
+    return first[:checks], total[:checks]

@@ -1,7 +1,7 @@
 """`check --ranges`: every assumed input with a range at its two ends, one at a time, and what the verdicts are worth.
 
-Every end starts from the converged stated rig and solves again what its input touches (`ranges_plan`): nothing but the
-checks for a limit, the coupling loop for heat and oil, the whole for what the loop is made of. Ends run in worker
+Every end starts from the converged stated rig and solves again what its input touches (`affected_parts`): nothing but
+the checks for a limit, the coupling loop for heat and oil, the whole for what the loop is made of. Ends run in worker
 processes like the points of a study.
 """
 

@@ -104,9 +104,9 @@ def test_reservations_and_a_clean_pass_name_the_nearest_check():
 
 def test_inputs_that_turn_the_verdict_come_from_the_ranges():
     first, second, third = flips.from_ranges(ranges())
-    assert (first.path, first.check, first.needed, first.reachable) == ("torque", "x", "160 N m", True)
+    assert (first.path, first.check, first.needed, first.turns) == ("torque", "x", "160 N m", True)
     assert first.effect == "holds from about 160 N m"
-    assert (second.check, second.reachable) == ("y", False)
+    assert (second.check, second.turns) == ("y", False)
     assert second.effect == "still fails at 40 µm, margin −0.5 mm"
     assert third.effect == "fails from about 50 µm"
 
@@ -122,7 +122,7 @@ def test_a_run_that_cannot_tell_says_how_to_find_out():
 def test_inputs_the_run_has_found_stand_before_those_of_the_ranges():
     found = Flip(
         path="schedule.test_torque", title="test torque", stated="180 N m", needed="99 N m", check="x", holds=False,
-        reachable=True, effect="root stress holds",
+        turns=True, effect="root stress holds",
     )  # fmt: skip
     page = report_html(make_result(inputs=rig_inputs(), flips=[found], ranges=ranges()))
     first = page[page.index("Inputs that would turn the verdict") : page.index("The rig")]

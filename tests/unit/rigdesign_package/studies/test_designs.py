@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from rigdesign.base.errors import CaseError, UsageError
+from rigdesign.base.errors import CaseError, NotConvergedError, UsageError
 from rigdesign.case import load_case
 from rigdesign.studies import ledger
 from rigdesign.studies.design import StudyDesign, planned
@@ -269,6 +269,33 @@ def held_with_a_warning(case, *, fidelity):
         for check in result.checks
     ]
     return replace(result, checks=checks)
+
+
+def a_gap_at_the_boundary(case, *, fidelity):
+    if 100.2 < case.number("oil.inlet") < 104.0:
+        raise NotConvergedError("no result here", {})
+    return result_of(rising=0.01 * case.number("oil.inlet"))
+
+
+def test_a_boundary_that_cannot_be_closed_in_says_so(tmp_path):
+    """Between 80 and 130 degC the limit is met at 100; points just above it have no result."""
+    result = found(
+        CURVES, tmp_path, run=a_gap_at_the_boundary, vary=("oil.inlet=80:130 degC",), boundary=True
+    )
+    (crossing,) = result.crossings
+    assert crossing.high - crossing.low > result.tolerance
+    assert any("has no result" in warning.text for warning in result.warnings)
+
+
+def test_sobol_indices_of_one_input_and_one_check(tmp_path):
+    design = {
+        "vary": ("oil.inlet=80:130 degC",),
+        "sample": "sobol:64",
+        "indices": True,
+        "checks": ("rising",),
+    }
+    (index,) = found(CURVES, tmp_path, **design).indices
+    assert index.total == pytest.approx(1.0, abs=0.1)
 
 
 def test_a_warning_from_what_is_left_out_counts_as_held(tmp_path):

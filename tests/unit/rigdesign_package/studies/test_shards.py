@@ -104,6 +104,24 @@ def test_a_sampled_study_in_shares_has_the_same_indices(tmp_path):
     assert found[0].probabilities == found[1].probabilities and found[0].points == found[1].points
 
 
+@pytest.mark.parametrize(
+    "design",
+    [
+        StudyDesign(vary=("oil.inlet=80:120 degC", "gear.teeth=20:40"), tornado=True),
+        StudyDesign(vary=("oil.inlet=80:120 degC", "gear.teeth=20:40"), sample="sobol:4", indices=True),
+        StudyDesign(vary=("oil.inlet=80:120 degC", "gear.teeth=20:40"), sample="lhs:5"),
+    ],
+)
+def test_every_design_is_computed_in_three_shares(design, tmp_path):
+    """Nothing is concluded from a share: the first and second leave points to the others."""
+    for number in (1, 2, 3):
+        outcome = run_study(
+            CURVES, design, tmp_path, run=curves, executor=InProcess(), shard=Shard(number, 3), write=quiet
+        )
+        concluded = outcome.result.swings or outcome.result.indices or outcome.result.probabilities
+        assert bool(concluded) == (number == 3) == (outcome.missing == 0)
+
+
 def quiet(study, out):
     """In place of the page."""
 
