@@ -105,7 +105,8 @@ def with_flips(solved: SolvedRig, result: RunResult) -> RunResult:
     found = sorted((row for row in rows if row is not None), key=lambda row: (not row[1].turns, row[0]))
     edges = {(target.limit, target.upper_limit, target.unit) for target in targets}
     limits = [_limit(targets)] if len(edges) == 1 else []
-    return replace(result, flips=[*(flip for _, flip in found[: SHOWN - len(limits)]), *limits])
+    flips = [*(flip for _, flip in found[: SHOWN - len(limits)]), *limits]
+    return replace(result, flips=sorted(flips, key=lambda flip: not flip.turns))
 
 
 @dataclass(frozen=True)
