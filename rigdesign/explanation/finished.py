@@ -9,6 +9,7 @@ from typing import Any
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.files import RefusedFileError, read_regular
+from rigdesign.case.model import Case
 
 LARGEST = 500 * 1024 * 1024
 """Of a results.json that is read [bytes]."""
@@ -35,20 +36,25 @@ class FinishedCheck:
     margins: Mapping[str, tuple[float | None, float | None]]
 
 
-def finished_check(folder: Path, identity: str, case_hash: str) -> FinishedCheck:
+def finished_check(folder: Path, identity: str, case: Case) -> FinishedCheck:
     """A check of the results in ``folder``.
 
-    case_hash : of the case as it stands now
+    case : as it stands now
 
     Raises
     ------
     UsageError
-        No results.json there, one that is damaged, or one without this check.
+        No results.json there, one that is damaged, of another case, or without this check.
     """
     document = _read(folder / "results.json")
     try:
         checks = {row["id"]: row for row in document["checks"]}
         ranges = document.get("ranges")
+        if document["case"]["name"] != case.name:
+            raise UsageError(
+                f"{folder}: results of case {document['case']['name']}, not of {case.name}; name the folder of a check "
+                "of this case"
+            )
         if identity not in checks:
             near = get_close_matches(identity, list(checks), n=3, cutoff=0.4)
             raise UsageError(
@@ -63,7 +69,7 @@ def finished_check(folder: Path, identity: str, case_hash: str) -> FinishedCheck
             utilisation=row["utilisation"],
             verdict=row["verdict"],
             reason=row["reason"],
-            same_case=document["case"]["hash"] == case_hash,
+            same_case=document["case"]["hash"] == case.hash,
             ranged=ranges is not None,
             margins={
                 entry["path"]: (entry["margin_low"], entry["margin_high"])

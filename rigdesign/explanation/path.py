@@ -80,6 +80,12 @@ def explain_path(case: Case, path: str) -> PathExplanation:
             f"did you mean {' or '.join(meant)}?" if meant else "rigdesign schema --reference lists the keys"
         )
         raise UsageError(f"{path}: no such path in {case.path}; {hint}")
+    kinds = list(dict.fromkeys(starred(_entry(plain, one).path) for one in places))
+    if len(kinds) > 1:
+        raise UsageError(
+            f"{path}: stands for {len(kinds)} different keys of {case.path} ({', '.join(kinds[:3])} …); ask for one of "
+            "them, or leave the path out for the whole case"
+        )
     entry = _entry(plain, places[0])
     below = (
         (tuple(_keys_below(case, plain, known, places[0])) or _keys_of_parts(entry)) if entry.table else ()

@@ -47,7 +47,7 @@ def explain(
         from rigdesign.explanation.check import explain_check
         from rigdesign.explanation.finished import finished_check
 
-        finished = None if results is None else finished_check(results, check, loaded.hash)
+        finished = None if results is None else finished_check(results, check, loaded)
         found = explain_check(loaded, check, finished)
         print_json(asdict(found)) if json else print_check(found)
     elif path is not None:

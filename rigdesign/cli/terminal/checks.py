@@ -46,7 +46,8 @@ def print_checks(result: RunResult, out: Path | None, *, everything: bool = Fals
     if result.ranges is not None:
         _print_ranges(console, result.ranges, everything=everything)
     if out is not None:
-        console.print(f"report: {out / 'report.html'}")
+        names = [name for name in ("report.html", "report.pdf") if (out / name).is_file()]
+        console.print(f"report: {', '.join(str(out / name) for name in names)}")
 
 
 def _print_verdict(console: Console, result: RunResult) -> None:

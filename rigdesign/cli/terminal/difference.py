@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 from rich.console import Console
 from rich.text import Text
 
-from rigdesign.cli.terminal.console import new_console
+from rigdesign.cli.terminal.console import new_console, verbosity, verdict_console
 from rigdesign.report.numbers import number_text, quantity_text, unit_text
 
 if TYPE_CHECKING:
@@ -32,6 +32,9 @@ def print_difference(difference: "ResultsDifference", out: Path | None, *, every
     """
     from rigdesign.difference.document import headline
 
+    if verbosity.get() == "quiet":
+        verdict_console().print(headline(difference))
+        return
     console = new_console()
     width = min(WIDTH, console.width)
 

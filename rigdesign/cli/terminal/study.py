@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from rich.text import Text
 
-from rigdesign.cli.terminal.console import new_console
+from rigdesign.cli.terminal.console import new_console, verbosity, verdict_console
 
 if TYPE_CHECKING:
     from rigdesign.studies.result import PassProbability, StudyResult
@@ -15,6 +15,7 @@ MOST_FAILED = 5
 """Points without result that are named; results.csv has all."""
 MOST_SLICES = 10
 """Values of a second input at which the range of the first is printed; the page has all."""
+OTHER_TABLES = ("results.parquet", "results.xlsx")
 LEAST_LIKELY = 5
 """Checks whose probability is printed, the lowest first."""
 
@@ -23,12 +24,16 @@ def print_study(outcome: "StudyOutcome", out: Path) -> None:
     """The answer in sentences, what failed, then where page and table are."""
     from rigdesign.report.margins.answer import slices, study_answer
 
-    console = new_console(wrap=True)
     found = outcome.result
     answer = study_answer(found)
+    if verbosity.get() == "quiet":
+        verdict_console().print(" ".join(answer.sentences))
+        return
+    console = new_console(wrap=True)
     for sentence in answer.sentences:
         console.print(Text(sentence, "bold"))
-    if (ranges := slices(found.points, answer)) is not None:
+    ranges = slices(found.points, answer) if found.design == "grid" else None
+    if ranges is not None:
         for text, sentence in ranges.rows[:MOST_SLICES]:
             console.print(f"  {ranges.over.name} {text}: {sentence}")
     for line in _probabilities(found):
@@ -41,8 +46,9 @@ def print_study(outcome: "StudyOutcome", out: Path) -> None:
     if len(failed) > MOST_FAILED:
         console.print(f"{len(failed) - MOST_FAILED} more points failed: see results.csv")
     console.print(f"{outcome.completed} points computed, {outcome.reused} found done")
-    for name in ("study.html", "results.csv"):
-        console.print(str(out / name), soft_wrap=True)
+    for name in ("study.html", "results.csv", *OTHER_TABLES):
+        if (out / name).is_file():
+            console.print(str(out / name), soft_wrap=True)
 
 
 def _probabilities(found: "StudyResult") -> list[str]:

@@ -123,7 +123,9 @@ def _everywhere(axis: StudyAxis, x: np.ndarray, table: MarginTable) -> str:
     left = f"{number_text(table.least[check], 2)} % of its limit left at {at}"
     if len(table.checks) == 1:
         return f"passes at every point{span}; {left}"
-    return f"passes at every point{span}; nearest to its limit is {_named(table, check)}, {left}"
+    others = np.delete(table.least, check)
+    of_those = "of the checks that move, " if np.nanmin(others, initial=np.inf) < table.least[check] else ""
+    return f"passes at every point{span}; {of_those}nearest to its limit is {_named(table, check)}, {left}"
 
 
 def _nowhere(axis: StudyAxis, x: np.ndarray, table: MarginTable) -> str:

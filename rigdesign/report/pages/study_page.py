@@ -68,7 +68,7 @@ def study_page(study: StudyResult, answer: StudyAnswer, pictures: StudyPictures)
             map_note=MAP,
             groups=_group_rows(study.points, answer),
             checks=_check_rows(study.points, answer),
-            slices=slices(study.points, answer),
+            slices=slices(study.points, answer) if study.design == "grid" else None,
             titles={check.id: check.title for check in answer.selected.checks},
             failed=[point for point in study.points if point.failed],
             rows=_point_rows(study.points, answer)[: min(MOST_ROWS, MOST_CELLS // len(answer.axes))],

@@ -199,7 +199,7 @@ def results_in(folder: Path, case: Case, *, ranges: Mapping[str, Any] | None) ->
         "id": "clearance.backlash", "value": 0.05, "unit": "mm", "margin": 0.03, "utilisation": 0.4,
         "verdict": "warn", "reason": "test.main, stage test",
     }  # fmt: skip
-    document = {"case": {"hash": case.hash}, "checks": [row], "ranges": ranges}
+    document = {"case": {"name": case.name, "hash": case.hash}, "checks": [row], "ranges": ranges}
     (folder / "results.json").write_text(json.dumps(document), encoding="utf-8")
     return folder
 
@@ -222,6 +222,12 @@ def test_ranges_of_a_finished_check_sort_its_inputs(
     words = " ".join(out.split())
     assert f"moved by {OIL} = 90 degC to 140 degC: margin 0.03 to 0.01 mm" in words
     assert "warn: 0.05 mm, margin 0.03 mm, 40 % used" in words
+
+
+def test_results_of_another_case_are_refused(prototype: Case, tmp_path: Path, rigdesign: Rigdesign) -> None:
+    folder = results_in(tmp_path / "out", prototype, ranges=None)
+    ended = rigdesign("explain", CASES / "loop_1to1", "--check", "clearance.backlash", "--results", folder)
+    assert ended.status == 2 and "results of case uhcf_prototype, not of loop_1to1" in ended.err
 
 
 def test_results_of_another_state_and_without_ranges_are_said(
@@ -258,6 +264,7 @@ def test_without_a_path_the_case_is_seen_at_a_glance(rigdesign: Rigdesign, proto
     [
         (["gearboxes.test.oil.inlet_temprature"], ["no such path", OIL]),
         (["gearboxes.*.seel"], ["no such path"]),
+        (["*"], ["different keys", "leave the path out"]),
         (["--check", "clearance.backlsh"], ["no such check", "clearance.backlash"]),
         ([OIL, "--check", "oil.flow"], ["two questions", "leave one of them out"]),
         ([OIL, "--results", "out"], ["add --check"]),

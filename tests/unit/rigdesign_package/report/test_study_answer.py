@@ -47,7 +47,8 @@ def test_order_of_the_points_changes_nothing():
         (("temperature.*",), "“hottest oil outlet” passes at every point, from 90 °C to 130 °C; 12 % of its limit left "
                              "at 130 °C."),
         (("ramp.*",), "“torque at standstill” passes at every point, from 90 °C to 130 °C; no margin changes."),
-        (("temperature.*,ramp.*",), "Every selected check passes at every point, from 90 °C to 130 °C; nearest to its "
+        (("temperature.*,ramp.*",), "Every selected check passes at every point, from 90 °C to 130 °C; of the checks "
+        "that move, nearest to its "
                                     "limit is “hottest oil outlet”, 12 % of its limit left at 130 °C."),
         (("specimen.root*",), "“root stress, ISO 6336-3” fails at every point."),
     ],
