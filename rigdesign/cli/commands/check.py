@@ -15,6 +15,7 @@ from rigdesign.cli.terminal.console import verbosity
 @app.command
 def check(
     case: Path,
+    /,
     *,
     out: Path | None = None,
     fidelity: Fidelity = "standard",

@@ -12,6 +12,7 @@ from rigdesign.cli.ending import NOTHING_KEPT, interrupted
 def compare(
     case: Path,
     measurement: Path,
+    /,
     *,
     out: Path | None = None,
     model: Literal["full", "reduced"] = "full",

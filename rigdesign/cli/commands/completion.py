@@ -7,7 +7,7 @@ from rigdesign.cli.application import app
 
 
 @app.command
-def completion(shell: Literal["bash", "zsh", "fish"]) -> int:
+def completion(shell: Literal["bash", "zsh", "fish"], /) -> int:
     """Print the script that completes commands, options, their choices and case folders in a shell.
 
     bash: rigdesign completion bash > ~/.local/share/bash-completion/completions/rigdesign; zsh: as _rigdesign in a

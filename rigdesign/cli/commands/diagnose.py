@@ -13,6 +13,7 @@ from rigdesign.cli.ending import SIMULATIONS_KEPT, interrupted
 def diagnose(
     case: Path,
     measurement: Path,
+    /,
     *,
     out: Path,
     json: bool = False,

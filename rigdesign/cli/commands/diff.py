@@ -12,6 +12,7 @@ from rigdesign.cli.application import app, print_json
 def diff(
     a: Path,
     b: Path,
+    /,
     *,
     out: Path | None = None,
     json: bool = False,

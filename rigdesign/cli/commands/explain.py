@@ -13,6 +13,7 @@ from rigdesign.cli.application import app, loaded_case, print_json
 def explain(
     case: Path,
     path: str | None = None,
+    /,
     *,
     check: str | None = None,
     results: Path | None = None,

@@ -11,7 +11,7 @@ app.command(new)
 
 
 @new.command(name="measurement")
-def new_measurement(case: Path, *, out: Path) -> int:
+def new_measurement(case: Path, /, *, out: Path) -> int:
     """Write measurement.toml and an empty data.csv with the channels the case offers.
 
     Parameters

@@ -15,6 +15,7 @@ Switch = Parameter(negative=())
 @app.command
 def study(
     case: Path,
+    /,
     *,
     vary: Annotated[list[str], Several],
     out: Path,

@@ -46,8 +46,8 @@ def print_checks(result: RunResult, out: Path | None, *, everything: bool = Fals
     if result.ranges is not None:
         _print_ranges(console, result.ranges, everything=everything)
     if out is not None:
-        names = [name for name in ("report.html", "report.pdf") if (out / name).is_file()]
-        console.print(f"report: {', '.join(str(out / name) for name in names)}")
+        printed = [out / "report.pdf"] if (out / "report.pdf").is_file() else []
+        console.print(f"report: {', '.join(map(str, [out / 'report.html', *printed]))}")
 
 
 def _print_verdict(console: Console, result: RunResult) -> None:

@@ -46,9 +46,9 @@ def print_study(outcome: "StudyOutcome", out: Path) -> None:
     if len(failed) > MOST_FAILED:
         console.print(f"{len(failed) - MOST_FAILED} more points failed: see results.csv")
     console.print(f"{outcome.completed} points computed, {outcome.reused} found done")
-    for name in ("study.html", "results.csv", *OTHER_TABLES):
-        if (out / name).is_file():
-            console.print(str(out / name), soft_wrap=True)
+    others = [name for name in OTHER_TABLES if (out / name).is_file()]
+    for name in ("study.html", "results.csv", *others):
+        console.print(str(out / name), soft_wrap=True)
 
 
 def _probabilities(found: "StudyResult") -> list[str]:
