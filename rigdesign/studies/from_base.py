@@ -7,6 +7,8 @@ workers. Solved once, for the base case: meshes and their errors, the time run o
 from dataclasses import replace
 from functools import cached_property
 
+from threadpoolctl import threadpool_limits
+
 from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
@@ -47,7 +49,7 @@ class FromBase:
         RigdesignError
             The point has no result.
         """
-        with one_thread():
+        with one_thread(), threadpool_limits(limits=1):
             return self._point(case)
 
     def _point(self, case: Case) -> CheckedPoint:
