@@ -5,7 +5,8 @@ torque moves by: the run passes its speeds slowly against the decay of its vibra
 the same. Windows below the least torque at which the response is known keep what they have.
 
 On the prototype, oil at 140 degC moved to 60 and to 180 degC: peaks of the loaded stages within 1.5 % of their
-mean torque and the least torques within 2.5 %; the governing ones within 0.05 and 0.7 % (`tests/verification/test_shifted_run.py`).
+mean torque and the least torques within 2.5 %; the governing ones within 0.05 and 0.7 %
+(`tests/verification/test_shifted_run.py`).
 """
 
 from collections.abc import Sequence
