@@ -34,11 +34,16 @@ def one_core() -> Iterator[None]:
         _taken = before
 
 
+def granted_cores() -> int:
+    """Cores that the machine grants this process."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def cores() -> int:
-    """Cores this process may use; one in a worker process, whose pool already uses the others."""
+    """Cores this process may use for copies; one in a worker process, whose pool already uses the others."""
     if _taken or parent_process() is not None or not hasattr(os, "fork"):
         return 1
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return granted_cores()
 
 
 @dataclass(frozen=True)

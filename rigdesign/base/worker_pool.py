@@ -25,6 +25,7 @@ from types import TracebackType
 from typing import Self, TypeVar
 
 from rigdesign.base.errors import UsageError
+from rigdesign.base.parallel import granted_cores
 
 Task = TypeVar("Task")
 Outcome = TypeVar("Outcome")
@@ -35,6 +36,8 @@ ONE_THREAD = dict.fromkeys(
 )
 IN_FLIGHT = 256
 """Tasks handed to an executor and not finished: enough for its workers, little in the memory of a scheduler."""
+DIED = "the worker process died; look for a lack of memory"
+"""Said of a task whose outcome is None."""
 LOOK_AFTER = 5.0
 """Time without a finished task after which the executor is looked at [s]."""
 
@@ -52,7 +55,7 @@ def worker_count(workers: int | None) -> int:
         A number below 1.
     """
     if workers is None:
-        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+        return granted_cores()
     if workers < 1:
         raise UsageError(f"workers = {workers}: at least 1 is needed; leave --workers out for one per core")
     return workers

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, MissingLibraryError
-from rigdesign.base.worker_pool import Workers
+from rigdesign.base.worker_pool import DIED, Workers
 from rigdesign.studies.design import DesignPoint
 from rigdesign.studies.ledger import point_key
 from rigdesign.studies.point import PointOutcome, PointSetup, solve_point
@@ -18,8 +18,6 @@ from rigdesign.studies.shards import Shard, StudyLedgers
 if TYPE_CHECKING:
     from rigdesign.base.fidelity import Fidelity
     from rigdesign.case import Case
-
-DIED = "the worker process died; look for a lack of memory"
 
 
 class PointDefectError(Exception):

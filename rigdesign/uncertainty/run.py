@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 
-from rigdesign.base.worker_pool import compute_all, worker_count
+from rigdesign.base.worker_pool import DIED, compute_all, worker_count
 from rigdesign.case.model import Case
 from rigdesign.checks.rules import overall
 from rigdesign.reanalysis.reference import Reference
@@ -31,7 +31,6 @@ from rigdesign.uncertainty.verdicts import (
 
 Count = Callable[[int, int, str], None]
 """Called with ends done, ends in all, and which was the last."""
-DIED = "the worker process died; look for a lack of memory"
 
 
 def with_ranges(
