@@ -67,6 +67,14 @@ def parse(text: object, kind: str, example: str | None = None) -> float:
     return _parse(text, kind, example)
 
 
+def number_match(text: str) -> re.Match[str] | None:
+    """Number [1] and unit [2], which may be empty, of a text such as ``"7 mm"``; None for any other text.
+
+    No number is longer than 100 characters.
+    """
+    return _QUANTITY.match(text) if len(text) <= _LONGEST else None
+
+
 @cache
 def _table(kind: str, example: str | None) -> QuantityKind:
     return KINDS[kind] if example is None else KINDS[kind].like(example)

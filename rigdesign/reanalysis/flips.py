@@ -13,6 +13,7 @@ from functools import partial
 
 from rigdesign.base.errors import CaseError, NotConvergedError
 from rigdesign.base.parallel import BackgroundTasks
+from rigdesign.base.units import number_match
 from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY
@@ -167,12 +168,11 @@ def _candidates(solved: SolvedRig, targets: Sequence[Check], heat: bool) -> Iter
         for path in paths:
             by_text.setdefault(written.get(path, ""), []).append(path)
         for text, together in by_text.items():
-            number, _, unit = text.partition(" ")
-            own = [path.split(".")[3] for path in together if path.endswith(".face_width")]
-            try:
-                value = float(number)
-            except ValueError:
+            found = number_match(text)
+            if found is None:
                 continue
+            value, unit = float(found[1]), found[2]
+            own = [path.split(".")[3] for path in together if path.endswith(".face_width")]
             offset = BASE.get(unit, 0.0) if in_heat else 0.0
             if abs(value - offset) > LEAST_EXCESS * abs(value):
                 yield Candidate(tuple(together), f"{title}{' and '.join(own)}", value, unit, offset)

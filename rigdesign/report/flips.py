@@ -1,7 +1,6 @@
 """Which inputs would turn the verdict, by how much: from the ranges of a run, or as the run itself has found."""
 
-import re
-
+from rigdesign.base.units import number_match
 from rigdesign.report.numbers import margin_unit, number_text, quantity_text, stated_text
 from rigdesign.results.flips import Flip
 from rigdesign.results.ranges import CheckRange, RangedInput, RangeMargin, RangesResult
@@ -9,7 +8,6 @@ from rigdesign.results.result import RunResult
 
 SHOWN = 3
 """Inputs on the first page."""
-NUMBER = re.compile(r"\s*([-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?)\s*(.*)")
 
 
 def flips(result: RunResult) -> list[Flip]:
@@ -71,7 +69,7 @@ def _flip(check: CheckRange, given: RangedInput, row: RangeMargin, end: str) -> 
 
 def between(stated: str, end: str, share: float) -> str:
     """The value at ``share`` of the way between two of one unit; empty where they have no number or other units."""
-    first, last = NUMBER.fullmatch(stated), NUMBER.fullmatch(end)
+    first, last = number_match(stated), number_match(end)
     if first is None or last is None or first[2] != last[2]:
         return ""
     value = float(first[1]) + share * (float(last[1]) - float(first[1]))

@@ -1,17 +1,15 @@
 """What a study varies: 'PATH=START:STOP:STEP' or 'PATH=v1,v2', and the grid of several of them."""
 
 import csv
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from itertools import product
 
 from rigdesign.base.errors import UsageError, shortened
+from rigdesign.base.units import number_match
 
 MAX_POINTS = 100_000
-LONGEST = 100
-NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)?\s*")
 KELVIN_STEPS = {"degC", "°C", "celsius", "degree_Celsius"}
 """Temperatures in these units may be stepped in kelvin."""
 
@@ -35,7 +33,7 @@ class Variation:
     def numbers(self) -> tuple[list[float], str] | None:
         """Values as numbers with their common unit, or None for values that are not."""
         parts = [number_match(value) for value in self.values]
-        units = {part[2] or "" for part in parts if part}
+        units = {part[2] for part in parts if part}
         if not all(parts) or len(units) != 1:
             return None
         return [float(part[1]) for part in parts if part], units.pop()
@@ -61,7 +59,7 @@ def parse_variation(text: str) -> Variation:
         raise UsageError(f"--vary '{text}': {'a value' if path else 'a path'} is missing; {EXAMPLE}")
     bounds = [number_match(part) for part in right.split(":")]
     if len(bounds) > 1 and all(bounds):
-        values = _range(text, [(Decimal(part[1]), part[2] or "") for part in bounds if part])
+        values = _range(text, [(Decimal(part[1]), part[2]) for part in bounds if part])
     else:
         try:
             values = [value.strip() for value in next(csv.reader([right], skipinitialspace=True))]
@@ -75,11 +73,6 @@ def parse_variation(text: str) -> Variation:
             f"--vary '{text}': the value {shortened(twice[0])} stands twice; give each value once"
         )
     return Variation(path, tuple(values))
-
-
-def number_match(text: str) -> re.Match[str] | None:
-    """Number and unit of a text, None for any other; no number is longer than LONGEST characters."""
-    return NUMBER.fullmatch(text) if len(text) <= LONGEST else None
 
 
 def _range(text: str, bounds: list[tuple[Decimal, str]]) -> list[str]:

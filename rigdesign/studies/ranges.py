@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base import units
 from rigdesign.base.errors import UsageError, shortened
-from rigdesign.studies.grid import KELVIN_STEPS, Variation, number_match
+from rigdesign.base.units import number_match
+from rigdesign.studies.grid import KELVIN_STEPS, Variation
 from rigdesign.uncertainty.plan import tied_inputs
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def parse_range(case: "Case", text: str) -> InputRange:
     bounds = [number_match(part) for part in right.split(":")]
     if len(bounds) != 2 or not all(bounds):
         raise UsageError(f"--vary '{text}': {_what_else(case, path, bounds)}; {EXAMPLE}")
-    (low, first), (high, unit) = ((float(part[1]), part[2] or "") for part in bounds if part)
+    (low, first), (high, unit) = ((float(part[1]), part[2]) for part in bounds if part)
     if first not in ("", unit):
         raise UsageError(
             f"--vary '{text}': units {first} and {unit or 'none'}; give LOW and HIGH the same unit, or one unit at "
@@ -164,7 +165,7 @@ def _assumed_range(case: "Case", record: "AssumptionRecord", tied: tuple[str, ..
     """Both ends in the unit of the lower one."""
     assert record.range is not None
     ends = [number_match(str(end)) for end in record.range]
-    numbers = [(float(end[1]), end[2] or "") for end in ends if end]
+    numbers = [(float(end[1]), end[2]) for end in ends if end]
     (low, unit), (high, other) = numbers
     if unit != other:
         kind = units.kind_of(record.range[0])
@@ -185,7 +186,7 @@ def tolerance_in(entry: InputRange, text: str) -> float:
         A text that is no number above zero, or one in another unit.
     """
     found = number_match(text)
-    unit = "" if found is None else found[2] or ""
+    unit = "" if found is None else found[2]
     kelvin = unit == "K" and entry.unit in KELVIN_STEPS
     if found is None or not (unit in ("", entry.unit) or kelvin) or float(found[1]) <= 0.0:
         shown = "K" if entry.unit in KELVIN_STEPS else entry.unit

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from rigdesign.base import units
+from rigdesign.base.units import number_match
 from rigdesign.report.numbers import number_text, unit_text
-from rigdesign.studies.grid import LONGEST, NUMBER
 from rigdesign.studies.result import StudyPoint
 
 READ_OFF = 20.0
@@ -57,8 +57,8 @@ class StudyAxis:
 
     def shown(self, text: str) -> str:
         """A value as printed: ``60 degC`` as 60 °C, with all its digits."""
-        match = NUMBER.fullmatch(text) if self.numeric else None
-        return text if match is None else f"{match[1]} {unit_text(match[2] or '')}".strip()
+        match = number_match(text) if self.numeric else None
+        return text if match is None else f"{match[1]} {unit_text(match[2])}".strip()
 
     def read_off(self, position: float, held: float, beyond: float) -> str:
         """A value between the computed points ``held`` and ``beyond``, with the digits that their distance allows.
@@ -100,10 +100,10 @@ def study_axis(path: str, points: Sequence[StudyPoint]) -> StudyAxis:
 
 def _numbers(texts: Sequence[str]) -> tuple[list[float], str] | None:
     """Numbers and their unit, None for values that are no numbers of one kind."""
-    found = [NUMBER.fullmatch(text) if len(text) <= LONGEST else None for text in texts]
+    found = [number_match(text) for text in texts]
     if not all(found) or not found:
         return None
-    parts = [(float(match[1]), match[2] or "") for match in found if match]
+    parts = [(float(match[1]), match[2]) for match in found if match]
     unit = parts[0][1]
     if all(other == unit for _, other in parts):
         return [number for number, _ in parts], unit
