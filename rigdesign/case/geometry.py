@@ -3,7 +3,8 @@
 import re
 from collections.abc import Iterable, Mapping
 
-from rigdesign.case.gearbox import BearingInput, Gearbox
+from rigdesign.case.bearings import BearingInput
+from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.housing import Housing, HousingShaft
 from thermal.housing.geometry import ClampingField, GearDisc, HousingGeometry, ShaftGeometry

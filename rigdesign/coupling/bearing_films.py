@@ -5,7 +5,8 @@ from collections.abc import Callable
 
 from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState, OilSupply
 from rigdesign.base.errors import named
-from rigdesign.case.gearbox import BearingInput, Gearbox
+from rigdesign.case.bearings import BearingInput
+from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import GearMesh
 from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.state import CouplingState, OperatingPoint

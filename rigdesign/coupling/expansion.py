@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rigdesign.case.gearbox import BearingInput
+from rigdesign.case.bearings import BearingInput
 from rigdesign.coupling.temperatures import HousingField
 from rigdesign.rig.model import Rig
 from thermal.expansion.clearances import BearingExpansion, CentreDistance

@@ -13,7 +13,8 @@ from dynamics.losses.seal_loss import SealGap, gap_seal_loss, lip_seal_loss
 from dynamics.losses.windage import GearRotor, Mist, anderson_loewenthal, gear_windage
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.quantity_kinds import ZERO_CELSIUS
-from rigdesign.case.gearbox import Gearbox, HeatSplit, Seals
+from rigdesign.case.gearbox import Gearbox, Seals
+from rigdesign.case.heat_split import HeatSplit
 from rigdesign.coupling.bearing_films import constant_drag
 from rigdesign.coupling.flank_heat import MeshSplit, mesh_split
 from rigdesign.coupling.given_losses import given_power

@@ -10,7 +10,8 @@ from dynamics.drivetrain.linear_system import LinearSystem
 from dynamics.gear.pair import GearPair
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.case.gearbox import BearingInput, Gearbox
+from rigdesign.case.bearings import BearingInput
+from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.gears import Gear
 from rigdesign.case.geometry import housing_geometry
 from rigdesign.case.model import Case
