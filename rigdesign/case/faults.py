@@ -8,6 +8,7 @@ from pydantic import BaseModel, ValidationError
 from rigdesign.base.errors import WIDEST, Fault
 from rigdesign.base.units import describe
 from rigdesign.case.fields import FAULT
+from rigdesign.case.kinds import kind_key, kind_of
 from rigdesign.case.paths import Slot, nearest, slot_at
 from rigdesign.case.provenance import KEYS, MARKS, item_name
 
@@ -39,7 +40,7 @@ def unknown(path: str, name: str, known: Collection[str], what: str) -> Fault:
 
 
 def _fault(entry: Any, model: type[BaseModel], tree: Mapping[str, Any]) -> Fault:
-    keys = _keys(entry["loc"], tree)
+    keys = _keys(entry["loc"], model, tree)
     path = ".".join(keys)
     kind, given, context = entry["type"], entry["input"], entry.get("ctx", {})
     if kind == "missing":
@@ -53,7 +54,9 @@ def _fault(entry: Any, model: type[BaseModel], tree: Mapping[str, Any]) -> Fault
         shown = "" if isinstance(given, dict | BaseModel) else written(given)
         return Fault(path, shown, context["problem"], context["remedy"])
     if kind in ("union_tag_not_found", "union_tag_invalid"):
-        return _unknown_law(path, given, context)
+        place = slot_at(model, tree, keys)
+        key = "" if place is None else kind_key(list(place.models()))
+        return _unknown_kind(path, given, context, key)
     if isinstance(given, dict) and "value" in given and set(given) - KEYS:
         return _misspelt_mark(path, given)
     slot = slot_at(model, tree, keys)
@@ -120,25 +123,25 @@ def _misspelt_mark(path: str, given: Mapping[str, Any]) -> Fault:
     )
 
 
-def _unknown_law(path: str, given: object, context: Mapping[str, Any]) -> Fault:
+def _unknown_kind(path: str, given: object, context: Mapping[str, Any], key: str) -> Fault:
     choices = str(context.get("expected_tags", "")).replace("'", '"')
     tag = str(context.get("tag", ""))[:WIDEST]
     if not isinstance(given, dict):
         return Fault(
-            path, written(given), f"{describe(given)} is not accepted here", 'write a table with law = "…"'
+            path, written(given), f"{describe(given)} is not accepted here", f'write a table with {key} = "…"'
         )
     if not tag:
         return Fault(
-            f"{path}.law", "", "a required key is missing", "add it: a law of heat transfer, see the schema"
+            f"{path}.{key}", "", "a required key is missing", "add it: a law of heat transfer, see the schema"
         )
     meant = nearest(tag, choices.replace('"', "").split(", "), 1)
     hint = f'did you mean "{meant[0]}"? ' if meant else ""
     return Fault(
-        f"{path}.law", f'"{tag}"', "not one of the choices", f"{hint}write {choices}", impossible=True
+        f"{path}.{key}", f'"{tag}"', "not one of the choices", f"{hint}write {choices}", impossible=True
     )
 
 
-def _keys(location: Sequence[str | int], tree: Mapping[str, Any]) -> list[str]:
+def _keys(location: Sequence[str | int], model: type[BaseModel], tree: Mapping[str, Any]) -> list[str]:
     """Keys of a path from a pydantic location: list items by name, union tags and key marks left out."""
     keys: list[str] = []
     node: Any = tree
@@ -149,9 +152,16 @@ def _keys(location: Sequence[str | int], tree: Mapping[str, Any]) -> list[str]:
             item = node[part] if isinstance(node, list | tuple) and part < len(node) else None
             keys.append(item_name(item, part))
             node = item
-        elif isinstance(node, Mapping) and part not in node and node.get("law") == part:
+        elif isinstance(node, Mapping) and part not in node and _is_kind(part, slot_at(model, tree, keys)):
             continue
         else:
             keys.append(part)
             node = node.get(part) if isinstance(node, Mapping) else None
     return keys
+
+
+def _is_kind(part: str, place: Slot | None) -> bool:
+    """Whether a part of a location names the kind of a table, which is no key."""
+    models = [] if place is None else list(place.models())
+    key = kind_key(models) if len(models) > 1 else ""
+    return bool(key) and part in {kind_of(model, key) for model in models}

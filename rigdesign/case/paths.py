@@ -15,6 +15,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel
 
 from rigdesign.case.fields import Quantity
+from rigdesign.case.kinds import of_kind
 from rigdesign.case.provenance import item_name
 
 
@@ -171,9 +172,6 @@ def _keys(slot: Slot, node: Any) -> list[str]:
 
 
 def _models_for(slot: Slot, node: Any) -> list[type[BaseModel]]:
-    """The table the place holds: where several are possible, the one whose ``law`` the node states."""
+    """The table the place holds: where several are possible, the kind the node says it is."""
     models = list(slot.models())
-    if len(models) > 1 and isinstance(node, Mapping):
-        law = node.get("law")
-        models = [m for m in models if law in typing.get_args(m.model_fields["law"].annotation)] or models
-    return models
+    return of_kind(models, node) if isinstance(node, Mapping) else models

@@ -6,6 +6,7 @@ from typing import Any
 
 from rigdesign.base.errors import CaseError, shortened
 from rigdesign.base.files import RefusedFileError, check_regular, foreign, read_regular
+from rigdesign.case.kinds import changes_kind
 from rigdesign.case.provenance import is_marked
 from rigdesign.case.shipped import shipped_cases
 
@@ -65,8 +66,8 @@ def read_tree(file: Path) -> dict[str, Any]:
 def merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
     """``over`` laid on ``base``: tables key by key, lists of named tables item by item, all else replaced.
 
-    ``remove = ["key", …]`` in a table of ``over`` leaves out inherited keys. A table with another ``law``
-    takes the place of the inherited one.
+    ``remove = ["key", …]`` in a table of ``over`` leaves out inherited keys. A table of another kind
+    (`kinds.USUAL`) takes the place of the inherited one.
     """
     dropped = over.get("remove", [])
     if not isinstance(dropped, list) or not all(isinstance(key, str) and key in base for key in dropped):
@@ -82,7 +83,7 @@ def merge(base: dict[str, Any], over: dict[str, Any]) -> dict[str, Any]:
 
 def _merge_value(base: Any, over: Any) -> Any:
     if isinstance(base, dict) and isinstance(over, dict) and not (is_marked(base) or is_marked(over)):
-        return over if over.get("law", base.get("law")) != base.get("law") else merge(base, over)
+        return over if changes_kind(base, over) else merge(base, over)
     if _named(base) and _named(over):
         items = {item["name"]: item for item in base}
         for item in over:

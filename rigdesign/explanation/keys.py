@@ -18,6 +18,7 @@ from pydantic.fields import FieldInfo
 from rigdesign.base import units
 from rigdesign.base.quantity_kinds import KINDS
 from rigdesign.case.fields import Name, Quantity
+from rigdesign.case.kinds import kind_key, kind_of
 from rigdesign.case.model import Case
 from rigdesign.case.paths import Slot, slot_of
 
@@ -184,7 +185,7 @@ def _inner_keys(models: tuple[type[BaseModel], ...], path: str, law: str) -> Ite
     """Keys of a table that may be one of several, each with the law that has it."""
     placeholder = path.endswith((f".{NAMED}", f".{NUMBERED}"))
     for model in models:
-        own = typing.get_args(model.model_fields["law"].annotation)[0] if len(models) > 1 else law
+        own = kind_of(model, kind_key(models)) if len(models) > 1 else law
         if placeholder:
             text = (inspect.getdoc(model) or "").partition("\n\n")[0]
             yield KeyEntry(

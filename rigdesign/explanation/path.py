@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from rigdesign.base.errors import UsageError
+from rigdesign.case.kinds import kind_key, kind_of, of_kind
 from rigdesign.case.model import Case
-from rigdesign.case.paths import known_paths, nearest_paths
+from rigdesign.case.paths import known_paths, nearest_paths, slot_at
 from rigdesign.case.provenance import take_off
 from rigdesign.checks.assumptions import influences_of
 from rigdesign.explanation.keys import KeyEntry, case_keys, entry_at, starred
@@ -116,12 +117,15 @@ def _entry(plain: Any, path: str) -> KeyEntry:
 
 
 def _law(plain: Any, path: str) -> str:
-    """The ``law`` of the nearest table above a key that states one."""
-    node, law = plain, ""
+    """The kind of the nearest table above a key that comes in kinds."""
+    node, law, keys = plain, "", list[str]()
     for key in path.split("."):
+        keys.append(key)
         node = node.get(key) if isinstance(node, dict) else None
-        if isinstance(node, dict) and isinstance(node.get("law"), str):
-            law = node["law"]
+        place = slot_at(Case, plain, keys) if isinstance(node, dict) else None
+        models = [] if place is None else list(place.models())
+        if len(models) > 1 and isinstance(node, dict) and (tag := kind_key(models)):
+            law = kind_of(of_kind(models, node)[0], tag)
     return law
 
 
