@@ -1,1 +1,1 @@
-"""Power losses of meshes, gears in mist, oil jets and seals."""
+"""Power losses of meshes, gears in mist and oil baths, oil jets and seals."""

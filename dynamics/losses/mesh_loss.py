@@ -39,7 +39,7 @@ class Loss:
     place: str
     """Name in the rig: ``test/mesh``, ``test/pinion shaft/bearing A`` ..."""
     kind: str
-    """mesh, bearing, windage, oil_acceleration, squeeze, seal."""
+    """mesh, bearing, windage, churning, oil_acceleration, squeeze, seal."""
     power: float
     """[W]"""
     details: dict[str, float | str] = field(default_factory=dict)

@@ -1,8 +1,9 @@
-"""ISO/TR 14179-2:2001, thermal load carrying capacity of gears, part 2: mesh friction and seal losses.
+"""ISO/TR 14179-2:2001, thermal load carrying capacity of gears: losses of mesh, seals and dipped gears, heat balance.
 
 Symbols and units as printed (N, mm, m/s, mPa s, um, 1/min, W). Confidence: the friction formula and the seal
 constant were found in two public programs that cite the document; the limits of validity are from the field's
-textbooks (Schlenk 1994; Niemann/Winter II) and should be compared with a copy before they decide a verdict.
+textbooks (Schlenk 1994; Niemann/Winter II) and should be compared with a copy before they decide a verdict. Churning
+torque and heat balance are from memory throughout: compare every digit with a copy.
 """
 
 import math
@@ -90,3 +91,79 @@ def H_V(z_1: int, u: float, beta_b: float, eps_1: float, eps_2: float) -> float:
 def P_VD(d_sh: float, n: float) -> float:
     """Loss of one radial lip seal [W]: 7.69e-6 d_sh^2 n; shaft diameter [mm], speed [1/min]."""
     return 7.69e-6 * d_sh**2 * n
+
+
+H_E0 = 10.0
+"""Reference immersion h_e0 [mm]."""
+B_0 = 10.0
+"""Reference face width b_0 [mm]."""
+V_T0 = 10.0
+"""Reference circumferential speed v_t0 [m/s]."""
+ALPHA_OIL = 200.0
+"""Usual film of the oil on the inner wall alpha_oil [W/(m2 K)]."""
+
+
+class DippedStage(NamedTuple):
+    """Gear stage in an oil bath as the churning torque reads it; the oil is at rest for all heights."""
+
+    h_e1: float
+    """Immersion of the tip circle of gear 1 [mm]."""
+    h_e2: float
+    """Immersion of the tip circle of gear 2 [mm]."""
+    h_C: float
+    """Height of the point of contact above the lowest point of the deeper gear [mm]."""
+    l_h: float
+    """Hydraulic length of the housing [mm]."""
+    b: float
+    """Face width [mm]."""
+
+
+def l_h(A_G: float, U_M: float) -> float:
+    """Hydraulic length 4 A_G/U_M [mm]; inner plan area [mm2] and perimeter [mm] of the housing."""
+    return 4.0 * A_G / U_M
+
+
+def C_Sp(stage: DippedStage) -> float:
+    """Splash factor (4 h_e,max/(3 h_C))^1.5 2 h_C/l_h of dip lubrication [-]."""
+    h_emax = max(stage.h_e1, stage.h_e2)
+    splash: float = (4.0 * h_emax / (3.0 * stage.h_C)) ** 1.5 * 2.0 * stage.h_C / stage.l_h
+    return splash
+
+
+def C_1(stage: DippedStage) -> float:
+    """Factor 0.063 (h_e1 + h_e2)/h_e0 + 0.0128 (b/b_0)^3 [N m]."""
+    return 0.063 * (stage.h_e1 + stage.h_e2) / H_E0 + 0.0128 * (stage.b / B_0) ** 3
+
+
+def C_2(stage: DippedStage) -> float:
+    """Exponent (h_e1 + h_e2)/(80 h_e0) + 0.2 [-]."""
+    return (stage.h_e1 + stage.h_e2) / (80.0 * H_E0) + 0.2
+
+
+def T_H(stage: DippedStage, v_t: float) -> float:
+    """Hydraulic (churning) torque of a dipped stage, C_Sp C_1 exp(C_2 v_t/v_t0) [N m]; v_t [m/s] (Mauz 1987).
+
+    The viscosity of the oil does not enter. The shaft it acts on is read here as that of the deeper gear. From memory;
+    no digit was found in a public source.
+    """
+    return C_Sp(stage) * C_1(stage) * math.exp(C_2(stage) * v_t / V_T0)
+
+
+def k_housing(alpha_ca: float, A_oil_A_ca: float = 1.0, delta_W_lambda_W: float = 0.0) -> float:
+    """Heat transmission of the housing k [W/(m2 K)], referred to its outer surface A_ca.
+
+    1/k = 1/(alpha_oil A_oil/A_ca) + delta_W/lambda_W + 1/alpha_ca, alpha_oil = 200 W/(m2 K) (Funck 1985)
+
+    alpha_ca : outside, convection and radiation [W/(m2 K)]; A_oil_A_ca : inner over outer surface [-];
+    delta_W_lambda_W : wall thickness over conductivity [m2 K/W]
+    """
+    return 1.0 / (1.0 / (ALPHA_OIL * A_oil_A_ca) + delta_W_lambda_W + 1.0 / alpha_ca)
+
+
+def theta_oil(theta_inf: float, P_V: float, k: float, A_ca: float) -> float:
+    """Mean sump temperature [degC] of a box cooled by its housing alone: theta_inf + P_V/(k A_ca).
+
+    theta_inf : air [degC]; P_V : all losses of the box [W]; k [W/(m2 K)]; A_ca : outer surface [m2]. Heat through
+    shafts and foundation is not counted: it lowers the temperature.
+    """
+    return theta_inf + P_V / (k * A_ca)

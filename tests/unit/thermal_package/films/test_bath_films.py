@@ -1,0 +1,74 @@
+"""Films in a dip-lubricated box: hand values, limits, warnings."""
+
+import math
+
+import pytest
+
+from thermal.films.bath import dipped_face_film, dipped_rim_film, falling_film, wetted_wall_film
+from thermal.films.flank import FilmOil, ToothRing, Wetting, fling_off
+from thermal.films.inputs import FilmError
+
+OIL = FilmOil(
+    conductivity=lambda _: 0.13,
+    density=lambda _: 840.0,
+    heat_capacity=lambda _: 2000.0,
+    kinematic_viscosity=lambda _: 14e-6,
+)
+RING = ToothRing(
+    root_radius=31.2e-3, tip_radius=41.2e-3, flank_area=5e-3, tooth_thickness=7e-3, conductivity=45.0
+)
+WALL, SUMP = 350.0, 363.15
+
+
+def test_splashed_wall_is_a_constant_with_range_and_source() -> None:
+    film = wetted_wall_film()(WALL, SUMP)
+    assert film.value == 200.0
+    assert film.warnings == ()
+    assert "14179-2" in film.source
+    assert "outside 100 to 300" in wetted_wall_film(500.0)(WALL, SUMP).warnings[0]
+    with pytest.raises(FilmError, match="must be greater than 0"):
+        wetted_wall_film(0.0)
+
+
+def test_falling_film_by_hand() -> None:
+    """1 l/min over 0.3 m: delta = (3 x 14e-6 x 5.56e-5/9.81)^(1/3) = 0.620 mm, h = 1.885 x 0.13/0.620e-3 = 395."""
+    film = falling_film(1e-3 / 60 / 0.3, OIL)(WALL, SUMP)
+    assert film.inputs["film_thickness"] == pytest.approx(0.620e-3, rel=2e-3)
+    assert film.value == pytest.approx(395.0, rel=3e-3)
+    assert film.inputs["reynolds"] == pytest.approx(15.9, rel=0.01)
+    assert film.warnings == ()
+
+
+def test_more_oil_makes_a_thicker_film_that_cools_less() -> None:
+    values = [falling_film(flow, OIL)(WALL, SUMP).value for flow in (1e-5, 8e-5, 64e-5)]
+    assert values[0] / values[1] == pytest.approx(2.0)
+    assert values[1] / values[2] == pytest.approx(2.0)
+    assert "Reynolds number of the film" in falling_film(1e-2, OIL)(WALL, SUMP).warnings[0]
+    with pytest.raises(FilmError, match="oil flow per width"):
+        falling_film(0.0, OIL)
+
+
+def test_dipped_face_by_hand_and_limits() -> None:
+    """Pr = 14e-6 x 1.68e6/0.13 = 180.9: Nu = 0.6205 x 5.656/(1 + 0.0527 + 0.0045) = 3.319; root(omega/nu) 4027 1/m."""
+    film = dipped_face_film(227.0, 41e-3, 0.5, OIL)(WALL, SUMP)
+    assert film.inputs["prandtl"] == pytest.approx(180.9, rel=1e-3)
+    assert film.value == pytest.approx(0.5 * 3.319 * 0.13 * 4027.0, rel=1e-3)
+    assert film.warnings == ()
+    assert dipped_face_film(0.0, 41e-3, 0.5, OIL)(WALL, SUMP).value == 0.0
+    assert dipped_face_film(227.0, 41e-3, 0.0, OIL)(WALL, SUMP).value == 0.0
+    assert "Reynolds number of the face" in dipped_face_film(3000.0, 41e-3, 0.5, OIL)(WALL, SUMP).warnings[0]
+    with pytest.raises(FilmError, match=r"wetted share of the face = 1\.2"):
+        dipped_face_film(227.0, 41e-3, 1.2, OIL)
+
+
+def test_dipped_rim_is_one_flooding_a_turn() -> None:
+    flow = 30e-3 / 60
+    whole = dipped_rim_film(RING, 227.0, 20e-3, flow, OIL)(WALL, SUMP)
+    assert whole == fling_off(RING, Wetting(speed=227.0, per_turn=1, flow=flow), OIL)(WALL, SUMP)
+    half = dipped_rim_film(RING, 227.0, 0.5 * RING.height, flow, OIL)(WALL, SUMP)
+    assert half.inputs["wetted_share"] == pytest.approx(0.5)
+    assert 0.0 < half.value < whole.value
+    assert dipped_rim_film(RING, 227.0, 0.0, flow, OIL)(WALL, SUMP).value == 0.0
+    assert dipped_rim_film(RING, 0.0, 20e-3, flow, OIL)(WALL, SUMP).value == 0.0
+    with pytest.raises(FilmError, match="immersion of the tooth tips"):
+        dipped_rim_film(RING, 227.0, -math.inf, flow, OIL)
