@@ -49,6 +49,7 @@ def _kinds(*kinds: QuantityKind) -> dict[str, QuantityKind]:
 KINDS: Mapping[str, QuantityKind] = _kinds(
     QuantityKind("length", "m", {"mm": "mm", "um": "um", "cm": "cm", "m": "m", "in": "inch"}, "7 mm"),
     QuantityKind("angle", "rad", {"deg": "degree", "rad": "radian", "mrad": "milliradian"}, "20 deg"),
+    QuantityKind("volume", "m**3", {"l": "liter", "ml": "milliliter", "m3": "m**3"}, "1.5 l"),
     QuantityKind("mass", "kg", {"kg": "kg", "g": "g"}, "4 kg"),
     QuantityKind(
         "inertia", "kg*m**2", {"kg m2": "kg*m**2", "kg cm2": "kg*cm**2", "g m2": "g*m**2"}, "0.01 kg m2"

@@ -55,6 +55,11 @@ class JournalBearingInput(Part):
     radial_damping: LinearDamping | None = None
     """For the record: the drivetrain is torsional."""
 
+    @property
+    def needs_fed_oil(self) -> bool:
+        """Splash or grease do not carry a plain bearing."""
+        return True
+
     def at_clearance(self, diametral_clearance: float) -> "Bearing":
         """The bearing for the solver with its clearance as it runs [m]; BearingError where that is impossible."""
         from dynamics.bearing.journal import JournalBearing

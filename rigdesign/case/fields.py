@@ -125,6 +125,7 @@ Hours = Annotated[float, Quantity("time", above="0 s", example="2 h")]
 """A time in which temperatures become steady, or a test is run."""
 Frequency = Annotated[float, Quantity("frequency", above="0 Hz", at_most="10000 kHz")]
 Flow = Annotated[float, Quantity("flow", above="0 l/min", at_most="100000 l/min")]
+Volume = Annotated[float, Quantity("volume", above="0 l", at_most="100 m3")]
 Density = Annotated[float, Quantity("density", above="0 kg/m3", at_most="25000 kg/m3")]
 KinematicViscosity = Annotated[float, Quantity("kinematic_viscosity", above="0 mm2/s")]
 HeatCapacity = Annotated[float, Quantity("heat_capacity", above="0 J/(kg K)")]

@@ -11,7 +11,16 @@ from rigdesign.case.gears import Gear, GearMesh
 from rigdesign.case.heat_split import HeatSplit
 from rigdesign.case.housing import Housing
 from rigdesign.case.losses import LossFactors
-from rigdesign.case.lubrication import BearingOil, GearOil, OilPaths, OilState
+from rigdesign.case.lubrication import (
+    BearingOil,
+    DipOil,
+    FedOil,
+    GearOil,
+    JetOil,
+    OilPaths,
+    OilState,
+    SplashOil,
+)
 
 
 class Seals(Part):
@@ -46,11 +55,11 @@ class Gearbox(Part):
     meshes: Mapping[Name, GearMesh] = Field(min_length=1)
     """Meshes by name, each of two gears."""
     oil: GearOil
-    """Oil injected at the meshes."""
+    """Oil of the gears: injected at the meshes, or a sump into which they dip."""
     bearings: Mapping[Name, BearingInput] = Field(min_length=1)
     """Bearings by name."""
-    bearing_oil: BearingOil
-    """Oil fed to the bearings."""
+    bearing_oil: BearingOil = SplashOil(lubrication="splash")
+    """Oil of the bearings: fed to them, thrown on them by the gears, or grease."""
     seals: Mapping[Name, Seals] = {}
     """Seals by name, one entry a shaft."""
     heat_split: HeatSplit
@@ -63,6 +72,48 @@ class Gearbox(Part):
     """How both oils differ from their data sheet."""
     housing: Housing | None = None
     """Geometry and boundary conditions; a gearbox without one has no temperature field."""
+
+    @property
+    def jets(self) -> JetOil | None:
+        """Oil injected at the meshes; None where the gears dip."""
+        return self.oil if isinstance(self.oil, JetOil) else None
+
+    @property
+    def sump(self) -> DipOil | None:
+        """Sump into which the gears dip; None where oil is injected."""
+        return self.oil if isinstance(self.oil, DipOil) else None
+
+    @property
+    def fed_bearings(self) -> FedOil | None:
+        """Oil fed to the bearings; None where they live on splash or grease."""
+        return self.bearing_oil if isinstance(self.bearing_oil, FedOil) else None
+
+    @property
+    def feeds(self) -> Mapping[str, tuple[JetOil | FedOil, int]]:
+        """Oils that are fed by ``gear_oil`` and ``bearing_oil``, each with the number of its consumers."""
+        found: dict[str, tuple[JetOil | FedOil, int]] = {}
+        if self.jets is not None:
+            found["gear_oil"] = self.jets, len(self.meshes)
+        if self.fed_bearings is not None:
+            found["bearing_oil"] = self.fed_bearings, len(self.bearings)
+        return found
+
+    @property
+    def bearing_oil_name(self) -> str:
+        """Oil of the bearings: that of the gears where it is thrown on them."""
+        return self.oil.oil if isinstance(self.bearing_oil, SplashOil) else self.bearing_oil.oil
+
+    @property
+    def gear_oil_temperature(self) -> float | None:
+        """Temperature at which the oil of the gears is fed or its sump is held [K]; None for a free sump."""
+        return self.oil.inlet_temperature if isinstance(self.oil, JetOil) else self.oil.sump_temperature
+
+    @property
+    def stated_oil_temperatures(self) -> tuple[float, ...]:
+        """Temperatures at which oils are fed or a sump is held [K]."""
+        fed = self.fed_bearings
+        found = (self.gear_oil_temperature, None if fed is None else fed.inlet_temperature)
+        return tuple(temperature for temperature in found if temperature is not None)
 
     def first_meshes(self) -> dict[str, tuple[str, int]]:
         """The first mesh each gear is in, with its side there: 0 as pinion, 1 as wheel."""

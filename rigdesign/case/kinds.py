@@ -57,7 +57,7 @@ def of_kind(models: Sequence[type[BaseModel]], table: Mapping[str, Any]) -> list
 
 @cache
 def _kind_key(models: tuple[type[BaseModel], ...]) -> str:
-    for key in models[0].model_fields:
+    for key in models[0].model_fields if models else ():
         fields = [model.model_fields.get(key) for model in models]
         choices = [() if field is None else _choices(field.annotation) for field in fields]
         if all(len(own) == 1 for own in choices) and len(set(choices)) == len(models):

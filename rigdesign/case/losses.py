@@ -7,7 +7,7 @@ from pydantic import Field
 
 from rigdesign.case.fields import Density, Name, Part, Positive, Power
 
-LossKind = Literal["mesh", "bearing", "windage", "seal", "oil_acceleration", "squeeze"]
+LossKind = Literal["mesh", "bearing", "windage", "churning", "seal", "oil_acceleration", "squeeze"]
 
 
 LossFactor = Annotated[float, Field(ge=0.0, le=10.0)]
@@ -23,6 +23,8 @@ class LossFactors(Part):
     """Multiplies the friction of the bearing films, or their constant drag."""
     windage: LossFactor = 1.0
     """Multiplies the windage of the gears."""
+    churning: LossFactor = 1.0
+    """Multiplies the churning of gears that dip."""
     seal: LossFactor = 1.0
     """Multiplies the losses of the seals."""
     jet: LossFactor = 1.0
@@ -36,6 +38,7 @@ class LossFactors(Part):
             "mesh": self.mesh,
             "bearing": self.bearing,
             "windage": self.windage,
+            "churning": self.churning,
             "seal": self.seal,
             "oil_acceleration": self.jet,
             "squeeze": self.squeeze,

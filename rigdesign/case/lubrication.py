@@ -1,15 +1,21 @@
-"""Oil of a gearbox: how it is fed, the ways it takes, and its state."""
+"""Oil of a gearbox: how it gets to gears and bearings, the ways it takes, and its state.
 
-from typing import Annotated, Literal
+Every kind of lubrication is a class whose key ``lubrication`` has one choice, joined in `GearOil` or `BearingOil`.
+"""
 
-from pydantic import Field, model_validator
+from typing import Annotated, Literal, TypeAlias
 
-from rigdesign.case.fields import Flow, Part, Temperature, Text, Velocity, fault
+from pydantic import Field, Tag, model_validator
+
+from rigdesign.case.fields import Flow, Offset, Part, Size, Temperature, Text, Velocity, Volume, fault
+from rigdesign.case.kinds import kind_from
 
 
-class GearOil(Part):
+class JetOil(Part):
     """Oil injected at the meshes of a gearbox."""
 
+    lubrication: Literal["jet"] = "jet"
+    """Selects injection at the meshes."""
     oil: Text
     """Built-in oil or a name under ``oils``."""
     inlet_temperature: Temperature
@@ -27,9 +33,39 @@ class GearOil(Part):
     """Share of the jets that is closed: the same flow leaves the others faster, and wets so much less face width."""
 
 
-class BearingOil(Part):
-    """Oil fed to the journal bearings of a gearbox."""
+class DipOil(Part):
+    """Sump of a gearbox into which its gears dip."""
 
+    lubrication: Literal["dip"]
+    """Selects a sump."""
+    oil: Text
+    """Built-in oil or a name under ``oils``."""
+    level: Offset
+    """Height of the oil at rest above the shaft axes; below them it is negative."""
+    volume: Volume
+    """Oil in the sump."""
+    sump_temperature: Temperature | None = None
+    """Held by heater and cooler of the sump. Left out: it follows from the losses and from what the housing gives to
+    its surroundings."""
+    churning: Literal["recommended", "changenet_2011", "changenet_2007", "iso_tr_14179_2"] = "recommended"
+    """Law of the churning loss; recommended: of the three the one that is extrapolated least."""
+    plan_length: Size | None = None
+    """Inner length of the box along the shafts, for ISO/TR 14179-2 in a gearbox without a housing."""
+    plan_width: Size | None = None
+    """Inner width of the box across the shafts, for ISO/TR 14179-2 in a gearbox without a housing."""
+
+
+GearOil: TypeAlias = Annotated[
+    Annotated[JetOil, Tag("jet")] | Annotated[DipOil, Tag("dip")], kind_from("lubrication", "jet")
+]
+"""Oil of the gears; a further kind of lubrication joins here."""
+
+
+class FedOil(Part):
+    """Oil fed to the bearings of a gearbox."""
+
+    lubrication: Literal["fed"] = "fed"
+    """Selects oil that is fed to every bearing."""
     oil: Text
     """Built-in oil or a name under ``oils``."""
     inlet_temperature: Temperature
@@ -38,6 +74,31 @@ class BearingOil(Part):
     """Flow per bearing."""
     outlet_temperature: Temperature | None = None
     """Measured outlet; computed from the heat when left out."""
+
+
+class SplashOil(Part):
+    """What the gears throw off lubricates the bearings."""
+
+    lubrication: Literal["splash"]
+    """Selects the oil of the gears as it is thrown off."""
+    splash_share: Annotated[float, Field(ge=0.001, le=0.1)] = 0.01
+    """Share of the oil that the gears lift, or the jets inject, which passes each bearing. No law predicts it."""
+
+
+class Grease(Part):
+    """Bearings packed with grease."""
+
+    lubrication: Literal["grease"]
+    """Selects grease."""
+    oil: Text
+    """Base oil of the grease: built-in oil or a name under ``oils``."""
+
+
+BearingOil: TypeAlias = Annotated[
+    Annotated[FedOil, Tag("fed")] | Annotated[SplashOil, Tag("splash")] | Annotated[Grease, Tag("grease")],
+    kind_from("lubrication", "fed"),
+]
+"""Oil of the bearings; a further kind of lubrication joins here."""
 
 
 PathShare = Annotated[float, Field(ge=0.0, le=0.9)]

@@ -173,6 +173,10 @@ def _shaft_expansion(solved: SolvedRig, part: str) -> Found:
     return worst((shaft.total, shaft.name) for shaft in found if shaft.name in shafts)
 
 
+KEYS = {"gear_oil": "oil", "bearing_oil": "bearing_oil"}
+"""Key of a gearbox by the oil stream that it states."""
+
+
 def _oil_flow(solved: SolvedRig, part: str) -> Found:
     """Flow of one circuit, of both of a gearbox, or of the rig."""
     _, _, rest = part.partition(".")
@@ -180,8 +184,8 @@ def _oil_flow(solved: SolvedRig, part: str) -> Found:
     flow = 0.0
     for name, box in solved.case.gearboxes.items():
         if box_name in ("", name):
-            flow += box.oil.flow * len(box.meshes) if circuit in ("", "oil") else 0.0
-            flow += box.bearing_oil.flow * len(box.bearings) if circuit in ("", "bearing_oil") else 0.0
+            for stream, (feed, consumers) in box.feeds.items():
+                flow += feed.flow * consumers if circuit in ("", KEYS[stream]) else 0.0
     return flow, part
 
 

@@ -18,7 +18,7 @@ FLOWS = ("gearboxes.*.oil.flow", "gearboxes.*.bearing_oil.flow")
 
 def _warm_oil(solved: SolvedRig, name: str, box: Gearbox) -> bool:
     """A gearbox without a housing whose oil is warmer than the room."""
-    warmest = max(box.oil.inlet_temperature, box.bearing_oil.inlet_temperature)
+    warmest = max(box.stated_oil_temperatures, default=0.0)
     return box.housing is None and warmest > solved.case.ambient.temperature
 
 

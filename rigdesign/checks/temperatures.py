@@ -17,7 +17,7 @@ WALLS = of_gearboxes("walls of gearbox {box}: it has no housing", without_housin
 
 def _exchanges_heat(solved: SolvedRig, name: str, box: Gearbox) -> bool:
     """A gearbox without a housing that is fed oil of two temperatures."""
-    return box.housing is None and box.oil.inlet_temperature != box.bearing_oil.inlet_temperature
+    return box.housing is None and len(set(box.stated_oil_temperatures)) > 1
 
 
 OIL_EXCHANGE = of_gearboxes(

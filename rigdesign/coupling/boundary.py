@@ -1,5 +1,6 @@
 """Boundary conditions of a housing: the case's laws with this iteration's fluids, films, speeds and losses."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -16,7 +17,14 @@ from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.joints import behind_shell, foot_joint
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_feed, bearing_oil, conducting_share, gear_feed, wetted_width
+from rigdesign.rig.oil_supply import (
+    bearing_feed,
+    bearing_oil,
+    conducting_share,
+    gear_feed,
+    gear_oil,
+    wetted_width,
+)
 from thermal.conditions.boundary import (
     Adiabatic,
     BodySource,
@@ -27,6 +35,7 @@ from thermal.conditions.boundary import (
     Radiation,
     SurfaceSource,
 )
+from thermal.conditions.streams import StreamNetwork, Volume, VolumeFilm
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
 from thermal.films import convection
@@ -74,7 +83,8 @@ class _Context:
         if name == "ambient":
             return AIR, self.rig.case.ambient.temperature
         kind, _, which = name.rpartition("_")
-        feed = (gear_feed if kind == GEAR_OIL else bearing_feed)(self.rig, self.name)
+        chamber = self.coupling_state.oil_outlet[f"{self.name}.{GEAR_OIL}"]
+        feed = (gear_feed if kind == GEAR_OIL else bearing_feed)(self.rig, self.name, chamber)
         outlet = self.coupling_state.oil_outlet[f"{self.name}.{kind}"]
         return kind, {"inlet": feed.inlet, "outlet": outlet, "mean": feed.mean(outlet)}[which]
 
@@ -133,10 +143,12 @@ def boundary_conditions(
     losses: PointLosses,
     *,
     radiation_included: bool,
+    sump_given: bool = False,
 ) -> list[Condition]:
     """Every condition of the housing of gearbox ``name``: films, radiation, exchanges, joints and sources.
 
     radiation_included : leave out explicit radiation where the film to room air contains it already
+    sump_given : a sump has the temperature of the coupling state also where it finds its own
     """
     context = _Context(rig, name, losses.point, losses.coupling_state, losses.bearings)
     housing = context.box.housing
@@ -153,7 +165,33 @@ def boundary_conditions(
         if isinstance(found, Film):
             found = replace(found, law=behind_shell(rig, name, surface, found.law))
         conditions.append(found)
+    if context.box.gear_oil_temperature is None and not sump_given:
+        conditions = _with_free_sump(context, conditions, losses.losses)
     return [*conditions, *_sources(context, losses.losses), *_stored(rig, name)]
+
+
+def _with_free_sump(
+    context: _Context, conditions: Sequence[Condition], losses: Sequence[PlacedLoss]
+) -> list[Condition]:
+    """The conditions with the sump as an unknown: films to its oil feel a volume that the losses in it heat."""
+    chamber = context.coupling_state.oil_outlet[f"{context.name}.{GEAR_OIL}"]
+    films = [
+        c for c in conditions if isinstance(c, Film) and c.kind == GEAR_OIL and c.fluid_temperature == chamber
+    ]
+    fed = context.box.fed_bearings is not None
+    heat = math.fsum(
+        placed.into_oil - (placed.into_bearing_oil if fed else 0.0)
+        for placed in losses
+        if placed.gearbox == context.name
+    )
+    sump = StreamNetwork(
+        specific_heat=gear_oil(context.rig, context.name).heat_capacity(chamber),
+        volumes=(Volume(name=GEAR_OIL, power=heat),),
+        films=tuple(
+            VolumeFilm(surface=film.surface, volume=GEAR_OIL, kind=GEAR_OIL, law=film.law) for film in films
+        ),
+    )
+    return [*(condition for condition in conditions if condition not in films), sump]
 
 
 def _radiation_in_film(context: _Context, entry: str, surface: str) -> bool:
@@ -204,7 +242,9 @@ def _condition(
         return _bearing_film(context, condition, surface)
     if isinstance(condition, laws.FlankFilm):
         gear = next(gear for gear, rim in rim_surfaces(context.box).items() if rim == surface)
-        return gear_flanks(context.rig, context.name, gear, context.point, condition).film(surface, GEAR_OIL)
+        chamber = context.coupling_state.oil_outlet[f"{context.name}.{GEAR_OIL}"]
+        flanks = gear_flanks(context.rig, context.name, gear, context.point, condition, chamber)
+        return flanks.film(surface, GEAR_OIL)
     return _film(context, condition, surface)
 
 

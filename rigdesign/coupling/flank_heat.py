@@ -6,7 +6,7 @@ of its heat reaches the rim, the rest leaves with the film (`thermal.films.flank
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,9 @@ from dynamics.losses.mesh_loss import ToothPath
 from dynamics.losses.oil_jet import JET_ANGLES
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import conditions_of
+from rigdesign.case.lubrication import JetOil
 from rigdesign.case.surface_conditions import FlankFilm
+from rigdesign.coupling.dip import DippedFlanks, flank_law
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.properties.materials import Material
 from rigdesign.rig.model import Rig
@@ -94,27 +96,19 @@ def rim_surfaces(box: Gearbox) -> dict[str, str]:
     return {name: f"gear_{gear.shaft}_rim" for name, gear in box.gears.items()}
 
 
-def gear_flanks(rig: Rig, name: str, gear: str, point: OperatingPoint, condition: FlankFilm) -> GearFlanks:
+def gear_flanks(
+    rig: Rig, name: str, gear: str, point: OperatingPoint, condition: FlankFilm, chamber: float
+) -> GearFlanks:
     """Teeth and film of one gear of the housing ``name`` at an operating point.
 
-    Every mesh has its jet, so a gear in two meshes is wetted twice a turn. The oil is laid on as it comes, warmed
-    by its impact: (v - v_jet)^2/(2 c), vectors.
+    chamber : temperature of the gear oil as it leaves the chamber; that of a sump [K]
     """
     box = rig.case.gearboxes[name]
-    meshes = [mesh for mesh in box.meshes.values() if gear in (mesh.pinion, mesh.wheel)]
     mesh_name, index = box.first_meshes()[gear]
     pair = rig.pairs[f"{name}.{mesh_name}"]
     material = rig.materials[box.gears[gear].material]
     ring = tooth_ring(pair, index, box.body_width(gear), material.conductivity)
-    speed = rig.shaft_speed(box.gears[gear].shaft, point.speed)
-    wetting = Wetting(
-        speed=speed,
-        per_turn=len(meshes),
-        flow=len(meshes) * JET_HALVES * wetting_flow(box),
-        wetted_share=condition.wetted_share,
-    )
     oil = gear_oil(rig, name)
-    inlet = box.oil.inlet_temperature
     properties = FilmOil(
         conductivity=oil.conductivity,
         density=oil.density,
@@ -123,29 +117,58 @@ def gear_flanks(rig: Rig, name: str, gear: str, point: OperatingPoint, condition
         highest_temperature=oil.highest_temperature,
     )
     factor = wetted_width(box) * condition.film_factor
+    temperature = chamber
+    if box.jets is not None:
+        speed = rig.shaft_speed(box.gears[gear].shaft, point.speed)
+        temperature = _after_impact(box, box.jets, speed, pair.working_radii[index], oil.heat_capacity)
     if condition.correlation == "constant":
         assert condition.heat_transfer_coefficient is not None
         law = constant(factor * condition.heat_transfer_coefficient, "input of the case")
+    elif box.jets is None:
+        dipped = DippedFlanks(ring=ring, oil=properties, sump_temperature=chamber, factor=factor)
+        law = flank_law(rig, name, gear, point, dipped)
     else:
         make = fling_off if condition.correlation == "fling_off" else jet_renewal
-        law = make(ring, wetting, properties, factor)
-    angle = JET_ANGLES[box.oil.jet_direction]
-    rim_speed, jet = speed * pair.working_radii[index], jet_velocity(box)
-    impact = rim_speed**2 + jet**2 - 2.0 * rim_speed * jet * math.cos(angle) if speed > 0.0 else 0.0
+        law = make(ring, _jet_wetting(rig, name, gear, point, condition), properties, factor)
     disc = next(s.gear for s in rig.geometries[name].shafts if s.name == box.gears[gear].shaft)
     assert disc is not None
     return GearFlanks(
-        ring=ring,
-        law=law,
-        oil_temperature=inlet + 0.5 * impact / oil.heat_capacity(inlet),
-        rim_area=math.pi * disc.outer_diameter * disc.width,
+        ring=ring, law=law, oil_temperature=temperature, rim_area=math.pi * disc.outer_diameter * disc.width
     )
 
 
-def film_of_jets(rig: Rig, name: str, gear: str, point: OperatingPoint, wall: float) -> float:
-    """Film on the rim of a gear [W/(m2 K)] that the jets of its meshes make at a wall temperature [K] (fling-off)."""
+def _jet_wetting(rig: Rig, name: str, gear: str, point: OperatingPoint, condition: FlankFilm) -> Wetting:
+    """How the jets wet a gear: every mesh has its own, so a gear in two meshes is wetted twice a turn."""
+    box = rig.case.gearboxes[name]
+    assert box.jets is not None
+    meshes = sum(gear in (mesh.pinion, mesh.wheel) for mesh in box.meshes.values())
+    return Wetting(
+        speed=rig.shaft_speed(box.gears[gear].shaft, point.speed),
+        per_turn=meshes,
+        flow=meshes * JET_HALVES * wetting_flow(box, box.jets),
+        wetted_share=condition.wetted_share,
+    )
+
+
+def _after_impact(
+    box: Gearbox, jets: JetOil, speed: float, radius: float, heat_capacity: Callable[[float], float]
+) -> float:
+    """Temperature of injected oil as it lies on a flank [K]: warmed by its impact, (v - v_jet)^2/(2 c), vectors."""
+    angle = JET_ANGLES[jets.jet_direction]
+    rim_speed, jet = speed * radius, jet_velocity(box, jets)
+    impact = rim_speed**2 + jet**2 - 2.0 * rim_speed * jet * math.cos(angle) if speed > 0.0 else 0.0
+    return jets.inlet_temperature + 0.5 * impact / heat_capacity(jets.inlet_temperature)
+
+
+def film_of_oil(
+    rig: Rig, name: str, gear: str, point: OperatingPoint, *, wall: float, chamber: float
+) -> float:
+    """Film on the rim of a gear [W/(m2 K)] that jets or sump make at a wall temperature [K] (fling-off).
+
+    chamber : as in `gear_flanks`
+    """
     rim = rim_surfaces(rig.case.gearboxes[name])[gear]
-    flanks = gear_flanks(rig, name, gear, point, FlankFilm(surfaces=(rim,), law="flank_film"))
+    flanks = gear_flanks(rig, name, gear, point, FlankFilm(surfaces=(rim,), law="flank_film"), chamber)
     return flanks.film(rim, "").law(wall, flanks.oil_temperature).value
 
 
@@ -211,9 +234,12 @@ def mesh_split(
         assert split.mesh_into_gears is not None
         return MeshSplit(pinion=share, kept=(split.mesh_into_gears, split.mesh_into_gears))
     conditions = flank_films(box, rim_surfaces(box))
+    chamber = box.gear_oil_temperature or rig.case.ambient.temperature
+    if coupling_state is not None:
+        chamber = coupling_state.oil_outlet[f"{name}.gear_oil"]
     kept = []
     for gear in gears:
-        flanks = gear_flanks(rig, name, gear, point, conditions[gear])
+        flanks = gear_flanks(rig, name, gear, point, conditions[gear], chamber)
         walls = {} if coupling_state is None else coupling_state.gear_temperature
         kept.append(flanks.kept(walls.get(f"{name}.{gear}", flanks.oil_temperature)))
     return MeshSplit(pinion=share, kept=(kept[0], kept[1]))

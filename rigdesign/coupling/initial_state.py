@@ -5,17 +5,22 @@ from rigdesign.coupling.loads import first_torques
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
 
+FIRST_SUMP_RISE = 40.0
+"""First guess of a sump that finds its own temperature, above room temperature [K]; the loop leaves it behind."""
+
 
 def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
     """All of the rig at room temperature, no heat from bodies, oil as fed; mesh torques without losses."""
     case = rig.case
-    gears = (f"{box}.{gear}" for box, entry in case.gearboxes.items() for gear in entry.gears)
+    names = (f"{box}.{gear}" for box, entry in case.gearboxes.items() for gear in entry.gears)
     streams = {}
     for name, box in case.gearboxes.items():
-        streams[f"{name}.gear_oil"] = box.oil.inlet_temperature
-        streams[f"{name}.bearing_oil"] = box.bearing_oil.inlet_temperature
+        gears = box.gear_oil_temperature or case.ambient.temperature + FIRST_SUMP_RISE
+        fed = box.fed_bearings
+        streams[f"{name}.gear_oil"] = gears
+        streams[f"{name}.bearing_oil"] = gears if fed is None else fed.inlet_temperature
     return CouplingState(
-        gear_temperature=dict.fromkeys(gears, case.ambient.temperature),
+        gear_temperature=dict.fromkeys(names, case.ambient.temperature),
         centre_distance={
             mesh: distance
             for box in case.gearboxes

@@ -29,6 +29,7 @@ from rigdesign.coupling.temperatures import (
     heat_into_films,
     heat_into_oil,
     solve_housing,
+    sump_temperatures,
 )
 from rigdesign.rig.model import Rig
 
@@ -110,6 +111,8 @@ class HousingResult:
     """Heat the solids gave to each film in this iteration [W], before relaxation."""
     wall_heat: Mapping[str, float]
     """Heat the solids gave to each oil stream [W], before relaxation."""
+    sumps: Mapping[str, float]
+    """Gearbox -> temperature of its sump [K], of gearboxes with a sump."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,7 +141,9 @@ def run_iteration(
     """
     loads = solve_loads(problem, coupling_state)
     housings = solve_housings(problem.rig, loads, before, final=final, parts=problem.parts)
-    streams = oil_streams(problem.rig, loads.losses, coupling_state.bearing_heat, coupling_state.wall_heat)
+    streams = oil_streams(
+        problem.rig, loads.losses, coupling_state.bearing_heat, coupling_state.wall_heat, housings.sumps
+    )
     return IterationResult(**vars(loads), **vars(housings), streams=tuple(streams))
 
 
@@ -206,4 +211,10 @@ def solve_housings(
         }
     else:
         expansion = dict(known)
-    return HousingResult(fields=fields, expansion=expansion, bearing_heat=bearing_heat, wall_heat=wall_heat)
+    return HousingResult(
+        fields=fields,
+        expansion=expansion,
+        bearing_heat=bearing_heat,
+        wall_heat=wall_heat,
+        sumps=sump_temperatures(rig, fields),
+    )

@@ -162,8 +162,10 @@ def mesh_friction(
     box, mesh = rig.mesh(name)
     entry = box.meshes[mesh]
     gears = box.gears[entry.pinion], box.gears[entry.wheel]
-    feed = gear_feed(rig, name.split(".")[0])
-    temperature = feed.mean(coupling_state.oil_outlet[f"{name.split('.')[0]}.gear_oil"])
+    box_name = name.split(".")[0]
+    chamber = coupling_state.oil_outlet[f"{box_name}.gear_oil"]
+    feed = gear_feed(rig, box_name, chamber)
+    temperature = feed.mean(chamber)
     contact = ToothPath.of_pair(pair).contact(
         max(abs(coupling_state.mesh_torque[name]), LEAST_TORQUE),
         rig.shaft_speed(gears[0].shaft, point.speed),
@@ -257,7 +259,9 @@ def locked_share(rig: Rig) -> float:
     if power is None or power.bracing.temperature_drift == 0.0:
         return 1.0
     box = rig.case.gearboxes[power.torque_at.split(".")[0]]
-    warmer = box.oil.inlet_temperature - rig.case.ambient.reference_temperature
+    fed = box.gear_oil_temperature
+    assert fed is not None
+    warmer = fed - rig.case.ambient.reference_temperature
     return 1.0 + power.bracing.temperature_drift * warmer
 
 

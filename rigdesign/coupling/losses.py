@@ -16,6 +16,7 @@ from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.case.gearbox import Gearbox, Seals
 from rigdesign.case.heat_split import HeatSplit
 from rigdesign.coupling.bearing_films import constant_drag
+from rigdesign.coupling.dip import churning
 from rigdesign.coupling.flank_heat import MeshSplit, mesh_split
 from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.loads import MeshModel, first_torques
@@ -88,7 +89,14 @@ def rotating_losses(
         losses.append(_bearing_loss(rig, box_name, part, point, state))
     computed = {} if _bearings_alone(rig) else rig.case.gearboxes
     for box_name, box in computed.items():
-        losses += _windage(rig, box_name, box, point, coupling_state, pairs)
+        dipped = list(_churning(rig, box_name, box, point, coupling_state, pairs))
+        losses += dipped
+        dry = set(box.gears) - {placed.part for placed in dipped}
+        losses += (
+            placed
+            for placed in _windage(rig, box_name, box, point, coupling_state, pairs)
+            if placed.part in dry
+        )
         losses += _seals(rig, box_name, box, point, coupling_state)
     if computed:
         losses += _squeezing(rig, point, models)
@@ -270,6 +278,21 @@ def _windage(
         yield PlacedLoss(gearbox=box_name, part=gear_name, loss=loss, into_body=share * loss.power)
 
 
+def _churning(
+    rig: Rig,
+    box_name: str,
+    box: Gearbox,
+    point: OperatingPoint,
+    coupling_state: CouplingState,
+    pairs: Mapping[str, GearPair],
+) -> Iterator[PlacedLoss]:
+    """Churning of every gear that reaches the sump; none without a sump."""
+    if box.sump is not None:
+        chamber = coupling_state.oil_outlet[f"{box_name}.gear_oil"]
+        for gear, loss in churning(rig, box_name, point, chamber, pairs):
+            yield PlacedLoss(gearbox=box_name, part=gear, loss=loss, into_body=0.0)
+
+
 def chamber_mist(rig: Rig, box_name: str, coupling_state: CouplingState) -> Mist:
     """What the gears and seals turn in: density of the case, viscosity of air at the oil temperature."""
     gas = air(_chamber_temperature(rig, box_name, coupling_state))
@@ -279,21 +302,25 @@ def chamber_mist(rig: Rig, box_name: str, coupling_state: CouplingState) -> Mist
 
 def _chamber_temperature(rig: Rig, box_name: str, coupling_state: CouplingState) -> float:
     """Of what fills the chamber: the mean of its oil [K]."""
-    return gear_feed(rig, box_name).mean(coupling_state.oil_outlet[f"{box_name}.gear_oil"])
+    chamber = coupling_state.oil_outlet[f"{box_name}.gear_oil"]
+    return gear_feed(rig, box_name, chamber).mean(chamber)
 
 
 def _oil_jets(
     rig: Rig, box_name: str, box: Gearbox, point: OperatingPoint, pairs: Mapping[str, GearPair]
 ) -> Iterator[PlacedLoss]:
+    jets = box.jets
+    if jets is None:
+        return
     oil = gear_oil(rig, box_name)
     for mesh_name, mesh in box.meshes.items():
         name = f"{box_name}.{mesh_name}"
         omega = rig.shaft_speed(box.gears[mesh.pinion].shaft, point.speed)
         jet = OilJet(
             flow=injected_flow(box),
-            density=oil.density(box.oil.inlet_temperature),
-            speed=jet_velocity(box),
-            angle=JET_ANGLES[box.oil.jet_direction],
+            density=oil.density(jets.inlet_temperature),
+            speed=jet_velocity(box, jets),
+            angle=JET_ANGLES[jets.jet_direction],
         )
         loss = oil_acceleration(name, jet, omega * pairs[name].working_radii[0])
         yield PlacedLoss(gearbox=box_name, part=mesh_name, loss=loss, into_body=0.0, pumped=jet.power)

@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.lubrication import FedOil, JetOil
 from rigdesign.case.model import Case
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.properties.oil import oil_outlet
@@ -36,12 +37,19 @@ class OilStream:
 
 
 def oil_streams(
-    rig: Rig, losses: Sequence[PlacedLoss], bearing_heat: Mapping[str, float], wall_heat: Mapping[str, float]
+    rig: Rig,
+    losses: Sequence[PlacedLoss],
+    bearing_heat: Mapping[str, float],
+    wall_heat: Mapping[str, float],
+    chambers: Mapping[str, float],
 ) -> list[OilStream]:
     """The two oil streams of every gearbox: outlet = inlet + (loss + heat of bodies)/(rho c Q).
 
     bearing_heat : heat conducted into each bearing film [W]; wall_heat : heat taken from walls, shafts and
-    gears by each stream [W]
+    gears by each stream [W]; chambers : gearbox -> temperature of its sump [K], of gearboxes with a sump
+
+    A sump has one temperature; its heat is what its cooler takes to hold it there, and nothing where it finds its own.
+    Bearings that are not fed leave their heat in the oil of the gears.
 
     Oil that goes past meshes or walls leaves less for them, which then warms up more; at the drain all mix again.
     Gear oil that leaks to the bearings takes its heat there.
@@ -52,9 +60,20 @@ def oil_streams(
         into_bearings = math.fsum(placed.into_bearing_oil for placed in own)
         into_gears = math.fsum(placed.into_oil - placed.into_bearing_oil for placed in own)
         films = math.fsum(heat for part, heat in bearing_heat.items() if part.split(".")[0] == name)
-        gear, leak = _gear_stream(rig, name, box, into_gears, wall_heat[f"{name}.gear_oil"])
-        films += wall_heat[f"{name}.bearing_oil"]
-        streams += [gear, _bearing_stream(rig, name, box, into_bearings, films, leak)]
+        if box.fed_bearings is None:
+            into_gears, films = math.fsum((into_gears, into_bearings, films)), 0.0
+        heat = wall_heat[f"{name}.gear_oil"]
+        leak = None
+        if box.jets is None:
+            gear = _sump(name, chambers[name], into_gears + heat)
+        else:
+            gear, leak = _gear_stream(rig, name, box, box.jets, into_gears, heat)
+        streams.append(gear)
+        if box.fed_bearings is None:
+            streams.append(replace(gear, name=f"{name}.bearing_oil", flow=0.0, heat=0.0))
+        else:
+            films += wall_heat[f"{name}.bearing_oil"]
+            streams.append(_bearing_stream(rig, name, box, box.fed_bearings, into_bearings, films, leak))
     return streams
 
 
@@ -70,22 +89,42 @@ def heater_and_cooler(case: Case, heats: Mapping[str, FloatArray]) -> tuple[Floa
     for name, heat in heats.items():
         box, _, kind = name.partition(".")
         entry = case.gearboxes[box]
-        feed = entry.oil if kind == "gear_oil" else entry.bearing_oil
-        key = feed.oil, feed.inlet_temperature
+        fed = entry.feeds.get(kind)
+        if fed is not None:
+            key = fed[0].oil, fed[0].inlet_temperature
+        elif kind == "gear_oil" and entry.gear_oil_temperature is not None:
+            key = f"sump of {box}", entry.gear_oil_temperature
+        else:
+            continue
         circuits[key] = circuits.get(key, np.zeros_like(heat)) + heat
+    if not circuits:
+        nothing = np.zeros_like(next(iter(heats.values())))
+        return nothing, nothing
     powers = np.array(list(circuits.values()))
     return np.maximum(-powers, 0.0).sum(axis=0), np.maximum(powers, 0.0).sum(axis=0)
 
 
+def _sump(name: str, temperature: float, heat: float) -> OilStream:
+    """Oil of one temperature that stays in the gearbox."""
+    return OilStream(
+        name=f"{name}.gear_oil",
+        inlet=temperature,
+        outlet=temperature,
+        chamber=temperature,
+        flow=0.0,
+        heat=heat,
+    )
+
+
 def _gear_stream(
-    rig: Rig, name: str, box: Gearbox, loss: float, heat: float
+    rig: Rig, name: str, box: Gearbox, jets: JetOil, loss: float, heat: float
 ) -> tuple[OilStream, Portion | None]:
     """The stream of the gears, and what of it leaks to the bearings."""
-    feed, paths = gear_feed(rig, name), box.oil_paths
+    feed, paths = gear_feed(rig, name, jets.inlet_temperature), box.oil_paths
     oil, inlet, flow = feed.oil, feed.inlet, feed.flow
     along = wall_flow(box)
     to_walls = 1.0 - paths.short_circuit / (1.0 - paths.bypass)
-    outlet = box.oil.outlet_temperature
+    outlet = jets.outlet_temperature
     if outlet is None:
         chamber = oil_outlet(oil, inlet, along, to_walls * loss, heat)
     elif along == flow:
@@ -108,13 +147,13 @@ def _gear_stream(
 
 
 def _bearing_stream(
-    rig: Rig, name: str, box: Gearbox, loss: float, heat: float, leak: Portion | None
+    rig: Rig, name: str, box: Gearbox, fed: FedOil, loss: float, heat: float, leak: Portion | None
 ) -> OilStream:
     """The stream of the bearings, with what leaks into it from the gears."""
-    feed = bearing_feed(rig, name)
+    feed = bearing_feed(rig, name, fed.inlet_temperature)
     oil, inlet, flow = feed.oil, feed.inlet, feed.flow * len(box.bearings)
     taken = loss + heat
-    outlet = box.bearing_oil.outlet_temperature
+    outlet = fed.outlet_temperature
     if leak is None:
         outlet = oil_outlet(oil, inlet, flow, loss, heat) if outlet is None else outlet
     else:

@@ -1,5 +1,6 @@
 """What an iteration hands to the next, with its heats relaxed by what the oil can take up."""
 
+import math
 from dataclasses import replace
 
 from rigdesign.coupling.expansion import hot_clearances, uniform_expansion
@@ -77,38 +78,47 @@ def heat_residual(problem: PointProblem, done: IterationResult) -> float:
     if {"bearing_heat", "wall_heat"} & problem.freeze:
         return 0.0
     films = (
-        0.5 * abs(heat - old.bearing_heat[name]) / _bearing_capacity(rig, name)
+        0.5 * abs(heat - old.bearing_heat[name]) / _bearing_capacity(rig, name, old)
         for name, heat in done.bearing_heat.items()
     )
     walls = (
-        abs(heat - old.wall_heat[name]) / _stream_capacity(rig, name) for name, heat in done.wall_heat.items()
+        abs(heat - old.wall_heat[name]) / _stream_capacity(rig, name, old)
+        for name, heat in done.wall_heat.items()
     )
     return max((*films, *walls), default=0.0)
 
 
-def _bearing_capacity(rig: Rig, name: str) -> float:
-    """Heat capacity flow rho c Q of the oil of one bearing [W/K]."""
-    return bearing_feed(rig, name.split(".")[0]).capacity_rate
+def _bearing_capacity(rig: Rig, name: str, state: CouplingState) -> float:
+    """Heat capacity flow rho c Q of the oil of one bearing [W/K]; boundless where none is fed (`_without_flow`)."""
+    box_name = name.split(".")[0]
+    chamber = state.oil_outlet[f"{box_name}.gear_oil"]
+    return _without_flow(bearing_feed(rig, box_name, chamber).capacity_rate)
 
 
-def _stream_capacity(rig: Rig, name: str) -> float:
-    """Heat capacity flow of an oil stream of a gearbox along its walls [W/K]."""
+def _stream_capacity(rig: Rig, name: str, state: CouplingState) -> float:
+    """Heat capacity flow of an oil stream of a gearbox along its walls [W/K]; boundless where none is fed."""
     box_name, kind = name.split(".")
     box = rig.case.gearboxes[box_name]
+    chamber = state.oil_outlet[f"{box_name}.gear_oil"]
     if kind == "gear_oil":
-        return replace(gear_feed(rig, box_name), flow=wall_flow(box)).capacity_rate
-    feed = bearing_feed(rig, box_name)
-    return replace(feed, flow=feed.flow * len(box.bearings)).capacity_rate
+        return _without_flow(replace(gear_feed(rig, box_name, chamber), flow=wall_flow(box)).capacity_rate)
+    feed = bearing_feed(rig, box_name, chamber)
+    return _without_flow(replace(feed, flow=feed.flow * len(box.bearings)).capacity_rate)
+
+
+def _without_flow(capacity_rate: float) -> float:
+    """A capacity rate, boundless for zero: the field knows the temperature of such oil, no heat has to be relaxed."""
+    return capacity_rate or math.inf
 
 
 def _film_gain(rig: Rig, done: IterationResult, name: str) -> float:
     box, part = name.split(".")
-    return _conductance(done, box, f"bearing_film:{part}") / _bearing_capacity(rig, name)
+    return _conductance(done, box, f"bearing_film:{part}") / _bearing_capacity(rig, name, done.coupling_state)
 
 
 def _stream_gain(rig: Rig, done: IterationResult, name: str) -> float:
     box, kind = name.split(".")
-    return _conductance(done, box, kind) / _stream_capacity(rig, name)
+    return _conductance(done, box, kind) / _stream_capacity(rig, name, done.coupling_state)
 
 
 def _conductance(done: IterationResult, box: str, kind: str) -> float:

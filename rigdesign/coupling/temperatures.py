@@ -1,6 +1,7 @@
 """Steady temperature fields of the housings at one operating point, and the heat they give to the oil."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,9 +68,18 @@ def heat_into_oil(field: HousingField) -> dict[str, float]:
     """Heat the solids give to each oil stream of the gearbox [W], bearing films left out."""
     return {
         f"{field.gearbox}.{kind}": -math.fsum(
-            row.power for row in field.solution.balance.rows if row.kind == kind
+            row.power for row in field.solution.balance.rows if row.kind == kind and row.surface != kind
         )
         for kind in (GEAR_OIL, BEARING_OIL)
+    }
+
+
+def sump_temperatures(rig: Rig, fields: Mapping[str, HousingField]) -> dict[str, float]:
+    """Gearbox -> temperature of its sump [K]: the held one, or that of the temperature field it belongs to."""
+    return {
+        name: box.gear_oil_temperature or fields[name].solution.volumes[GEAR_OIL]
+        for name, box in rig.case.gearboxes.items()
+        if box.jets is None
     }
 
 

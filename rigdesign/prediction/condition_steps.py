@@ -21,7 +21,8 @@ def moved_conditions(
         step = STEP_SHARE * max(abs(getattr(setting, kind)), 1.0)
         moved[kind, ""] = replace(setting, **{kind: getattr(setting, kind) + step}), step
     for name, box in case.gearboxes.items():
-        for stream, feed in ((f"{name}.gear_oil", box.oil), (f"{name}.bearing_oil", box.bearing_oil)):
+        for kind, (feed, _) in box.feeds.items():
+            stream = f"{name}.{kind}"
             inlet = setting.inlet_temperature.get(stream, feed.inlet_temperature)
             inlets = {**setting.inlet_temperature, stream: inlet + STEP_KELVIN}
             moved["inlet_temperature", stream] = replace(setting, inlet_temperature=inlets), STEP_KELVIN

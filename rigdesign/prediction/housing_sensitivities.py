@@ -18,7 +18,7 @@ from rigdesign.prediction.model import Channel
 from rigdesign.prediction.readings import Reading, Readings, count_of
 from rigdesign.prediction.sensitivities import STEP, PointSensitivities
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import gear_oil
+from rigdesign.rig.oil_supply import gear_feed
 from thermal.conditions.boundary import Exchange, Film, Radiation
 from thermal.conditions.contact import Contact
 from thermal.conduction.reduced import Link, Projection, ReducedConduction
@@ -211,11 +211,11 @@ def _fresh_over_mean(rig: Rig, name: str, last: IterationResult) -> float:
     """Gear oil as it leaves the teeth, warmed by all losses and not yet cooled by walls, over its mean [K]."""
     own = [placed for placed in last.losses if placed.gearbox == name]
     heat = sum(placed.into_oil - placed.into_bearing_oil for placed in own)
-    box, oil = rig.case.gearboxes[name], gear_oil(rig, name)
-    inlet = box.oil.inlet_temperature
-    rise = heat / (oil.density(inlet) * oil.heat_capacity(inlet) * box.oil.flow * len(box.meshes))
     chamber = next(stream.chamber for stream in last.streams if stream.name == f"{name}.{GEAR_OIL}")
-    return rise - 0.5 * (chamber - inlet)
+    feed = gear_feed(rig, name, chamber)
+    if feed.flow == 0.0:
+        return 0.0
+    return heat / feed.capacity_rate - 0.5 * (chamber - feed.inlet)
 
 
 def link_name(gearbox: str, link: Link) -> str:

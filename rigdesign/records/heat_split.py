@@ -90,7 +90,8 @@ def _ends(rig: Rig, name: str, films: Mapping[str, FlankFilm], end: int) -> dict
 
 
 def _flanks(rig: Rig, result: PointResult, name: str, gear: str, film: FlankFilm) -> GearFlanks:
-    return gear_flanks(rig, name, gear, result.point, film)
+    chamber = result.last.coupling_state.oil_outlet[f"{name}.gear_oil"]
+    return gear_flanks(rig, name, gear, result.point, film, chamber)
 
 
 def _solved_again(

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.lubrication import JetOil
 from rigdesign.properties.oil import Oil
 from rigdesign.rig.model import Rig
 
@@ -16,18 +17,18 @@ def gear_oil(rig: Rig, name: str) -> Oil:
 def bearing_oil(rig: Rig, name: str) -> Oil:
     """Oil of the bearings of the gearbox ``name``, in its state there."""
     box = rig.case.gearboxes[name]
-    return _in_state(rig.oils[box.bearing_oil.oil], box)
+    return _in_state(rig.oils[box.bearing_oil_name], box)
 
 
 @dataclass(frozen=True, kw_only=True)
 class OilFeed:
-    """Oil as it is fed to a consumer: in its state there, at its inlet temperature."""
+    """Oil as it comes to a consumer: in its state there, at its inlet temperature."""
 
     oil: Oil
     inlet: float
     """[K]"""
     flow: float
-    """[m3/s]"""
+    """[m3/s]; zero in a sump, and where oil is only thrown on the consumer."""
 
     @property
     def mass_flow(self) -> float:
@@ -44,24 +45,33 @@ class OilFeed:
         return 0.5 * (self.inlet + outlet)
 
 
-def gear_feed(rig: Rig, name: str) -> OilFeed:
-    """Oil fed to all meshes of the gearbox ``name``."""
+def gear_feed(rig: Rig, name: str, chamber: float) -> OilFeed:
+    """Oil fed to all meshes of the gearbox ``name``; a sump at its temperature, without flow.
+
+    chamber : temperature of the oil as it leaves the chamber, in a sump that of all its oil [K]
+    """
     box = rig.case.gearboxes[name]
-    return OilFeed(
-        oil=gear_oil(rig, name), inlet=box.oil.inlet_temperature, flow=box.oil.flow * len(box.meshes)
-    )
+    if box.jets is None:
+        return OilFeed(oil=gear_oil(rig, name), inlet=chamber, flow=0.0)
+    flow = box.jets.flow * len(box.meshes)
+    return OilFeed(oil=gear_oil(rig, name), inlet=box.jets.inlet_temperature, flow=flow)
 
 
-def bearing_feed(rig: Rig, name: str) -> OilFeed:
-    """Oil fed to each bearing of the gearbox ``name``."""
-    feed = rig.case.gearboxes[name].bearing_oil
-    return OilFeed(oil=bearing_oil(rig, name), inlet=feed.inlet_temperature, flow=feed.flow)
+def bearing_feed(rig: Rig, name: str, chamber: float) -> OilFeed:
+    """Oil fed to each bearing of the gearbox ``name``; where none is, oil of the chamber without flow.
+
+    chamber : temperature of the gear oil as it leaves the chamber [K]
+    """
+    fed = rig.case.gearboxes[name].fed_bearings
+    if fed is None:
+        return OilFeed(oil=bearing_oil(rig, name), inlet=chamber, flow=0.0)
+    return OilFeed(oil=bearing_oil(rig, name), inlet=fed.inlet_temperature, flow=fed.flow)
 
 
 def conducting_share(rig: Rig, name: str, stream: str) -> float:
     """Conductivity of an oil of the gearbox ``name`` over that of its data sheet; ``stream``: gear_oil, bearing_oil."""
     box = rig.case.gearboxes[name]
-    clear = rig.oils[(box.oil if stream == "gear_oil" else box.bearing_oil).oil]
+    clear = rig.oils[box.oil.oil if stream == "gear_oil" else box.bearing_oil_name]
     return _in_state(clear, box).conductivity_40 / clear.conductivity_40
 
 
@@ -75,26 +85,27 @@ def _in_state(oil: Oil, box: Gearbox) -> Oil:
 
 
 def injected_flow(box: Gearbox) -> float:
-    """Flow of the jets of one mesh [m3/s]: what is fed less what goes round the meshes."""
-    return (1.0 - box.oil_paths.bypass) * box.oil.flow
+    """Flow of the jets of one mesh [m3/s]: what is fed less what goes round the meshes; zero without jets."""
+    return 0.0 if box.jets is None else (1.0 - box.oil_paths.bypass) * box.jets.flow
 
 
-def jet_velocity(box: Gearbox) -> float:
+def jet_velocity(box: Gearbox, jets: JetOil) -> float:
     """Velocity of the oil in the jets [m/s]: that of the case with its flow through all of them."""
-    return (1.0 - box.oil_paths.bypass) / (1.0 - box.oil.blocked_jets) * box.oil.jet_velocity
+    return (1.0 - box.oil_paths.bypass) / (1.0 - jets.blocked_jets) * jets.jet_velocity
 
 
-def wetting_flow(box: Gearbox) -> float:
+def wetting_flow(box: Gearbox, jets: JetOil) -> float:
     """Flow of one mesh over the share of the face width its open jets reach [m3/s]: all of it lands there."""
-    return injected_flow(box) / (1.0 - box.oil.blocked_jets)
+    return injected_flow(box) / (1.0 - jets.blocked_jets)
 
 
 def wetted_width(box: Gearbox) -> float:
-    """Share of the face width that the open jets reach."""
-    return 1.0 - box.oil.blocked_jets
+    """Share of the face width that the open jets reach; all of it without jets."""
+    return 1.0 if box.jets is None else 1.0 - box.jets.blocked_jets
 
 
 def wall_flow(box: Gearbox) -> float:
-    """Gear oil that passes walls, shafts and gear bodies on its way out, of all meshes [m3/s]."""
+    """Gear oil that passes walls, shafts and gear bodies on its way out, of all meshes [m3/s]; zero without jets."""
     paths = box.oil_paths
-    return (1.0 - paths.bypass - paths.short_circuit) * box.oil.flow * len(box.meshes)
+    fed = 0.0 if box.jets is None else box.jets.flow * len(box.meshes)
+    return (1.0 - paths.bypass - paths.short_circuit) * fed

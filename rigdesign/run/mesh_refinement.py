@@ -107,7 +107,7 @@ def on_mesh(rig: Rig, converged: PointResult, source: Rig) -> PointResult:
     """
     last = converged.last
     housings = solve_housings(rig, last, _carried_over(last, source, rig))
-    streams = oil_streams(rig, last.losses, housings.bearing_heat, housings.wall_heat)
+    streams = oil_streams(rig, last.losses, housings.bearing_heat, housings.wall_heat, housings.sumps)
     done = replace(last, **vars(housings), streams=tuple(streams))
     after = next_state(rig, done)
     change = replace(Residual.between(done.coupling_state, after), torque=0.0)

@@ -10,7 +10,7 @@ from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.units import show
 from rigdesign.coupling.boundary import GEAR_OIL, printed_films
-from rigdesign.coupling.flank_heat import film_of_jets, rim_surfaces
+from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
 from rigdesign.coupling.loads import laws_of
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.shaft_torques import torques_left_out
@@ -30,7 +30,7 @@ from thermal.conduction.audit import assumed_difference, audit_conditions, radia
 LOOSE_RESIDUAL = 1e-4
 """Relative residual of a harmonic balance from which the point is named."""
 FILM_FACTOR = 3.0
-"""Between a given film on the rim of a gear and the one its jets make, from which it is named."""
+"""Between a given film on the rim of a gear and the one its oil makes, from which it is named."""
 
 
 def warnings_of(solved: SolvedRig, losses: Mapping[str, Sequence[PlacedLoss]]) -> list[Finding]:
@@ -276,7 +276,8 @@ def _thin_rim_films(solved: SolvedRig, field: HousingField) -> Iterator[str]:
     """Gears whose friction heat is split by assumption under a given film far from the one their jets make."""
     name, rig = field.gearbox, solved.rig
     box = rig.case.gearboxes[name]
-    point = next(p.point for p in solved.points if p.last.fields.get(name) is field)
+    result = next(p for p in solved.points if p.last.fields.get(name) is field)
+    point, chamber = result.point, result.last.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
     if box.heat_split.rule != "assumed" or point.speed == 0.0:
         return
     rows = {row.surface: row for row in field.solution.balance.rows if row.kind == GEAR_OIL}
@@ -284,11 +285,12 @@ def _thin_rim_films(solved: SolvedRig, field: HousingField) -> Iterator[str]:
         row = rows.get(rim)
         if row is None or row.coefficient is None:
             continue
-        given, made = row.coefficient.value, film_of_jets(rig, name, gear, point, row.mean_temperature)
+        given = row.coefficient.value
+        made = film_of_oil(rig, name, gear, point, wall=row.mean_temperature, chamber=chamber)
         if not given * FILM_FACTOR >= made >= given / FILM_FACTOR:
             yield (
                 f"{gear}: film on its rim = {given:.0f} W/(m2 K) with mesh_into_gears = "
-                f"{box.heat_split.mesh_into_gears:g}, its jets make {made:.0f} W/(m2 K) (fling-off): its bulk "
+                f"{box.heat_split.mesh_into_gears:g}, its oil makes {made:.0f} W/(m2 K) (fling-off): its bulk "
                 f'temperature depends on the assumption; write law = "flank_film" and give no share, or ranges'
             )
 

@@ -14,6 +14,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from rigdesign.case.lubrication import DipOil
 from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.point_losses import PointLosses
@@ -21,7 +22,7 @@ from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, injected_flow, wall_flow
 from rigdesign.transient.still_air import at_least, still
 from thermal.conditions.boundary import Film
-from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm
+from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm, VolumeLink
 from thermal.conduction.capacity import StoredHeat
 from thermal.conduction.condition_checks import Condition
 from thermal.films.law import FilmCoefficient, FilmLaw
@@ -30,6 +31,8 @@ OIL_ONLY = ("oil_acceleration", "squeeze")
 """Losses that end with the oil."""
 MOVED = 1.0
 """Step [K] of the outlet by which the share of the inlet in each film is read."""
+THERMOSTAT = 1e6
+"""Conductance that ties a held sump to its temperature [W/K]: 10 kW move it by 10 mK."""
 FEED = "feed"
 LEAK = "gear oil leaked"
 
@@ -78,7 +81,9 @@ def _steady(rig: Rig, name: str, state: PointLosses, losses: Sequence[PlacedLoss
     housing = rig.case.gearboxes[name].housing
     assert housing is not None
     heated = replace(state, losses=tuple(losses))
-    conditions = boundary_conditions(rig, name, heated, radiation_included=housing.radiation_included)
+    conditions = boundary_conditions(
+        rig, name, heated, radiation_included=housing.radiation_included, sump_given=True
+    )
     return [condition for condition in conditions if not isinstance(condition, StoredHeat)]
 
 
@@ -114,8 +119,10 @@ def _gear_network(
     oil: bool,
 ) -> StreamNetwork:
     box = rig.case.gearboxes[name]
-    fed = replace(gear_feed(rig, name), flow=wall_flow(box))
     outlet = state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
+    if box.sump is not None:
+        return _sump_network(rig, name, box.sump, state, losses, wetted)
+    fed = replace(gear_feed(rig, name, outlet), flow=wall_flow(box))
     feed = f"{GEAR_OIL} {FEED}"
     stream = _films(GEAR_OIL, feed, fed.inlet, wetted, oil)
     own = [placed for placed in losses if placed.gearbox == name]
@@ -138,6 +145,45 @@ def _gear_network(
     )
 
 
+def _sump_network(
+    rig: Rig,
+    name: str,
+    sump: DipOil,
+    state: PointLosses,
+    losses: Sequence[PlacedLoss],
+    wetted: Sequence[tuple[Film, float]],
+) -> StreamNetwork:
+    """The sump as one volume that stores heat; held, it is tied to the temperature of its heater and cooler."""
+    chamber = state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
+    feed = f"{GEAR_OIL} {FEED}"
+    lubricant = gear_oil(rig, name)
+    fed_bearings = rig.case.gearboxes[name].fed_bearings is not None
+    heat = math.fsum(
+        placed.into_oil - (placed.into_bearing_oil if fed_bearings else 0.0)
+        for placed in losses
+        if placed.gearbox == name
+    )
+    specific_heat = lubricant.heat_capacity(chamber)
+    stream = _films(GEAR_OIL, feed, chamber, wetted, oil=False)
+    return StreamNetwork(
+        specific_heat=specific_heat,
+        volumes=(
+            Volume(
+                name=GEAR_OIL,
+                power=heat,
+                heat_capacity=lubricant.density(chamber) * sump.volume * specific_heat,
+            ),
+        ),
+        films=stream.films,
+        supplies=()
+        if sump.sump_temperature is None
+        else (Supply(name=feed, temperature=sump.sump_temperature),),
+        links=()
+        if sump.sump_temperature is None
+        else (VolumeLink(a=GEAR_OIL, b=feed, conductance=THERMOSTAT, kind="heater and cooler"),),
+    )
+
+
 def _bearing_network(
     rig: Rig,
     name: str,
@@ -147,7 +193,8 @@ def _bearing_network(
     oil: bool,
 ) -> StreamNetwork:
     box = rig.case.gearboxes[name]
-    fed, feed = bearing_feed(rig, name), f"{BEARING_OIL} {FEED}"
+    chamber = state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
+    fed, feed = bearing_feed(rig, name, chamber), f"{BEARING_OIL} {FEED}"
     own = [placed for placed in losses if placed.gearbox == name]
     friction = dict.fromkeys(box.bearings, 0.0)
     for placed in own:
@@ -185,11 +232,11 @@ def _leak(rig: Rig, name: str, state: PointLosses, specific_heat: float) -> tupl
     """Gear oil that leaks to the bearings: temperature [K] at the held stage, and flow [kg/s] of bearing oil alike."""
     box = rig.case.gearboxes[name]
     share = box.oil_paths.leak_warm_cold
-    if not share:
+    if not share or box.jets is None:
         return None
     lubricant = gear_oil(rig, name)
     warm, mixed = (state.coupling_state.oil_outlet[f"{name}.{kind}"] for kind in (GEAR_OIL, BEARING_OIL))
-    flow = share * lubricant.density(box.oil.inlet_temperature) * box.oil.flow * len(box.meshes)
+    flow = share * lubricant.density(box.jets.inlet_temperature) * box.jets.flow * len(box.meshes)
     return warm, flow * lubricant.heat_capacity(0.5 * (warm + mixed)) / specific_heat
 
 

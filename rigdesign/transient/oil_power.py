@@ -120,21 +120,28 @@ def _gear_heat(rig: Rig, name: str, network: StreamNetwork, outlet: float) -> tu
     Oil past the walls takes its part of the losses along, which the stream of the walls does not have.
     """
     box = rig.case.gearboxes[name]
+    if box.jets is None:
+        held = box.gear_oil_temperature
+        return sum(link.conductance * (outlet - (held or outlet)) for link in network.links), 0.0
+    inlet = box.jets.inlet_temperature
     flow = sum(stream.mass_flow for stream in network.streams if stream.target is None)
-    taken = flow * network.specific_heat * (outlet - box.oil.inlet_temperature)
+    taken = flow * network.specific_heat * (outlet - inlet)
     whole = injected_flow(box) * len(box.meshes)
     past = network.volumes[0].power * (whole / wall_flow(box) - 1.0)
-    oil, inlet = gear_oil(rig, name), box.oil.inlet_temperature
-    leak = box.oil_paths.leak_warm_cold * oil.density(inlet) * box.oil.flow * len(box.meshes)
+    oil = gear_oil(rig, name)
+    leak = box.oil_paths.leak_warm_cold * oil.density(inlet) * box.jets.flow * len(box.meshes)
     return taken + past, leak * network.specific_heat * (outlet - inlet)
 
 
 def _bearing_heat(case: Case, name: str, network: StreamNetwork, outlet: float) -> float:
     """Heat of the bearing oil above what it and the gear oil leaked into it were fed with [W]."""
     box = case.gearboxes[name]
+    if box.fed_bearings is None:
+        return 0.0
     flow = sum(stream.mass_flow for stream in network.streams if stream.target is None)
     leak = sum(stream.mass_flow for stream in network.streams if stream.source == LEAK)
-    fed = (flow - leak) * box.bearing_oil.inlet_temperature + leak * box.oil.inlet_temperature
+    warm = 0.0 if box.jets is None else leak * box.jets.inlet_temperature
+    fed = (flow - leak) * box.fed_bearings.inlet_temperature + warm
     return network.specific_heat * (flow * outlet - fed)
 
 
@@ -154,5 +161,10 @@ def _without_housing(
 def _loss_heats(rig: Rig, heating: Heating, point: OperatingPoint) -> dict[str, float]:
     """Heat of every oil stream at an operating point as if no gearbox had walls [W]."""
     none = {f"{name}.{kind}": 0.0 for name in rig.case.gearboxes for kind in (GEAR_OIL, BEARING_OIL)}
-    losses = heating.state(point).losses
-    return {stream.name: stream.heat for stream in oil_streams(rig, losses, {}, none)}
+    state = heating.state(point)
+    chambers = {
+        name: box.gear_oil_temperature or state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
+        for name, box in rig.case.gearboxes.items()
+    }
+    streams = oil_streams(rig, state.losses, {}, none, chambers)
+    return {stream.name: stream.heat for stream in streams}

@@ -11,6 +11,7 @@ from rigdesign.case.paths import known_paths, nearest_paths
 from rigdesign.case.rules.drivetrain import drivetrain_faults
 from rigdesign.case.rules.gears import gearbox_faults
 from rigdesign.case.rules.losses import loss_faults
+from rigdesign.case.rules.lubrication import lubrication_faults
 from rigdesign.case.rules.schedule import schedule_faults
 from rigdesign.case.rules.surfaces import housing_faults
 from rigdesign.case.rules.transient import transient_faults
@@ -35,6 +36,7 @@ def broken_rules(case: "Case") -> list[Fault]:
         gearbox_faults,
         drivetrain_faults,
         loss_faults,
+        lubrication_faults,
         schedule_faults,
         _limits,
         _numerics,
@@ -51,7 +53,7 @@ def _substances(case: "Case") -> Iterator[Fault]:
     materials = [*case.materials, *MATERIALS]
     for name, box in case.gearboxes.items():
         at = f"gearboxes.{name}"
-        used = {f"{at}.oil.oil": box.oil.oil, f"{at}.bearing_oil.oil": box.bearing_oil.oil}
+        used = {f"{at}.oil.oil": box.oil.oil, f"{at}.bearing_oil.oil": box.bearing_oil_name}
         for path, oil in used.items():
             if oil not in oils:
                 yield unknown(path, oil, oils, "oil")

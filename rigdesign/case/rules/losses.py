@@ -98,4 +98,5 @@ def _parts_that_lose(box: "Gearbox", kind: str) -> list[str]:
         "bearing": list(box.bearings),
         "seal": list(box.seals),
         "windage": list(box.gears),
+        "churning": [] if box.sump is None else list(box.gears),
     }[kind]

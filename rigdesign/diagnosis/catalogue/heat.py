@@ -177,13 +177,15 @@ def flows(part: GearboxPart) -> Iterator[Effect]:
             healthy=healthy,
             matters=0.0 if healthy else FLOW_METER,
         )
+    if box.jets is None:
+        return
     yield Effect(
         name=f"blocked_jet:{name}",
         title=f"blocked jets of {name}",
         family=FLOW,
         signature="gears warmer with dry flanks, jet loss lower as the oil is faster at the same flow",
         parameters=(share("share", 0.6),),
-        change=Added(f"gearboxes.{name}.oil.blocked_jets", box.oil.blocked_jets),
+        change=Added(f"gearboxes.{name}.oil.blocked_jets", box.jets.blocked_jets),
         matters=FLOW_METER,
     )
 

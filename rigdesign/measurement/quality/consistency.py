@@ -58,7 +58,7 @@ def _temperatures(case: Case, data: "Data") -> Iterator[DataFinding]:
     rooms = [setting.ambient_temperature or case.ambient.temperature for setting in data.settings]
     hottest = max(
         [value for setting in data.settings for value in setting.inlet_temperature.values()]
-        + [box.oil.inlet_temperature for box in case.gearboxes.values()]
+        + [temperature for box in case.gearboxes.values() for temperature in box.stated_oil_temperatures]
     )
     low, high = min(rooms) - COLDER, hottest + HOTTER
     by_channel: dict[str, list[float]] = {}
@@ -91,8 +91,8 @@ def _settings(measurement: MeasurementSet, data: "Data") -> Iterator[DataFinding
         elif sensor.quantity == "torque":
             usual, most = case.schedule.test_torque, STRONG
         elif sensor.quantity == "flow":
-            box = case.gearboxes[sensor.place.partition(".")[0]]
-            usual = box.oil.flow if sensor.place.endswith(".gear_oil") else box.bearing_oil.flow
+            box_name, _, stream = sensor.place.partition(".")
+            usual = case.gearboxes[box_name].feeds[stream][0].flow
             most = FLOWING
         else:
             continue
@@ -271,9 +271,7 @@ def _means(data: "Data") -> dict[tuple[str, str], float]:
 def _enthalpy(case: Case, setting: OperatingCondition, stream: str, outlet: float) -> float:
     """Heat one stream takes up [W]; of an oil of the case's own with properties of a common one."""
     name, _, kind = stream.partition(".")
-    box = case.gearboxes[name]
-    entry = box.oil if kind == "gear_oil" else box.bearing_oil
-    count = len(box.meshes) if kind == "gear_oil" else len(box.bearings)
+    entry, count = case.gearboxes[name].feeds[kind]
     oil = OILS.get(entry.oil, MIL_PRF_23699)
     inlet = setting.inlet_temperature.get(stream, entry.inlet_temperature)
     flow = count * setting.flow.get(stream, entry.flow)
@@ -289,7 +287,9 @@ def _to_room(case: Case, setting: OperatingCondition) -> float:
     if not areas:
         return math.inf
     hottest = max(
-        setting.inlet_temperature.get(f"{name}.gear_oil", box.oil.inlet_temperature)
+        setting.inlet_temperature.get(
+            f"{name}.gear_oil", box.gear_oil_temperature or case.ambient.temperature
+        )
         for name, box in case.gearboxes.items()
     )
     above = hottest - (setting.ambient_temperature or case.ambient.temperature)
