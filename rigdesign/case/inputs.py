@@ -24,7 +24,7 @@ class InputRow:
 def input_rows(tree: Mapping[str, Any]) -> tuple[InputRow, ...]:
     """The values of a resolved tree with their marks, in the order of the file."""
     plain, marks, _ = take_off(dict(tree))
-    basis = {mark.path: _basis(mark) for mark in marks}
+    basis = {mark.path: mark.basis for mark in marks}
     return tuple(
         InputRow(path=path, value=value, basis=basis.get(path, "")) for path, value in _leaves(plain, "")
     )
@@ -41,8 +41,3 @@ def _leaves(node: Any, path: str) -> Iterator[tuple[str, str]]:
             yield from _leaves(item, f"{path}.{item_name(item, number)}")
     else:
         yield path, Mark(path, node).shown
-
-
-def _basis(mark: Mark) -> str:
-    said = (("measured: ", mark.measured), ("assumed: ", mark.assumed), ("", mark.source))
-    return "; ".join(f"{how}{text}" for how, text in said if text is not None)

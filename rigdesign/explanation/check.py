@@ -122,7 +122,7 @@ def _met(case: Case, needs: tuple[str, ...]) -> bool:
 
 def _stated(case: Case, path: str) -> str:
     """The value of a key as the case writes it, else its default; empty where there is neither."""
-    stated = next((row.value for row in case.inputs if row.path == path), None)
+    stated = case.origin.value_of.get(path)
     if stated is not None:
         return stated
     entry = entry_at(path)
@@ -150,7 +150,7 @@ def _input(
     value: str,
     margins: tuple[float | None, float | None] | None,
 ) -> Input:
-    mark = next((mark for mark in case.origin.marks if mark.path == path), None)
+    mark = case.origin.mark_of.get(path)
     known = set(influences_of(case, path) or ()) & set(family.moved_by)
     return Input(
         path=path,
