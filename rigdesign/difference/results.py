@@ -120,5 +120,7 @@ def _moved(first: float | None, second: float | None) -> bool:
 
 def added_and_gone(before: Sequence[str], after: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Texts that only the second has, and only the first, in their order and once each."""
-    added = tuple(dict.fromkeys(text for text in after if text not in set(before)))
-    return added, tuple(dict.fromkeys(text for text in before if text not in set(after)))
+    first, second = dict.fromkeys(before), dict.fromkeys(after)
+    return tuple(text for text in second if text not in first), tuple(
+        text for text in first if text not in second
+    )
