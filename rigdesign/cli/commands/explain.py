@@ -54,8 +54,8 @@ def explain(
     elif path is not None:
         from rigdesign.explanation.path import explain_path
 
-        told = explain_path(loaded, path)
-        print_json(asdict(told)) if json else print_path(told)
+        key = explain_path(loaded, path)
+        print_json(asdict(key)) if json else print_path(key)
     else:
         from rigdesign.explanation.overview import overview
 
