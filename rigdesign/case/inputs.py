@@ -6,6 +6,9 @@ from typing import Any
 
 from rigdesign.case.provenance import Mark, item_name, take_off
 
+LABELS = ("schema_version", "name", "title")
+"""Keys that name a case or a part of it; no result depends on them."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class InputRow:
@@ -19,6 +22,11 @@ class InputRow:
     path: str
     value: str
     basis: str = ""
+
+
+def is_label(path: str) -> bool:
+    """Whether a value only names something, or says who answers for the report."""
+    return path.rpartition(".")[2] in LABELS or path.startswith("document.")
 
 
 def input_rows(tree: Mapping[str, Any]) -> tuple[InputRow, ...]:
