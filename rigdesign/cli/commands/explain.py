@@ -50,7 +50,7 @@ def explain(
 
         finished = None if results is None else finished_check(results, check, loaded)
         found = explain_check(loaded, check, finished)
-        print_json(asdict(found)) if json else print_check(found)
+        print_json(asdict(found)) if json else print_check(found, case)
     elif path is not None:
         from rigdesign.explanation.path import explain_path
 
