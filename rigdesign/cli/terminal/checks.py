@@ -10,7 +10,6 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from rigdesign.checks.rules import WARN_UTILISATION
 from rigdesign.cli.terminal.console import hanging, new_console, verbosity, verdict_console
 from rigdesign.cli.terminal.warning_groups import warning_groups
 from rigdesign.report.numbers import limit_text, margin_text, quantity_text
@@ -80,10 +79,11 @@ def _print_warnings(console: Console, checks: Iterable[Check]) -> None:
 
 
 def _print_nearest(console: Console, checks: Iterable[Check]) -> None:
-    """The checks that hold with the least left; those at a limit that the case states as the value itself are none."""
+    """The checks that hold with the least left; those that hold by definition predict nothing and are left out."""
     held = [check for check in checks if check.verdict in ("pass", "warn") and check.utilisation is not None]
-    stated = [check for check in held if check.verdict == "pass" and _used(check) > WARN_UTILISATION]
-    nearest = sorted((check for check in held if check not in stated), key=_used, reverse=True)[:NEAREST]
+    stated = sum(check.by_definition for check in held)
+    predicted = [check for check in held if not check.by_definition]
+    nearest = sorted(predicted, key=_used, reverse=True)[:NEAREST]
     if not nearest:
         return
     table = _table("nearest margins", "margin", "used")
@@ -91,7 +91,7 @@ def _print_nearest(console: Console, checks: Iterable[Check]) -> None:
         table.add_row(Text(check.id), *map(Text, _numbers(check)))
     console.print(table)
     if stated:
-        console.print(f"stated inputs at their limit, left out here: {len(stated)}")
+        console.print(f"left out here, one input held against another: {stated}")
 
 
 def _used(check: Check) -> float:
@@ -117,10 +117,11 @@ def _table(first: str, *further: str) -> Table:
 
 
 def _numbers(check: Check) -> tuple[str, str, str, str]:
-    """Value, limit in its unit, margin, share of the limit used."""
+    """Value, limit in its unit, margin, share of the limit used; a limit of a power says whether it is in kilowatts."""
     used = "" if check.utilisation is None else f"{100 * check.utilisation:.0f} %"
     value = "" if check.value is None else quantity_text(check.value, check.unit)
-    limit = "" if check.limit is None else limit_text(replace(check, unit=""))
+    in_unit = "W" if check.unit == "W" else ""
+    limit = "" if check.limit is None else limit_text(replace(check, unit=in_unit))
     return value, limit, "" if check.margin is None else margin_text(check), used
 
 
