@@ -90,6 +90,24 @@ def test_everything_prints_every_check_and_every_note(printed: Printed) -> None:
     assert "not applicable: no.limit: the case states no limit" in text
 
 
+def test_everything_names_every_check_by_its_id(printed: Printed) -> None:
+    """As `explain --check` and `study --checks` take it."""
+    names = ("strength.root_safety_path.reference.pinion", "oil.flow", "failing.check_0", "left.out_0")
+    title = "a title of more words than fit into one line of the table"
+    held = [make_check(name, 0.2, 1.0, title=title) for name in names[:2]]
+    checks = [*held, *failing(1), *left_out(1, NO_HOUSING)]
+    absent = make_check("no.limit", 1.0, 1.0, verdict="not applicable", title="absent", reason="no limit")
+    lines = printed(small_result(checks=[*checks, absent]), everything=True)
+    assert max(map(len, lines)) <= 80
+    rows = [line.split() for line in lines]
+    verdicts = {row[0]: row[-1] for row in rows if row and row[0] in names}
+    assert verdicts == {**dict.fromkeys(names[:2], "pass"), "failing.check_0": "fail", "left.out_0": "warn"}
+    assert "not applicable: no.limit: no limit" in lines
+    flow = next(number for number, row in enumerate(rows) if row[:1] == ["oil.flow"])
+    assert rows[flow][1:-1] == ["0.8", "mm", "20", "%"]
+    assert lines[flow + 1].startswith("  a title of more words") and lines[flow + 1].endswith("0.2 mm    ≤ 1")
+
+
 def test_checks_by_definition_are_no_near_margins(printed: Printed) -> None:
     """Whatever they use of their limit; a predicted value at its limit is one."""
     stated = [
