@@ -6,6 +6,9 @@ from typing import Any
 
 from rigdesign.case.provenance import Mark, item_name, take_off
 
+LABELS = ("schema_version", "name", "title")
+"""Keys that name a case or a part of it; no result depends on them."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class InputRow:
@@ -21,10 +24,15 @@ class InputRow:
     basis: str = ""
 
 
+def is_label(path: str) -> bool:
+    """Whether a value only names something, or says who answers for the report."""
+    return path.rpartition(".")[2] in LABELS or path.startswith("document.")
+
+
 def input_rows(tree: Mapping[str, Any]) -> tuple[InputRow, ...]:
     """The values of a resolved tree with their marks, in the order of the file."""
     plain, marks, _ = take_off(dict(tree))
-    basis = {mark.path: _basis(mark) for mark in marks}
+    basis = {mark.path: mark.basis for mark in marks}
     return tuple(
         InputRow(path=path, value=value, basis=basis.get(path, "")) for path, value in _leaves(plain, "")
     )
@@ -41,8 +49,3 @@ def _leaves(node: Any, path: str) -> Iterator[tuple[str, str]]:
             yield from _leaves(item, f"{path}.{item_name(item, number)}")
     else:
         yield path, Mark(path, node).shown
-
-
-def _basis(mark: Mark) -> str:
-    said = (("measured: ", mark.measured), ("assumed: ", mark.assumed), ("", mark.source))
-    return "; ".join(f"{how}{text}" for how, text in said if text is not None)

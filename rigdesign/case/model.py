@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -37,6 +38,21 @@ class Origin:
     marks: tuple[Mark, ...]
     change: Callable[["Case", Mapping[str, object]], "Case"]
     """Reads the case again with values replaced by path."""
+
+    @cached_property
+    def mark_of(self) -> Mapping[str, Mark]:
+        """Mark of a value by its path."""
+        return {mark.path: mark for mark in self.marks}
+
+    @cached_property
+    def inputs(self) -> tuple[InputRow, ...]:
+        """Every value the tree states, in the order of the file."""
+        return input_rows(self.tree)
+
+    @cached_property
+    def value_of(self) -> Mapping[str, str]:
+        """Value of an input as the file writes it, by its path."""
+        return {row.path: row.value for row in self.inputs}
 
 
 class Case(Part):
@@ -102,7 +118,7 @@ class Case(Part):
     @property
     def inputs(self) -> tuple[InputRow, ...]:
         """Every value the case states, in the order of the file."""
-        return input_rows(self._origin.tree)
+        return self._origin.inputs
 
     @property
     def overrides(self) -> tuple[dict[str, str], ...]:
@@ -115,11 +131,8 @@ class Case(Part):
 
     def provenance(self, path: str) -> str:
         """Where the value at a path comes from: measured, printed or assumed; an input that says nothing is that."""
-        mark = next((mark for mark in self._origin.marks if mark.path == path), None)
-        if mark is None:
-            return "input of the case"
-        said = (("measured: ", mark.measured), ("", mark.source), ("assumed: ", mark.assumed))
-        return "; ".join(f"{how}{text}" for how, text in said if text is not None) or "input of the case"
+        mark = self._origin.mark_of.get(path)
+        return (mark.basis if mark is not None else "") or "input of the case"
 
     @property
     def hash(self) -> str:

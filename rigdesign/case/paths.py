@@ -100,6 +100,11 @@ def known_paths(model: type[BaseModel], tree: Mapping[str, Any]) -> list[str]:
     return paths
 
 
+def path_pattern(path: str) -> re.Pattern[str]:
+    """What the whole of a path has to fit, where ``*`` stands for any name."""
+    return re.compile(re.escape(path).replace(r"\*", r"[^.]+"))
+
+
 def places(model: type[BaseModel], path: str, tree: Mapping[str, Any]) -> dict[str, Slot]:
     """The place a path names, or all that fit it where ``*`` stands for any name; empty where there is none.
 
@@ -107,8 +112,8 @@ def places(model: type[BaseModel], path: str, tree: Mapping[str, Any]) -> dict[s
     """
     names = [path]
     if "*" in path:
-        expression = re.compile(re.escape(path).replace(r"\*", r"[^.]+"))
-        names = [known for known in known_paths(model, tree) if expression.fullmatch(known)]
+        pattern = path_pattern(path)
+        names = [known for known in known_paths(model, tree) if pattern.fullmatch(known)]
     slots = {name: slot_at(model, tree, name.split(".")) for name in names}
     return {name: slot for name, slot in slots.items() if slot is not None}
 

@@ -10,12 +10,15 @@ The loader takes the marks off before the values are validated and keeps them by
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from rigdesign.case.fields import text_fault
 
 MARKS = ("assumed", "range", "source", "measured")
 KEYS = frozenset(("value", *MARKS))
+
+MarkKind = Literal["measured", "assumed", "source"]
+"""Where a value comes from, by its mark."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,21 @@ class Mark:
         if isinstance(self.value, float):
             return f"{self.value:g}"
         return str(self.value)
+
+    @property
+    def said(self) -> tuple[tuple[MarkKind, str], ...]:
+        """Where the value comes from and in which words: measurement, assumption, printed source; what is given."""
+        every: tuple[tuple[MarkKind, str | None], ...] = (
+            ("measured", self.measured),
+            ("assumed", self.assumed),
+            ("source", self.source),
+        )
+        return tuple((kind, text) for kind, text in every if text is not None)
+
+    @property
+    def basis(self) -> str:
+        """All of `said` in one line, ``measured: …; assumed: …; source``; empty where the mark is a range alone."""
+        return "; ".join(text if kind == "source" else f"{kind}: {text}" for kind, text in self.said)
 
     def as_record(self) -> dict[str, Any]:
         """The marks without the value, for the hash of a case."""

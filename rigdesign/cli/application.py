@@ -4,9 +4,9 @@ import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
-from cyclopts import App, Group, Parameter
+from cyclopts import App, Group, Parameter, Token
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.version import __version__
@@ -67,6 +67,23 @@ def _launch(
             return app(tokens, result_action="return_value")
     finally:
         verbosity.reset(before)
+
+
+def _out_folder(_: Any, tokens: Sequence[Token]) -> Path:
+    """The folder of ``--out``; an empty text would mean the current one without saying so."""
+    [token] = tokens
+    if not token.value.strip():
+        raise UsageError(
+            f"{token.keyword} is empty; name a folder, e.g. {token.keyword} results "
+            f"({token.keyword} . is the current one)"
+        )
+    return Path(token.value)
+
+
+OutFolder = Annotated[Path, Parameter(converter=_out_folder)]
+"""Folder that a command writes to."""
+OptionalOutFolder = Annotated[Path | None, Parameter(converter=_out_folder)]
+"""The same of a command that can do without."""
 
 
 def loaded_case(path: Path) -> "Case":

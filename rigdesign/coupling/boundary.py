@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 
 from dynamics.bearing.protocol import BearingState
 from rigdesign.case import surface_conditions as laws
-from rigdesign.case.films import ConstantFilm, Fluid, SurfaceCondition, SurfaceFilm, TakenFrom
+from rigdesign.case.films import Fluid, SurfaceCondition, SurfaceFilm
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.geometry import bearing_on, conditions_of
+from rigdesign.case.given_film import ConstantFilm, TakenFrom
 from rigdesign.case.housing import Housing
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces

@@ -8,6 +8,7 @@ from rigdesign.base.version import __version__
 from rigdesign.difference.inputs import InputChange, changed_inputs
 from rigdesign.difference.reading import CheckedResults, read_results
 from rigdesign.difference.results import (
+    Change,
     CheckChange,
     QuantityChange,
     added_and_gone,
@@ -45,8 +46,12 @@ class ResultsDifference:
 
     @property
     def flipped(self) -> tuple[CheckChange, ...]:
-        """Checks whose verdict is another one."""
-        return tuple(row for row in self.checks if row.change == "flipped")
+        """Checks that apply to both and have another verdict."""
+        return self.checks_that("flipped")
+
+    def checks_that(self, *changes: Change) -> tuple[CheckChange, ...]:
+        """Checks that changed in one of these ways."""
+        return tuple(row for row in self.checks if row.change in changes)
 
     @property
     def same(self) -> bool:
@@ -82,16 +87,24 @@ def difference_of(a: CheckedResults, b: CheckedResults) -> ResultsDifference:
 
 
 def headline(difference: ResultsDifference) -> str:
-    """Both verdicts and the counts, in a sentence."""
+    """Both verdicts and the counts of what is listed, in a sentence."""
     if difference.same:
         return f"nothing differs: {difference.a.verdict} in both"
     a, b = difference.a.verdict, difference.b.verdict
     verdict = f"{a} in both" if a == b else f"{a} → {b}"
-    moved = sum(row.change == "moved" for row in difference.checks)
-    return (
-        f"{verdict}: {_count(len(difference.inputs), 'input')} changed, "
-        f"{_count(len(difference.flipped), 'verdict')} flipped, {_count(moved, 'other check')} moved"
+    now, no_longer, moved, single = (
+        len(difference.checks_that(*changes))
+        for changes in (("now applicable",), ("no longer applicable",), ("moved",), ("added", "removed"))
     )
+    counts = [
+        f"{_count(len(difference.inputs), 'input')} changed",
+        f"{_count(len(difference.flipped), 'verdict')} flipped",
+        f"{_count(now, 'check')} now applicable" if now else "",
+        f"{_count(no_longer, 'check')} no longer applicable" if no_longer else "",
+        f"{_count(moved, 'other check')} moved",
+        f"{_count(single, 'check')} in one result only" if single else "",
+    ]
+    return f"{verdict}: {', '.join(filter(None, counts))}"
 
 
 def difference_document(difference: ResultsDifference) -> dict[str, Any]:
@@ -163,7 +176,7 @@ def _input(row: InputChange) -> dict[str, Any]:
 
 
 def _check(row: CheckChange) -> dict[str, Any]:
-    keys = ("verdict", "value", "limit", "margin", "utilisation")
+    keys = ("verdict", "value", "limit", "margin", "utilisation", "reason")
 
     def side(check: Any) -> dict[str, Any] | None:
         return None if check is None else {key: getattr(check, key) for key in keys}

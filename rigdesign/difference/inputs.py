@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from rigdesign.base import units
+from rigdesign.case.inputs import is_label
 from rigdesign.difference.reading import InputValue
 
 SAME = 1e-12
@@ -30,9 +31,14 @@ class InputChange:
 def changed_inputs(
     before: Mapping[str, InputValue], after: Mapping[str, InputValue]
 ) -> tuple[InputChange, ...]:
-    """What differs, in the order of the case: values first changed, then added and removed, then sources."""
+    """What differs, in the order of the case: values first changed, then added and removed, then sources.
+
+    Names and titles are left out: no result depends on them.
+    """
     found = []
     for path in dict.fromkeys([*before, *after]):
+        if is_label(path):
+            continue
         old, new = before.get(path), after.get(path)
         if old is None or new is None:
             found.append(

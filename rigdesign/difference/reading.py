@@ -34,7 +34,10 @@ class InputValue:
 
 @dataclass(frozen=True, kw_only=True)
 class CheckValue:
-    """A check of one result; numbers are None where it does not apply."""
+    """A check of one result; numbers are None where it does not apply.
+
+    reason : why it has its verdict
+    """
 
     id: str
     title: str
@@ -45,6 +48,7 @@ class CheckValue:
     limit: float | None
     margin: float | None
     utilisation: float | None
+    reason: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -165,6 +169,7 @@ def _check(row: Mapping[str, Any]) -> CheckValue:
         limit=_number_or_none(row["limit"]),
         margin=_number_or_none(row["margin"]),
         utilisation=_number_or_none(row["utilisation"]),
+        reason=_text(row["reason"]),
     )
 
 

@@ -2,13 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 from rigdesign.difference.reading import CheckValue
 
 LEAST = 1e-6
 """Relative change from which a result counts as moved: above the last digits of another machine."""
-RANKS = {"not applicable": 0, "pass": 1, "warn": 2, "fail": 3}
+RANKS = {"pass": 1, "warn": 2, "fail": 3}
+NOT_APPLICABLE = "not applicable"
+
+Change = Literal["flipped", "now applicable", "no longer applicable", "moved", "added", "removed"]
+"""What became of a check: another verdict; it applies to one of the results only; other numbers; one result has it."""
+CHANGES: tuple[Change, ...] = get_args(Change)
+"""In the order in which they are listed."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,7 +22,7 @@ class CheckChange:
     """A check that differs; ``before`` or ``after`` is None where one result has it not."""
 
     id: str
-    change: Literal["flipped", "moved", "added", "removed"]
+    change: Change
     before: CheckValue | None
     after: CheckValue | None
 
@@ -32,7 +38,8 @@ class CheckChange:
         """Whether the verdict flipped to a worse one."""
         if self.before is None or self.after is None:
             return False
-        return RANKS.get(self.after.verdict, 0) > RANKS.get(self.before.verdict, 0)
+        ranks = (RANKS.get(side.verdict, 0) for side in (self.before, self.after))
+        return self.change == "flipped" and next(ranks) < next(ranks)
 
     @property
     def utilisation_change(self) -> float | None:
@@ -69,27 +76,32 @@ def changed_checks(
     found = []
     for identity in dict.fromkeys([*before, *after]):
         old, new = before.get(identity), after.get(identity)
-        if old is None or new is None:
-            change: Literal["flipped", "moved", "added", "removed"] = "added" if old is None else "removed"
-        elif old.verdict != new.verdict:
-            change = "flipped"
-        elif any(_moved(getattr(old, key), getattr(new, key)) for key in ("value", "limit", "utilisation")):
-            change = "moved"
-        else:
-            continue
-        found.append(CheckChange(id=identity, change=change, before=old, after=new))
-    order = ("flipped", "moved", "added", "removed")
+        change = _change(old, new)
+        if change is not None:
+            found.append(CheckChange(id=identity, change=change, before=old, after=new))
     return tuple(
         sorted(
             found,
             key=lambda row: (
-                order.index(row.change),
+                CHANGES.index(row.change),
                 not row.worse,
                 -abs(row.utilisation_change or 0.0),
                 row.id,
             ),
         )
     )
+
+
+def _change(before: CheckValue | None, after: CheckValue | None) -> Change | None:
+    """What became of a check; None where nothing did."""
+    if before is None or after is None:
+        return "added" if before is None else "removed"
+    if before.verdict != after.verdict:
+        if before.verdict == NOT_APPLICABLE:
+            return "now applicable"
+        return "no longer applicable" if after.verdict == NOT_APPLICABLE else "flipped"
+    numbers = ("value", "limit", "utilisation")
+    return "moved" if any(_moved(getattr(before, key), getattr(after, key)) for key in numbers) else None
 
 
 def changed_quantities(
@@ -120,5 +132,7 @@ def _moved(first: float | None, second: float | None) -> bool:
 
 def added_and_gone(before: Sequence[str], after: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Texts that only the second has, and only the first, in their order and once each."""
-    added = tuple(dict.fromkeys(text for text in after if text not in set(before)))
-    return added, tuple(dict.fromkeys(text for text in before if text not in set(after)))
+    first, second = dict.fromkeys(before), dict.fromkeys(after)
+    return tuple(text for text in second if text not in first), tuple(
+        text for text in first if text not in second
+    )

@@ -10,8 +10,9 @@ from rigdesign.checks.assumptions import influences_of
 from rigdesign.checks.registry import RuleFamily
 from rigdesign.checks.rules import Rule, not_applicable
 from rigdesign.explanation.finished import FinishedCheck
-from rigdesign.explanation.keys import entry_at
+from rigdesign.explanation.keys import entry_at, starred
 from rigdesign.explanation.rules import declared_rules, depends_on
+from rigdesign.explanation.stations import entering
 from rigdesign.results.check import Check
 
 
@@ -27,6 +28,7 @@ class Limit:
 class Input:
     """An input that a check depends on.
 
+    key : its path with ``*`` for names; enters : module where it enters the flow
     influences : groups it moves the check by; empty for an input that moves every check, or its own limit
     assumed : the case assumes it; range : its plausible ends
     shift : how far the ends move the margin, in the unit of the check; None where no ranges were evaluated
@@ -34,6 +36,8 @@ class Input:
     """
 
     path: str
+    key: str
+    enters: str
     value: str
     influences: tuple[str, ...]
     assumed: bool
@@ -50,7 +54,7 @@ class CheckExplanation:
     source : standard, paper or case path behind limit and value
     procedure : how the value is computed
     needs : parts of the case without which it does not apply
-    inputs : by influence: by the shift of the margin where ranges are known, else those of special influence first
+    inputs : by the shift of the margin where ranges were evaluated, then the assumed ones, in the order of the case
     finished : the check in the results that were named
     """
 
@@ -66,6 +70,11 @@ class CheckExplanation:
     applicable: bool
     inputs: tuple[Input, ...]
     finished: FinishedCheck | None = None
+
+    @property
+    def ranked(self) -> bool:
+        """Whether ranges were evaluated that sort the inputs."""
+        return self.finished is not None and self.finished.ranged
 
 
 def explain_check(case: Case, identity: str, finished: FinishedCheck | None = None) -> CheckExplanation:
@@ -122,7 +131,7 @@ def _met(case: Case, needs: tuple[str, ...]) -> bool:
 
 def _stated(case: Case, path: str) -> str:
     """The value of a key as the case writes it, else its default; empty where there is neither."""
-    stated = next((row.value for row in case.inputs if row.path == path), None)
+    stated = case.origin.value_of.get(path)
     if stated is not None:
         return stated
     entry = entry_at(path)
@@ -130,7 +139,7 @@ def _stated(case: Case, path: str) -> str:
 
 
 def _inputs(case: Case, family: RuleFamily, rule: Rule, finished: FinishedCheck | None) -> Iterator[Input]:
-    """Inputs of the case that the check depends on, the most important first."""
+    """Inputs of the case that the check depends on: as far as ranges rank them, then the assumed ones."""
     check = not_applicable(rule, "not computed")
     moved = {} if finished is None else finished.margins
     found = [
@@ -139,7 +148,7 @@ def _inputs(case: Case, family: RuleFamily, rule: Rule, finished: FinishedCheck 
         if depends_on(case, check, row.path)
     ]
     shifts = {one.path: -1.0 if one.shift is None else one.shift for one in found}
-    yield from sorted(found, key=lambda one: (-shifts[one.path], not one.influences, not one.assumed))
+    yield from sorted(found, key=lambda one: (-shifts[one.path], not one.assumed))
 
 
 def _input(
@@ -150,10 +159,15 @@ def _input(
     value: str,
     margins: tuple[float | None, float | None] | None,
 ) -> Input:
-    mark = next((mark for mark in case.origin.marks if mark.path == path), None)
+    mark = case.origin.mark_of.get(path)
     known = set(influences_of(case, path) or ()) & set(family.moved_by)
+    entry = entry_at(path)
+    assert entry is not None, path
+    key = starred(entry.path)
     return Input(
         path=path,
+        key=key,
+        enters=entering(key)[0].module,
         value=value,
         influences=tuple(sorted(known)),
         assumed=mark is not None and mark.assumed is not None,

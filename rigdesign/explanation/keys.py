@@ -20,7 +20,7 @@ from rigdesign.base.quantity_kinds import KINDS
 from rigdesign.case.fields import Name, Quantity
 from rigdesign.case.kinds import kind_key, kind_of
 from rigdesign.case.model import Case
-from rigdesign.case.paths import Slot, slot_of
+from rigdesign.case.paths import Slot, path_pattern, slot_of
 
 NAMED, NUMBERED = "NAME", "N"
 """Placeholders of a path."""
@@ -80,11 +80,10 @@ def starred(path: str) -> str:
 
 @cache
 def _by_length() -> Mapping[int, tuple[tuple[re.Pattern[str], KeyEntry], ...]]:
-    """Entries by the number of dots in their paths, each with the expression that its paths fit."""
+    """Entries by the number of dots in their paths, each with the pattern that its paths fit."""
     found: dict[int, list[tuple[re.Pattern[str], KeyEntry]]] = {}
     for entry in case_keys():
-        expression = re.escape(starred(entry.path)).replace(r"\*", r"[^.]+")
-        found.setdefault(entry.path.count("."), []).append((re.compile(expression), entry))
+        found.setdefault(entry.path.count("."), []).append((path_pattern(starred(entry.path)), entry))
     return {number: tuple(entries) for number, entries in found.items()}
 
 

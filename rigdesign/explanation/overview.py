@@ -44,13 +44,12 @@ class Overview:
 
 def overview(case: Case) -> Overview:
     """A case at a glance; nothing is solved."""
-    stated = {row.path for row in case.inputs}
     by_group: dict[str, list[str]] = {}
     unlimited = []
     for family, rule in declared_rules(case):
         if family.key.startswith("transient."):
             continue
-        if all(path in stated for path in family.limits_of(rule)):
+        if all(path in case.origin.value_of for path in family.limits_of(rule)):
             by_group.setdefault(rule.group, []).append(rule.id)
         else:
             unlimited.append(rule.id)
@@ -98,10 +97,8 @@ def _drivetrain(case: Case) -> str:
 
 def _by_basis(case: Case) -> dict[str, int]:
     """Number of inputs by where they come from; those that say nothing are ``stated``."""
-    marks = {mark.path: mark for mark in case.origin.marks}
     found: Counter[str] = Counter()
     for row in case.inputs:
-        mark = marks.get(row.path)
-        kinds = ("measured", "assumed", "source")
-        found[next((kind for kind in kinds if mark is not None and getattr(mark, kind)), "stated")] += 1
+        mark = case.origin.mark_of.get(row.path)
+        found[mark.said[0][0] if mark is not None and mark.said else "stated"] += 1
     return dict(found.most_common())

@@ -1,6 +1,5 @@
 """A key of a case explained: what it is, its value and where that comes from, where it enters, what it moves."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -8,7 +7,7 @@ from typing import Any, Literal
 from rigdesign.base.errors import UsageError
 from rigdesign.case.kinds import kind_key, kind_of, of_kind
 from rigdesign.case.model import Case
-from rigdesign.case.paths import known_paths, nearest_paths, slot_at
+from rigdesign.case.paths import known_paths, nearest_paths, path_pattern, slot_at
 from rigdesign.case.provenance import take_off
 from rigdesign.checks.assumptions import influences_of
 from rigdesign.explanation.keys import KeyEntry, case_keys, entry_at, starred
@@ -73,8 +72,8 @@ def explain_path(case: Case, path: str) -> PathExplanation:
     """
     plain, _, _ = take_off(dict(case.origin.tree))
     known = known_paths(Case, plain)
-    expression = re.compile(re.escape(path).replace(r"\*", r"[^.]+"))
-    places = [one for one in known if expression.fullmatch(one)]
+    pattern = path_pattern(path)
+    places = [one for one in known if pattern.fullmatch(one)]
     if not places:
         meant = nearest_paths(path, known)
         hint = (
@@ -151,27 +150,25 @@ def _keys_of_parts(table: KeyEntry) -> tuple[StatedValue, ...]:
 
 
 def _value(case: Case, path: str, entry: KeyEntry, *, description: str = "") -> StatedValue:
-    row = next((row for row in case.inputs if row.path == path), None)
-    mark = next((mark for mark in case.origin.marks if mark.path == path), None)
+    stated = case.origin.value_of.get(path)
+    mark = case.origin.mark_of.get(path)
     implied = next((record for record in case.assumptions if record.path == path), None)
-    if row is None and implied is not None:
+    if stated is None and implied is not None:
         return StatedValue(
             path=path, value=implied.value, basis="assumed", reason=implied.reason, description=description
         )
     if entry.table:
         return StatedValue(path=path, value="", basis="stated", description=description, table=True)
-    if row is None:
+    if stated is None:
         return StatedValue(
             path=path,
             value=entry.default or "",
             basis="left out" if entry.default is None else "default",
             description=description,
         )
-    said: tuple[tuple[BasisKind, str | None], ...] = ()
-    if mark is not None:
-        said = (("measured", mark.measured), ("assumed", mark.assumed), ("source", mark.source))
-    basis, reason = next(((kind, text) for kind, text in said if text is not None), ("stated", ""))
+    nothing: tuple[BasisKind, str] = ("stated", "")
+    basis, reason = mark.said[0] if mark is not None and mark.said else nothing
     limits = None if mark is None or mark.range is None else (str(mark.range[0]), str(mark.range[1]))
     return StatedValue(
-        path=path, value=row.value, basis=basis, reason=reason, range=limits, description=description
+        path=path, value=stated, basis=basis, reason=reason, range=limits, description=description
     )

@@ -2,14 +2,12 @@
 
 from collections.abc import Iterator
 
+from rigdesign.case.inputs import is_label
 from rigdesign.case.model import Case
 from rigdesign.checks.assumptions import depends
 from rigdesign.checks.registry import REGISTRY, RuleFamily
 from rigdesign.checks.rules import Rule, not_applicable
 from rigdesign.results.check import Check
-
-WORDS = ("schema_version", "name", "title")
-"""Keys that no value can depend on."""
 
 
 def declared_rules(case: Case) -> Iterator[tuple[RuleFamily, Rule]]:
@@ -26,4 +24,4 @@ def declared_checks(case: Case) -> list[Check]:
 
 def depends_on(case: Case, check: Check, path: str) -> bool:
     """Whether the value or limit of a check depends on an input, by what its family declares."""
-    return path.rpartition(".")[2] not in WORDS and depends(case, check, path)
+    return not is_label(path) and depends(case, check, path)

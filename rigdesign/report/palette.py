@@ -1,4 +1,4 @@
-"""The colours of page and figures: one list for both, chosen so that red-green blind readers tell them apart too.
+"""The colours of page and figures: one list for both, chosen so that red-green blind readers can distinguish them.
 
 Every colour has a second coding: line style and marker in figures, a word in badges. ``tests/…/test_palette`` holds
 the distances under simulated deuteranopia and protanopia, and the contrast of verdict colours on white.

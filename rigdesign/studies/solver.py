@@ -65,7 +65,7 @@ def tasks_of(
 
 @dataclass(frozen=True, kw_only=True)
 class Listeners:
-    """Who is told of finished points.
+    """Callbacks for finished points.
 
     count : called with points done, points in all, and the last one in words
     checks : called with the ids of the checks of the first point that has a result

@@ -7,7 +7,7 @@ from cyclopts import Parameter
 
 from rigdesign.base.errors import UsageError
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.cli.application import app, loaded_case, print_json
+from rigdesign.cli.application import OptionalOutFolder, app, loaded_case, print_json
 from rigdesign.cli.ending import NOTHING_KEPT, failure_kept, interrupted
 from rigdesign.cli.terminal.console import verbosity
 
@@ -17,7 +17,7 @@ def check(
     case: Path,
     /,
     *,
-    out: Path | None = None,
+    out: OptionalOutFolder = None,
     fidelity: Fidelity = "standard",
     transient: Annotated[bool, Parameter(negative=())] = False,
     ranges: Annotated[bool, Parameter(negative=())] = False,

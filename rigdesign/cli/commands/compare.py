@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Literal
 
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.cli.application import app, loaded_case, print_json
+from rigdesign.cli.application import OptionalOutFolder, app, loaded_case, print_json
 from rigdesign.cli.ending import NOTHING_KEPT, interrupted
 
 
@@ -14,7 +14,7 @@ def compare(
     measurement: Path,
     /,
     *,
-    out: Path | None = None,
+    out: OptionalOutFolder = None,
     model: Literal["full", "reduced"] = "full",
     fidelity: Fidelity = "quick",
     json: bool = False,

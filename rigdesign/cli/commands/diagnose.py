@@ -5,7 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from rigdesign.cli.application import app, loaded_case, print_json
+from rigdesign.cli.application import OutFolder, app, loaded_case, print_json
 from rigdesign.cli.ending import SIMULATIONS_KEPT, interrupted
 
 
@@ -15,7 +15,7 @@ def diagnose(
     measurement: Path,
     /,
     *,
-    out: Path,
+    out: OutFolder,
     json: bool = False,
     name: str | None = None,
     calibrate: Annotated[bool, Parameter(negative=())] = False,

@@ -5,7 +5,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from rigdesign.cli.application import app, print_json
+from rigdesign.cli.application import OptionalOutFolder, app, print_json
 
 
 @app.command
@@ -14,7 +14,7 @@ def diff(
     b: Path,
     /,
     *,
-    out: Path | None = None,
+    out: OptionalOutFolder = None,
     json: bool = False,
     everything: Annotated[bool, Parameter(name="--all")] = False,
 ) -> int:

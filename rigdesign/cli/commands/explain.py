@@ -50,12 +50,12 @@ def explain(
 
         finished = None if results is None else finished_check(results, check, loaded)
         found = explain_check(loaded, check, finished)
-        print_json(asdict(found)) if json else print_check(found)
+        print_json(asdict(found)) if json else print_check(found, case)
     elif path is not None:
         from rigdesign.explanation.path import explain_path
 
-        told = explain_path(loaded, path)
-        print_json(asdict(told)) if json else print_path(told)
+        key = explain_path(loaded, path)
+        print_json(asdict(key)) if json else print_path(key)
     else:
         from rigdesign.explanation.overview import overview
 

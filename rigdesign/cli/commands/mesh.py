@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.cli.application import app, loaded_case
+from rigdesign.cli.application import OutFolder, app, loaded_case
 from rigdesign.cli.ending import NOTHING_KEPT, interrupted
 
 
 @app.command
-def mesh(case: Path, /, *, out: Path, fidelity: Fidelity = "standard") -> int:
+def mesh(case: Path, /, *, out: OutFolder, fidelity: Fidelity = "standard") -> int:
     """Write the housings of a case as gmsh files with all their names: examples of what mesh_file reads.
 
     Parameters

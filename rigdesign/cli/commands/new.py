@@ -4,14 +4,14 @@ from pathlib import Path
 
 from cyclopts import App
 
-from rigdesign.cli.application import app, loaded_case
+from rigdesign.cli.application import OutFolder, app, loaded_case
 
 new = App(name="new", help="Write the start of a file to fill in.")
 app.command(new)
 
 
 @new.command(name="measurement")
-def new_measurement(case: Path, /, *, out: Path) -> int:
+def new_measurement(case: Path, /, *, out: OutFolder) -> int:
     """Write measurement.toml and an empty data.csv with the channels the case offers.
 
     Parameters

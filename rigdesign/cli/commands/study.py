@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from rigdesign.base.fidelity import Fidelity
-from rigdesign.cli.application import app, loaded_case
+from rigdesign.cli.application import OutFolder, app, loaded_case
 
 Several = Parameter(negative=())
 Switch = Parameter(negative=())
@@ -18,7 +18,7 @@ def study(
     /,
     *,
     vary: Annotated[list[str], Several],
-    out: Path,
+    out: OutFolder,
     sample: str | None = None,
     seed: int = 0,
     indices: Annotated[bool, Switch] = False,

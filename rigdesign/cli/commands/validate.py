@@ -1,13 +1,11 @@
 """`rigdesign validate`: published numbers against ours."""
 
-from pathlib import Path
-
-from rigdesign.cli.application import app, print_json
+from rigdesign.cli.application import OptionalOutFolder, app, print_json
 from rigdesign.cli.ending import NOTHING_KEPT, interrupted
 
 
 @app.command
-def validate(*, out: Path | None = None, json: bool = False, quick: bool = False) -> int:
+def validate(*, out: OptionalOutFolder = None, json: bool = False, quick: bool = False) -> int:
     """Print every published number against ours, with the assumption it depends on.
 
     Parameters

@@ -1,17 +1,18 @@
 """The checks of a run: what decides on one screen, or all of them."""
 
+import textwrap
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from rigdesign.checks.rules import WARN_UTILISATION
-from rigdesign.cli.terminal.console import hanging, new_console, verbosity, verdict_console
+from rigdesign.cli.terminal.console import NARROWEST, hanging, new_console, verbosity, verdict_console
 from rigdesign.cli.terminal.warning_groups import warning_groups
 from rigdesign.report.numbers import limit_text, margin_text, quantity_text
 from rigdesign.results.check import Check
@@ -80,10 +81,11 @@ def _print_warnings(console: Console, checks: Iterable[Check]) -> None:
 
 
 def _print_nearest(console: Console, checks: Iterable[Check]) -> None:
-    """The checks that hold with the least left; those at a limit that the case states as the value itself are none."""
+    """The checks that hold with the least left; those that hold by definition predict nothing and are left out."""
     held = [check for check in checks if check.verdict in ("pass", "warn") and check.utilisation is not None]
-    stated = [check for check in held if check.verdict == "pass" and _used(check) > WARN_UTILISATION]
-    nearest = sorted((check for check in held if check not in stated), key=_used, reverse=True)[:NEAREST]
+    stated = sum(check.by_definition for check in held)
+    predicted = [check for check in held if not check.by_definition]
+    nearest = sorted(predicted, key=_used, reverse=True)[:NEAREST]
     if not nearest:
         return
     table = _table("nearest margins", "margin", "used")
@@ -91,7 +93,7 @@ def _print_nearest(console: Console, checks: Iterable[Check]) -> None:
         table.add_row(Text(check.id), *map(Text, _numbers(check)))
     console.print(table)
     if stated:
-        console.print(f"stated inputs at their limit, left out here: {len(stated)}")
+        console.print(f"left out here, one input held against another: {stated}")
 
 
 def _used(check: Check) -> float:
@@ -117,37 +119,55 @@ def _table(first: str, *further: str) -> Table:
 
 
 def _numbers(check: Check) -> tuple[str, str, str, str]:
-    """Value, limit in its unit, margin, share of the limit used."""
+    """Value, limit in its unit, margin, share of the limit used; a limit of a power says whether it is in kilowatts."""
     used = "" if check.utilisation is None else f"{100 * check.utilisation:.0f} %"
     value = "" if check.value is None else quantity_text(check.value, check.unit)
-    limit = "" if check.limit is None else limit_text(replace(check, unit=""))
+    in_unit = "W" if check.unit == "W" else ""
+    limit = "" if check.limit is None else limit_text(replace(check, unit=in_unit))
     return value, limit, "" if check.margin is None else margin_text(check), used
 
 
 def _print_all(console: Console, result: RunResult) -> None:
-    """Checks grouped as in the report, the reason of each that fails or warns, every note."""
-    table = _table("check", "margin", "used")
-    table.add_column("verdict")
-    group = None
-    for check in result.checks:
-        if check.verdict == "not applicable":
-            continue
-        if check.group != group:
-            group = check.group
-            table.add_section()
-        table.add_row(
-            Text(check.title), *map(Text, _numbers(check)), Text(check.verdict, STYLES[check.verdict])
-        )
-    console.print(table)
+    """Checks grouped as in the report, the reason of each that fails or warns, every note; all by their ids."""
+    _print_every_check(console, [check for check in result.checks if check.verdict != "not applicable"])
     for check in result.checks:
         if check.verdict in ("fail", "warn"):
-            console.print(
-                Text(f"{check.verdict}: ", STYLES[check.verdict]) + Text(f"{check.title}: {check.reason}")
-            )
+            head, text = Text(f"{check.verdict}: ", STYLES[check.verdict]), f"{check.id}: {check.reason}"
+            hanging(console, head, text)
         elif check.verdict == "not applicable":
-            console.print(Text(f"not applicable: {check.title}: {check.reason}", STYLES[check.verdict]))
+            hanging(console, Text("not applicable: ", STYLES[check.verdict]), f"{check.id}: {check.reason}")
     for record in result.warnings:
-        console.print(Text(f"note {record.id}: ", "yellow") + Text(record.text))
+        hanging(console, Text(f"note {record.id}: ", "yellow"), record.text)
+
+
+def _print_every_check(console: Console, checks: Sequence[Check]) -> None:
+    """Two lines a check: id, margin, share of the limit used and verdict; title, value and limit."""
+    rows = [_numbers(check) for check in checks]
+    values, limits, margins, _ = (
+        max(map(cell_len, column)) for column in zip(("value", "limit", "margin", "used"), *rows)
+    )
+
+    def first_line(identity: str, margin: str, used: str, verdict: Text) -> None:
+        numbers = f"{margin:>{margins}}  {used:>5}  "
+        room = console.width - len(numbers) - len("verdict")
+        console.print(Text(f"{identity:{room}}{numbers}") + verdict, soft_wrap=True)
+
+    def second_line(title: str, value: str, limit: str) -> None:
+        numbers = f"{value:>{values}}  {limit:>{limits}}"
+        room = max(NARROWEST, console.width - len(numbers) - 4)
+        start, *rest = textwrap.wrap(title, room)
+        for text in (f"  {start:{room}}  {numbers}", *(f"  {part}" for part in rest)):
+            console.print(Text(text), soft_wrap=True)
+
+    first_line("check", "margin", "used", Text("verdict"))
+    second_line("title", "value", "limit")
+    group = None
+    for check, (value, limit, margin, used) in zip(checks, rows):
+        if check.group != group:
+            group = check.group
+            console.print(Text(group, "bold"))
+        first_line(check.id, margin, used, Text(check.verdict, STYLES[check.verdict]))
+        second_line(check.title, value, limit)
 
 
 def _print_ranges(console: Console, ranges: "RangesResult", *, everything: bool) -> None:

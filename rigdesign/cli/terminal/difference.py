@@ -1,14 +1,15 @@
 """Two results against each other."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
+from textwrap import fill, wrap
 from typing import TYPE_CHECKING, TypeVar
 
 from rich.console import Console
 from rich.text import Text
 
 from rigdesign.cli.terminal.console import new_console, verbosity, verdict_console
-from rigdesign.report.numbers import number_text, quantity_text, unit_text
+from rigdesign.report.numbers import number_text, quantity_text
 
 if TYPE_CHECKING:
     from rigdesign.difference.document import ResultsDifference, TextChanges
@@ -18,8 +19,9 @@ if TYPE_CHECKING:
 
 WIDTH = 80
 """Columns of a line at most."""
-SHOWN = {"flipped": 8, "inputs": 6, "checks": 5, "results": 6, "texts": 2}
-"""Lines of a part without --all."""
+SHOWN = {"flipped": 4, "inputs": 6, "checks": 5, "results": 6, "texts": 2}
+"""Entries of a part without --all."""
+USED = "share of the limit used"
 STYLES = {"fail": "bold red", "warn": "yellow", "pass": "green"}
 
 T = TypeVar("T")
@@ -38,31 +40,41 @@ def print_difference(difference: "ResultsDifference", out: Path | None, *, every
     console = new_console()
     width = min(WIDTH, console.width)
 
-    def part(title: str, rows: Sequence[T], line: Callable[[T], Text], key: str) -> None:
+    def part(
+        title: str, rows: Sequence[T], lines: Callable[[T], Iterable[Text]], key: str, of: str = ""
+    ) -> None:
         if not rows:
             return
-        console.print(Text(f"{title} ({len(rows)})", "bold"))
+        heading = Text(f"{title} ({len(rows)})", "bold")
+        console.print(_line(heading, "", of, width) if of else heading)
         shown = rows if everything else rows[: SHOWN[key]]
         for row in shown:
-            text = line(row)
-            text.truncate(width, overflow="ellipsis")
-            console.print(text)
+            for text in lines(row):
+                text.truncate(width, overflow="ellipsis")
+                console.print(text)
         if len(rows) > len(shown):
             console.print(Text(f"  … {len(rows) - len(shown)} more", "dim"))
 
     for name, results in (("A", difference.a), ("B", difference.b)):
         console.print(_source(name, results, width))
-    console.print(_cut(headline(difference), width, "bold"))
+    for line in wrap(headline(difference), width):
+        console.print(Text(line, "bold"))
     for notice in difference.notices:
         _wrapped(console, f"note: {notice}", width)
-    part("verdicts flipped", difference.flipped, lambda row: _flip(row, width), "flipped")
-    part("inputs changed", difference.inputs, lambda row: _input(row, width), "inputs")
-    rest = [row for row in difference.checks if row.change != "flipped"]
-    part("checks moved, by change of utilisation", rest, lambda row: _check(row, width), "checks")
-    part("other results moved", _largest(difference.quantities), lambda row: _quantity(row, width), "results")
-    for name, texts in (("assumption", difference.assumptions), ("warning", difference.warnings),
+    part("verdicts flipped", difference.flipped, lambda row: _flip(row, width), "flipped", USED)
+    part("inputs changed", difference.inputs, lambda row: [_input(row, width)], "inputs")
+    now, no_longer = difference.checks_that("now applicable"), difference.checks_that("no longer applicable")
+    part("checks now applicable", now, lambda row: [_one_sided(row, width)], "checks")
+    part("checks no longer applicable", no_longer, lambda row: [_one_sided(row, width)], "checks")
+    moved = difference.checks_that("moved")
+    part("other checks moved", moved, lambda row: [_moved(row, width)], "checks", USED)
+    for name, single in (("A", difference.checks_that("removed")), ("B", difference.checks_that("added"))):
+        part(f"checks in {name} only", single, lambda row: [_one_sided(row, width)], "checks")
+    largest = _largest(difference.quantities)
+    part("other results moved", largest, lambda row: [_quantity(row, width)], "results")
+    for name, texts in (("assumptions", difference.assumptions), ("warnings", difference.warnings),
                         ("not modelled", difference.not_modelled)):  # fmt: skip
-        part(f"{name}, added or gone", _signed(texts), lambda row: Text(f"  {row}"), "texts")
+        part(f"{name} added or gone", _signed(texts), lambda row: [Text(f"  {row}")], "texts")
     if out is not None:
         console.print(str(out / "diff.html"))
 
@@ -82,24 +94,52 @@ def _short_path(path: Path, room: int) -> str:
     return text if len(text) <= room else f"…{text[-max(room - 1, 8) :]}"
 
 
-def _flip(row: "CheckChange", width: int) -> Text:
+def _flip(row: "CheckChange", width: int) -> Iterator[Text]:
+    """Verdicts and utilisation; below what the numbers are, and why the new verdict is no pass."""
     assert row.before is not None and row.after is not None
-    verdicts = Text("  ") + Text(row.before.verdict, STYLES.get(row.before.verdict, "dim")) + Text(" → ")
-    verdicts += Text(row.after.verdict, STYLES.get(row.after.verdict, "dim"))
-    return _line(verdicts, row.known.title, _utilisations(row), width)
+    verdicts = Text("  ") + Text(row.before.verdict, STYLES[row.before.verdict]) + Text(" → ")
+    verdicts += Text(row.after.verdict, STYLES[row.after.verdict])
+    yield _line(verdicts, row.id, _utilisations(row), width)
+    below = " " * (verdicts.cell_len + 2)
+    limit = "" if row.after.limit is None else f", limit {quantity_text(row.after.limit, row.after.unit)}"
+    yield Text(f"{below}{row.known.title}: {_values(row)}{limit}")
+    if row.after.verdict != "pass":
+        yield Text(below + row.after.reason, "dim")
 
 
-def _check(row: "CheckChange", width: int) -> Text:
-    if row.change in ("added", "removed"):
-        return _line(Text(f"  {row.change}"), row.known.title, row.known.verdict, width)
-    change = row.utilisation_change
-    first = "      " if change is None else f"{100 * change:+6.1f}".replace("-", "\u2212")
-    return _line(Text(f"  {first} %"), row.known.title, _utilisations(row), width)
+def _moved(row: "CheckChange", width: int) -> Text:
+    return _line(Text("  "), row.id, _utilisations(row), width)
+
+
+def _one_sided(row: "CheckChange", width: int) -> Text:
+    """A check that has numbers in one result only."""
+    side = row.before if row.change in ("no longer applicable", "removed") else row.after
+    assert side is not None
+    used = "" if side.utilisation is None else f", {number_text(100.0 * side.utilisation, 3)} % used"
+    return _line(Text("  "), row.id, f"{side.verdict}{used}", width)
 
 
 def _utilisations(row: "CheckChange") -> str:
-    before, after = (None if side is None else side.utilisation for side in (row.before, row.after))
-    return f"{number_text(before, 3)} → {number_text(after, 3)}"
+    """Share of the limit used, in as many digits as show that it moved."""
+    before, after = (
+        None if side is None or side.utilisation is None else 100.0 * side.utilisation
+        for side in (row.before, row.after)
+    )
+    return _pair(before, after, "%")
+
+
+def _values(row: "CheckChange") -> str:
+    before, after = (None if side is None else side.value for side in (row.before, row.after))
+    return _pair(before, after, row.known.unit)
+
+
+def _pair(before: float | None, after: float | None, unit: str) -> str:
+    """Two numbers with their unit, in the least digits from three that show a difference."""
+    for digits in (3, 4, 5, 6):
+        first, second = number_text(before, digits), quantity_text(after, unit, digits)
+        if first != number_text(after, digits):
+            break
+    return f"{first} → {second}"
 
 
 def _input(row: "InputChange", width: int) -> Text:
@@ -110,13 +150,10 @@ def _input(row: "InputChange", width: int) -> Text:
 
 
 def _quantity(row: "QuantityChange", width: int) -> Text:
-    after = quantity_text(row.after, row.unit)
-    before = (
-        number_text(row.before)
-        if row.after is not None
-        else f"{number_text(row.before)} {unit_text(row.unit)}"
-    )
-    return _line(Text("  "), f"{row.quantity}, {row.place}", f"{before} → {after}", width)
+    name = f"{row.quantity}, {row.place}"
+    if row.after is None:
+        return _line(Text("  "), name, f"{quantity_text(row.before, row.unit)} → –", width)
+    return _line(Text("  "), name, _pair(row.before, row.after, row.unit), width)
 
 
 def _largest(rows: "Sequence[QuantityChange]") -> "list[QuantityChange]":
@@ -142,13 +179,5 @@ def _clipped(text: str, most: int = 22) -> str:
     return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
-def _cut(text: str, width: int, style: str) -> Text:
-    found = Text(text, style)
-    found.truncate(width, overflow="ellipsis")
-    return found
-
-
 def _wrapped(console: Console, text: str, width: int) -> None:
-    from textwrap import fill
-
     console.print(Text(fill(text, width, subsequent_indent="      "), "yellow"))

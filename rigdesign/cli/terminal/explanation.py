@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rigdesign.cli.terminal.console import hanging, new_console
-from rigdesign.explanation.check import CheckExplanation, Input
+from rigdesign.explanation.check import CheckExplanation
 from rigdesign.explanation.keys import KeyEntry
 from rigdesign.explanation.overview import Overview
 from rigdesign.explanation.path import PathExplanation, StatedValue
@@ -17,6 +17,8 @@ from rigdesign.report.numbers import number_text, quantity_text, unit_text
 
 HEAD = 11
 """Columns of the word before an answer."""
+MODULE = 27
+"""Columns of the module where inputs enter."""
 MOST_IDS = 24
 """Ids of checks that are listed; beyond that those that are not are fewer to read."""
 MOST_INPUTS = 12
@@ -76,7 +78,7 @@ def print_path(found: PathExplanation) -> None:
     _answer(console, "checks", _checks(found.checks, found.all_checks))
 
 
-def print_check(found: CheckExplanation) -> None:
+def print_check(found: CheckExplanation, case: Path) -> None:
     """Rule, limit, procedure, source, what it needs, its inputs."""
     console = new_console(wrap=True)
     console.print(Text(f"{found.id}: {found.title}", "bold"))
@@ -101,8 +103,11 @@ def print_check(found: CheckExplanation) -> None:
         if not done.same_case:
             _answer(console, "note", f"{done.folder} holds results of another state of the case")
         if not done.ranged:
-            _answer(console, "note", f"{done.folder} holds no ranges: run rigdesign check with --ranges")
-    _print_inputs(console, found)
+            _answer(console, "note", f"{done.folder} holds no ranges")
+    if found.ranked:
+        _print_ranking(console, found)
+    else:
+        _print_inputs(console, found, case)
 
 
 def _answer(console: Console, head: str, text: str) -> None:
@@ -169,32 +174,53 @@ def _difference(unit: str) -> str:
     return "K" if unit == "degC" else unit
 
 
-def _print_inputs(console: Console, found: CheckExplanation) -> None:
-    """The inputs one by one as far as ranges sort them, the rest by their tables."""
-    ranged = [one for one in found.inputs if one.shift]
-    for one in ranged[:MOST_INPUTS]:
+def _print_ranking(console: Console, found: CheckExplanation) -> None:
+    """The inputs with a range, those that move the margin most first."""
+    moving = [one for one in found.inputs if one.shift]
+    unit = unit_text(_difference(found.unit))
+    for one in moving[:MOST_INPUTS]:
         low, high = (number_text(margin, 3) for margin in one.margins or (None, None))
-        unit = unit_text(_difference(found.unit))
         ends = "" if one.range is None else f" = {one.range[0]} to {one.range[1]}"
         _answer(console, "moved by", f"{one.path}{ends}: margin {low} to {high} {unit}".rstrip(" -"))
-    rest = [one for one in found.inputs if one not in ranged[:MOST_INPUTS]]
-    assumed = sum(one.assumed for one in rest)
-    more = " more" if ranged else ""
-    _answer(console, "inputs", f"{len(rest)}{more}, {assumed} assumed: {_by_table(rest)}")
-    special = dict.fromkeys(name for one in rest for name in one.influences)
-    if special:
-        groups = ", ".join(f"{sum(name in one.influences for one in rest)} {name}" for name in special)
-        _answer(console, "", f"of them move some checks only, by group: {groups}; the others every check")
+    if len(moving) > MOST_INPUTS:
+        _answer(console, "", f"{len(moving) - MOST_INPUTS} more with a range move it less; --json lists them")
+    if not moving:
+        _answer(console, "moved by", "no input over its range")
+    _answer(
+        console, "not ranked", "inputs without a range; without --results they are listed by where they enter"
+    )
 
 
-def _by_table(inputs: Iterable[Input]) -> str:
-    """Inputs counted by gearbox, else by the first name of their paths."""
-    counts: dict[str, int] = {}
-    for one in inputs:
-        names = one.path.split(".")
-        head = ".".join(names[: 2 if names[0] == "gearboxes" else 1])
-        counts[head] = counts.get(head, 0) + 1
-    return ", ".join(f"{table} ({number})" if number > 1 else table for table, number in counts.items())
+def _print_inputs(console: Console, found: CheckExplanation, case: Path) -> None:
+    """The inputs by the module where they enter, the assumed ones first; none is said to matter more."""
+    _answer(
+        console,
+        "ranking",
+        "none without --ranges. To rank the inputs by how far their ranges move the margin:",
+    )
+    for command in (
+        f"rigdesign check {case} --ranges --out DIR",
+        f"rigdesign explain {case} --check {found.id} --results DIR",
+    ):
+        _answer(console, "", command)
+    for title, assumed in (("assumed inputs", True), ("other inputs", False)):
+        modules: dict[str, list[str]] = {}
+        for one in found.inputs:
+            if one.assumed is assumed:
+                modules.setdefault(one.enters, []).append(one.key)
+        if modules:
+            console.print(Text(f"{title}, by where they enter; * stands for any name", "bold"))
+        for module, keys in modules.items():
+            hanging(console, Text(f"  {module:{MODULE}s}"), _by_table(keys))
+
+
+def _by_table(keys: Iterable[str]) -> str:
+    """Keys, each once, after the table that they share: ``gearboxes.*.oil: flow, inlet_temperature``."""
+    tables: dict[str, list[str]] = {}
+    for key in dict.fromkeys(keys):
+        table, _, name = key.rpartition(".")
+        tables.setdefault(table, []).append(name)
+    return "; ".join(f"{table}: {', '.join(names)}" for table, names in tables.items())
 
 
 def _table(first: str, *further: str) -> Table:

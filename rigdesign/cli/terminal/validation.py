@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rich.console import Console
+from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
@@ -17,30 +18,38 @@ VALIDATION_STYLES = {
     "not modelled": "dim",
 }  # fmt: skip
 
-FILE_WIDTH = 200
-"""Columns of the validation table where the output is no terminal."""
+WIDEST = 100
+"""Columns of the table at most: a name far from its numbers is hard to follow."""
+NUMBER_WIDTHS = (12, 17, 9)
+"""Columns of published and computed number and of the deviation."""
 
 
 def print_validation(rows: Sequence["ValidationRow"]) -> None:
     """Table of published and computed numbers, their assumptions and the headline."""
     console = new_console(wrap=True)
-    if not console.is_terminal:
-        console = new_console(wrap=True, width=FILE_WIDTH)
-    table = Table(title="published numbers against ours", title_justify="left", pad_edge=False)
-    for heading, justify in (
-        ("id", "left"), ("quantity", "left"), ("published", "right"), ("computed", "right"), ("unit", "left"),
-        ("deviation", "right"), ("verdict", "left"), ("basis", "left"),
-    ):  # fmt: skip
-        table.add_column(heading, justify=justify)  # type: ignore[arg-type]
-    for row in rows:
-        deviation = "" if row.deviation is None else f"{100 * row.deviation:+.2f} %"
-        cells = (row.id, row.quantity, row.published_text, row.computed_text, row.unit, deviation)
-        style = VALIDATION_STYLES.get(row.verdict, "")
-        table.add_row(*map(Text, cells), Text(row.verdict, style), Text(row.basis))
-    console.print(table)
+    console.print(Text("published numbers against ours", "bold"))
+    console.print(_table(rows, min(console.width, WIDEST)))
     for assumptions, names in _by_assumptions(rows).items():
         console.print(Text(f"{', '.join(names)}: ", "bold") + Text(assumptions))
     _print_headline(console, rows)
+
+
+def _table(rows: Sequence["ValidationRow"], width: int) -> Table:
+    """Two lines a row: id, basis and verdict; quantity and numbers. Words in place of a number join the quantity."""
+    table = Table(box=None, pad_edge=False, padding=(0, 1, 0, 0), width=width, header_style="dim")
+    table.add_column("id\n  quantity", ratio=1)
+    for heading, columns in zip(("basis\npublished", "verdict\ncomputed", "\ndeviation"), NUMBER_WIDTHS):
+        table.add_column(heading, justify="right", width=columns)
+    for row in rows:
+        verdict = Text(row.verdict, VALIDATION_STYLES.get(row.verdict, ""))
+        table.add_row(Text(row.id, "bold"), Text(row.basis), verdict, "")
+        short = len(row.published_text) <= NUMBER_WIDTHS[0]
+        quantity = row.quantity if short else f"{row.quantity}; published: {row.published_text}"
+        computed = f"{row.computed_text} {'' if row.unit == '1' else row.unit}".rstrip()
+        deviation = "" if row.deviation is None else f"{round(100 * row.deviation, 2) + 0.0:+.2f} %"
+        published = row.published_text if short else ""
+        table.add_row(Padding(Text(quantity), (0, 0, 0, 2)), *map(Text, (published, computed, deviation)))
+    return table
 
 
 def _print_headline(console: Console, rows: Sequence["ValidationRow"]) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SEPARATED: dict[str, Any] = {"edgecolor": "white", "linewidth": 0.6}
-"""Parts of a bar, told apart without their colours too."""
+"""Parts of a bar: an edge separates them without their colours."""
 
 
 def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":

@@ -32,7 +32,7 @@ MOST_NAMES = 12
 
 @dataclass(frozen=True)
 class CurveLook:
-    """Colour, line and marker of a curve: each alone tells curves apart."""
+    """Colour, line and marker of a curve: each alone identifies a curve."""
 
     colour: str
     line: object

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 PANEL_WIDTH = 5.2
 MOST_LIMITING = 7
-"""Limiting checks told apart in a scatter plot."""
+"""Limiting checks with a colour of their own in a scatter plot."""
 MOST_VECTORS = 1500
 """Points up to which every one is drawn as its own shape; more are drawn as a picture."""
 MOST_INPUTS = 12

@@ -28,7 +28,7 @@ def difference_page(difference: ResultsDifference) -> str:
     """The page as one self-contained HTML document."""
     from markupsafe import Markup
 
-    from rigdesign.report.figures.difference import margins_figure
+    from rigdesign.report.figures.difference import LEAST_CHANGE, MOST_ROWS, margins_figure
     from rigdesign.report.pages.report import environment
 
     with drawing_style():
@@ -46,7 +46,11 @@ def difference_page(difference: ResultsDifference) -> str:
             headline=headline(difference),
             worse=any(row.worse for row in difference.flipped),
             figure=svg,
-            rest=[row for row in difference.checks if row.change != "flipped"],
+            most_rows=MOST_ROWS,
+            least_change=LEAST_CHANGE,
+            applicability=difference.checks_that("now applicable", "no longer applicable"),
+            moved=difference.checks_that("moved"),
+            single=difference.checks_that("added", "removed"),
             tool_version=__version__,
         )
     )

@@ -5,14 +5,12 @@ from typing import get_args
 import pytest
 
 from rigdesign.case.films import (
-    PRINTED_LAWS,
-    ConstantFilm,
     NiemannWinter,
     RotatingCylinder,
     SurfaceFilm,
-    TakenFrom,
     VerticalPlate,
 )
+from rigdesign.case.given_film import PRINTED_LAWS, ConstantFilm, TakenFrom
 from rigdesign.case.surface_conditions import Condition, FlankFilm, GapExchange, SurfaceExchange
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace, SurfaceSite
 from thermal.films import convection

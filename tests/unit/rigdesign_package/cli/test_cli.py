@@ -507,3 +507,32 @@ def test_check_writes_the_report_as_pdf_with_its_author(
     assert ended.status == 0, ended.err
     assert "A. Engineer" in PdfReader(out / "report.pdf").pages[0].extract_text()
     assert "report.pdf" in json.loads((out / "results.json").read_text())["files"]
+
+
+EMPTY_OUT: dict[str, tuple[str, ...]] = {
+    "check": ("x",), "compare": ("x", "y"), "diagnose": ("x", "y"), "diff": ("a", "b"), "mesh": ("x",),
+    "new measurement": ("x",), "study": ("x", "--vary", "a=1,2"), "validate": (),
+}  # fmt: skip
+"""Commands with ``--out``, and what else they need."""
+
+
+@pytest.mark.parametrize("command", EMPTY_OUT)
+@pytest.mark.parametrize("given", ["", " "])
+def test_an_empty_out_is_refused_and_writes_nothing(
+    command: str, given: str, rigdesign: Rigdesign, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ended = rigdesign(*command.split(), *EMPTY_OUT[command], "--out", given)
+    assert ended.status == 2 and ended.out == ""
+    assert ended.err.startswith("rigdesign: --out is empty; name a folder, e.g. --out results")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_every_command_with_out_refuses_an_empty_one() -> None:
+    names = {name for name in cli.app if not name.startswith("-")} - {"new"}
+    found = {
+        name
+        for name in names
+        if any("--out" in one.names for one in cli.app[name].assemble_argument_collection())
+    }
+    assert found | {"new measurement"} == set(EMPTY_OUT)

@@ -222,6 +222,29 @@ def test_ranges_of_a_finished_check_sort_its_inputs(
     words = " ".join(out.split())
     assert f"moved by {OIL} = 90 degC to 140 degC: margin 0.03 to 0.01 mm" in words
     assert "warn: 0.05 mm, margin 0.03 mm, 40 % used" in words
+    assert "not ranked inputs without a range" in words and "by where they enter;" not in words
+
+
+def test_without_ranges_inputs_are_listed_and_not_ranked(prototype: Case, rigdesign: Rigdesign) -> None:
+    """Where they enter, the assumed ones first, each key once; how a ranking is had is said."""
+    out = rigdesign("explain", PROTOTYPE, "--check", "oil.flow").out
+    words = " ".join(out.split())
+    assert "ranking none without --ranges" in words
+    assert f"rigdesign check {PROTOTYPE} --ranges --out DIR" in words
+    assert f"rigdesign explain {PROTOTYPE} --check oil.flow --results DIR" in words
+    assert "rig/oil_supply gearboxes.*.oil: flow; gearboxes.*.bearing_oil: flow" in words
+    whole = rigdesign("explain", PROTOTYPE, "--check", "temperature.oil_outlet").out
+    assert max(map(len, whole.splitlines())) <= 80
+    assumed, others = whole.split("assumed inputs, by where they enter")[1].split(
+        "other inputs, by where they enter"
+    )
+    assert "coupling/convergence" in others and "coupling/convergence" not in assumed
+    found = explain_check(prototype, "temperature.oil_outlet")
+    assert not found.ranked and [one.assumed for one in found.inputs] == sorted(
+        (one.assumed for one in found.inputs), reverse=True
+    )
+    names = {one.key.rpartition(".")[2] for one in found.inputs}
+    assert {name for name in names if name not in whole} == set()
 
 
 def test_results_of_another_case_are_refused(prototype: Case, tmp_path: Path, rigdesign: Rigdesign) -> None:
@@ -238,7 +261,8 @@ def test_results_of_another_state_and_without_ranges_are_said(
     )
     out = rigdesign("explain", PROTOTYPE, "--check", "clearance.backlash", "--results", folder).out
     words = " ".join(out.split())
-    assert "holds results of another state of the case" in words and "with --ranges" in words
+    assert "holds results of another state of the case" in words and "holds no ranges" in words
+    assert "ranking none without --ranges" in words
 
 
 # ---------------------------------------------------------------------------- an overview

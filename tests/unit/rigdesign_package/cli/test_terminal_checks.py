@@ -90,11 +90,40 @@ def test_everything_prints_every_check_and_every_note(printed: Printed) -> None:
     assert "not applicable: no.limit: the case states no limit" in text
 
 
-def test_stated_inputs_at_their_limit_are_no_near_margins(printed: Printed) -> None:
-    stated = make_check("ramp.test_torque", 180.0, 180.0, unit="N m")
-    lines = printed(small_result(checks=[stated, make_check("near.check", 0.9, 1.0)]))
-    assert not any(line.startswith("ramp.test_torque") for line in lines)
-    assert "stated inputs at their limit, left out here: 1" in lines
+def test_everything_names_every_check_by_its_id(printed: Printed) -> None:
+    """As `explain --check` and `study --checks` take it."""
+    names = ("strength.root_safety_path.reference.pinion", "oil.flow", "failing.check_0", "left.out_0")
+    title = "a title of more words than fit into one line of the table"
+    held = [make_check(name, 0.2, 1.0, title=title) for name in names[:2]]
+    checks = [*held, *failing(1), *left_out(1, NO_HOUSING)]
+    absent = make_check("no.limit", 1.0, 1.0, verdict="not applicable", title="absent", reason="no limit")
+    lines = printed(small_result(checks=[*checks, absent]), everything=True)
+    assert max(map(len, lines)) <= 80
+    rows = [line.split() for line in lines]
+    verdicts = {row[0]: row[-1] for row in rows if row and row[0] in names}
+    assert verdicts == {**dict.fromkeys(names[:2], "pass"), "failing.check_0": "fail", "left.out_0": "warn"}
+    assert "not applicable: no.limit: no limit" in lines
+    flow = next(number for number, row in enumerate(rows) if row[:1] == ["oil.flow"])
+    assert rows[flow][1:-1] == ["0.8", "mm", "20", "%"]
+    assert lines[flow + 1].startswith("  a title of more words") and lines[flow + 1].endswith("0.2 mm    ≤ 1")
+
+
+def test_checks_by_definition_are_no_near_margins(printed: Printed) -> None:
+    """Whatever they use of their limit; a predicted value at its limit is one."""
+    stated = [
+        make_check("ramp.test_torque", 180.0, 180.0, unit="N m", by_definition=True),
+        make_check("bought_part.rig_speed", 9000.0, 12000.0, unit="rpm", by_definition=True),
+    ]
+    lines = printed(small_result(checks=[*stated, make_check("near.check", 0.999, 1.0)]))
+    assert not any(line.startswith(("ramp.test_torque", "bought_part.rig_speed")) for line in lines)
+    assert any(line.startswith("near.check") for line in lines)
+    assert "left out here, one input held against another: 2" in lines
+
+
+def test_a_limit_of_a_power_stands_in_the_unit_of_its_value(printed: Printed) -> None:
+    lines = printed(small_result(checks=[make_check("oil.cooler", 226200.0, 250000.0, unit="W")]))
+    [row] = [line for line in lines if line.startswith("oil.cooler")]
+    assert "226.2 kW" in row and "250 kW" in row and "23.8 kW" in row
 
 
 def test_what_does_not_apply_is_counted_by_its_reason(printed: Printed) -> None:

@@ -102,7 +102,7 @@ def test_a_given_film_says_where_the_case_has_it_from(case: Case, tmp_path: Path
     assert "100 to 600" in wall.warnings[0]
     assert measured["chamber_floor"].source == "input of the case"
     printed = films(case)["chamber_wall"]
-    assert printed.source == "P2, Figure 11; assumed: as the main rig"
+    assert printed.source == "assumed: as the main rig; P2, Figure 11"
     assert printed.warnings == ()
 
 

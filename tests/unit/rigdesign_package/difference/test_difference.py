@@ -99,9 +99,50 @@ def test_inputs_that_changed_came_went_or_have_another_source(pair):
     assert [(row.path, row.change) for row in found] == [
         ("gearboxes.test.oil.inlet_temperature", "changed"),
         ("drivetrain.motor.inertia", "added"),
-        ("gearboxes.test.title", "removed"),
         ("schedule.test_torque", "basis"),
     ]
+
+
+def test_names_and_titles_are_no_inputs(first, tmp_path):
+    """A case under another title is the same case to every check."""
+    other = copy.deepcopy(first)
+    labels = {"name": "other", "title": "Rig two", "document.author": "A. Smith", "schema_version": "1"}
+    other["inputs"] += [{"path": path, "value": value, "basis": ""} for path, value in labels.items()]
+    found = results_difference(written(first, tmp_path / "a"), written(other, tmp_path / "b"))
+    assert found.inputs == () and found.same
+
+
+def test_a_check_that_applies_to_one_result_only_is_no_flip(first, tmp_path):
+    other = copy.deepcopy(first)
+    for check in other["checks"][:2]:
+        check.update(verdict="not applicable", value=None, margin=None, utilisation=None, reason="no housing")
+    a, b = written(first, tmp_path / "a"), written(other, tmp_path / "b")
+    found = results_difference(a, b)
+    assert not found.flipped and not any(row.worse for row in found.checks)
+    assert {row.id for row in found.checks_that("no longer applicable")} == {
+        "clearance.tip",
+        "temperature.outlet",
+    }
+    assert headline(found) == (
+        "pass in both: no inputs changed, no verdicts flipped, 2 checks no longer applicable, no other checks moved"
+    )
+    back = results_difference(b, a)
+    assert len(back.checks_that("now applicable")) == 2 and not back.flipped
+
+
+def test_the_headline_counts_what_is_listed(pair, tmp_path, capsys):
+    found = results_difference(*pair)
+    print_difference(found, None, everything=True)
+    text = capsys.readouterr().out
+    for part in ("inputs changed (3)", "verdicts flipped (1)", "other checks moved (1)", "checks in A only (1)",
+                 "checks in B only (1)"):  # fmt: skip
+        assert part in text
+    write_difference(found, tmp_path / "out")
+    page = (tmp_path / "out" / "diff.html").read_text(encoding="utf-8")
+    for part in ("Verdicts that flipped (1)", "Inputs that changed (3)", "Other checks that moved (1)",
+                 "Checks in one result only (2)"):  # fmt: skip
+        assert part in page
+    assert headline(found) in page
 
 
 def test_the_relative_change_of_an_input():
@@ -122,7 +163,9 @@ def test_verdicts_that_flipped_come_first_and_round_off_moves_nothing(pair):
     ]  # fmt: skip
     assert found.checks[0].worse
     assert found.checks[0].utilisation_change == pytest.approx(0.1 / 0.09 - 0.1 / 0.106)
-    assert headline(found) == "pass → fail: 4 inputs changed, 1 verdict flipped, 1 other check moved"
+    assert headline(found) == (
+        "pass → fail: 3 inputs changed, 1 verdict flipped, 1 other check moved, 2 checks in one result only"
+    )
 
 
 def test_other_results_that_moved(pair, first):
@@ -231,9 +274,12 @@ def test_the_terminal_keeps_to_80_columns(pair, capsys):
     lines = capsys.readouterr().out.splitlines()
     assert max(map(len, lines)) <= 80
     text = "\n".join(lines)
-    assert "pass → fail: 4 inputs changed" in text
-    assert "140 degC → 160 degC" in text and "0.943 → 1.11" in text
-    assert text.index("verdicts flipped (1)") < text.index("inputs changed (4)") < text.index("checks moved")
+    assert "pass → fail: 3 inputs changed" in text
+    assert "140 degC → 160 degC" in text
+    flip = next(n for n, line in enumerate(lines) if "clearance.tip" in line)
+    assert lines[flip - 1].endswith("share of the limit used") and lines[flip].endswith("94.3 → 111 %")
+    assert "hot tip clearance: 0.106 → 0.09" in lines[flip + 1] and "limit 0.1" in lines[flip + 1]
+    assert text.index("verdicts flipped (1)") < text.index("inputs changed (3)") < text.index("checks moved")
     assert "+ tip meets fillet" in text and str(Path("out") / "diff.html") in text
 
 

@@ -438,6 +438,24 @@ def test_table_and_headline_in_the_terminal(rows, capsys):
         assert f"{kind}: {count[f'{kind}_{good}']} {good}, {count[f'{kind}_missed']} missed (" in printed
 
 
+def test_the_table_keeps_to_80_columns_and_breaks_no_word(rows, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    print_validation(rows)
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    words = {word.rstrip(";") for line in lines for word in line.split()}
+    for shown in rows:
+        said = (
+            shown.id,
+            shown.quantity,
+            shown.published_text,
+            shown.computed_text,
+            shown.verdict,
+            shown.basis,
+        )
+        assert {word.rstrip(";") for text in said for word in text.split()} <= words, shown.id
+
+
 @pytest.mark.parametrize(("limit", "status"), [(0.1, 0), (0.01, 1)])
 def test_command_fails_when_a_gate_is_missed_and_counts_a_missed_goal(limit, status, monkeypatch, capsys):
     monkeypatch.setattr(
