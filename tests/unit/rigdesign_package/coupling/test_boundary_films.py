@@ -172,7 +172,7 @@ def test_end_seals_warm_the_oil_of_the_bearings(case: Case) -> None:
         "reference.gear_oil": 0.0,
         "reference.bearing_oil": 0.0,
     }
-    streams = {s.name: s.heat for s in oil_streams(rig, losses, {}, none)}
+    streams = {s.name: s.heat for s in oil_streams(rig, losses, {}, none, {})}
     own = [p for p in losses if p.gearbox == "test"]
     seals = [p for p in own if p.loss.kind == "seal"]
     ends = sum(p.end_share * p.into_oil for p in seals)

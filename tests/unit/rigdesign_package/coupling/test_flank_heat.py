@@ -37,6 +37,8 @@ wetted_share = {{ value = 0.8, assumed = "as it is", range = [0.5, 1.0] }}
 film_factor = {{ value = 1.0, assumed = "as it is", range = [0.7, 1.4] }}
 """
 STEEL = (CASE_HARDENED_STEEL, CASE_HARDENED_STEEL)
+CHAMBER = 420.0
+"""Oil as it leaves the chamber [K]; flanks that jets wet do not feel it."""
 RIMS = "gearboxes.test.housing.boundary.gear_rims"
 
 
@@ -106,7 +108,7 @@ def test_oil_is_warmed_by_its_impact(rig: Rig) -> None:
     """Into the mesh, 20 m/s at 62 m/s: 42 m/s lost on impact, v^2/(2 c) above the feed."""
     condition = rig.case.gearboxes["test"].housing.boundary["gear_rims"]  # type: ignore[union-attr]
     point = held_points(rig)[-1]
-    flanks = gear_flanks(rig, "test", "pinion", point, condition)  # type: ignore[arg-type]
+    flanks = gear_flanks(rig, "test", "pinion", point, condition, CHAMBER)  # type: ignore[arg-type]
     inlet = rig.case.gearboxes["test"].oil.inlet_temperature
     lost = point.speed * rig.pairs["test.main"].working_radii[0] - 20.0
     heat_capacity = rig.oils["MIL-PRF-23699"].heat_capacity(inlet)
@@ -118,7 +120,7 @@ def test_an_idler_is_wetted_twice_a_turn() -> None:
     condition = main.case.gearboxes["test"].housing.boundary["gear_rims"]  # type: ignore[union-attr]
     point = held_points(main)[-1]
     pinion, wheel = (
-        gear_flanks(main, "test", gear, point, condition).law(480.0, 415.0)  # type: ignore[arg-type]
+        gear_flanks(main, "test", gear, point, condition, CHAMBER).law(480.0, 415.0)  # type: ignore[arg-type]
         for gear in ("pinion", "wheel_a")
     )
     assert (pinion.inputs["wettings_per_turn"], wheel.inputs["wettings_per_turn"]) == (2.0, 1.0)
@@ -219,14 +221,14 @@ def test_constant_film_on_the_flanks(case: Case) -> None:
     file.write_text(text)
     given = build_rig(load_case(file), "quick")
     condition = given.case.gearboxes["test"].housing.boundary["gear_rims"]  # type: ignore[union-attr]
-    flanks = gear_flanks(given, "test", "wheel", held_points(given)[-1], condition)  # type: ignore[arg-type]
+    flanks = gear_flanks(given, "test", "wheel", held_points(given)[-1], condition, CHAMBER)  # type: ignore[arg-type]
     assert flanks.law(450.0, 413.0).value == 3000.0
 
 
 def test_a_standing_gear_has_no_film(rig: Rig) -> None:
     condition = rig.case.gearboxes["test"].housing.boundary["gear_rims"]  # type: ignore[union-attr]
     still = replace(held_points(rig)[-1], speed=0.0)
-    flanks = gear_flanks(rig, "test", "pinion", still, condition)  # type: ignore[arg-type]
+    flanks = gear_flanks(rig, "test", "pinion", still, condition, CHAMBER)  # type: ignore[arg-type]
     assert flanks.law(450.0, 413.0).value == 0.0
     assert flanks.kept(450.0) == 1.0
     assert flanks.oil_temperature == rig.case.gearboxes["test"].oil.inlet_temperature

@@ -34,7 +34,7 @@ def streams(*changes: tuple[str, object]) -> dict[str, OilStream]:
     """Streams under the losses and heats of the shipped state."""
     last = base()[1].last
     found = oil_streams(
-        changed(*changes), last.losses, last.coupling_state.bearing_heat, last.coupling_state.wall_heat
+        changed(*changes), last.losses, last.coupling_state.bearing_heat, last.coupling_state.wall_heat, {}
     )
     return {stream.name: stream for stream in found}
 
@@ -151,7 +151,7 @@ def test_flanks_past_blocked_jets_stay_dry() -> None:
     for share in (0.0, 0.5):
         for flow in ("5 l/min", "50 l/min"):
             rig = changed((JETS, share), (f"{BOX}.oil.flow", flow))
-            flanks = gear_flanks(rig, "test", "pinion", point, film)
+            flanks = gear_flanks(rig, "test", "pinion", point, film, 420.0)
             values[share, flow] = flanks.law(400.0, 390.0).value
     ratios = [values[0.5, flow] / values[0.0, flow] for flow in ("5 l/min", "50 l/min")]
     assert 0.5 <= ratios[1] <= ratios[0] < 1.0

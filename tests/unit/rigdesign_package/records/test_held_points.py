@@ -25,8 +25,8 @@ def test_the_highest_torque_governs_then_the_highest_speed_then_the_last() -> No
 def test_oil_that_must_be_heated_cools_nothing() -> None:
     """140 degC oil that comes back 1.4 kW colder does not carry what a 40 degC circuit brings."""
     warm, cool = (SimpleNamespace(oil="ester", inlet_temperature=inlet) for inlet in (413.15, 313.15))
-    test = SimpleNamespace(oil=warm, bearing_oil=cool)
-    reference = SimpleNamespace(oil=cool, bearing_oil=cool)
+    test = SimpleNamespace(feeds={"gear_oil": (warm, 1), "bearing_oil": (cool, 4)})
+    reference = SimpleNamespace(feeds={"gear_oil": (cool, 1), "bearing_oil": (cool, 4)})
     ambient = SimpleNamespace(warming_time=None)
     rig: Any = SimpleNamespace(
         case=SimpleNamespace(gearboxes={"test": test, "reference": reference}, ambient=ambient)
