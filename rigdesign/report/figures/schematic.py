@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rigdesign.report.case_sheet import CaseSheet
 from rigdesign.report.figures.drawing import new_figure, plain
-from rigdesign.report.palette import INK, MUTED, SERIES
+from rigdesign.report.palette import INK, MUTED, gearbox_colours
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -74,13 +74,9 @@ def rig_plan(case: CaseSheet) -> RigPlan:
         name: Gear(name.split(".")[1], column_of[shaft], level_of[shaft], _teeth(case, name))
         for name, shaft in shafts.items()
     }
-    return RigPlan(gears, column_of, level_of, _colours([name for name, _ in case.tables("gearboxes")]))
-
-
-def _colours(names: Sequence[str]) -> list[str]:
-    """By the order of the names, as in every figure of the report."""
-    ordered = sorted(names)
-    return [SERIES[ordered.index(name) % len(SERIES)] for name in names]
+    names = [name for name, _ in case.tables("gearboxes")]
+    styles = gearbox_colours(names)
+    return RigPlan(gears, column_of, level_of, [styles[name].colour for name in names])
 
 
 def _teeth(case: CaseSheet, name: str) -> float:

@@ -11,13 +11,12 @@ from rigdesign.report.figures.drawing import finish, new_figure, plain
 from rigdesign.report.figures.margin_axes import (
     MARGIN_LABEL,
     SHORT_LABEL,
-    curve_look,
     input_axis,
     margin_axis,
     mark_failed,
 )
 from rigdesign.report.margins.axis import input_name
-from rigdesign.report.palette import INK, MUTED, SERIES, VERDICT_COLOURS
+from rigdesign.report.palette import INK, MUTED, SERIES, VERDICT_COLOURS, curve_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,9 +48,9 @@ def scatter_figure(axis: "StudyAxis", positions: Sequence[float], table: "Margin
     figure = new_figure(height, PANEL_WIDTH)
     axes = figure.subplots()
     for number, (name, label) in enumerate(zip(shown, labels, strict=True)):
-        look, chosen = curve_look(number), column == name
+        style, chosen = curve_style(number), column == name
         axes.plot(
-            x[chosen], margin[chosen], color=look.colour, marker=look.marker, linestyle="none", markersize=3.6,
+            x[chosen], margin[chosen], color=style.colour, marker=style.marker, linestyle="none", markersize=3.6,
             markeredgewidth=0, alpha=0.75, label=label, rasterized=len(x) > MOST_VECTORS,
         )  # fmt: skip
     others = (column >= 0) & ~np.isin(column, shown)
