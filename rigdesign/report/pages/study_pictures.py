@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.report.figures import study, study_map, study_samples
-from rigdesign.report.figures.drawing import inline_svg
+from rigdesign.report.figures.drawing import NumberedFigures
 from rigdesign.report.margins.answer import StudyAnswer
 from rigdesign.report.margins.regions import region_map
 from rigdesign.studies.result import StudyResult
 
 if TYPE_CHECKING:
+    from markupsafe import Markup
     from matplotlib.figure import Figure
 
 MOST_PAIRS = 15
@@ -33,7 +34,7 @@ T = TypeVar("T")
 class Picture:
     """A figure as SVG with its caption."""
 
-    svg: str
+    svg: "Markup"
     caption: str
 
 
@@ -59,7 +60,7 @@ class StudyPictures:
 
 def study_pictures(found: StudyResult, answer: StudyAnswer) -> StudyPictures:
     """Draw a study: curves of one input, a map of two, maps of all pairs of a grid, scatter plots of samples."""
-    pictures, svg = StudyPictures(), _Numbered()
+    pictures, svg = StudyPictures(), NumberedFigures()
     if not answer.selected.computed.any():
         return pictures
     if len(answer.axes) == 1:
@@ -74,18 +75,7 @@ def study_pictures(found: StudyResult, answer: StudyAnswer) -> StudyPictures:
     return pictures
 
 
-class _Numbered:
-    """SVG of a figure with ids of its own."""
-
-    def __init__(self) -> None:
-        self._count = 0
-
-    def __call__(self, figure: "Figure", description: str) -> str:
-        self._count += 1
-        return inline_svg(figure, f"s{self._count}", description)
-
-
-def _curves(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer: StudyAnswer) -> None:
+def _curves(pictures: StudyPictures, svg: NumberedFigures, found: StudyResult, answer: StudyAnswer) -> None:
     axis = answer.axes[0]
     positions = [axis.position(point) for point in found.points]
     main = study.margins_figure(answer, positions)
@@ -117,7 +107,7 @@ def _curves(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer:
             )
 
 
-def _maps(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer: StudyAnswer) -> None:
+def _maps(pictures: StudyPictures, svg: NumberedFigures, found: StudyResult, answer: StudyAnswer) -> None:
     pairs = list(combinations(answer.axes, 2))
     for pair in pairs[:MOST_PAIRS]:
         regions = region_map(pair, found.points, answer.deciding) if answer.rest.checks else None
@@ -130,7 +120,7 @@ def _maps(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer: S
         pictures.main.append(Picture(svg(figure, description), caption))
 
 
-def _scatter(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer: StudyAnswer) -> None:
+def _scatter(pictures: StudyPictures, svg: NumberedFigures, found: StudyResult, answer: StudyAnswer) -> None:
     """Margins over every input; of many inputs over those along which the smallest margin changes most."""
     if not answer.rest.checks:
         return
@@ -163,7 +153,7 @@ def _per_check(records: Iterable[T]) -> dict[str, list[T]]:
 
 def _by_check(
     pictures: list[Picture],
-    svg: _Numbered,
+    svg: NumberedFigures,
     answer: StudyAnswer,
     records: dict[str, list[T]],
     draw: Callable[[str, Sequence[T]], "Figure | None"],
