@@ -91,7 +91,8 @@ def _print_nearest(console: Console, checks: Iterable[Check]) -> None:
         table.add_row(Text(check.id), *map(Text, _numbers(check)))
     console.print(table)
     if stated:
-        console.print(f"stated inputs at their limit, left out here: {len(stated)}")
+        number = "1 check" if len(stated) == 1 else f"{len(stated)} checks"
+        console.print(f"{number} of a stated value near a stated limit: not in this list")
 
 
 def _used(check: Check) -> float:

@@ -30,6 +30,8 @@ MOST_LIMITING = 7
 """Limiting checks told apart in a scatter plot."""
 MOST_VECTORS = 1500
 """Points up to which every one is drawn as its own shape; more are drawn as a picture."""
+TITLE_WIDTH = 42
+"""Characters of a line of the title above a bar chart."""
 MOST_INPUTS = 12
 """Inputs of a bar chart, the strongest first."""
 
@@ -70,7 +72,8 @@ def tornado_figure(title: str, swings: "Sequence[Swing]") -> "Figure | None":
     bars = sorted(bars, key=lambda bar: bar.reach, reverse=True)[:MOST_INPUTS]
     if not bars:
         return None
-    height = 0.95 + 0.36 * len(bars)
+    lines = len(fill(title, TITLE_WIDTH).split("\n"))
+    height = 0.8 + 0.15 * lines + 0.36 * len(bars)
     figure = new_figure(height, PANEL_WIDTH)
     axes = figure.subplots()
     for place, bar in enumerate(bars):
@@ -93,8 +96,8 @@ def tornado_figure(title: str, swings: "Sequence[Swing]") -> "Figure | None":
     axes.set_yticks(range(len(bars)), [plain(fill(input_name(bar.swing.path), 26)) for bar in bars])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
-    finish(axes, MARGIN_LABEL, "", plain(fill(title, 66)))
-    figure.subplots_adjust(left=0.36, right=0.98, top=1 - 0.32 / height, bottom=0.5 / height)
+    finish(axes, MARGIN_LABEL, "", plain(fill(title, TITLE_WIDTH)))
+    figure.subplots_adjust(left=0.36, right=0.98, top=1 - (0.16 + 0.16 * lines) / height, bottom=0.5 / height)
     return figure
 
 
@@ -123,7 +126,8 @@ def _bar(swing: "Swing") -> _Bar | None:
 def indices_figure(title: str, indices: "Sequence[SobolIndex]") -> "Figure":
     """First-order and total Sobol index of every input for one check, with their 95 % intervals."""
     ordered = sorted(indices, key=lambda index: -index.total)[:MOST_INPUTS]
-    height = 1.1 + 0.36 * len(ordered)
+    lines = len(fill(title, TITLE_WIDTH).split("\n"))
+    height = 0.95 + 0.15 * lines + 0.36 * len(ordered)
     figure = new_figure(height, PANEL_WIDTH)
     axes = figure.subplots()
     series = (
@@ -156,6 +160,6 @@ def indices_figure(title: str, indices: "Sequence[SobolIndex]") -> "Figure":
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.legend(loc="lower right", frameon=True, framealpha=0.85, edgecolor="none")
-    finish(axes, "share of the variance of the utilisation", "", plain(fill(title, 66)))
-    figure.subplots_adjust(left=0.36, right=0.98, top=1 - 0.32 / height, bottom=0.5 / height)
+    finish(axes, "share of the variance of the utilisation", "", plain(fill(title, TITLE_WIDTH)))
+    figure.subplots_adjust(left=0.36, right=0.98, top=1 - (0.16 + 0.16 * lines) / height, bottom=0.5 / height)
     return figure

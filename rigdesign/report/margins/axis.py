@@ -78,9 +78,34 @@ class StudyAxis:
 
 
 def input_name(path: str) -> str:
-    """An input in words: its path without the first name where that says little."""
+    """An input in words: its path without the first name where that says little.
+
+    A ``*`` stands for every part of its kind: ``gearboxes.*.oil.flow`` is the oil flow of every gearbox.
+    """
     head, _, rest = path.partition(".")
-    return (rest if head == "gearboxes" and rest else path).replace("_", " ").replace(".", " ")
+    if "*" not in path:
+        return (rest if head == "gearboxes" and rest else path).replace("_", " ").replace(".", " ")
+    phrases: list[str] = []
+    words: list[str] = []
+    for part in path.split("."):
+        if "*" not in part:
+            words.append(part)
+            continue
+        *owner, kind = words or ["parts"]
+        owner = [word for word in owner if word not in ("gearboxes", "drivetrain")]
+        phrases += [" ".join(owner)] if owner else []
+        phrases.append(f"every {_singular(kind)}" if part == "*" else f"every {_singular(kind)} {part}")
+        words = []
+    phrases += [" ".join(words)] if words else []
+    return " of ".join(reversed(phrases)).replace("_", " ")
+
+
+def _singular(plural: str) -> str:
+    """The name of one part of a table: ``gearboxes``, ``bearings``, ``bought_parts``."""
+    for ending in ("xes", "shes"):
+        if plural.endswith(ending):
+            return plural.removesuffix("es")
+    return plural.removesuffix("s")
 
 
 def study_axis(path: str, points: Sequence[StudyPoint]) -> StudyAxis:

@@ -94,7 +94,7 @@ def test_stated_inputs_at_their_limit_are_no_near_margins(printed: Printed) -> N
     stated = make_check("ramp.test_torque", 180.0, 180.0, unit="N m")
     lines = printed(small_result(checks=[stated, make_check("near.check", 0.9, 1.0)]))
     assert not any(line.startswith("ramp.test_torque") for line in lines)
-    assert "stated inputs at their limit, left out here: 1" in lines
+    assert "1 check of a stated value near a stated limit: not in this list" in lines
 
 
 def test_what_does_not_apply_is_counted_by_its_reason(printed: Printed) -> None:
