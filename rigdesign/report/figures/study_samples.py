@@ -15,7 +15,7 @@ from rigdesign.report.figures.margin_axes import (
     margin_axis,
     mark_failed,
 )
-from rigdesign.report.margins.axis import input_name
+from rigdesign.report.margins.axis import input_name, value_shown
 from rigdesign.report.palette import INK, MUTED, SERIES, VERDICT_COLOURS, curve_style
 
 if TYPE_CHECKING:
@@ -83,7 +83,8 @@ def tornado_figure(title: str, swings: "Sequence[Swing]") -> "Figure | None":
         for offset, tip, text in ((-0.17, bar.low, bar.swing.low), (0.17, bar.high, bar.swing.high)):
             left = tip < bar.stated
             axes.annotate(
-                plain(text), (tip, place + offset), xytext=(-3 if left else 3, 0), textcoords="offset points",
+                plain(value_shown(text)),
+                (tip, place + offset), xytext=(-3 if left else 3, 0), textcoords="offset points",
                 ha="right" if left else "left", va="center", fontsize=6.5, color=INK,
             )  # fmt: skip
     axes.axvline(bars[0].stated, color=INK, linewidth=1.0)

@@ -52,13 +52,12 @@ class StudyAxis:
     def text(self, position: float) -> str:
         """A computed position with its unit, or the name that stands there."""
         if not self.numeric:
-            return self.texts[round(position)]
+            return value_shown(self.texts[round(position)])
         return f"{number_text(position, 6)} {unit_text(self.unit)}".strip()
 
     def shown(self, text: str) -> str:
         """A value as printed: ``60 degC`` as 60 °C, with all its digits."""
-        match = number_match(text) if self.numeric else None
-        return text if match is None else f"{match[1]} {unit_text(match[2])}".strip()
+        return value_shown(text)
 
     def read_off(self, position: float, held: float, beyond: float) -> str:
         """A value between the computed points ``held`` and ``beyond``, with the digits that their distance allows.
@@ -75,6 +74,12 @@ class StudyAxis:
             return self.text(held)
         decimals = max(0, -math.floor(math.log10(step) + 0.5))
         return f"{whole * step:.{decimals}f} {unit_text(self.unit)}".strip().replace("-", "\u2212")
+
+
+def value_shown(text: str) -> str:
+    """A value as printed, with all its digits: ``60 degC`` as 60 °C; a name as it stands."""
+    match = number_match(text)
+    return text if match is None else f"{match[1]} {unit_text(match[2])}".strip()
 
 
 def input_name(path: str) -> str:

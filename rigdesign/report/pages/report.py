@@ -160,17 +160,22 @@ def _body(section: ReportSection, page: _Page) -> "Markup":
     return Markup(text)
 
 
+INDICES = {"Fbeta": "Fβ", "Falpha": "Fα", "deltarelT": "δ rel T", "RrelT": "R rel T"}
+"""Indices of symbols as ISO 6336 prints them."""
+
+
 def signs(text: str) -> "Markup":
     """Escaped text in which K_V, f_z and the like carry a subscript and units stand as printed."""
     from markupsafe import Markup, escape
 
     escaped = str(escape(numbers.text_with_units(text.replace("sigma_F", "σ_F"))))
-    return Markup(re.sub(r"\b([KYfdσε])_([A-Z]{1,2}|[fzα]|Fbeta|Falpha)\b", _subscript, escaped))
+    return Markup(
+        re.sub(r"\b([KYfdσε])_([A-Z]{1,2}|[fzα]|Fbeta|Falpha|deltarelT|RrelT)\b", _subscript, escaped)
+    )
 
 
 def _subscript(found: re.Match[str]) -> str:
-    index = found[2].replace("beta", "β").replace("alpha", "α")
-    return f"{found[1]}<sub>{index}</sub>"
+    return f"{found[1]}<sub>{INDICES.get(found[2], found[2])}</sub>"
 
 
 def css_string(text: str) -> "Markup":

@@ -76,6 +76,13 @@ def test_inputs_are_named_in_words(path, name):
     assert input_name(path) == name.replace("gearboxes ", "").replace("_", " ")
 
 
+def test_quantities_among_names_stand_in_printed_units():
+    axis = study_axis("oil", [point({"oil": text}) for text in ("as stated", "120 degC", "FVA 3A")])
+    assert not axis.numeric
+    assert [axis.text(position) for position in axis.positions] == ["as stated", "120 °C", "FVA 3A"]
+    assert axis.shown("120 degC") == "120 °C"
+
+
 def test_a_single_point_is_answered_for_that_point():
     assert said(oil_points((90,)), "!ramp.*") == (
         "“root stress, ISO 6336-3” fails at the only point. Everything else passes at 90 °C; nearest to its limit is "
