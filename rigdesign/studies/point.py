@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 CHECK_KEYS = (
     "id", "title", "group", "value", "limit", "upper_limit", "unit", "comparison", "margin", "utilisation", "verdict",
+    "by_definition",
 )  # fmt: skip
 NO_MEMORY = "the worker has no memory left; give it more, or start fewer workers"
 
