@@ -52,7 +52,7 @@ class PointSetup:
     prepare: Prepare | None = None
 
     def packed(self) -> bytes:
-        """As `solve_point` takes it."""
+        """As `compute_point` takes it."""
         return pickle.dumps(self, protocol=pickle.HIGHEST_PROTOCOL)
 
 
@@ -72,7 +72,7 @@ _ONE_POINT = threading.Lock()
 """Meshing and compiled threads allow one point at a time in a process, whatever threads the executor has."""
 
 
-def solve_point(changes: Mapping[str, str], *, setup: bytes) -> PointOutcome:
+def compute_point(changes: Mapping[str, str], *, setup: bytes) -> PointOutcome:
     """Compute the case of ``setup`` with some of its values changed; never raises an `Exception`."""
     try:
         with _ONE_POINT, one_core(), threadpool_limits(limits=1):

@@ -16,7 +16,7 @@ from rigdesign.studies.design import Plan, StudyDesign, planned
 from rigdesign.studies.point import PointSetup, Prepare, Run
 from rigdesign.studies.result import StudyPoint, StudyResult
 from rigdesign.studies.shards import Shard, StudyLedgers, files_lock, folder_lock
-from rigdesign.studies.solver import Listeners, PointDefectError, PointSolver, Task, tasks_of
+from rigdesign.studies.solver import Listeners, PointDefectError, PointSolver, PointTask, tasks_of
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
@@ -185,7 +185,7 @@ def _workers(execution: Execution) -> Workers:
     return ProcessWorkers(worker_count(execution.workers))
 
 
-def _compute(plan: Plan, tasks: list[Task], solver: PointSolver, execution: Execution) -> None:
+def _compute(plan: Plan, tasks: list[PointTask], solver: PointSolver, execution: Execution) -> None:
     """Compute what is missing, round by round: a boundary search adds to ``tasks`` what it needs next."""
     missing = len(solver.missing(tasks))
     execution.say(f"{len(tasks)} points, {len(tasks) - missing} of them known already, {solver.workers}")
@@ -198,7 +198,7 @@ def _compute(plan: Plan, tasks: list[Task], solver: PointSolver, execution: Exec
 
 
 @contextmanager
-def _left_over(solver: PointSolver, tasks: Sequence[Task]) -> Iterator[None]:
+def _left_over(solver: PointSolver, tasks: Sequence[PointTask]) -> Iterator[None]:
     """Whatever stops the study from outside the points says what is stored and how to go on."""
     try:
         yield
