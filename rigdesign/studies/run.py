@@ -203,6 +203,7 @@ def _left_over(solver: PointSolver, tasks: Sequence[PointTask]) -> Iterator[None
     try:
         yield
     except (KeyboardInterrupt, LostWorkersError, PointDefectError) as stop:
+        solver.look_at_ledger()
         left, whole = len(solver.missing(tasks)), len(solver.share(tasks))
         text = (
             f"{whole - left} of {whole} points are computed ({solver.ledger}); the same command computes the other "

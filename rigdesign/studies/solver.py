@@ -1,6 +1,6 @@
 """Points of a study through workers and ledger: nothing that is stored is computed again."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 from rigdesign.base.errors import CaseError, MissingLibraryError
 from rigdesign.base.worker_pool import DIED, Workers
 from rigdesign.studies.design import DesignPoint
-from rigdesign.studies.ledger import point_key
+from rigdesign.studies.ledger import point_key, read_points
 from rigdesign.studies.point import PointOutcome, PointSetup, compute_point
 from rigdesign.studies.result import Record, StudyPoint
-from rigdesign.studies.shards import Shard, StudyLedgers
+from rigdesign.studies.shards import Entry, Shard, StudyLedgers
 
 if TYPE_CHECKING:
     from rigdesign.base.fidelity import Fidelity
@@ -96,7 +96,8 @@ class PointSolver:
         self._setup = setup
         self._ledgers = ledgers
         self._shard = shard
-        self.known = {key: entry for key, entry in ledgers.stored().items() if not (retry and entry[0])}
+        self._retry = retry
+        self.known = self._usable(ledgers.stored())
         """Stored points: key -> (failed, record)."""
         self.computed: set[str] = set()
         """Keys of the points computed now."""
@@ -177,6 +178,14 @@ class PointSolver:
             return
         self._ledgers.read_others()
         self.known = {**self._ledgers.stored(), **{key: self.known[key] for key in self.computed}}
+
+    def look_at_ledger(self) -> None:
+        """Take over a point that was stored when an interrupt came, before it was noted here."""
+        self.known = {**self._usable(read_points(self.ledger)), **self.known}
+
+    def _usable(self, stored: Mapping[str, Entry]) -> dict[str, Entry]:
+        """The stored points that are not computed again."""
+        return {key: entry for key, entry in stored.items() if not (self._retry and entry[0])}
 
     def _store(self, task: PointTask, failed: bool, record: Record) -> None:
         self._ledgers.ledger.store(
