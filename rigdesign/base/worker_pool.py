@@ -142,7 +142,8 @@ class Workers:
                 done, _ = wait(pending, LOOK_AFTER, FIRST_COMPLETED)
                 if not done:
                     self._look()
-                for future in sorted(done, key=pending.__getitem__):
+                # what is finished goes first: a broken pool raises for the others
+                for future in sorted(done, key=lambda one: (one.exception() is not None, pending[one])):
                     yield pending.pop(future), self._outcome(future)
         finally:
             self._withdraw(pending)

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, MissingLibraryError
-from rigdesign.base.worker_pool import DIED, Workers
+from rigdesign.base.version import __version__
+from rigdesign.base.worker_pool import DIED, LostWorkersError, Workers
 from rigdesign.studies.design import DesignPoint
 from rigdesign.studies.ledger import point_key, read_points
 from rigdesign.studies.point import PointOutcome, PointSetup, compute_point
@@ -130,7 +131,7 @@ class PointSolver:
         MissingLibraryError
             A system library that a worker lacks.
         LostWorkersError
-            If the workers are gone.
+            If the workers are gone, or one has another version of the tool.
         OutputError
             If the ledger cannot be written.
         """
@@ -204,6 +205,12 @@ def _entry(task: PointTask, outcome: PointOutcome | None) -> tuple[bool, Record]
     """What the ledger keeps of an outcome; raises for one that stops the study."""
     if outcome is None:
         return True, {"error": DIED}
+    if outcome.version != __version__:
+        raise LostWorkersError(
+            f"a worker that joined after the start has rigdesign {outcome.version or 'of another version'}, this study "
+            f"is of rigdesign {__version__}: its point is not used; install 'rigdesign[cluster]=={__version__}' there "
+            "and start it again"
+        )
     if outcome.status == "library missing":
         raise MissingLibraryError(str(outcome.record["error"]))
     if outcome.status == "defect":
