@@ -149,6 +149,8 @@ def run_study(
             "leave --shard out, or give several --workers"
         )
     plan = planned(case, design)
+    if execution.run is None and execution.prepare is None:
+        plan.require(_check_ids(case))
     execution.say(f"{len(plan.points)} points: are they valid cases")
     tasks = tasks_of(case, plan.points, fidelity)
     workers = _workers(execution)
@@ -173,6 +175,13 @@ def run_study(
     computed = len(solver.computed)
     known = sum(not task.fault for task in tasks) - missing
     return StudyOutcome(result=result, completed=computed, reused=known - computed, missing=missing)
+
+
+def _check_ids(case: "Case") -> list[str]:
+    """Ids of the checks of a point, known before anything is computed: all but those of the thermal history."""
+    from rigdesign.explanation.rules import declared_rules
+
+    return [rule.id for _, rule in declared_rules(case) if not rule.id.startswith("transient.")]
 
 
 def _workers(execution: Execution) -> Workers:
