@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import UsageError
 from rigdesign.studies.boundary import DEFAULT_PARTS, BoundarySearch
-from rigdesign.studies.grid import MAX_POINTS, Variation, grid, parse_variation
+from rigdesign.studies.grid import MAX_POINTS, Variation, combinations, parse_variation
 from rigdesign.studies.ranges import ASSUMED, InputRange, parse_ranges, require_number, tolerance_in
 from rigdesign.studies.result import Design, StudyPoint, check_ids
 from rigdesign.studies.selection import CheckSelection
@@ -150,7 +150,7 @@ def _grid(case: "Case", design: StudyDesign) -> Plan:
     for variation, text in zip(variations, design.vary, strict=True):
         require_number(case, variation, text)
     paths = [variation.path for variation in variations]
-    points = [dict(zip(paths, values, strict=True)) for values in grid(variations)]
+    points = [dict(zip(paths, values, strict=True)) for values in combinations(variations)]
     return Plan(
         kind="grid",
         method=_listed(len(points), len(paths)),
