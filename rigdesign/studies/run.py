@@ -13,6 +13,7 @@ from rigdesign.base.output_folder import prepare_output
 from rigdesign.base.worker_pool import LostWorkersError, ProcessWorkers, Workers, worker_count
 from rigdesign.studies.analysis import analysed, computed_so_far
 from rigdesign.studies.design import Plan, StudyDesign, planned
+from rigdesign.studies.earlier import replaced_pages
 from rigdesign.studies.point import PointSetup, Prepare, Run
 from rigdesign.studies.result import StudyPoint, StudyResult
 from rigdesign.studies.shards import Shard, StudyLedgers, files_lock, folder_lock
@@ -157,7 +158,7 @@ def run_study(
     prepare_output(out)
     out.mkdir(parents=True, exist_ok=True)
     with folder_lock(out, execution.shard), StudyLedgers(out, execution.shard) as ledgers, workers:
-        for line in ledgers.repaired:
+        for line in (*ledgers.repaired, *replaced_pages(out, plan)):
             execution.tell(line)
         setup = PointSetup(case, fidelity, execution.run, execution.prepare)
         solver = PointSolver(setup, ledgers, workers, retry=execution.retry, shard=execution.shard)
