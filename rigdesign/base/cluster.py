@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import MissingLibraryError, UsageError, shortened
 from rigdesign.base.version import __version__
-from rigdesign.base.worker_pool import LostWorkersError, Workers
+from rigdesign.base.worker_pool import LostWorkersError, Outcome, Workers
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
+
     from distributed import Client
 
 ADDRESS = re.compile(r"(tcp|tls|ws|wss|ucx)://\S+:\d+")
@@ -104,6 +106,16 @@ class ClusterWorkers(Workers):
         if not at_once:  # else tasks that are withdrawn still report
             for logger, level in self._levels.items():
                 logger.setLevel(level)
+
+    def _outcome(self, future: "Future[Outcome]") -> Outcome | None:
+        """As of `Workers`; a task that cannot be loaded met a worker that joined with another rigdesign, or none."""
+        try:
+            return super()._outcome(future)
+        except (ImportError, AttributeError) as error:
+            raise LostWorkersError(
+                f"a worker of {self._address} that joined after the start cannot load the task "
+                f"({_first_line(error)}); install 'rigdesign[cluster]=={__version__}' there and start it again"
+            ) from error
 
     def _look(self) -> None:
         """Ask the scheduler for a sign of life, and for its workers."""

@@ -6,7 +6,7 @@ The pool of this module: processes of one thread each, none outlives its parent,
 import os
 import signal
 import threading
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterator, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
@@ -142,11 +142,16 @@ class Workers:
                 done, _ = wait(pending, LOOK_AFTER, FIRST_COMPLETED)
                 if not done:
                     self._look()
-                for future in sorted(done, key=pending.__getitem__):
+                # what is finished goes first: a broken pool raises for the others
+                for future in sorted(done, key=lambda one: (one.exception() is not None, pending[one])):
                     yield pending.pop(future), self._outcome(future)
         finally:
-            for future in pending:
-                future.cancel()
+            self._withdraw(pending)
+
+    def _withdraw(self, pending: Collection[Future[Outcome]]) -> None:
+        """Take back tasks whose outcome nobody waits for any more."""
+        for future in pending:
+            future.cancel()
 
     def _outcome(self, future: Future[Outcome]) -> Outcome | None:
         try:
@@ -211,6 +216,14 @@ class ProcessWorkers(Workers):
                 for index in under_way:
                     yield index, self._alone(work, tasks, index)
 
+    def _withdraw(self, pending: Collection[Future[Outcome]]) -> None:
+        """End the processes with their tasks.
+
+        A future cancelled here while its process dies raises in the thread of the pool, which then ends nothing.
+        """
+        if pending:
+            self.close(at_once=True)
+
     def _alone(self, work: Callable[[Task], Outcome], tasks: Sequence[Task], index: int) -> Outcome | None:
         pool = _ProcessPool(1)
         try:
@@ -237,10 +250,16 @@ class _ProcessPool:
         )
 
     def end(self, *, at_once: bool) -> None:
-        """Stop the processes; ``at_once``: what they compute is lost."""
-        self.executor.shutdown(wait=not at_once, cancel_futures=True)
-        self._end_of_parent.close()
-        self._end_of_workers.close()
+        """Stop the processes and wait for their end; ``at_once``: what they compute is lost.
+
+        An interrupt waits until it is done.
+        """
+        with _interrupts_held():
+            if not at_once:
+                self.executor.shutdown()
+            self._end_of_parent.close()
+            self._end_of_workers.close()
+            self.executor.shutdown(cancel_futures=True)
 
 
 def compute_all(

@@ -180,17 +180,6 @@ class Registry:
                 )
         return self._families[key]
 
-    def topic_of(self, case: Case, check: Check) -> Topic:
-        """The topic of a check.
-
-        Raises
-        ------
-        KeyError
-            No family has its id.
-        """
-        family = self.family_of(case, check)
-        return next(topic for topic in self._topics if family in topic.families)
-
 
 REGISTRY = Registry()
 

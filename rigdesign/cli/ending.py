@@ -1,10 +1,14 @@
 """How a command ends: errors as messages and exit status, what an interrupt or a failed run leaves."""
 
+import math
 import os
+import signal
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 
 from cyclopts import CycloptsError
 
@@ -14,6 +18,28 @@ NOTHING_KEPT = "nothing was written; the same command starts again from the begi
 SIMULATIONS_KEPT = (
     "no report was written; finished simulations are stored, the same command goes on from there"
 )
+
+CLEAN_UP = 10.0
+"""Time after an interrupt in which others are ignored [s]."""
+
+
+def first_interrupt_counts() -> None:
+    """Ignore what follows an interrupt within `CLEAN_UP`, such as a second Ctrl-C: it would cut the clean-up short.
+
+    A process started with interrupts ignored, in the background of a shell, is left so.
+    """
+    if signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        return
+    counted = -math.inf
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        nonlocal counted
+        now = time.monotonic()
+        if now - counted >= CLEAN_UP:
+            counted = now
+            raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, interrupt)
 
 
 @contextmanager

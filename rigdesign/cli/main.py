@@ -9,6 +9,7 @@ missing, 5 measured data cannot be used, 70 a defect of the tool, 130 stopped by
 the commands, so that `--help` answers at once.
 """
 
+import signal
 import sys
 
 from rigdesign.cli.application import app, run
@@ -26,7 +27,7 @@ from rigdesign.cli.commands import (
     study,
     validate,
 )
-from rigdesign.cli.ending import exit_status
+from rigdesign.cli.ending import exit_status, first_interrupt_counts
 from rigdesign.cli.terminal.console import plain_streams
 
 __all__ = [
@@ -51,4 +52,7 @@ __all__ = [
 def main() -> None:
     """Entry point of the `rigdesign` command."""
     plain_streams()
-    sys.exit(exit_status(lambda: run(sys.argv[1:])))
+    first_interrupt_counts()
+    status = exit_status(lambda: run(sys.argv[1:]))
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the status stands; worker processes are waited for
+    sys.exit(status)

@@ -79,13 +79,15 @@ teeth: they change neither drivetrain nor schedule nor the teeth as drawn. `rean
 
 @dataclass(frozen=True)
 class Reanalysis:
-    """What is solved again of a case with changed inputs.
+    """A case with changed inputs, and what of it is solved again.
 
+    parts : of the model that the changed inputs touch
     time_run : ``shifted`` where the periodic response may move its envelopes (`shifted_run`), else ``marched``
     """
 
+    case: Case
     parts: tuple[Part, ...]
-    time_run: TimeRun
+    time_run: TimeRun = "marched"
 
 
 def reanalysis(case: Case, changed: Collection[str]) -> Reanalysis | None:
@@ -106,7 +108,7 @@ def reanalysis(case: Case, changed: Collection[str]) -> Reanalysis | None:
         power.bracing.mode == "torque_controlled" and power.bracing.temperature_drift == 0.0
     )
     shifted = steady and all(path in in_heat or "time run" not in parts_of(path) for path in changed)
-    return Reanalysis(parts, "shifted" if shifted else "marched")
+    return Reanalysis(case, parts, "shifted" if shifted else "marched")
 
 
 def parts_of(path: str) -> tuple[Part, ...]:

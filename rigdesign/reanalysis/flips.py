@@ -17,11 +17,10 @@ from rigdesign.base.units import number_match
 from rigdesign.case.loader import changed_together
 from rigdesign.case.model import Case
 from rigdesign.checks.registry import REGISTRY
-from rigdesign.coupling.acceleration import Anderson
 from rigdesign.coupling.iteration import PointProblem, solve_loads
-from rigdesign.coupling.loop import PointResult, solve_point
+from rigdesign.coupling.loop import PointResult
 from rigdesign.coupling.time_run import held_points
-from rigdesign.reanalysis.modified_rig import with_records
+from rigdesign.reanalysis.modified_rig import coupled_again, with_records
 from rigdesign.records.dynamics import DynamicRun, dynamic_loads
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.check import Check
@@ -257,9 +256,8 @@ def _checks(stated: SolvedRig, case: Case, *, through_heat: bool) -> dict[str, C
         rig = build_rig(case, stated.rig.fidelity)
         if not through_heat or same_housings(rig, stated.rig):
             take_over(rig, stated.rig, HOUSINGS)
-        points = [
-            _point(rig, number, near, through_heat=through_heat) for number, near in enumerate(stated.points)
-        ]
+        point = coupled_again if through_heat else _at_stated_temperatures
+        points = [point(rig, stated, number) for number in range(len(stated.points))]
         run = None
         if stated.run is not None:
             run = DynamicRun(points=tuple(points), curves=stated.run.curves, ramp=stated.run.ramp)
@@ -277,15 +275,11 @@ def _follows(key: str, patterns: Sequence[str]) -> bool:
     return any(fnmatchcase(key, pattern) or fnmatchcase(f"{key}.", pattern) for pattern in patterns)
 
 
-def _point(rig: Rig, number: int, near: PointResult, *, through_heat: bool) -> PointResult:
-    """A held point of the changed rig, coupled again or at the temperatures of the stated one."""
-    point, start = held_points(rig)[number], near.last.coupling_state
-    if through_heat:
-        before = near.last if all(name in near.last.fields for name in rig.models) else None
-        steps = Anderson(start, known=near.differences)
-        return solve_point(rig, point, start=start, before=before, acceleration=steps)
+def _at_stated_temperatures(rig: Rig, stated: SolvedRig, number: int) -> PointResult:
+    """A held point of the changed rig: its loads at the temperatures of the stated one."""
+    point, near = held_points(rig)[number], stated.points[number]
     problem = PointProblem.braced(rig, point)
-    loads = solve_loads(problem, start)
+    loads = solve_loads(problem, near.last.coupling_state)
     return replace(near, point=point, last=replace(near.last, **vars(loads)), setting=problem.bracing)
 
 

@@ -1,14 +1,14 @@
 """A solved rig with some inputs changed: from its converged state, only what they touch is solved again."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 
 from dynamics.response.time_response import TimeResponse
 from rigdesign.case.model import Case
 from rigdesign.coupling.acceleration import Anderson
 from rigdesign.coupling.loop import PointResult, governing_point, solve_point
 from rigdesign.coupling.time_run import held_points, run_ramp
-from rigdesign.reanalysis.affected_parts import PARTS, Part, TimeRun
+from rigdesign.reanalysis.affected_parts import PARTS, Part, Reanalysis
 from rigdesign.reanalysis.motor_torque import Array, shifted_drive
 from rigdesign.reanalysis.shifted_run import shifted_run
 from rigdesign.records.curves import Curves, solve_curves
@@ -26,38 +26,25 @@ LOADS_MOVE = {"gear_temperature": 0.25, "centre_distance": 2e-6, "axial_expansio
 kelvin moves a check on loads by up to 0.001 of its limit, `verdicts.LEAST_MOVE`, and 5 um do."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Modification:
-    """What changes.
-
-    parts : of the model that the changed inputs touch
-    time_run : ``shifted`` for inputs that reach the loads through heat alone, where it may be
-    """
-
-    case: Case
-    parts: tuple[Part, ...]
-    time_run: TimeRun = "marched"
-
-
 def modified_rig(
-    stated: SolvedRig, modification: Modification, motor_losses: Array | None
+    stated: SolvedRig, again: Reanalysis, motor_losses: Array | None
 ) -> tuple[SolvedRig, tuple[Part, ...]]:
     """The modified rig and the parts that were solved again; all others are those of the stated rig.
 
     motor_losses : torque of all losses at the motor over the stated time run [N m], (n,)
     """
-    case, parts = modification.case, modification.parts
+    case, parts = again.case, again.parts
     rig = _rig_like(stated.rig, case, parts)
     points = list(stated.points)
     if "coupling" in parts:
-        points = list(_coupled(rig, stated))
+        points = [coupled_again(rig, stated, number) for number in range(len(stated.points))]
         parts = PARTS if stated.run is not None and _loads_move(points, stated.points) else parts
     run, loads = stated.run, stated.loads
     if run is None:
         return with_records(rig, points, None, None), tuple(part for part in parts if part == "coupling")
     test = governing_point(points)
     curves = solve_curves(rig, test.last) if "curves" in parts else run.curves
-    ramp, solved = _time_run(rig, test, replace(modification, parts=parts), (run, curves), motor_losses)
+    ramp, solved = _time_run(rig, test, replace(again, parts=parts), (run, curves), motor_losses)
     run = DynamicRun(points=tuple(points), curves=curves, ramp=ramp)
     if "curves" in parts or "time run" in parts:
         loads = dynamic_loads(rig, run, over_speed=False)
@@ -69,7 +56,7 @@ def modified_rig(
 def _time_run(
     rig: Rig,
     test: PointResult,
-    modification: Modification,
+    again: Reanalysis,
     responses: tuple[DynamicRun, Curves],
     motor_losses: Array | None,
 ) -> tuple[TimeResponse, tuple[Part, ...]]:
@@ -77,9 +64,9 @@ def _time_run(
 
     responses : of the stated rig, and the curves of the modified one
     """
-    (run, curves), parts = responses, list(modification.parts)
+    (run, curves), parts = responses, list(again.parts)
     ramp: TimeResponse | None = run.ramp
-    if "time run" in parts and modification.time_run == "shifted":
+    if "time run" in parts and again.time_run == "shifted":
         ramp = shifted_run(rig, run, curves)
         parts.remove("time run")
     if ramp is not None and "time run" not in parts and "coupling" in parts:
@@ -110,18 +97,21 @@ def _rig_like(stated: Rig, case: Case, parts: tuple[Part, ...]) -> Rig:
     return rig
 
 
-def _coupled(rig: Rig, stated: SolvedRig) -> Iterator[PointResult]:
-    """The held points from those of the stated rig; its fields are the first guess where the mesh is the same."""
-    same = all(rig.models[name] is stated.rig.models[name] for name in rig.models)
-    for point, near in zip(held_points(rig), stated.points, strict=True):
-        start = near.last.coupling_state
-        yield solve_point(
-            rig,
-            point,
-            start=start,
-            before=near.last if same else None,
-            acceleration=Anderson(start, known=near.differences),
-        )
+def coupled_again(rig: Rig, stated: SolvedRig, number: int) -> PointResult:
+    """A held point of a modified rig, coupled from its state in the stated one.
+
+    The fields of the stated rig are the first guess where both have the same meshes.
+    """
+    near = stated.points[number]
+    start = near.last.coupling_state
+    same = all(model is stated.rig.models.get(name) for name, model in rig.models.items())
+    return solve_point(
+        rig,
+        held_points(rig)[number],
+        start=start,
+        before=near.last if same else None,
+        acceleration=Anderson(start, known=near.differences),
+    )
 
 
 def _asks_for(case: Case, quantities: tuple[str, ...]) -> bool:

@@ -1,5 +1,6 @@
 """The solved rig from which modified ones start: small enough to be sent to worker processes, restored there once."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
@@ -13,13 +14,16 @@ from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.time_run import held_points
-from rigdesign.reanalysis.modified_rig import with_records
+from rigdesign.reanalysis.affected_parts import Part, Reanalysis
+from rigdesign.reanalysis.modified_rig import modified_rig, with_records
 from rigdesign.reanalysis.motor_torque import Array, losses_on_motor, peaks_only
 from rigdesign.records.curves import Curves
 from rigdesign.records.dynamics import DynamicRun
 from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.results.check import Check
 from rigdesign.results.loads import DynamicLoads
 from rigdesign.results.result import DiscretisationRow
+from rigdesign.results.units import ZERO
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.main import Progress, solve_case
 from rigdesign.run.solver_errors import solver_errors
@@ -39,6 +43,19 @@ class Reference:
     loads: DynamicLoads | None
     discretisation: tuple[DiscretisationRow, ...]
     key: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReanalysisResult:
+    """What is kept of a modified rig.
+
+    max_temperature_degC : highest of all housings, None without one
+    parts : solved again
+    """
+
+    checks: Sequence[Check]
+    max_temperature_degC: float | None  # noqa: N815
+    parts: tuple[Part, ...]
 
 
 def solve_reference(
@@ -62,6 +79,29 @@ def solve_reference(
         key=f"{case.hash} {fidelity}",
     )
     return reference, solved
+
+
+def reanalysed(
+    reference: Reference, again: Reanalysis, evaluate: Callable[[SolvedRig], Sequence[Check]]
+) -> ReanalysisResult:
+    """A modified case from the reference rig; ``evaluate`` gives the checks of a solved rig.
+
+    Raises
+    ------
+    RigdesignError
+        The modified case has no result.
+    """
+    with solver_errors(again.case), threadpool_limits(limits=1):
+        solved, parts = modified_rig(restored(reference), again, reference.motor_losses)
+        return result_of(replace(solved, discretisation=reference.discretisation), evaluate, parts)
+
+
+def result_of(
+    solved: SolvedRig, evaluate: Callable[[SolvedRig], Sequence[Check]], parts: tuple[Part, ...] = ()
+) -> ReanalysisResult:
+    """The checks of a solved rig and its highest temperature."""
+    hottest = max((found.highest - ZERO for found in solved.temperatures), default=None)
+    return ReanalysisResult(checks=evaluate(solved), max_temperature_degC=hottest, parts=parts)
 
 
 _made: dict[str, SolvedRig] = {}

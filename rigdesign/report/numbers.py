@@ -86,6 +86,11 @@ def percent_text(share: float) -> str:
     return f"{number_text(percent, 3) if abs(percent) >= 1.0 else f'{percent:.1g}'} %"
 
 
+def counted(number: int, noun: str) -> str:
+    """``1 point``, ``4 points``."""
+    return f"{number} {noun}{'' if number == 1 else 's'}"
+
+
 def power_text(value: float) -> str:
     """A power of ten on an axis: 10⁻³, 0.1, 1, 10."""
     power = round(math.log10(value))

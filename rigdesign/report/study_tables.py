@@ -90,14 +90,15 @@ def write_tables(study: StudyResult, out: Path, formats: Sequence[TableFormat]) 
     OutputError
         If ``out`` cannot be written.
     """
+    if not formats:
+        return
     require_table_libraries(formats)
     table = table_columns(study_csv(study.variations, study.points))
     columns = with_numbers(table, study.variations)
     writers = {"parquet": _write_parquet, "xlsx": _write_xlsx}
-    if formats:
-        with staged(out) as scratch:
-            for name in dict.fromkeys(formats):
-                writers[name](columns, study, scratch / f"results.{name}")
+    with staged(out) as scratch:
+        for name in dict.fromkeys(formats):
+            writers[name](columns, study, scratch / f"results.{name}")
 
 
 def _write_parquet(columns: Sequence[Column], study: StudyResult, path: Path) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import UsageError
 from rigdesign.studies.boundary import DEFAULT_PARTS, BoundarySearch
-from rigdesign.studies.grid import MAX_POINTS, Variation, grid, parse_variation
+from rigdesign.studies.grid import MAX_POINTS, Variation, combinations, parse_variation
 from rigdesign.studies.ranges import ASSUMED, InputRange, parse_ranges, require_number, tolerance_in
 from rigdesign.studies.result import Design, StudyPoint, check_ids
 from rigdesign.studies.selection import CheckSelection
@@ -150,14 +150,21 @@ def _grid(case: "Case", design: StudyDesign) -> Plan:
     for variation, text in zip(variations, design.vary, strict=True):
         require_number(case, variation, text)
     paths = [variation.path for variation in variations]
-    points = [dict(zip(paths, values, strict=True)) for values in grid(variations)]
+    points = [dict(zip(paths, values, strict=True)) for values in combinations(variations)]
     return Plan(
         kind="grid",
-        method=f"{len(points)} points, every combination of the listed values",
+        method=_listed(len(points), len(paths)),
         variations=variations,
         points=[DesignPoint(values, values) for values in points],
         selection=CheckSelection(design.checks),
     )
+
+
+def _listed(points: int, inputs: int) -> str:
+    """How the points of a grid were chosen."""
+    if points == 1:
+        return "1 point"
+    return f"{points} points, every {'combination of the listed values' if inputs > 1 else 'listed value'}"
 
 
 def _sampled(case: "Case", design: StudyDesign) -> Plan:
@@ -200,12 +207,18 @@ def _tornado(case: "Case", design: StudyDesign) -> Plan:
     points += [DesignPoint({**stated, entry.path: text}, entry.changes(text)) for entry, text in ends(ranges)]
     return Plan(
         kind="one at a time",
-        method=f"the case as stated and {len(ranges)} inputs at both ends of their ranges, one at a time",
+        method=f"the case as stated and {_ends_of(len(ranges))}",
         variations=[entry.variation for entry in ranges],
         points=points,
         selection=CheckSelection(design.checks),
         ranges=ranges,
     )
+
+
+def _ends_of(inputs: int) -> str:
+    if inputs == 1:
+        return "one input at both ends of its range"
+    return f"{inputs} inputs at both ends of their ranges, one at a time"
 
 
 def _boundary(case: "Case", design: StudyDesign) -> Plan:

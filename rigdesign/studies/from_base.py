@@ -4,7 +4,6 @@ Every point starts from the base case and from no other point, so that its numbe
 workers. Solved once, for the base case: meshes and their errors, the time run over the schedule.
 """
 
-from dataclasses import replace
 from functools import cached_property
 
 from threadpoolctl import threadpool_limits
@@ -15,9 +14,7 @@ from rigdesign.case.model import Case
 from rigdesign.checks import estimated_checks
 from rigdesign.checks.rules import overall
 from rigdesign.reanalysis.affected_parts import Reanalysis, reanalysis
-from rigdesign.reanalysis.modified_rig import Modification, modified_rig
-from rigdesign.reanalysis.reference import Reference, restored, solve_reference
-from rigdesign.results.units import ZERO
+from rigdesign.reanalysis.reference import Reference, reanalysed, restored, solve_reference
 from rigdesign.rig.model import build_rig
 from rigdesign.rig.reuse import same_housings
 from rigdesign.run.main import run_case
@@ -54,7 +51,7 @@ class FromBase:
 
     def _point(self, case: Case) -> CheckedPoint:
         again = reanalysis(case, self._changed(case))
-        found = None if again is None else self._modified(case, again)
+        found = None if again is None else self._modified(again)
         return found or checked_point(run_case(case, fidelity=self._fidelity))
 
     @cached_property
@@ -78,20 +75,20 @@ class FromBase:
         except CaseError:
             return False
 
-    def _modified(self, case: Case, again: Reanalysis) -> CheckedPoint | None:
+    def _modified(self, again: Reanalysis) -> CheckedPoint | None:
         """The point from the base case; None where that tells nothing of it."""
         reference = self._reference
         if reference is None:
             return None
-        modification = Modification(case=case, parts=again.parts, time_run=again.time_run)
-        with solver_errors(case):
-            try:
-                stated = restored(reference)
-                if not same_housings(build_rig(case, self._fidelity), stated.rig):
+        try:
+            with solver_errors(again.case):
+                if not same_housings(build_rig(again.case, self._fidelity), restored(reference).rig):
                     return None
-                solved, _ = modified_rig(stated, modification, reference.motor_losses)
-            except NotConvergedError:
-                return None
-            checks = estimated_checks(replace(solved, discretisation=reference.discretisation))
-        hottest = max((found.highest - ZERO for found in solved.temperatures), default=None)
-        return CheckedPoint(verdict=overall(checks), max_temperature_degC=hottest, checks=checks)
+            found = reanalysed(reference, again, estimated_checks)
+        except NotConvergedError:
+            return None
+        return CheckedPoint(
+            verdict=overall(found.checks),
+            max_temperature_degC=found.max_temperature_degC,
+            checks=found.checks,
+        )

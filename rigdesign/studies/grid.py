@@ -118,7 +118,7 @@ def _plain(number: Decimal) -> str:
     return f"{number.normalize():f}"
 
 
-def grid(variations: Sequence[Variation]) -> list[tuple[str, ...]]:
+def combinations(variations: Sequence[Variation]) -> list[tuple[str, ...]]:
     """Every combination of the values, the last variation running fastest.
 
     Raises

@@ -4,7 +4,7 @@ import pickle
 import threading
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, Protocol
 
@@ -14,6 +14,7 @@ from rigdesign.base.errors import MissingLibraryError, RigdesignError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.base.json_text import to_plain
 from rigdesign.base.parallel import one_core
+from rigdesign.base.version import __version__
 from rigdesign.results.result import RunResult
 from rigdesign.studies.result import CheckedPoint, Record, checked_point
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 CHECK_KEYS = (
     "id", "title", "group", "value", "limit", "upper_limit", "unit", "comparison", "margin", "utilisation", "verdict",
+    "by_definition",
 )  # fmt: skip
 NO_MEMORY = "the worker has no memory left; give it more, or start fewer workers"
 
@@ -52,7 +54,7 @@ class PointSetup:
     prepare: Prepare | None = None
 
     def packed(self) -> bytes:
-        """As `solve_point` takes it."""
+        """As `compute_point` takes it."""
         return pickle.dumps(self, protocol=pickle.HIGHEST_PROTOCOL)
 
 
@@ -62,18 +64,25 @@ class PointOutcome:
 
     A point that cannot be computed is a result; a library that is missing is not the point's fault, and an error
     that nobody raised on purpose is a defect of the tool.
+
+    version : of the tool in the worker, which may have joined a cluster after the start
     """
 
     status: Status
     record: Record
+    version: str = ""
 
 
 _ONE_POINT = threading.Lock()
 """Meshing and compiled threads allow one point at a time in a process, whatever threads the executor has."""
 
 
-def solve_point(changes: Mapping[str, str], *, setup: bytes) -> PointOutcome:
+def compute_point(changes: Mapping[str, str], *, setup: bytes) -> PointOutcome:
     """Compute the case of ``setup`` with some of its values changed; never raises an `Exception`."""
+    return replace(_computed(changes, setup), version=__version__)
+
+
+def _computed(changes: Mapping[str, str], setup: bytes) -> PointOutcome:
     try:
         with _ONE_POINT, one_core(), threadpool_limits(limits=1):
             case, fidelity, run = _unpacked(setup)

@@ -13,10 +13,11 @@ from rigdesign.base.output_folder import prepare_output
 from rigdesign.base.worker_pool import LostWorkersError, ProcessWorkers, Workers, worker_count
 from rigdesign.studies.analysis import analysed, computed_so_far
 from rigdesign.studies.design import Plan, StudyDesign, planned
+from rigdesign.studies.earlier import replaced_pages
 from rigdesign.studies.point import PointSetup, Prepare, Run
 from rigdesign.studies.result import StudyPoint, StudyResult
 from rigdesign.studies.shards import Shard, StudyLedgers, files_lock, folder_lock
-from rigdesign.studies.solver import Listeners, PointDefectError, PointSolver, Task, tasks_of
+from rigdesign.studies.solver import Listeners, PointDefectError, PointSolver, PointTask, tasks_of
 
 if TYPE_CHECKING:
     from rigdesign.case import Case
@@ -149,13 +150,15 @@ def run_study(
             "leave --shard out, or give several --workers"
         )
     plan = planned(case, design)
+    if execution.run is None and execution.prepare is None:
+        plan.require(_check_ids(case))
     execution.say(f"{len(plan.points)} points: are they valid cases")
     tasks = tasks_of(case, plan.points, fidelity)
     workers = _workers(execution)
     prepare_output(out)
     out.mkdir(parents=True, exist_ok=True)
     with folder_lock(out, execution.shard), StudyLedgers(out, execution.shard) as ledgers, workers:
-        for line in ledgers.repaired:
+        for line in (*ledgers.repaired, *replaced_pages(out, plan)):
             execution.tell(line)
         setup = PointSetup(case, fidelity, execution.run, execution.prepare)
         solver = PointSolver(setup, ledgers, workers, retry=execution.retry, shard=execution.shard)
@@ -175,6 +178,13 @@ def run_study(
     return StudyOutcome(result=result, completed=computed, reused=known - computed, missing=missing)
 
 
+def _check_ids(case: "Case") -> list[str]:
+    """Ids of the checks of a point, known before anything is computed: all but those of the thermal history."""
+    from rigdesign.explanation.rules import declared_rules
+
+    return [rule.id for _, rule in declared_rules(case) if not rule.id.startswith("transient.")]
+
+
 def _workers(execution: Execution) -> Workers:
     if execution.executor is not None:
         return Workers(execution.executor)
@@ -185,7 +195,7 @@ def _workers(execution: Execution) -> Workers:
     return ProcessWorkers(worker_count(execution.workers))
 
 
-def _compute(plan: Plan, tasks: list[Task], solver: PointSolver, execution: Execution) -> None:
+def _compute(plan: Plan, tasks: list[PointTask], solver: PointSolver, execution: Execution) -> None:
     """Compute what is missing, round by round: a boundary search adds to ``tasks`` what it needs next."""
     missing = len(solver.missing(tasks))
     execution.say(f"{len(tasks)} points, {len(tasks) - missing} of them known already, {solver.workers}")
@@ -198,11 +208,12 @@ def _compute(plan: Plan, tasks: list[Task], solver: PointSolver, execution: Exec
 
 
 @contextmanager
-def _left_over(solver: PointSolver, tasks: Sequence[Task]) -> Iterator[None]:
+def _left_over(solver: PointSolver, tasks: Sequence[PointTask]) -> Iterator[None]:
     """Whatever stops the study from outside the points says what is stored and how to go on."""
     try:
         yield
     except (KeyboardInterrupt, LostWorkersError, PointDefectError) as stop:
+        solver.look_at_ledger()
         left, whole = len(solver.missing(tasks)), len(solver.share(tasks))
         text = (
             f"{whole - left} of {whole} points are computed ({solver.ledger}); the same command computes the other "

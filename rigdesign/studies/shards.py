@@ -1,6 +1,7 @@
 """The ledgers of a study: one, or one a job of an array that computes a share of the points."""
 
 import re
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -16,6 +17,12 @@ from rigdesign.studies.result import Record
 T = TypeVar("T")
 LEDGER_NAME = "ledger.sqlite"
 LOCK_NAME = ".rigdesign-study.lock"
+START_LOCK = ".rigdesign-study.start.lock"
+"""Held while a study takes the lock of its folder or share."""
+START_WITHIN = 20.0
+"""Time in which other studies have started, those of a large array on a slow file system too [s]."""
+FILES_LOCK = ".rigdesign-study.files.lock"
+"""Held by the share that writes the files."""
 SHARD = re.compile(r"\s*(\d{1,6})\s*/\s*(\d{1,6})\s*")
 SHARD_LEDGERS = "ledger.*-of-*.sqlite"
 SHARD_LOCKS = ".rigdesign-study.*-of-*.lock"
@@ -130,18 +137,35 @@ def _joined(before: dict[str, Entry], more: dict[str, Entry]) -> dict[str, Entry
 def folder_lock(out: Path, shard: Shard | None) -> Iterator[None]:
     """Hold the lock of the folder, or of a share in it: a second study would compute every point twice.
 
+    Shares run together; a study of all points runs alone. Studies start one after the other, each holding the lock of
+    the start, so that each finds the locks of those before it.
+
     Raises
     ------
     OutputError
-        If another study, or a share of one, runs in the folder.
+        If another study, or this share of one, runs in the folder.
     """
     with ExitStack() as held:
-        held.enter_context(_lock(out / (LOCK_NAME if shard is None else shard.lock_name), out))
-        if shard is None:
-            for path in sorted(out.glob(SHARD_LOCKS)):
-                with _lock(path, out):
-                    pass
+        with _start_lock(out):
+            held.enter_context(_lock(out / (LOCK_NAME if shard is None else shard.lock_name), out))
+            for path in [out / LOCK_NAME] if shard is not None else sorted(out.glob(SHARD_LOCKS)):
+                if path.exists():
+                    _lock(path, out).release()
         yield
+
+
+def _start_lock(out: Path) -> FileLock:
+    """The lock of the start, as soon as those that start at the same moment have released it."""
+    until = time.monotonic() + START_WITHIN
+    while True:
+        try:
+            return FileLock(out / START_LOCK)
+        except OSError:
+            return _lock(out / START_LOCK, out)
+        except HeldError:
+            if time.monotonic() > until:
+                return _lock(out / START_LOCK, out)
+            time.sleep(0.02)
 
 
 def _lock(path: Path, out: Path) -> FileLock:
@@ -165,7 +189,7 @@ def files_lock(out: Path, shard: Shard | None) -> Iterator[bool]:
         yield True
         return
     try:
-        lock = FileLock(out / LOCK_NAME)
+        lock = FileLock(out / FILES_LOCK)
     except (HeldError, OSError):
         yield False
         return

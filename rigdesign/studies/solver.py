@@ -1,6 +1,6 @@
 """Points of a study through workers and ledger: nothing that is stored is computed again."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from functools import partial
@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rigdesign.base.errors import CaseError, MissingLibraryError
-from rigdesign.base.worker_pool import DIED, Workers
+from rigdesign.base.version import __version__
+from rigdesign.base.worker_pool import DIED, LostWorkersError, Workers
 from rigdesign.studies.design import DesignPoint
-from rigdesign.studies.ledger import point_key
-from rigdesign.studies.point import PointOutcome, PointSetup, solve_point
+from rigdesign.studies.ledger import point_key, read_points
+from rigdesign.studies.point import PointOutcome, PointSetup, compute_point
 from rigdesign.studies.result import Record, StudyPoint
-from rigdesign.studies.shards import Shard, StudyLedgers
+from rigdesign.studies.shards import Entry, Shard, StudyLedgers
 
 if TYPE_CHECKING:
     from rigdesign.base.fidelity import Fidelity
@@ -25,7 +26,7 @@ class PointDefectError(Exception):
 
 
 @dataclass(frozen=True)
-class Task:
+class PointTask:
     """A point as a case: its key, or why it is no valid one."""
 
     point: DesignPoint
@@ -36,7 +37,7 @@ class Task:
 
 def tasks_of(
     case: "Case", points: Sequence[DesignPoint], fidelity: "Fidelity", *, one_valid: bool = True
-) -> list[Task]:
+) -> list[PointTask]:
     """The points as cases; one that is no valid case carries its fault.
 
     one_valid : whether one of them has to be a valid case; not in a later round of a search
@@ -46,7 +47,7 @@ def tasks_of(
     CaseError
         If one has to be a valid case and none is, or a value is one its place can never hold.
     """
-    tasks: list[Task] = []
+    tasks: list[PointTask] = []
     first: CaseError | None = None
     for point in points:
         try:
@@ -55,9 +56,9 @@ def tasks_of(
             if any(fault.impossible for fault in error.faults):
                 raise
             first = first or error
-            tasks.append(Task(point, fault=str(error)))
+            tasks.append(PointTask(point, fault=str(error)))
         else:
-            tasks.append(Task(point, point_key(found, fidelity, case.hash), found))
+            tasks.append(PointTask(point, point_key(found, fidelity, case.hash), found))
     if one_valid and first is not None and all(task.fault for task in tasks):
         raise first
     return tasks
@@ -96,7 +97,8 @@ class PointSolver:
         self._setup = setup
         self._ledgers = ledgers
         self._shard = shard
-        self.known = {key: entry for key, entry in ledgers.stored().items() if not (retry and entry[0])}
+        self._retry = retry
+        self.known = self._usable(ledgers.stored())
         """Stored points: key -> (failed, record)."""
         self.computed: set[str] = set()
         """Keys of the points computed now."""
@@ -106,20 +108,20 @@ class PointSolver:
         """File of the points computed here."""
         return self._ledgers.path
 
-    def tasks_of(self, points: Sequence[DesignPoint]) -> list[Task]:
+    def tasks_of(self, points: Sequence[DesignPoint]) -> list[PointTask]:
         """Points of a later round of this study as cases."""
         return tasks_of(self._setup.case, points, self._setup.fidelity, one_valid=False)
 
-    def share(self, tasks: Sequence[Task]) -> Sequence[Task]:
+    def share(self, tasks: Sequence[PointTask]) -> Sequence[PointTask]:
         """The tasks that are for this process, each once."""
         unique = list({task.key: task for task in tasks if not task.fault}.values())
         return unique if self._shard is None else self._shard.of(unique)
 
-    def missing(self, tasks: Sequence[Task]) -> list[Task]:
+    def missing(self, tasks: Sequence[PointTask]) -> list[PointTask]:
         """The tasks to compute here."""
         return [task for task in self.share(tasks) if task.key not in self.known]
 
-    def solve(self, tasks: Sequence[Task], listeners: Listeners, left: int = 0) -> None:
+    def solve(self, tasks: Sequence[PointTask], listeners: Listeners, left: int = 0) -> None:
         """Compute what is missing of ``tasks``; ``left``: points that will follow, for the count.
 
         Raises
@@ -129,7 +131,7 @@ class PointSolver:
         MissingLibraryError
             A system library that a worker lacks.
         LostWorkersError
-            If the workers are gone.
+            If the workers are gone, or one has another version of the tool.
         OutputError
             If the ledger cannot be written.
         """
@@ -140,7 +142,7 @@ class PointSolver:
         self.workers.open()
         if self.workers.remark and not self.computed:
             listeners.remark(self.workers.remark)
-        work = partial(solve_point, setup=self._setup.packed())
+        work = partial(compute_point, setup=self._setup.packed())
         whole = len(self.computed) + len(missing) + left
         with closing(self.workers.compute(work, [dict(task.point.changes) for task in missing])) as finished:
             for index, outcome in finished:
@@ -150,7 +152,7 @@ class PointSolver:
                 listeners.count(len(self.computed), whole, _progress_line(task, failed, record))
                 named = named or self._name_checks([task], listeners)
 
-    def _name_checks(self, tasks: Sequence[Task], listeners: Listeners) -> bool:
+    def _name_checks(self, tasks: Sequence[PointTask], listeners: Listeners) -> bool:
         """Pass on the ids of the checks of the first of ``tasks`` with a result; False if none has one."""
         for task in tasks:
             failed, record = self.known.get(task.key, (True, {}))
@@ -159,7 +161,7 @@ class PointSolver:
                 return True
         return False
 
-    def points(self, tasks: Sequence[Task]) -> list[StudyPoint]:
+    def points(self, tasks: Sequence[PointTask]) -> list[StudyPoint]:
         """The tasks that are known, with what came of them."""
         found = []
         for task in tasks:
@@ -178,7 +180,15 @@ class PointSolver:
         self._ledgers.read_others()
         self.known = {**self._ledgers.stored(), **{key: self.known[key] for key in self.computed}}
 
-    def _store(self, task: Task, failed: bool, record: Record) -> None:
+    def look_at_ledger(self) -> None:
+        """Take over a point that was stored when an interrupt came, before it was noted here."""
+        self.known = {**self._usable(read_points(self.ledger)), **self.known}
+
+    def _usable(self, stored: Mapping[str, Entry]) -> dict[str, Entry]:
+        """The stored points that are not computed again."""
+        return {key: entry for key, entry in stored.items() if not (self._retry and entry[0])}
+
+    def _store(self, task: PointTask, failed: bool, record: Record) -> None:
         self._ledgers.ledger.store(
             task.key,
             fidelity=self._setup.fidelity,
@@ -191,10 +201,16 @@ class PointSolver:
         self.computed.add(task.key)
 
 
-def _entry(task: Task, outcome: PointOutcome | None) -> tuple[bool, Record]:
+def _entry(task: PointTask, outcome: PointOutcome | None) -> tuple[bool, Record]:
     """What the ledger keeps of an outcome; raises for one that stops the study."""
     if outcome is None:
         return True, {"error": DIED}
+    if outcome.version != __version__:
+        raise LostWorkersError(
+            f"a worker that joined after the start has rigdesign {outcome.version or 'of another version'}, this study "
+            f"is of rigdesign {__version__}: its point is not used; install 'rigdesign[cluster]=={__version__}' there "
+            "and start it again"
+        )
     if outcome.status == "library missing":
         raise MissingLibraryError(str(outcome.record["error"]))
     if outcome.status == "defect":
@@ -204,12 +220,12 @@ def _entry(task: Task, outcome: PointOutcome | None) -> tuple[bool, Record]:
     return outcome.status == "failed", outcome.record
 
 
-def _words(task: Task) -> str:
+def _words(task: PointTask) -> str:
     changed = task.point.changes.items()
     return ", ".join(f"{path} = {value}" for path, value in changed) or "as stated"
 
 
-def _progress_line(task: Task, failed: bool, record: Record) -> str:
+def _progress_line(task: PointTask, failed: bool, record: Record) -> str:
     values = [f"{path.rsplit('.', 1)[-1]} {value}" for path, value in task.point.changes.items()]
     more = f" and {len(values) - 3} more" if len(values) > 3 else ""
     outcome = str(record["error"]).partition("\n")[0] if failed else record["verdict"]

@@ -2,20 +2,20 @@
 
 from dataclasses import dataclass
 
-from threadpoolctl import threadpool_limits
-
 from rigdesign.base.errors import RigdesignError
 from rigdesign.base.fidelity import Fidelity
 from rigdesign.case.model import Case
 from rigdesign.checks import held_checks
-from rigdesign.reanalysis.affected_parts import Part
-from rigdesign.reanalysis.modified_rig import Modification, modified_rig
-from rigdesign.reanalysis.reference import Reference, restored, solve_reference
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.reanalysis.affected_parts import Part, Reanalysis
+from rigdesign.reanalysis.reference import (
+    ReanalysisResult,
+    Reference,
+    reanalysed,
+    result_of,
+    solve_reference,
+)
 from rigdesign.results.check import Check
-from rigdesign.results.units import ZERO
 from rigdesign.results.verdict import Verdict
-from rigdesign.run.solver_errors import solver_errors
 from rigdesign.uncertainty.plan import RangeEnd
 
 FIDELITY: Fidelity = "quick"
@@ -47,7 +47,7 @@ class EndResult:
 def solve_stated(case: Case) -> tuple[Reference, EndResult]:
     """Solve the stated rig, and its checks."""
     reference, solved = solve_reference(case, FIDELITY)
-    return reference, _outcome(solved, ())
+    return reference, _outcome(result_of(solved, held_checks))
 
 
 def solve_end(end: RangeEnd, *, reference: Reference) -> EndResult:
@@ -56,22 +56,19 @@ def solve_end(end: RangeEnd, *, reference: Reference) -> EndResult:
     The stated rig is made once in every process.
     """
     assert end.case is not None
-    modification = Modification(case=end.case, parts=end.parts)
     try:
-        with solver_errors(end.case), threadpool_limits(limits=1):
-            solved, parts = modified_rig(restored(reference), modification, reference.motor_losses)
-            return _outcome(solved, parts)
+        return _outcome(reanalysed(reference, Reanalysis(end.case, end.parts), held_checks))
     except RigdesignError as error:
         return EndResult(checks={}, max_temperature=None, error=str(error))
     except Exception as error:
         return EndResult(checks={}, max_temperature=None, error=f"{type(error).__name__}: {error}")
 
 
-def _outcome(solved: SolvedRig, parts: tuple[Part, ...]) -> EndResult:
+def _outcome(found: ReanalysisResult) -> EndResult:
     return EndResult(
-        checks={check.id: _at_end(check) for check in held_checks(solved)},
-        max_temperature=max((found.highest - ZERO for found in solved.temperatures), default=None),
-        parts=parts,
+        checks={check.id: _at_end(check) for check in found.checks},
+        max_temperature=found.max_temperature_degC,
+        parts=found.parts,
     )
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from rigdesign import load_case, run_case
 from rigdesign.case import Case
-from rigdesign.reanalysis.affected_parts import PARTS
-from rigdesign.reanalysis.modified_rig import Modification, modified_rig
+from rigdesign.reanalysis.affected_parts import PARTS, Reanalysis
+from rigdesign.reanalysis.modified_rig import modified_rig
 from rigdesign.reanalysis.reference import Reference, restored, solve_reference
 from rigdesign.records.solved_rig import SolvedRig
 from rigdesign.results.loads import StageLoad
@@ -30,9 +30,7 @@ class Both:
 def both(reference: Reference, stated: SolvedRig, case: Case) -> Both:
     rigs = []
     for how in ("shifted", "marched"):
-        solved, parts = modified_rig(
-            stated, Modification(case=case, parts=PARTS, time_run=how), reference.motor_losses
-        )
+        solved, parts = modified_rig(stated, Reanalysis(case, PARTS, how), reference.motor_losses)
         assert ("time run" in parts) == (how == "marched")
         rigs.append(solved)
     return Both(*rigs)

@@ -72,6 +72,7 @@ def study(
     """
     loaded = loaded_case(case)
     from rigdesign import api
+    from rigdesign.base.parallel import granted_cores
     from rigdesign.cli.terminal.progress import Progress
     from rigdesign.cli.terminal.study import print_study
     from rigdesign.studies.design import StudyDesign
@@ -88,7 +89,8 @@ def study(
         tolerance=tolerance,
         checks=tuple(checks or ()),
     )
-    with Progress() as progress:
+    parallel = granted_cores() if workers is None else workers if isinstance(workers, int) else 1
+    with Progress(parallel=parallel) as progress:
         execution = Execution(
             workers=workers,
             shard=None if shard is None else parse_shard(shard),

@@ -93,7 +93,8 @@ def _print_nearest(console: Console, checks: Iterable[Check]) -> None:
         table.add_row(Text(check.id), *map(Text, _numbers(check)))
     console.print(table)
     if stated:
-        console.print(f"left out here, one input held against another: {stated}")
+        number = "1 check" if stated == 1 else f"{stated} checks"
+        console.print(f"{number} of one input against another: not in this list")
 
 
 def _used(check: Check) -> float:

@@ -22,9 +22,12 @@ class Progress:
     """Says what is being computed: a line whose clock ticks in a terminal, plain lines elsewhere.
 
     times : of this run's steps against those of the last one, for the estimate; none where left out
+    parallel : how many points are computed at once: the first of each also starts a worker and solves what all share,
+        so that the estimate counts from the last of these
     """
 
-    def __init__(self, times: StepTimes | None = None) -> None:
+    def __init__(self, times: StepTimes | None = None, *, parallel: int = 1) -> None:
+        self._parallel = parallel
         self._console = new_console(stderr=True)
         self._times = times or StepTimes()
         self._started = time.perf_counter()
@@ -66,8 +69,12 @@ class Progress:
 
     def count(self, done: int, whole: int, last: str) -> None:
         """Show how many of many are done as a bar; a line for every tenth where the output is no terminal."""
-        since = self._counted.since if self._counted is not None else self._step_began
-        self._counted = _Counted(done, whole, last, since, self._elapsed())
+        now = self._elapsed()
+        first = self._counted is None or done <= self._parallel
+        begun, since = (
+            (done, now) if first or self._counted is None else (self._counted.begun, self._counted.since)
+        )
+        self._counted = _Counted(done, whole, last, begun, since, now)
         if self._verbose or done == whole or 10 * done // whole > 10 * (done - 1) // whole:
             self._say(f"{done} of {whole}, last {last}", self._remaining_text())
 
@@ -123,16 +130,18 @@ def _cut(text: str) -> Text:
 
 @dataclass(frozen=True)
 class _Counted:
-    """How many of many are done: since when they are computed, and when this was counted [s]."""
+    """How many of many are done, and when this was counted [s]; ``begun`` were when the estimate began, ``since``."""
 
     done: int
     whole: int
     last: str
+    begun: int
     since: float
     at: float
 
     def remaining(self, elapsed: float) -> float | None:
-        """Seconds for the others, each at the mean of those done; None with none done or none left."""
-        if not 0 < self.done < self.whole:
+        """Seconds for the others, each at the mean of those since the estimate began; None with none done or left."""
+        if not self.begun < self.done < self.whole:
             return None
-        return max(0.0, remaining_points(self.done, self.whole, self.at - self.since) - (elapsed - self.at))
+        left = remaining_points(self.done - self.begun, self.whole - self.begun, self.at - self.since)
+        return max(0.0, left - (elapsed - self.at))

@@ -23,6 +23,8 @@ LEAST_LIKELY = 5
 def print_study(outcome: "StudyOutcome", out: Path) -> None:
     """The answer in sentences, what failed, then where page and table are."""
     from rigdesign.report.margins.answer import slices, study_answer
+    from rigdesign.report.margins.influences import influence_lines
+    from rigdesign.report.numbers import counted
 
     found = outcome.result
     answer = study_answer(found)
@@ -38,14 +40,16 @@ def print_study(outcome: "StudyOutcome", out: Path) -> None:
             console.print(f"  {ranges.over.name} {text}: {sentence}")
     for line in _probabilities(found):
         console.print(line)
+    for line in influence_lines(found, answer):
+        console.print(line)
     for warning in found.warnings:
         console.print(Text("warning: ", "yellow") + Text(warning.text))
     failed = outcome.failed
     for point in failed[:MOST_FAILED]:
         console.print(Text("failed: ", "bold red") + Text(point))
     if len(failed) > MOST_FAILED:
-        console.print(f"{len(failed) - MOST_FAILED} more points failed: see results.csv")
-    console.print(f"{outcome.completed} points computed, {outcome.reused} found done")
+        console.print(f"{counted(len(failed) - MOST_FAILED, 'more point')} failed: see results.csv")
+    console.print(f"{counted(outcome.completed, 'point')} computed, {outcome.reused} found done")
     others = [name for name in OTHER_TABLES if (out / name).is_file()]
     for name in ("study.html", "results.csv", *others):
         console.print(str(out / name), soft_wrap=True)

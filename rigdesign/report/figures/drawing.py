@@ -13,6 +13,7 @@ from rigdesign.report.numbers import NARROW_SPACE, unit_text
 from rigdesign.report.palette import GRID, INK, MUTED, CurveStyle
 
 if TYPE_CHECKING:
+    from markupsafe import Markup
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.ticker import ScalarFormatter
@@ -105,6 +106,20 @@ def inline_svg(figure: "Figure", name: str, description: str) -> str:
     svg = PNG.sub(lambda found: _leaner(found[1]), svg)
     label = escape(description, quote=True)
     return svg.replace("<svg ", f'<svg role="img" aria-label="{label}" ', 1)
+
+
+class NumberedFigures:
+    """Turns the figures of one page into inline SVG and numbers them, so that ids stay unique on the page."""
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def __call__(self, figure: "Figure", description: str) -> "Markup":
+        """The figure as an <svg> element; ``description`` is read to those who cannot see it."""
+        from markupsafe import Markup
+
+        self._count += 1
+        return Markup(inline_svg(figure, f"f{self._count}", description))
 
 
 def _leaner(picture: str) -> str:

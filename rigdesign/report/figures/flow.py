@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rigdesign.report.figures.drawing import new_figure, plain
-from rigdesign.report.figures.heat import power_in_words
 from rigdesign.report.figures.sankey import NODE_WIDTH, Flow, SankeyLayout, layout, spread
+from rigdesign.report.numbers import quantity_text
 from rigdesign.report.palette import INK, SERIES
 from rigdesign.results.thermal import LossRow, OilRow, ThermalResult
 
@@ -133,7 +133,8 @@ def _boxes(axes: "Axes", found: SankeyLayout, colours: Mapping[str, str]) -> Non
             size = box.high - box.low
             colour = colours.get(box.name, INK)
             axes.add_patch(Rectangle((box.x, box.low), NODE_WIDTH, size, facecolor=colour, edgecolor="none"))
-            text = f"{plain(box.name.strip())}  {power_in_words(box.value)}"
+            power = quantity_text(box.value, "W", digits=3)
+            text = f"{plain(box.name.strip())}  {power}"
             if column in (0, last):
                 _outer_label(axes, box.x, 0.5 * (box.low + box.high), height, text, left=column == 0)
             else:

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from rigdesign.report.figures.drawing import finish, legend_right, new_figure, words
-from rigdesign.report.numbers import WORDS, number_text, power_text, split_key
+from rigdesign.report.numbers import WORDS, power_text, quantity_text, split_key
 from rigdesign.report.palette import COLD, MUTED, SERIES, WARM, curve_style
 from rigdesign.results.result import CouplingHistory
 from rigdesign.results.thermal import LossRow, OilRow
@@ -35,8 +35,8 @@ def losses_by_stage_figure(losses: list[LossRow]) -> "Figure":
         left = [start + width for start, width in zip(left, power, strict=True)]
     for row, total in enumerate(left):
         axes.annotate(
-            power_in_words(total), (total, row), textcoords="offset points", xytext=(4, -3), fontsize=7.5
-        )
+            quantity_text(total, "W", digits=3), (total, row), textcoords="offset points", xytext=(4, -3), fontsize=7.5
+        )  # fmt: skip
     axes.set_yticks(range(len(stages)), [words(stage) for stage in stages])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
@@ -150,8 +150,3 @@ def _residual_labels(key: str) -> tuple[str, str]:
     quantity, unit = split_key(key)
     quantity = " ".join(WORDS.get(word, word) for word in quantity.replace(" relative", "").split())
     return f"largest change [{unit or '–'}]", quantity.capitalize()
-
-
-def power_in_words(value: float) -> str:
-    """A power with its unit: kilowatts from 10 kW on."""
-    return f"{number_text(1e-3 * value)} kW" if value >= 1e4 else f"{number_text(value, 3)} W"

@@ -1,14 +1,13 @@
 """Axes of the figures of a study: a margin that stays readable near its limit, and the varied input."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.report.figures.drawing import plain
-from rigdesign.report.palette import INK, SERIES, VERDICT_COLOURS
+from rigdesign.report.palette import INK, VERDICT_COLOURS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,24 +23,8 @@ BELOW = (-100, -200, -500, -1000, -2000, -5000, -10_000, -100_000)
 MARGIN_LABEL = "margin, 1 − utilisation [%]"
 SHORT_LABEL = "margin [%]"
 """For small plots beside or below one with the long label."""
-LINES = ("-", (0, (6, 2)), (0, (1.2, 1.4)), (0, (7, 1.6, 1.4, 1.6)))
-MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 MOST_NAMES = 12
 """Names along an axis that are written level."""
-
-
-@dataclass(frozen=True)
-class CurveLook:
-    """Colour, line and marker of a curve: each alone identifies a curve."""
-
-    colour: str
-    line: object
-    marker: str
-
-
-def curve_look(number: int) -> CurveLook:
-    """The look of curve ``number``, counted from 0."""
-    return CurveLook(SERIES[number % len(SERIES)], LINES[number % len(LINES)], MARKERS[number % len(MARKERS)])
 
 
 def margin_axis(

@@ -2,18 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 from rigdesign.report.case_sheet import CaseSheet
 from rigdesign.report.figures.drawing import new_figure, plain
-from rigdesign.report.palette import INK, MUTED, SERIES
+from rigdesign.report.palette import INK, MUTED, gearbox_colours
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-WIDTH = 7.3
-"""Of the drawing [in]: the text width of a printed page, so that its type keeps its size."""
 BOX_HALF, WALL, GEAR_HALF = 0.3, 0.36, 0.055
 """Half widths of a gearbox, of its reach above the outer shafts, and of a gear, in distances between gearboxes."""
 SMALL = 7.0
@@ -22,6 +21,52 @@ BRACINGS = {
     "shift_held": "shifted axially and held",
     "twist_held": "twisted and held",
 }
+
+
+@dataclass(frozen=True)
+class DrawingForm:
+    """Size of the drawing, and how its words are broken so that its type keeps its size.
+
+    width : [in]; level : height of a line of shafts [in]
+    above, below : room for words over the first and under the last line of shafts, in distances of the lines
+    motor : its length, in distances between gearboxes
+    title, circuit, note : most characters of a line
+    """
+
+    width: float
+    level: float
+    above: float
+    below: float
+    motor: float
+    title: int
+    circuit: int
+    note: int
+    stacked: bool = False
+    """Names of gears and couplings in a line a word."""
+
+    def gear_words(self, name: str, teeth: float) -> str:
+        """Name of a gear with its teeth."""
+        return "\n".join([*name.split(), f"z = {teeth:g}"]) if self.stacked else f"{name}, z = {teeth:g}"
+
+    def coupling_words(self, name: str, state: str) -> str:
+        """Name of a coupling and what is done to it, where something is; one word of that where words are few."""
+        if self.stacked:
+            return "\n".join(["coupling", *name.split(), *state.split()[:1]])
+        return f"coupling {name}\n{state}".strip()
+
+    def circuit_words(self, oil: str, feed: str) -> str:
+        """An oil circuit with its temperature and flow."""
+        text = f"{oil}:\n{feed}" if self.stacked else f"{oil}: {feed}"
+        return "\n".join(fill(line, self.circuit, break_on_hyphens=False) for line in text.split("\n"))
+
+
+PRINTED = DrawingForm(width=7.3, level=0.7, above=0.98, below=0.62, motor=0.2, title=60, circuit=60, note=200)
+"""As wide as the text of a printed page."""
+PHONE = DrawingForm(
+    width=3.75, level=0.9, above=1.35, below=1.15, motor=0.36, title=16, circuit=27, note=64, stacked=True
+)
+"""As wide as a phone, for a rig of at most two gearboxes."""
+PHONE_GEARBOXES = 2
 
 
 @dataclass(frozen=True)
@@ -46,6 +91,7 @@ class RigPlan:
     """Of shafts."""
     colours: Sequence[str]
     """Of gearboxes."""
+    form: DrawingForm = PRINTED
 
     @property
     def levels(self) -> int:
@@ -53,7 +99,7 @@ class RigPlan:
         return 1 + max((gear.level for gear in self.gears.values()), default=0)
 
 
-def rig_plan(case: CaseSheet) -> RigPlan:
+def rig_plan(case: CaseSheet, form: DrawingForm = PRINTED) -> RigPlan:
     """Every gear by column and level: gears that mesh are neighbours, coupled shafts lie on one level."""
     lines = _lines(case)
     shafts: dict[str, str] = {}
@@ -74,13 +120,9 @@ def rig_plan(case: CaseSheet) -> RigPlan:
         name: Gear(name.split(".")[1], column_of[shaft], level_of[shaft], _teeth(case, name))
         for name, shaft in shafts.items()
     }
-    return RigPlan(gears, column_of, level_of, _colours([name for name, _ in case.tables("gearboxes")]))
-
-
-def _colours(names: Sequence[str]) -> list[str]:
-    """By the order of the names, as in every figure of the report."""
-    ordered = sorted(names)
-    return [SERIES[ordered.index(name) % len(SERIES)] for name in names]
+    names = [name for name, _ in case.tables("gearboxes")]
+    styles = gearbox_colours(names)
+    return RigPlan(gears, column_of, level_of, [styles[name].colour for name in names], form)
 
 
 def _teeth(case: CaseSheet, name: str) -> float:
@@ -123,18 +165,26 @@ def _lines(case: CaseSheet) -> dict[str, str]:
     return line
 
 
-def schematic_figure(case: CaseSheet) -> "Figure | None":
+def phone_schematic_figure(case: CaseSheet) -> "Figure | None":
+    """The schematic as a phone shows it; None where it has no room for the rig."""
+    if len(list(case.tables("gearboxes"))) > PHONE_GEARBOXES:
+        return None
+    return schematic_figure(case, PHONE)
+
+
+def schematic_figure(case: CaseSheet, form: DrawingForm = PRINTED) -> "Figure | None":
     """The rig seen from above; None where the case states no gearbox."""
-    plan = rig_plan(case)
+    plan = rig_plan(case, form)
     boxes = list(case.tables("gearboxes"))
     if not plan.gears:
         return None
-    height = 0.95 + 0.62 * plan.levels
-    figure = new_figure(height, WIDTH)
+    figure = new_figure(form.level * (plan.levels - 0.5 + form.above + form.below), form.width)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
-    axes.set_xlim(-0.72, len(boxes) - 0.28)
-    axes.set_ylim(plan.levels - 0.5 + 0.62, -0.98)
+    side = BOX_HALF + 0.22 + form.motor
+    left = BOX_HALF + 0.1 if form.stacked and _motor_side(case, plan, len(boxes)) > 0.0 else side
+    axes.set_xlim(-left, len(boxes) - 1 + side)
+    axes.set_ylim(plan.levels - 0.5 + form.below, -form.above)
     for number, (name, box) in enumerate(boxes):
         _gearbox(axes, number, (name, box), plan)
     for shaft in plan.column_of:
@@ -167,14 +217,15 @@ def _gearbox(axes: "Axes", column: int, named: tuple[str, CaseSheet], plan: RigP
     axes.text(
         column,
         top - 0.08,
-        plain(title),
+        plain(fill(title, plan.form.title)),
         ha="center",
         va="bottom",
         fontsize=8,
         fontweight="bold",
         color=colour,
     )
-    text = "\n".join(_circuit(box, key, words) for key, words in CIRCUITS if box.table(key).entries)
+    circuits = [_circuit(box, key, words) for key, words in CIRCUITS if box.table(key).entries]
+    text = "\n".join(plan.form.circuit_words(*circuit) for circuit in circuits)
     axes.text(
         column, bottom + 0.08, plain(text), ha="center", va="top", fontsize=SMALL, color=INK, linespacing=1.25
     )
@@ -183,10 +234,11 @@ def _gearbox(axes: "Axes", column: int, named: tuple[str, CaseSheet], plan: RigP
 CIRCUITS = (("oil", "gear oil"), ("bearing_oil", "bearing oil"))
 
 
-def _circuit(box: CaseSheet, key: str, words: str) -> str:
+def _circuit(box: CaseSheet, key: str, words: str) -> tuple[str, str]:
+    """Oil of a circuit; its temperature and flow."""
     oil = box.table(key)
     stated = (oil.value("inlet_temperature", ""), oil.value("flow", ""))
-    return f"{words} {oil.raw('oil')}: " + ", ".join(part for part in stated if part)
+    return f"{words} {oil.raw('oil')}", ", ".join(part for part in stated if part)
 
 
 def _shaft(axes: "Axes", plan: RigPlan, shaft: str) -> None:
@@ -220,9 +272,9 @@ def _gear(axes: "Axes", gear: Gear, plan: RigPlan) -> None:
             edgecolor="white", linewidth=0.8,
         )
     )  # fmt: skip
+    words = plan.form.gear_words(gear.name.replace("_", " "), gear.teeth)
     axes.text(
-        gear.column + GEAR_HALF + 0.01, gear.level - 0.1, plain(f"{gear.name.replace('_', ' ')}, z = {gear.teeth:g}"),
-        ha="left", va="bottom", fontsize=6, color=INK,
+        gear.column + GEAR_HALF + 0.01, gear.level - 0.1, plain(words), ha="left", va="bottom", fontsize=6, color=INK
     )  # fmt: skip
 
 
@@ -243,7 +295,7 @@ def _couplings(axes: "Axes", case: CaseSheet, plan: RigPlan) -> None:
             case.raw("drivetrain.bracing.mode") == "twist_held"
             and case.raw("drivetrain.bracing.coupling") == name
         )
-        words = f"coupling {name.replace('_', ' ')}" + (f"\n{BRACINGS['twist_held']}" if twisted else "")
+        words = plan.form.coupling_words(name.replace("_", " "), BRACINGS["twist_held"] if twisted else "")
         axes.text(middle, level + 0.22, plain(words), ha="center", va="top", fontsize=6.5, color=INK)
 
 
@@ -254,22 +306,29 @@ def _motor(axes: "Axes", case: CaseSheet, plan: RigPlan, boxes: int) -> None:
     if shaft not in plan.column_of:
         return
     column, level = plan.column_of[shaft], plan.level_of[shaft]
-    side = 1.0 if column > 0 or boxes == 1 else -1.0
+    side = _motor_side(case, plan, boxes)
     near, far = column + side * (BOX_HALF + 0.05), column + side * (BOX_HALF + 0.17)
     axes.plot([near, far], [level, level], color=INK, linewidth=2.0)
-    start = far if side > 0 else far - 0.2
+    length = plan.form.motor
+    start = far if side > 0 else far - length
     axes.add_patch(
-        Rectangle((start, level - 0.24), 0.2, 0.48, facecolor="white", edgecolor=INK, linewidth=1.1)
+        Rectangle((start, level - 0.24), length, 0.48, facecolor="white", edgecolor=INK, linewidth=1.1)
     )
     torque = case.value("drivetrain.motor.torque_limit", "")
     axes.text(
-        start + 0.1,
+        start + 0.5 * length,
         level,
         plain("motor" + (f"\n≤ {torque}" if torque else "")),
         ha="center",
         va="center",
         fontsize=SMALL,
     )
+
+
+def _motor_side(case: CaseSheet, plan: RigPlan, boxes: int) -> float:
+    """1 right of the rig, -1 left of it."""
+    column = plan.column_of.get(case.raw("drivetrain.motor.shaft"), boxes - 1)
+    return 1.0 if column > 0 or boxes == 1 else -1.0
 
 
 def _bracing(axes: "Axes", case: CaseSheet, plan: RigPlan) -> None:
@@ -300,4 +359,7 @@ def _bracing(axes: "Axes", case: CaseSheet, plan: RigPlan) -> None:
             else f"a coupling is {BRACINGS[mode]}"
         )
         lines.append(f"Bracing: {what}." if mode in BRACINGS else f"Bracing: {mode}.")
-    axes.text(-0.7, -0.95, plain("  ".join(lines)), ha="left", va="top", fontsize=SMALL, color=MUTED)
+    axes.text(
+        0.01, 0.99, plain(fill("  ".join(lines), plan.form.note)), transform=axes.transAxes, ha="left", va="top",
+        fontsize=SMALL, color=MUTED,
+    )  # fmt: skip

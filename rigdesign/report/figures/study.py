@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.report.figures.drawing import legend_right, new_figure, plain
-from rigdesign.report.figures.margin_axes import SHORT_LABEL, curve_look, input_axis, margin_axis, mark_failed
-from rigdesign.report.palette import INK, VERDICT_COLOURS
+from rigdesign.report.figures.margin_axes import SHORT_LABEL, input_axis, margin_axis, mark_failed
+from rigdesign.report.palette import INK, VERDICT_COLOURS, curve_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,14 +90,14 @@ def _curves(
     order = np.argsort(np.asarray(positions), kind="stable")
     x = np.asarray(positions, dtype=float)[order]
     for number, column in enumerate(columns):
-        look = curve_look(number)
+        style = curve_style(number)
         margin, own = table.margin[order, column], table.own[order, column]
         drawn = _through_zero(x, margin, own) if axis.numeric else (x, margin)
-        axes.plot(*drawn, color=look.colour, linestyle=look.line if axis.numeric else "none")
-        markers = look.marker if len(x) <= MOST_MARKERS or not axis.numeric else "none"
-        axes.plot(x, margin, color=look.colour, marker=markers, linestyle="none", markersize=4)
+        axes.plot(*drawn, color=style.colour, linestyle=style.line if axis.numeric else "none")
+        markers = style.marker if len(x) <= MOST_MARKERS or not axis.numeric else "none"
+        axes.plot(x, margin, color=style.colour, marker=markers, linestyle="none", markersize=4)
         axes.plot(
-            [], [], color=look.colour, linestyle=look.line if axis.numeric else "none", marker=markers, markersize=4,
+            [], [], color=style.colour, linestyle=style.line if axis.numeric else "none", marker=markers, markersize=4,
             label=_label(_titled(table, column), width),
         )  # fmt: skip
 

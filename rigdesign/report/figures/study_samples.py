@@ -11,13 +11,12 @@ from rigdesign.report.figures.drawing import finish, new_figure, plain
 from rigdesign.report.figures.margin_axes import (
     MARGIN_LABEL,
     SHORT_LABEL,
-    curve_look,
     input_axis,
     margin_axis,
     mark_failed,
 )
-from rigdesign.report.margins.axis import input_name
-from rigdesign.report.palette import INK, MUTED, SERIES, VERDICT_COLOURS
+from rigdesign.report.margins.axis import input_name, value_shown
+from rigdesign.report.palette import INK, MUTED, SERIES, VERDICT_COLOURS, curve_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,6 +30,8 @@ MOST_LIMITING = 7
 """Limiting checks with a colour of their own in a scatter plot."""
 MOST_VECTORS = 1500
 """Points up to which every one is drawn as its own shape; more are drawn as a picture."""
+TITLE_WIDTH = 42
+"""Characters of a line of the title above a bar chart."""
 MOST_INPUTS = 12
 """Inputs of a bar chart, the strongest first."""
 
@@ -49,9 +50,9 @@ def scatter_figure(axis: "StudyAxis", positions: Sequence[float], table: "Margin
     figure = new_figure(height, PANEL_WIDTH)
     axes = figure.subplots()
     for number, (name, label) in enumerate(zip(shown, labels, strict=True)):
-        look, chosen = curve_look(number), column == name
+        style, chosen = curve_style(number), column == name
         axes.plot(
-            x[chosen], margin[chosen], color=look.colour, marker=look.marker, linestyle="none", markersize=3.6,
+            x[chosen], margin[chosen], color=style.colour, marker=style.marker, linestyle="none", markersize=3.6,
             markeredgewidth=0, alpha=0.75, label=label, rasterized=len(x) > MOST_VECTORS,
         )  # fmt: skip
     others = (column >= 0) & ~np.isin(column, shown)
@@ -71,7 +72,8 @@ def tornado_figure(title: str, swings: "Sequence[Swing]") -> "Figure | None":
     bars = sorted(bars, key=lambda bar: bar.reach, reverse=True)[:MOST_INPUTS]
     if not bars:
         return None
-    height = 0.95 + 0.36 * len(bars)
+    lines = len(fill(title, TITLE_WIDTH).split("\n"))
+    height = 0.8 + 0.15 * lines + 0.36 * len(bars)
     figure = new_figure(height, PANEL_WIDTH)
     axes = figure.subplots()
     for place, bar in enumerate(bars):
@@ -81,7 +83,8 @@ def tornado_figure(title: str, swings: "Sequence[Swing]") -> "Figure | None":
         for offset, tip, text in ((-0.17, bar.low, bar.swing.low), (0.17, bar.high, bar.swing.high)):
             left = tip < bar.stated
             axes.annotate(
-                plain(text), (tip, place + offset), xytext=(-3 if left else 3, 0), textcoords="offset points",
+                plain(value_shown(text)),
+                (tip, place + offset), xytext=(-3 if left else 3, 0), textcoords="offset points",
                 ha="right" if left else "left", va="center", fontsize=6.5, color=INK,
             )  # fmt: skip
     axes.axvline(bars[0].stated, color=INK, linewidth=1.0)
@@ -94,8 +97,8 @@ def tornado_figure(title: str, swings: "Sequence[Swing]") -> "Figure | None":
     axes.set_yticks(range(len(bars)), [plain(fill(input_name(bar.swing.path), 26)) for bar in bars])
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
-    finish(axes, MARGIN_LABEL, "", plain(fill(title, 66)))
-    figure.subplots_adjust(left=0.36, right=0.98, top=1 - 0.32 / height, bottom=0.5 / height)
+    finish(axes, MARGIN_LABEL, "", plain(fill(title, TITLE_WIDTH)))
+    figure.subplots_adjust(left=0.36, right=0.98, top=1 - (0.16 + 0.16 * lines) / height, bottom=0.5 / height)
     return figure
 
 
@@ -124,7 +127,8 @@ def _bar(swing: "Swing") -> _Bar | None:
 def indices_figure(title: str, indices: "Sequence[SobolIndex]") -> "Figure":
     """First-order and total Sobol index of every input for one check, with their 95 % intervals."""
     ordered = sorted(indices, key=lambda index: -index.total)[:MOST_INPUTS]
-    height = 1.1 + 0.36 * len(ordered)
+    lines = len(fill(title, TITLE_WIDTH).split("\n"))
+    height = 0.95 + 0.15 * lines + 0.36 * len(ordered)
     figure = new_figure(height, PANEL_WIDTH)
     axes = figure.subplots()
     series = (
@@ -157,6 +161,6 @@ def indices_figure(title: str, indices: "Sequence[SobolIndex]") -> "Figure":
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
     axes.legend(loc="lower right", frameon=True, framealpha=0.85, edgecolor="none")
-    finish(axes, "share of the variance of the utilisation", "", plain(fill(title, 66)))
-    figure.subplots_adjust(left=0.36, right=0.98, top=1 - 0.32 / height, bottom=0.5 / height)
+    finish(axes, "share of the variance of the utilisation", "", plain(fill(title, TITLE_WIDTH)))
+    figure.subplots_adjust(left=0.36, right=0.98, top=1 - (0.16 + 0.16 * lines) / height, bottom=0.5 / height)
     return figure

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 
 from rigdesign.report.figures.drawing import finish, new_figure, plain
-from rigdesign.report.figures.margin_axes import curve_look
-from rigdesign.report.palette import INK, MUTED, VERDICT_COLOURS
+from rigdesign.report.palette import INK, MUTED, VERDICT_COLOURS, curve_style
 from rigdesign.validation.rows import Basis, ValidationRow
 
 if TYPE_CHECKING:
@@ -130,10 +129,10 @@ def source_figure(source: str, rows: Sequence[ValidationRow]) -> "Figure | None"
     figure = new_figure(PANEL, PANEL)
     axes = figure.subplots()
     for number, (label, chosen) in enumerate(_by_verdict([row for _, _, row in pairs]).items()):
-        look, missed = curve_look(number), label == "missed"
+        style, missed = curve_style(number), label == "missed"
         axes.plot(
             [x for x, _, row in pairs if row in chosen], [y for _, y, row in pairs if row in chosen],
-            marker="X" if missed else look.marker, color=VERDICT_COLOURS["fail"] if missed else look.colour,
+            marker="X" if missed else style.marker, color=VERDICT_COLOURS["fail"] if missed else style.colour,
             linestyle="none", markersize=6 if missed else 4, alpha=0.85, label=label,
         )  # fmt: skip
     values = [value for x, y, _ in pairs for value in (x, y)]

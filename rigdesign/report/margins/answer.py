@@ -25,7 +25,7 @@ class StudyAnswer:
     selected : all selected checks
     always : those that fail at every computed point, named apart so that they hide no other
     rest : the others, to which the answer belongs
-    deciding : those of the rest that the study moves; all of them where it moves none
+    deciding : those of the rest that the study moves; where it moves none, those that are not met by definition
     passing : where the rest holds; None with several inputs
     sentences : the answer, to be read in this order
     """
@@ -60,10 +60,17 @@ def study_answer(study: StudyResult) -> StudyAnswer:
         selected=selected,
         always=always,
         rest=rest,
-        deciding=rest.of(rest.moving) if rest.moving.any() else rest,
+        deciding=_deciding(rest),
         passing=found,
         sentences=sentences,
     )
+
+
+def _deciding(rest: MarginTable) -> MarginTable:
+    for chosen in (rest.moving, ~rest.by_definition):
+        if chosen.any():
+            return rest.of(chosen)
+    return rest
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,7 +115,7 @@ def _sentences(
     said = []
     if always.checks:
         verb = "fails" if len(always.checks) == 1 else "fail"
-        said.append(f"{_listed(always)} {verb} at every point.")
+        said.append(f"{_listed(always)} {verb} {_at_all(always)}.")
     if not rest.checks:
         return tuple(said)
     subject = _subject(selection, always, rest)
@@ -134,9 +141,17 @@ def _subject(selection: CheckSelection, always: MarginTable, rest: MarginTable) 
 
 
 def _share(number: int, total: int) -> str:
+    if total == 1:
+        return "no point" if number == 0 else "the only point that has a result"
     if number in (0, total):
         return "no point" if number == 0 else f"all {total} points"
     return f"{number} of {total} points"
+
+
+def _at_all(table: MarginTable) -> str:
+    if int(table.computed.sum()) > 1:
+        return "at every point"
+    return "at the only point" + (" with a result" if len(table.computed) > 1 else "")
 
 
 def _listed(table: MarginTable) -> str:

@@ -52,13 +52,12 @@ class StudyAxis:
     def text(self, position: float) -> str:
         """A computed position with its unit, or the name that stands there."""
         if not self.numeric:
-            return self.texts[round(position)]
+            return value_shown(self.texts[round(position)])
         return f"{number_text(position, 6)} {unit_text(self.unit)}".strip()
 
     def shown(self, text: str) -> str:
         """A value as printed: ``60 degC`` as 60 °C, with all its digits."""
-        match = number_match(text) if self.numeric else None
-        return text if match is None else f"{match[1]} {unit_text(match[2])}".strip()
+        return value_shown(text)
 
     def read_off(self, position: float, held: float, beyond: float) -> str:
         """A value between the computed points ``held`` and ``beyond``, with the digits that their distance allows.
@@ -77,10 +76,41 @@ class StudyAxis:
         return f"{whole * step:.{decimals}f} {unit_text(self.unit)}".strip().replace("-", "\u2212")
 
 
+def value_shown(text: str) -> str:
+    """A value as printed, with all its digits: ``60 degC`` as 60 °C; a name as it stands."""
+    match = number_match(text)
+    return text if match is None else f"{match[1]} {unit_text(match[2])}".strip()
+
+
 def input_name(path: str) -> str:
-    """An input in words: its path without the first name where that says little."""
+    """An input in words: its path without the first name where that says little.
+
+    A ``*`` stands for every part of its kind: ``gearboxes.*.oil.flow`` is the oil flow of every gearbox.
+    """
     head, _, rest = path.partition(".")
-    return (rest if head == "gearboxes" and rest else path).replace("_", " ").replace(".", " ")
+    if "*" not in path:
+        return (rest if head == "gearboxes" and rest else path).replace("_", " ").replace(".", " ")
+    phrases: list[str] = []
+    words: list[str] = []
+    for part in path.split("."):
+        if "*" not in part:
+            words.append(part)
+            continue
+        *owner, kind = words or ["parts"]
+        owner = [word for word in owner if word not in ("gearboxes", "drivetrain")]
+        phrases += [" ".join(owner)] if owner else []
+        phrases.append(f"every {_singular(kind)}" if part == "*" else f"every {_singular(kind)} {part}")
+        words = []
+    phrases += [" ".join(words)] if words else []
+    return " of ".join(reversed(phrases)).replace("_", " ")
+
+
+def _singular(plural: str) -> str:
+    """The name of one part of a table: ``gearboxes``, ``bearings``, ``bought_parts``."""
+    for ending in ("xes", "shes"):
+        if plural.endswith(ending):
+            return plural.removesuffix("es")
+    return plural.removesuffix("s")
 
 
 def study_axis(path: str, points: Sequence[StudyPoint]) -> StudyAxis:

@@ -112,7 +112,9 @@ def _crossing(x: np.ndarray, table: MarginTable, held: int, beyond: int, column:
 
 
 def _everywhere(axis: StudyAxis, x: np.ndarray, table: MarginTable) -> str:
-    span = f", from {axis.text(x[0])} to {axis.text(x[-1])}" if axis.numeric and len(x) > 1 else ""
+    if len(x) == 1:
+        return _at_one(axis, x, table)
+    span = f", from {axis.text(x[0])} to {axis.text(x[-1])}" if axis.numeric else ""
     nearest = table.nearest_first()
     if not nearest:
         return f"passes at every point{span}"
@@ -128,15 +130,31 @@ def _everywhere(axis: StudyAxis, x: np.ndarray, table: MarginTable) -> str:
     return f"passes at every point{span}; {of_those}nearest to its limit is {_named(table, check)}, {left}"
 
 
+def _at_one(axis: StudyAxis, x: np.ndarray, table: MarginTable) -> str:
+    """The answer of a single point that holds."""
+    where = f"passes at {axis.text(x[0])}"
+    nearest = [column for column in table.nearest_first() if not table.by_definition[column]]
+    if not nearest:
+        return where
+    left = f"{number_text(table.least[nearest[0]], 2)} % of its limit left"
+    if len(table.checks) == 1:
+        return f"{where}; {left}"
+    return f"{where}; nearest to its limit is {_named(table, nearest[0])}, {left}"
+
+
 def _nowhere(axis: StudyAxis, x: np.ndarray, table: MarginTable) -> str:
     counts = table.fails[table.computed].sum(axis=0)
     worst = sorted(np.flatnonzero(counts).tolist(), key=lambda column: (-counts[column], table.least[column]))
     total = int(table.computed.sum())
+    where = "at every point" if len(x) > 1 else f"at {axis.text(x[0])}"
     if len(table.checks) == 1:
-        return "fails at every point"
-    named = [f"{_named(table, column)} ({counts[column]} of {total} points)" for column in worst[:2]]
+        return f"fails {where}"
+    named = [
+        _named(table, column) + (f" ({counts[column]} of {total} points)" if total > 1 else "")
+        for column in worst[:2]
+    ]
     more = f" and {len(worst) - 2} more" if len(worst) > 2 else ""
-    return f"fails at every point, because of {', '.join(named)}{more}"
+    return f"fails {where}, because of {', '.join(named)}{more}"
 
 
 def _names(axis: StudyAxis, x: np.ndarray, table: MarginTable, holds: np.ndarray) -> str:

@@ -15,11 +15,15 @@ LEAST_MOVE = 0.1
 
 @dataclass(frozen=True, kw_only=True)
 class CheckColumn:
-    """What a check is called."""
+    """What a check is called.
+
+    by_definition : value and limit are both stated by the case
+    """
 
     id: str
     title: str
     group: str
+    by_definition: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,10 +92,18 @@ class MarginTable:
             found.setdefault(check.group, []).append(column)
         return found
 
+    @cached_property
+    def by_definition(self) -> NDArray[np.bool_]:
+        """Checks of a stated value against a stated limit, which decide nothing, shape (checks,)."""
+        return np.array([check.by_definition for check in self.checks], dtype=bool)
+
     def nearest_first(self) -> list[int]:
-        """Columns by their smallest margin, those that move before those that do not; without a number left out."""
+        """Columns by smallest margin: those that move first, those by definition last, those without a number not."""
         known = [column for column in range(len(self.checks)) if not np.isnan(self.least[column])]
-        return sorted(known, key=lambda column: (not self.moving[column], self.least[column]))
+        return sorted(
+            known,
+            key=lambda column: (not self.moving[column], self.by_definition[column], self.least[column]),
+        )
 
     def limiting(self) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
         """Column and margin [%] of the check that limits every point: a failing one before all others.
@@ -123,6 +135,7 @@ def margin_table(points: Sequence[StudyPoint], identities: Sequence[str]) -> Mar
                     id=check["id"],
                     title=check["title"],
                     group=check.get("group") or check["id"].partition(".")[0],
+                    by_definition=bool(check.get("by_definition")),
                 )
             fails[row, number] = check["verdict"] == "fail"
             if check["utilisation"] is not None:

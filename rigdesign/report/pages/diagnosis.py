@@ -6,11 +6,12 @@ from rigdesign.diagnosis.decision.naming import display_scale
 from rigdesign.diagnosis.document.advice import VERDICTS
 from rigdesign.diagnosis.document.document import leading_sentences, sentences
 from rigdesign.diagnosis.document.outcome import Outcome
-from rigdesign.report.figures.drawing import drawing_style, inline_svg
+from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
 from rigdesign.report.numbers import number_text, unit_text
 
 if TYPE_CHECKING:
     from markupsafe import Markup
+    from matplotlib.figure import Figure
 
 BANNERS = {"named": "pass", "within_noise": "pass", "input_error_suspected": "fail"}
 """Verdict -> colour of the banner; the others warn."""
@@ -23,16 +24,10 @@ def diagnosis_page(outcome: Outcome, document: dict[str, Any]) -> str:
     from rigdesign.report.figures import diagnosis as figures
     from rigdesign.report.pages.report import environment
 
-    count = 0
+    numbered = NumberedFigures()
 
-    def draw(figure: Any, description: str) -> "Markup | None":
-        from markupsafe import Markup
-
-        nonlocal count
-        if figure is None:
-            return None
-        count += 1
-        return Markup(inline_svg(figure, f"f{count}", description))
+    def draw(figure: "Figure | None", description: str) -> "Markup | None":
+        return None if figure is None else numbered(figure, description)
 
     measurement = outcome.result.measurement
     with drawing_style():

@@ -6,7 +6,7 @@ from rigdesign.base.json_text import to_plain, to_text
 from rigdesign.base.output_folder import staged
 from rigdesign.base.version import __version__
 from rigdesign.difference.document import ResultsDifference, difference_document, headline
-from rigdesign.report.figures.drawing import drawing_style, inline_svg
+from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
 
 
 def write_difference(difference: ResultsDifference, out: Path) -> None:
@@ -26,18 +26,13 @@ def write_difference(difference: ResultsDifference, out: Path) -> None:
 
 def difference_page(difference: ResultsDifference) -> str:
     """The page as one self-contained HTML document."""
-    from markupsafe import Markup
-
     from rigdesign.report.figures.difference import LEAST_CHANGE, MOST_ROWS, margins_figure
     from rigdesign.report.pages.report import environment
 
     with drawing_style():
         figure = margins_figure(difference.checks)
-        svg = (
-            None
-            if figure is None
-            else Markup(inline_svg(figure, "margins", "Margins of the checks before and after"))
-        )
+        text = "Margins of the checks before and after"
+        svg = None if figure is None else NumberedFigures()(figure, text)
     return (
         environment()
         .get_template("difference.html.j2")

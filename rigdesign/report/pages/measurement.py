@@ -1,16 +1,13 @@
 """compare.json and compare.html of a comparison of measured with simulated numbers."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rigdesign.base.json_text import to_text
 from rigdesign.base.output_folder import staged
 from rigdesign.base.version import __version__
 from rigdesign.measurement.comparison.compare import Comparison, comparison_document, headline, significant
-from rigdesign.report.figures.drawing import drawing_style, inline_svg
-
-if TYPE_CHECKING:
-    from markupsafe import Markup
+from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
 
 GROUPS_DRAWN = 6
 """Groups whose residuals are drawn over their leading variable."""
@@ -36,15 +33,7 @@ def comparison_page(comparison: Comparison, document: dict[str, Any]) -> str:
     from rigdesign.report.figures import measurement as figures
     from rigdesign.report.pages.report import environment
 
-    count = 0
-
-    def draw(figure: Any, description: str) -> "Markup":
-        from markupsafe import Markup
-
-        nonlocal count
-        count += 1
-        return Markup(inline_svg(figure, f"f{count}", description))
-
+    draw = NumberedFigures()
     with drawing_style():
         leading = []
         for item in [item for item in comparison.located if significant(item)][:GROUPS_DRAWN]:

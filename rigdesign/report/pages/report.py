@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.version import __version__
 from rigdesign.report import numbers, palette, views
-from rigdesign.report.figures.drawing import drawing_style, inline_svg
+from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
 from rigdesign.report.issue import Issue, signatures
 from rigdesign.report.sections import SECTIONS
 from rigdesign.report.sections.section import Draw, ReportSection
@@ -18,7 +18,6 @@ from rigdesign.results.result import RunResult
 if TYPE_CHECKING:
     from jinja2 import Environment
     from markupsafe import Markup
-    from matplotlib.figure import Figure
 
 TEMPLATES = Path(__file__).parents[1] / "templates"
 
@@ -50,7 +49,7 @@ def report_html(result: RunResult, issue: Issue | None = None) -> str:
     unless ``issue`` says otherwise, which stands in the element ``issued`` and nowhere else.
     """
     shown = [section for section in SECTIONS if section.applies(result)]
-    page = _Page(result, issue or Issue(), _Figures(), _numbers(shown))
+    page = _Page(result, issue or Issue(), NumberedFigures(), _numbers(shown))
     with drawing_style():
         parts = {
             "first_page": _rendered(page, shown, "first page"),
@@ -143,19 +142,6 @@ def environment() -> "Environment":
     return templates
 
 
-class _Figures:
-    """Turns figures into SVG and numbers them, so that ids stay unique on the page."""
-
-    def __init__(self) -> None:
-        self._count = 0
-
-    def __call__(self, figure: "Figure", description: str) -> "Markup":
-        from markupsafe import Markup
-
-        self._count += 1
-        return Markup(inline_svg(figure, f"f{self._count}", description))
-
-
 def _body(section: ReportSection, page: _Page) -> "Markup":
     """Text of a section, from its template."""
     from markupsafe import Markup
@@ -174,17 +160,22 @@ def _body(section: ReportSection, page: _Page) -> "Markup":
     return Markup(text)
 
 
+INDICES = {"Fbeta": "Fβ", "Falpha": "Fα", "deltarelT": "δ rel T", "RrelT": "R rel T"}
+"""Indices of symbols as ISO 6336 prints them."""
+
+
 def signs(text: str) -> "Markup":
     """Escaped text in which K_V, f_z and the like carry a subscript and units stand as printed."""
     from markupsafe import Markup, escape
 
     escaped = str(escape(numbers.text_with_units(text.replace("sigma_F", "σ_F"))))
-    return Markup(re.sub(r"\b([KYfdσε])_([A-Z]{1,2}|[fzα]|Fbeta|Falpha)\b", _subscript, escaped))
+    return Markup(
+        re.sub(r"\b([KYfdσε])_([A-Z]{1,2}|[fzα]|Fbeta|Falpha|deltarelT|RrelT)\b", _subscript, escaped)
+    )
 
 
 def _subscript(found: re.Match[str]) -> str:
-    index = found[2].replace("beta", "β").replace("alpha", "α")
-    return f"{found[1]}<sub>{index}</sub>"
+    return f"{found[1]}<sub>{INDICES.get(found[2], found[2])}</sub>"
 
 
 def css_string(text: str) -> "Markup":

@@ -26,6 +26,7 @@ class PassRow:
     """Where a check or a group passes.
 
     least : smallest margin over the points [%], NaN without a number
+    note : why it does not limit the study, empty where it may
     passes : in words
     failing : points at which it fails
     """
@@ -38,6 +39,7 @@ class PassRow:
     passes: str
     failing: int
     moves: bool
+    note: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,6 +72,8 @@ def study_page(study: StudyResult, answer: StudyAnswer, pictures: StudyPictures)
             checks=_check_rows(study.points, answer),
             slices=slices(study.points, answer) if study.design == "grid" else None,
             titles={check.id: check.title for check in answer.selected.checks},
+            names={axis.path: axis.name for axis in answer.axes},
+            heated=any(point.record.get("max_temperature_degC") is not None for point in study.points),
             failed=[point for point in study.points if point.failed],
             rows=_point_rows(study.points, answer)[: min(MOST_ROWS, MOST_CELLS // len(answer.axes))],
             numbered=len(answer.axes) > MOST_NAMED,
@@ -105,14 +109,15 @@ def _check_rows(points: Sequence[StudyPoint], answer: StudyAnswer) -> list[PassR
     return sorted(rows, key=_nearest)
 
 
-def _nearest(row: PassRow) -> tuple[bool, bool, float]:
-    return np.isnan(row.least), not row.moves, row.least
+def _nearest(row: PassRow) -> tuple[bool, bool, bool, float]:
+    return np.isnan(row.least), not row.moves, bool(row.note), row.least
 
 
 def _pass_row(
     points: Sequence[StudyPoint], answer: StudyAnswer, table: MarginTable, name: str, identity: str = ""
 ) -> PassRow:
     least, at = _least(points, answer, table.of(table.moving) if table.moving.any() else table)
+    at = at if table.moving.any() or np.isnan(least) or len(points) == 1 else "every point"
     passes = ""
     if len(answer.axes) == 1:
         axis = answer.axes[0]
@@ -121,7 +126,8 @@ def _pass_row(
             passes = passing(axis, [axis.position(point) for point in points], table).sentence
         else:
             number = int(table.always_failing.sum())
-            passes = f"{number} {'check fails' if number == 1 else 'checks fail'} at every point"
+            where = "at every point" if len(points) > 1 else ""
+            passes = f"{number} {'check fails' if number == 1 else 'checks fail'} {where}".rstrip()
             if rest.checks:
                 found = passing(axis, [axis.position(point) for point in points], rest)
                 passes += f"; the rest {found.sentence}"
@@ -134,7 +140,16 @@ def _pass_row(
         passes=passes,
         failing=int(table.fails[table.computed].any(axis=1).sum()),
         moves=bool(table.moving.any()),
+        note=_note(table, len(points)),
     )
+
+
+def _note(table: MarginTable, points: int) -> str:
+    if np.isnan(table.least).all():
+        return "no check with a number"
+    if table.by_definition[~np.isnan(table.least)].all():
+        return "a stated value against a stated limit"
+    return "" if points == 1 or table.moving.any() else "not changed by this study"
 
 
 def _least(points: Sequence[StudyPoint], answer: StudyAnswer, table: MarginTable) -> tuple[float, str]:

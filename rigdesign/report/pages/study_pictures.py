@@ -1,6 +1,6 @@
 """The pictures of a study page, chosen by its design and the number of its inputs."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from typing import TYPE_CHECKING, TypeVar
@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigdesign.report.figures import study, study_map, study_samples
-from rigdesign.report.figures.drawing import inline_svg
+from rigdesign.report.figures.drawing import NumberedFigures
 from rigdesign.report.margins.answer import StudyAnswer
+from rigdesign.report.margins.influences import by_check
 from rigdesign.report.margins.regions import region_map
 from rigdesign.studies.result import StudyResult
 
 if TYPE_CHECKING:
+    from markupsafe import Markup
     from matplotlib.figure import Figure
 
 MOST_PAIRS = 15
@@ -33,7 +35,7 @@ T = TypeVar("T")
 class Picture:
     """A figure as SVG with its caption."""
 
-    svg: str
+    svg: "Markup"
     caption: str
 
 
@@ -59,33 +61,22 @@ class StudyPictures:
 
 def study_pictures(found: StudyResult, answer: StudyAnswer) -> StudyPictures:
     """Draw a study: curves of one input, a map of two, maps of all pairs of a grid, scatter plots of samples."""
-    pictures, svg = StudyPictures(), _Numbered()
+    pictures, svg = StudyPictures(), NumberedFigures()
     if not answer.selected.computed.any():
         return pictures
-    if len(answer.axes) == 1:
+    if len(answer.axes) == 1 and len(found.points) > 1:
         _curves(pictures, svg, found, answer)
-    elif found.design != "one at a time":
+    elif len(found.points) > 1 and found.design != "one at a time":
         if found.design in ("grid", "boundary"):
             _maps(pictures, svg, found, answer)
         if not pictures.main:
             _scatter(pictures, svg, found, answer)
-    _by_check(pictures.tornado, svg, answer, _per_check(found.swings), study_samples.tornado_figure, TORNADO)
-    _by_check(pictures.indices, svg, answer, _per_check(found.indices), study_samples.indices_figure, INDICES)
+    _draw_each(pictures.tornado, svg, by_check(answer, found.swings), study_samples.tornado_figure, TORNADO)
+    _draw_each(pictures.indices, svg, by_check(answer, found.indices), study_samples.indices_figure, INDICES)
     return pictures
 
 
-class _Numbered:
-    """SVG of a figure with ids of its own."""
-
-    def __init__(self) -> None:
-        self._count = 0
-
-    def __call__(self, figure: "Figure", description: str) -> str:
-        self._count += 1
-        return inline_svg(figure, f"s{self._count}", description)
-
-
-def _curves(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer: StudyAnswer) -> None:
+def _curves(pictures: StudyPictures, svg: NumberedFigures, found: StudyResult, answer: StudyAnswer) -> None:
     axis = answer.axes[0]
     positions = [axis.position(point) for point in found.points]
     main = study.margins_figure(answer, positions)
@@ -117,7 +108,7 @@ def _curves(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer:
             )
 
 
-def _maps(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer: StudyAnswer) -> None:
+def _maps(pictures: StudyPictures, svg: NumberedFigures, found: StudyResult, answer: StudyAnswer) -> None:
     pairs = list(combinations(answer.axes, 2))
     for pair in pairs[:MOST_PAIRS]:
         regions = region_map(pair, found.points, answer.deciding) if answer.rest.checks else None
@@ -130,7 +121,7 @@ def _maps(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer: S
         pictures.main.append(Picture(svg(figure, description), caption))
 
 
-def _scatter(pictures: StudyPictures, svg: _Numbered, found: StudyResult, answer: StudyAnswer) -> None:
+def _scatter(pictures: StudyPictures, svg: NumberedFigures, found: StudyResult, answer: StudyAnswer) -> None:
     """Margins over every input; of many inputs over those along which the smallest margin changes most."""
     if not answer.rest.checks:
         return
@@ -154,36 +145,20 @@ def _rank_correlation(positions: Sequence[float], margins: NDArray[np.float64]) 
     return float(spearmanr(np.asarray(positions)[known], margins[known]).statistic)
 
 
-def _per_check(records: Iterable[T]) -> dict[str, list[T]]:
-    found: dict[str, list[T]] = {}
-    for record in records:
-        found.setdefault(record.check, []).append(record)  # type: ignore[attr-defined]
-    return found
-
-
-def _by_check(
+def _draw_each(
     pictures: list[Picture],
-    svg: _Numbered,
-    answer: StudyAnswer,
-    records: dict[str, list[T]],
+    svg: NumberedFigures,
+    records: Iterable[tuple[str, list[T]]],
     draw: Callable[[str, Sequence[T]], "Figure | None"],
     description: str,
 ) -> None:
-    """One picture a check, the nearest to its limit first; what fails at every point comes last."""
-    for title, chosen in _nearest(answer, records):
+    """One picture a check, in the order of ``records``, as many as a page has room for."""
+    for title, chosen in records:
         figure = draw(title, chosen)
         if figure is not None:
             pictures.append(Picture(svg(figure, f"{description}, {title}"), ""))
         if len(pictures) == MOST_CHECKS:
             return
-
-
-def _nearest(answer: StudyAnswer, records: dict[str, list[T]]) -> Iterator[tuple[str, list[T]]]:
-    for table in (answer.rest, answer.always):
-        for column in table.nearest_first():
-            check = table.checks[column]
-            if check.id in records:
-                yield check.title, records[check.id]
 
 
 TORNADO = "Margin with one input at its ends"

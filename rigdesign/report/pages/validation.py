@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 from rigdesign.base.output_folder import staged
 from rigdesign.base.version import __version__
-from rigdesign.report.figures.drawing import drawing_style, inline_svg
+from rigdesign.report.figures.drawing import NumberedFigures, drawing_style
 from rigdesign.validation import ValidationRow, headline, validation_csv, validation_json
 
 if TYPE_CHECKING:
-    from markupsafe import Markup
     from matplotlib.figure import Figure
 
 ORDER = ("gate missed", "goal missed", "gate held", "goal met", "shown", "not modelled")
@@ -47,12 +46,11 @@ def validation_page(rows: Sequence[ValidationRow]) -> str:
     from rigdesign.report.figures.validation import deviation_figure, share_of_tolerance
     from rigdesign.report.pages.report import environment
 
+    draw = NumberedFigures()
     with drawing_style():
         deviations, sources = deviation_figure(rows), _source_figures(rows)
-        drawn = [_svg(figure, f"v{number}", text) for number, (text, figure) in enumerate(sources)]
-        main = (
-            None if deviations is None else _svg(deviations, "deviations", "Deviation over what is allowed")
-        )
+        main = None if deviations is None else draw(deviations, "Deviation over what is allowed")
+        drawn = [draw(figure, text) for text, figure in sources]
     notes = list(dict.fromkeys(row.assumptions for row in rows if row.assumptions))
     shares = {row.id: share_of_tolerance(row) for row in rows}
 
@@ -100,9 +98,3 @@ def _source_figures(rows: Sequence[ValidationRow]) -> "list[tuple[str, Figure]]"
     return [
         (f"Computed over published numbers, {name}", figure) for name, figure in figures if figure is not None
     ]
-
-
-def _svg(figure: "Figure", name: str, text: str) -> "Markup":
-    from markupsafe import Markup
-
-    return Markup(inline_svg(figure, name, text))

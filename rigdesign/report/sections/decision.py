@@ -6,18 +6,20 @@ from rigdesign.results.result import RunResult
 
 NEAREST = 5
 """Lines of the table of the first page."""
+SCHEMATIC = "Schematic of the rig: gearboxes, shafts, couplings, motor, bracing and oil"
 NAMED = 4
 """Assumed inputs that the first page names."""
 
 
 def _decision(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.case_sheet import CaseSheet
-    from rigdesign.report.figures.schematic import schematic_figure
+    from rigdesign.report.figures.schematic import phone_schematic_figure, schematic_figure
 
     real = views.predicted(result.checks) or views.applicable(result.checks)
     nearest = views.sorted_checks(real)[:NEAREST]
     governing = nearest[0] if nearest else None
-    schematic = schematic_figure(CaseSheet.of(result.inputs))
+    case = CaseSheet.of(result.inputs)
+    schematics = {"wide": schematic_figure(case), "narrow": phone_schematic_figure(case)}
     specific = [] if governing is None else views.specific(result, governing)
     return {
         "counts": result.counts,
@@ -30,9 +32,9 @@ def _decision(result: RunResult, draw: Draw) -> Values:
         "depends_on": len(specific),
         "with_range": sum(record.range is not None for record in specific),
         "named": specific[:NAMED],
-        "schematic": None
-        if schematic is None
-        else draw(schematic, "Schematic of the rig: gearboxes, shafts, couplings, motor, bracing and oil"),
+        "schematics": {
+            width: draw(figure, SCHEMATIC) for width, figure in schematics.items() if figure is not None
+        },
     }
 
 

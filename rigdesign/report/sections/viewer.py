@@ -30,10 +30,12 @@ def _viewer(result: RunResult, draw: Draw) -> Values:
     from rigdesign.report.viewer.cutaway import cutaway_picture
     from rigdesign.report.viewer.library import drawing_library, viewer_text
     from rigdesign.report.viewer.scene import hottest, viewer_scene
+    from rigdesign.report.viewer.solid import solid_pictures
 
     field = result.fields[hottest(result.fields)]
-    still = cutaway_picture(field)
-    scene = json.dumps(viewer_scene(result.fields), ensure_ascii=True, allow_nan=False)
+    solids = solid_pictures(item.mesh for item in result.fields)
+    still = cutaway_picture(field, solids[id(field.mesh)])
+    scene = json.dumps(viewer_scene(result.fields, solids), ensure_ascii=True, allow_nan=False)
     return {
         "viewer": ViewerParts(
             still=draw(still.figure, f"{still.title} of gearbox {field.gearbox} at stage {field.stage}"),

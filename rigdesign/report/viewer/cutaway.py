@@ -9,7 +9,7 @@ from rigdesign.report.figures.drawing import new_figure
 from rigdesign.report.figures.field import Picture
 from rigdesign.report.figures.mesh_views import Indices, camera, cut_mesh, shaft_axis_height, standing_bodies
 from rigdesign.report.palette import INK, TEMPERATURE_COLOURS
-from rigdesign.report.viewer.solid import solid_picture, triangle_normals
+from rigdesign.report.viewer.solid import SolidPicture, triangle_normals
 from rigdesign.results.thermal import TemperatureField
 from thermal.fe.mesh import FloatArray
 
@@ -22,15 +22,18 @@ LEVELS = 12
 MM = 1e3
 
 
-def cutaway_picture(field: TemperatureField) -> Picture:
-    """Temperature on the skin below the plane of the shafts and in the cut, without the clamping field."""
+def cutaway_picture(field: TemperatureField, solid: SolidPicture) -> Picture:
+    """Temperature on the skin below the plane of the shafts and in the cut, without the clamping field.
+
+    solid : of the mesh of ``field``
+    """
     from matplotlib import colormaps
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
     height = shaft_axis_height(field.mesh)
     values = field.temperature - ZERO_CELSIUS
-    corners, shade, bright = _below(field, height, values)
+    corners, shade, bright = _below(field, solid, height)
     cut = cut_mesh(field.mesh, 2, height)
     standing = np.isin(cut.bodies, standing_bodies(field.mesh))
     face, edges = cut.points[cut.triangles[standing]], cut.points[cut.outlines(standing)]
@@ -56,10 +59,10 @@ def cutaway_picture(field: TemperatureField) -> Picture:
 
 
 def _below(
-    field: TemperatureField, height: float, values: FloatArray
+    field: TemperatureField, solid: SolidPicture, height: float
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Skin below the plane: corners (k, 3, 3) [m], values at them (k, 3), brightness (k,)."""
-    solid = solid_picture(field.mesh)
+    values = field.temperature - ZERO_CELSIUS
     standing = np.isin(solid.triangle_body, standing_bodies(field.mesh))
     triangles = solid.nodes[solid.triangles[standing]]
     corners, shade = clipped(field.mesh.points[triangles], values[triangles], height)

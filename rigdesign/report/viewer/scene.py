@@ -2,7 +2,7 @@
 
 import gzip
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +13,7 @@ from rigdesign.report.figures.field import MeshViews, magnification
 from rigdesign.report.figures.mesh_views import standing_bodies
 from rigdesign.report.palette import DISPLACEMENT_COLOURS, TEMPERATURE_COLOURS
 from rigdesign.report.viewer.simplify import simplified
-from rigdesign.report.viewer.solid import Indices, SolidPicture, shaded_vertices, solid_picture
+from rigdesign.report.viewer.solid import Indices, SolidPicture, shaded_vertices
 from rigdesign.results.thermal import TemperatureField
 from thermal.fe.mesh import FloatArray
 
@@ -49,9 +49,10 @@ class _Block:
         return {**self.add(np.rint((values - low) / step).astype(np.uint16)), "low": low, "step": step}
 
 
-def viewer_scene(fields: Sequence[TemperatureField]) -> dict[str, Any]:
+def viewer_scene(fields: Sequence[TemperatureField], solids: Mapping[int, SolidPicture]) -> dict[str, Any]:
     """Everything the script of the picture needs, ready for JSON; lengths in mm, temperatures in degC.
 
+    solids : of every mesh, by its identity
     ``meshes`` (points, tetrahedra, skin), ``fields`` (mesh, gearbox, stage, temperature, displacement in um, factor of
     the drawn displacement), ``first`` (number of the field shown first), ``ranges`` and ``colours`` of both quantities,
     ``block``: the arrays, gzip in base64.
@@ -62,7 +63,7 @@ def viewer_scene(fields: Sequence[TemperatureField]) -> dict[str, Any]:
     shown: list[dict[str, Any]] = []
     for item in fields:
         if id(item.mesh) not in pictures:
-            picture = _mesh_picture(item, len(meshes))
+            picture = _mesh_picture(item, solids[id(item.mesh)], len(meshes))
             pictures[id(item.mesh)] = picture
             meshes.append(_mesh_entry(block, picture))
         shown.append(_field_entry(block, item, pictures[id(item.mesh)]))
@@ -100,8 +101,7 @@ class _MeshPicture:
     coarser: bool
 
 
-def _mesh_picture(item: TemperatureField, number: int) -> _MeshPicture:
-    whole = solid_picture(item.mesh)
+def _mesh_picture(item: TemperatureField, whole: SolidPicture, number: int) -> _MeshPicture:
     drawn = simplified(whole, item.mesh.points[whole.nodes])
     return _MeshPicture(number, drawn, MeshViews(item.mesh), drawn is not whole)
 

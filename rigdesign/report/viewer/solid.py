@@ -1,5 +1,6 @@
 """What the turnable picture shows of a mesh: bodies of flat tetrahedra and their skins, by name."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +66,11 @@ def solid_picture(mesh: NamedMesh) -> SolidPicture:
         bodies=tuple(mesh.bodies),
         surfaces=(*mesh.surfaces, UNNAMED),
     )
+
+
+def solid_pictures(meshes: Iterable[NamedMesh]) -> dict[int, SolidPicture]:
+    """Picture of every mesh by its identity; a mesh that several fields share is split once."""
+    return {number: solid_picture(mesh) for number, mesh in {id(mesh): mesh for mesh in meshes}.items()}
 
 
 def _fine_bodies(mesh: NamedMesh, sides: Indices) -> list[int]:

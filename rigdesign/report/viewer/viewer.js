@@ -166,23 +166,32 @@
     return found;
   }
 
-  // Ends of the axes [mm]: everything shown as drawn, and as moved by the largest factor of the list.
-  function ends() {
-    const wanted = choice(), entry = scene.fields[wanted.number], mesh = arrays.meshes[entry.mesh];
-    const field = arrays.fields[wanted.number], most = 1e-3 * 2 * entry.factor;
+  // 1 for every node of a body that is shown; all nodes where none is.
+  function shownNodes(mesh) {
     const used = new Uint8Array(mesh.points[0].length);
     for (let k = 0; k < mesh.tetrahedra.length; k++) {
       if (!state.hidden.has(mesh.tetrahedronBody[k >> 2])) used[mesh.tetrahedra[k]] = 1;
     }
+    return used.includes(1) ? used : used.fill(1);
+  }
+
+  // Least and largest of the values of the nodes that are used.
+  function extent(values, used) {
+    let low = Infinity, high = -Infinity;
+    values.forEach((value, i) => {
+      if (used[i]) [low, high] = [Math.min(low, value), Math.max(high, value)];
+    });
+    return [low, high];
+  }
+
+  // Ends of the axes [mm]: everything shown as drawn, and as moved by the largest factor of the list.
+  function ends() {
+    const wanted = choice(), entry = scene.fields[wanted.number], mesh = arrays.meshes[entry.mesh];
+    const field = arrays.fields[wanted.number], most = 1e-3 * 2 * entry.factor, used = shownNodes(mesh);
     return mesh.points.map((line, axis) => {
-      let low = Infinity, high = -Infinity;
-      for (let i = 0; i < line.length; i++) {
-        if (!used[i]) continue;
-        const shift = most * field.moved[axis][i];
-        low = Math.min(low, line[i], line[i] + shift);
-        high = Math.max(high, line[i], line[i] + shift);
-      }
-      return low <= high ? [low, high] : [0, 1];
+      const drawnEnds = extent(line, used);
+      const movedEnds = extent(line.map((x, i) => x + most * field.moved[axis][i]), used);
+      return [Math.min(drawnEnds[0], movedEnds[0]), Math.max(drawnEnds[1], movedEnds[1])];
     });
   }
 
@@ -246,14 +255,22 @@
     });
   }
 
-  // The slider runs from end to end of the mesh; its first place is the plane of the shaft axes, else the middle.
-  function placeSlider() {
-    const wanted = choice(), entry = scene.fields[wanted.number];
+  // The slider runs over what is shown, short of its ends, where nothing would be left of it.
+  function limitSlider() {
+    const wanted = choice();
     if (wanted.axis < 0) return;
-    const line = arrays.meshes[entry.mesh].points[wanted.axis], low = line.reduce((a, b) => Math.min(a, b));
-    const high = line.reduce((a, b) => Math.max(a, b)), slider = get("position");
-    slider.min = Math.ceil(low); slider.max = Math.floor(high); slider.step = 1;
-    slider.value = Math.round(wanted.axis === 2 ? scene.meshes[entry.mesh].cut : (low + high) / 2);
+    const mesh = arrays.meshes[scene.fields[wanted.number].mesh], slider = get("position");
+    const [low, high] = extent(mesh.points[wanted.axis], shownNodes(mesh)), room = 0.02 * (high - low);
+    slider.step = high - low > 20 ? 1 : 0.1;
+    slider.min = Math.ceil((low + room) / slider.step) * slider.step;
+    slider.max = Math.floor((high - room) / slider.step) * slider.step;
+  }
+
+  // Its first place is the plane of the shaft axes, else the middle.
+  function placeSlider() {
+    limitSlider();
+    const wanted = choice(), entry = scene.fields[wanted.number], slider = get("position");
+    slider.value = wanted.axis === 2 ? scene.meshes[entry.mesh].cut : (Number(slider.min) + Number(slider.max)) / 2;
   }
 
   function offer(select, options, value) {
@@ -269,7 +286,7 @@
     get("bodies").replaceChildren(...about.bodies.map((name, body) => {
       const label = document.createElement("label"), box = document.createElement("input");
       box.type = "checkbox"; box.checked = !state.hidden.has(body);
-      box.addEventListener("change", () => { state.hidden[box.checked ? "delete" : "add"](body); draw(); });
+      box.addEventListener("change", () => { state.hidden[box.checked ? "delete" : "add"](body); limitSlider(); draw(); });
       label.append(box, ` ${name}`);
       return label;
     }));

@@ -156,6 +156,22 @@ def test_counted_points_say_what_is_left(clock: Clock, capsys: pytest.CaptureFix
     assert lines[-1] == "  60.0 s  20 of 20, last point 20"
 
 
+@pytest.mark.usefixtures("saying")
+def test_the_start_of_the_workers_does_not_count_as_points(
+    clock: Clock, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two workers start for 60 s and give a point each, then two every 4 s."""
+    with Progress(parallel=2) as progress:
+        progress("points")
+        clock.now += 56.0
+        for done in range(1, 21):
+            clock.now += 4.0 if done % 2 else 0.0
+            progress.count(done, 20, f"point {done}")
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[1] == "  60.0 s  2 of 20, last point 2"
+    assert lines[5] == "  76.0 s  10 of 20, last point 10 (about 20 s left)"
+
+
 def test_a_run_that_fails_keeps_no_times() -> None:
     with pytest.raises(ValueError), Progress(step_times("case")) as progress:
         progress("building")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from rigdesign.cli.terminal.study import print_study
 from rigdesign.results.result import Finding
-from rigdesign.studies.result import PassProbability
+from rigdesign.studies.result import PassProbability, SobolIndex, Swing
 from rigdesign.studies.run import StudyOutcome
 from tests.builders.study_points import map_points, oil_points, study_of
 
@@ -37,6 +37,40 @@ def test_two_inputs_are_answered_at_every_value_of_the_second(capsys):
 def test_many_failed_points_are_counted(capsys):
     text, _ = printed(capsys, oil_points(range(80, 100), failed=range(80, 92)))
     assert text.count("failed: gearboxes") == 5 and "7 more points failed: see results.csv" in text
+
+
+def test_one_point_is_counted_as_one(capsys):
+    text, _ = printed(capsys, oil_points((90,)))
+    assert "1 point computed, 0 found done" in text
+
+
+def test_indices_and_ends_of_the_inputs_are_printed_nearest_check_first(capsys):
+    inputs = ("gearboxes.*.oil.inlet_temperature", "schedule.test_torque")
+    indices = [
+        SobolIndex(check=check, path=path, first_order=0.2, first_order_interval=(0.1, 0.3), total=share,
+                   total_interval=(share - 0.05, share + 0.05))
+        for check in ("temperature.outlet", "clearance.tip")
+        for path, share in zip(inputs, (0.25, 0.75), strict=True)
+    ]  # fmt: skip
+    swings = [
+        Swing(check="clearance.tip", path=path, low="low", high="high", utilisation_stated=0.8, utilisation_low=0.75,
+              utilisation_high=high)
+        for path, high in zip(inputs, (0.85, 1.1), strict=True)
+    ]  # fmt: skip
+    swings.append(
+        Swing(check="temperature.outlet", path=inputs[0], low="low", high="high", utilisation_stated=0.5,
+              utilisation_low=0.5, utilisation_high=0.5)
+    )  # fmt: skip
+    text, lines = printed(capsys, oil_points((90, 110)), design="sobol", indices=indices, swings=swings)
+    assert (
+        "hottest oil outlet: schedule test torque 0.75 (0.70 to 0.80), oil inlet temperature of every gearbox 0.25 "
+        "(0.20 to 0.30)"
+    ) in text
+    assert text.index("hottest oil outlet: schedule") < text.index("hot tip clearance: schedule")
+    assert (
+        "hot tip clearance: schedule test torque 25 and −10 %, oil inlet temperature of every gearbox 25 and 15 %"
+    ) in text
+    assert sum(line.startswith("  hottest oil outlet") for line in lines) == 1, "its margin does not move"
 
 
 def test_samples_say_how_often_all_and_the_least_likely_hold(capsys):

@@ -117,7 +117,7 @@ def test_checks_by_definition_are_no_near_margins(printed: Printed) -> None:
     lines = printed(small_result(checks=[*stated, make_check("near.check", 0.999, 1.0)]))
     assert not any(line.startswith(("ramp.test_torque", "bought_part.rig_speed")) for line in lines)
     assert any(line.startswith("near.check") for line in lines)
-    assert "left out here, one input held against another: 2" in lines
+    assert "2 checks of one input against another: not in this list" in lines
 
 
 def test_a_limit_of_a_power_stands_in_the_unit_of_its_value(printed: Printed) -> None:

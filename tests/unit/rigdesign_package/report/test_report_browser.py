@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from rigdesign.report.pages.report import report_html
+from rigdesign.results.flips import Flip
 from tests.builders.browser import Browser, browser
 from tests.builders.report import make_check, make_result
 from tests.builders.report_inputs import rig_inputs
@@ -68,6 +69,42 @@ def test_bars_are_whole_and_the_page_does_not_scroll_sideways(
     assert len(browser.find(".meter")) > 5
     assert browser.run(CUT) == []
     assert browser.overflow() <= 0
+
+
+LEAST_TYPE = 7.5
+"""Height of the smallest type of the schematic on a phone [CSS pixels]."""
+SCROLLED = """
+return [...document.querySelectorAll('.sheet *')].filter(e => e.scrollWidth > e.clientWidth + 1 && e.clientWidth
+  && getComputedStyle(e).overflowX !== 'visible').map(e => e.outerHTML.slice(0, 80))
+"""
+"""Boxes of the first page that scroll sideways."""
+
+
+def test_the_first_page_fits_a_phone_with_readable_type_in_the_schematic(
+    browser: Browser, tmp_path: Path
+) -> None:
+    flip = Flip(
+        path="schedule.test_torque", title="test torque", holds=False, stated="180 Nm", needed="99.31 Nm",
+        check="specimen.root_stress", turns=True, effect="root stress of specimen test pinion holds",
+    )  # fmt: skip
+    page = tmp_path / "report.html"
+    page.write_text(report_html(make_result(inputs=rig_inputs(), flips=[flip])), encoding="utf-8")
+    browser.open(page, width=390)
+    assert browser.run(SCROLLED) == []
+    shown = [figure for figure in browser.find(".sheet figure") if figure.is_displayed()]
+    assert len(shown) == 1 and "test gearbox" in shown[0].text.replace("\n", " ")
+    scale = browser.run(
+        "const svg = arguments[0].querySelector('svg'); return svg.clientWidth / svg.viewBox.baseVal.width",
+        shown[0],
+    )
+    sizes = browser.run(
+        "return [...arguments[0].querySelectorAll('text')].map(t => parseFloat(getComputedStyle(t).fontSize))",
+        shown[0],
+    )
+    assert len(sizes) > 8 and scale * min(sizes) > LEAST_TYPE
+    browser.resize(1280)
+    shown = [figure for figure in browser.find(".sheet figure") if figure.is_displayed()]
+    assert len(shown) == 1 and "test gearbox (specimen)" in shown[0].text
 
 
 def test_a_cut_bar_would_be_seen(browser: Browser, page: Path) -> None:

@@ -4,12 +4,13 @@ from dataclasses import replace
 from datetime import date
 
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from rigdesign.report import flips, reasons
 from rigdesign.report.assumption_groups import assumption_groups, in_braces, most_influential
 from rigdesign.report.case_sheet import CaseSheet
 from rigdesign.report.figures.drawing import drawing_style
-from rigdesign.report.figures.schematic import rig_plan, schematic_figure
+from rigdesign.report.figures.schematic import phone_schematic_figure, rig_plan, schematic_figure
 from rigdesign.report.input_sheets import gear_sheets, joint_sheet, material_sheet, oil_sheet, shaft_sheet
 from rigdesign.report.issue import Issue, signatures
 from rigdesign.report.pages.report import css_string, report_html
@@ -176,6 +177,23 @@ def test_schematic_names_what_the_rig_is_made_of():
         "load unit shifts it axially",
     ):  # fmt: skip
         assert words in texts, words
+
+
+def test_no_words_of_the_schematic_of_a_phone_meet():
+    with drawing_style():
+        figure = phone_schematic_figure(CaseSheet.of(rig_inputs()))
+    texts = [text for text in figure.axes[0].texts if text.get_text()]
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    boxes = [text.get_window_extent(renderer) for text in texts]
+    meeting = [
+        (texts[i].get_text(), texts[j].get_text())
+        for i in range(len(texts))
+        for j in range(i)
+        if boxes[i].overlaps(boxes[j])
+    ]
+    assert meeting == []
+    frame = figure.bbox
+    assert all(frame.x0 <= box.x0 and box.x1 <= frame.x1 and box.y1 <= frame.y1 for box in boxes)
 
 
 def test_data_sheets_echo_the_case():

@@ -350,6 +350,7 @@ def test_symbols_carry_an_index():
     assert symbol("c_gamma_alpha") == "c<sub>γα</sub>"
     assert symbol("range") == "range"
     assert symbol("<b>_x") == "&lt;b&gt; x"
+    assert signs("Y_deltarelT 1.02, Y_RrelT 0.9") == "Y<sub>δ rel T</sub> 1.02, Y<sub>R rel T</sub> 0.9"
     assert signs("K_V of <i> at f_z, run_up") == "K<sub>V</sub> of &lt;i&gt; at f<sub>z</sub>, run_up"
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from rigdesign.base.errors import UsageError
 from rigdesign.report.margins.answer import slices, study_answer
-from rigdesign.report.margins.axis import study_axis
+from rigdesign.report.margins.axis import input_name, study_axis
 from rigdesign.report.margins.regions import region_map
 from rigdesign.studies.selection import CheckSelection
 from tests.builders.study_points import OIL, TORQUE, check_record, map_points, oil_points, point, study_of
@@ -55,6 +55,57 @@ def test_order_of_the_points_changes_nothing():
 )  # fmt: skip
 def test_sentences_of_a_selection(patterns, expected):
     assert said(oil_points((90, 110, 130)), *patterns) == expected
+
+
+@pytest.mark.parametrize(
+    ("path", "name"),
+    [
+        (OIL, "test oil inlet temperature"),
+        (TORQUE, "schedule test torque"),
+        ("gearboxes.*.oil.inlet_temperature", "oil inlet temperature of every gearbox"),
+        (
+            "gearboxes.*.bearings.*.diametral_clearance",
+            "diametral clearance of every bearing of every gearbox",
+        ),
+        ("gearboxes.test.meshes.*.backlash", "backlash of every mesh of gearboxes test"),
+        ("gearboxes.test.bearings.pinion_*.width", "width of every bearing pinion_* of gearboxes test"),
+        ("drivetrain.couplings.*.stiffness", "stiffness of every coupling"),
+    ],
+)
+def test_inputs_are_named_in_words(path, name):
+    assert input_name(path) == name.replace("gearboxes ", "").replace("_", " ")
+
+
+def test_quantities_among_names_stand_in_printed_units():
+    axis = study_axis("oil", [point({"oil": text}) for text in ("as stated", "120 degC", "FVA 3A")])
+    assert not axis.numeric
+    assert [axis.text(position) for position in axis.positions] == ["as stated", "120 °C", "FVA 3A"]
+    assert axis.shown("120 degC") == "120 °C"
+
+
+def test_a_single_point_is_answered_for_that_point():
+    assert said(oil_points((90,)), "!ramp.*") == (
+        "“root stress, ISO 6336-3” fails at the only point. Everything else passes at 90 °C; nearest to its limit is "
+        "“hottest oil outlet”, 38 % of its limit left."
+    )
+    assert said(oil_points((90, 110), failed=(110,))).startswith(
+        "“root stress, ISO 6336-3” fails at the only point with a result."
+    )
+    assert said(oil_points((130,)), "clearance.*,temperature.*").startswith(
+        "“hot tip clearance” fails at the only"
+    )
+
+
+def test_a_check_that_is_met_by_definition_limits_nothing():
+    """The torque at standstill is 10 of 10: nothing left, and not changed by the oil."""
+    points = oil_points((90,))
+    for record in points[0].record["checks"]:
+        record["by_definition"] = record["id"] == "ramp.standstill"
+    answer = answered(points, ROOT)
+    column, margin = answer.deciding.limiting()
+    assert answer.deciding.checks[column[0]].id == "temperature.outlet"
+    assert margin[0] == pytest.approx(37.5)
+    assert answered(points, "ramp.*").deciding.checks[0].id == "ramp.standstill"
 
 
 def window(oil):

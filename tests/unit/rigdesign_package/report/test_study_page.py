@@ -121,6 +121,36 @@ def test_one_input_says_where_it_passes_and_marks_the_crossing(browser, pages): 
     assert "relax the loop" in browser.find("main")[0].text
 
 
+def test_a_group_that_the_study_does_not_change_says_so(browser, pages):  # noqa: F811
+    for name in ("one", "two"):
+        browser.open(pages[name] / "study.html")
+        rows = [row.text for row in browser.find("table tbody tr") if row.text.startswith("ramp")]
+        assert rows and rows[0].startswith("ramp (not changed by this study) 0 every point"), rows
+
+
+def test_the_temperature_column_is_there_where_a_point_has_one(browser, pages, tmp_path):  # noqa: F811
+    browser.open(pages["one"] / "study.html")
+    assert "highest temperature" in browser.find("table.points thead")[0].text
+    cold = oil_points((90, 110, 120), failed=(120,))
+    for found in cold[:2]:
+        found.record["max_temperature_degC"] = None
+    browser.open(written(cold, tmp_path) / "study.html")
+    assert "highest temperature" not in browser.find("table.points thead")[0].text
+    heads = len(browser.find("table.points thead th"))
+    assert {
+        len(row.find_elements("css selector", "td")) for row in browser.find("table.points tbody tr")
+    } == {heads}
+
+
+def test_a_single_point_of_every_gearbox_reads_as_such(browser, tmp_path):  # noqa: F811
+    path = "gearboxes.*.oil.inlet_temperature"
+    browser.open(written([point({path: "90 degC"}, rig_checks(90.0))], tmp_path) / "study.html")
+    text = browser.find("body")[0].text
+    assert "oil inlet temperature of every gearbox" in text and "*" not in text
+    assert "1 points" not in text and "passes at every point" not in text
+    assert not browser.find("figure")
+
+
 def test_two_inputs_are_a_map_with_the_range_at_every_value_of_the_second(browser, pages):  # noqa: F811
     browser.open(pages["two"] / "study.html")
     figure = browser.find("figure")[0].text

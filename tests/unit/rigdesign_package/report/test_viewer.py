@@ -15,7 +15,7 @@ from rigdesign.report.viewer.cutaway import clipped
 from rigdesign.report.viewer.library import FOLDER, drawing_library, viewer_text
 from rigdesign.report.viewer.scene import MOST, hottest, viewer_scene
 from rigdesign.report.viewer.simplify import simplified
-from rigdesign.report.viewer.solid import UNNAMED, shaded_vertices, solid_picture
+from rigdesign.report.viewer.solid import UNNAMED, shaded_vertices, solid_picture, solid_pictures
 from tests.builders.report import gearbox_field, voxel_mesh
 from thermal.fe.mesh import box_mesh
 
@@ -102,7 +102,7 @@ def decoded(scene, at):
 
 def test_the_page_gets_the_field_to_a_hundredth_of_a_kelvin():
     field = gearbox_field()
-    scene = json.loads(json.dumps(viewer_scene([field])))
+    scene = json.loads(json.dumps(viewer_scene([field], solid_pictures([field.mesh]))))
     picture = solid_picture(field.mesh)
     mesh, shown = scene["meshes"][0], scene["fields"][0]
     points = np.column_stack([decoded(scene, at) for at in mesh["points"]])
@@ -132,7 +132,8 @@ def test_stages_share_their_mesh_and_the_hottest_comes_first():
     other = replace(
         field, gearbox="reference", mesh=replace(field.mesh), displacement=0.0 * field.displacement
     )
-    scene = viewer_scene([field, warmer, other])
+    fields = [field, warmer, other]
+    scene = viewer_scene(fields, solid_pictures(item.mesh for item in fields))
     assert hottest([field, warmer, other]) == scene["first"] == 1
     assert [entry["mesh"] for entry in scene["fields"]] == [0, 0, 1]
     assert len(scene["meshes"]) == 2

@@ -146,6 +146,29 @@ def test_the_other_stage_and_the_other_side_of_the_cut_are_drawn(page):
     assert moved(second, page.after(page.part("side").click)) > CHANGED
 
 
+def test_the_cut_runs_over_what_is_shown_and_leaves_something_at_both_ends(page):
+    """The clamping field, hidden at first, and bodies that are switched off do not count."""
+    page.after(lambda: page.window.run("document.querySelector('[data-view=start]').click()"))
+    boxes = page.part("bodies").find_elements("css selector", "label")
+    assert not boxes[1].find_element("css selector", "input").is_selected()
+    slide = (
+        "const [s, end] = arguments; s.value = s[end]; s.dispatchEvent(new Event('input')); "
+        "return [Number(s.min), Number(s.max)]"
+    )
+    spans = {}
+    for axis in "xyz":
+        page.after(lambda: Select(page.part("axis")).select_by_value(axis))  # noqa: B023
+        for end in ("min", "max"):
+            shot = page.after(
+                lambda: spans.update({axis: page.window.run(slide, page.part("position"), end)})  # noqa: B023
+            )
+            assert float((np.ptp(shot, axis=2) > 40).mean()) > 0.002, (axis, end, spans[axis])
+    page.after(boxes[0].click)
+    shafts = page.window.run(slide, page.part("position"), "max")
+    assert spans["z"][0] < shafts[0] < shafts[1] < spans["z"][1]
+    page.after(boxes[0].click)
+
+
 def test_it_asks_for_nothing_and_complains_of_nothing(page):
     assert page.window.requests() == []
     assert [line for line in page.window.console() if UNTOUCHED not in line] == []

@@ -1,8 +1,10 @@
 """How points are computed: any executor, once prepared, a defect stops, a point that fails is a result."""
 
 import csv
+import os
+import time
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -131,8 +133,6 @@ def test_worker_processes_stay_from_call_to_call():
 
 
 def process_number(task):
-    import os
-
     return os.getpid()
 
 
@@ -149,3 +149,56 @@ def test_a_study_of_names_is_a_grid(tmp_path):
     run_study(CURVES, "oil.name=FVA 3,MIL-PRF-23699", tmp_path, run=curves, executor=InProcess())
     with (tmp_path / "results.csv").open(encoding="utf-8") as table:
         assert [row["oil.name"] for row in csv.DictReader(table)] == ["FVA 3", "MIL-PRF-23699"]
+
+
+@dataclass(frozen=True)
+class Marked:
+    """A task that leaves a file each time it is computed."""
+
+    folder: str
+    number: int
+
+
+def mark_or_die(task):
+    (Path(task.folder) / f"{task.number}-{time.monotonic_ns()}").touch()
+    if task.number == 1:
+        while not list(Path(task.folder).glob("done-2")):
+            time.sleep(0.01)
+        time.sleep(0.5)  # until the outcome of 2 is with the pool
+        os._exit(9)
+    (Path(task.folder) / f"done-{task.number}").touch()
+    return task.number
+
+
+@pytest.mark.whole_run
+def test_what_is_finished_when_another_process_dies_is_not_computed_again(tmp_path):
+    tasks = [Marked(str(tmp_path), number) for number in range(3)]
+    with ProcessWorkers(2) as workers:
+        outcomes = workers.compute(mark_or_die, tasks)
+        found = [next(outcomes)]
+        time.sleep(4.0)  # 2 is finished, then 1 dies, before anybody asks
+        found += outcomes
+    assert sorted(found, key=lambda row: row[0]) == [(0, 0), (1, None), (2, 2)]
+    assert len(list(tmp_path.glob("2-*"))) == 1
+    assert len(list(tmp_path.glob("1-*"))) == 2
+
+
+class OtherVersion(InProcess):
+    """A worker of another version of the tool from the third point on."""
+
+    count = 0
+
+    def submit(self, work, /, *arguments, **keywords):
+        future, self.count = super().submit(work, *arguments, **keywords), self.count + 1
+        if self.count > 2:
+            other = Future()
+            other.set_result(replace(future.result(), version="0.0.9"))
+            return other
+        return future
+
+
+def test_a_point_of_another_version_is_refused_and_those_before_stay(tmp_path):
+    with pytest.raises(LostWorkersError, match=r"has rigdesign 0\.0\.9, .* 2 of 5 points are computed"):
+        run_study(CURVES, VARY, tmp_path, run=curves, executor=OtherVersion())
+    outcome = run_study(CURVES, VARY, tmp_path, run=curves, executor=InProcess())
+    assert (outcome.completed, outcome.reused) == (3, 2)

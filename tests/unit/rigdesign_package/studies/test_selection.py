@@ -1,9 +1,14 @@
 """Checks chosen by patterns on their ids."""
 
+from concurrent.futures import Executor
+
 import pytest
 
 from rigdesign.base.errors import UsageError
+from rigdesign.case import load_case
+from rigdesign.studies.design import StudyDesign
 from rigdesign.studies.selection import CheckSelection
+from tests.builders.study import run_study
 
 IDS = (
     "dynamics.dynamic_factor.test", "specimen.root_stress_iso.test.pinion", "specimen.root_stress_path.test.pinion",
@@ -58,3 +63,19 @@ def test_patterns_that_leave_nothing_over_are_refused():
 
 def test_a_study_without_a_result_has_no_check_to_select():
     assert CheckSelection(("oil.*",)).of(()) == ()
+
+
+@pytest.mark.parametrize("pattern", ["temprature.*", "transient.*"])
+def test_a_pattern_that_matches_no_check_of_the_case_is_refused_before_a_point(pattern, tmp_path):
+    """Known from the rules of the case: no folder is made, no executor asked."""
+    design = StudyDesign(vary=("gearboxes.test.oil.flow=3:7:2 l/min",), checks=(pattern,))
+    with pytest.raises(UsageError, match="--checks: no check matches"):
+        run_study(load_case("uhcf_prototype"), design, tmp_path / "out", executor=Unasked())
+    assert not (tmp_path / "out").exists()
+
+
+class Unasked(Executor):
+    """No point is to be computed."""
+
+    def submit(self, work, /, *arguments, **keywords):
+        raise AssertionError

@@ -3,6 +3,7 @@
 import shutil
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from rigdesign.base.errors import OutputError, UsageError
 from rigdesign.base.file_lock import FileLock
 from rigdesign.studies.design import StudyDesign
 from rigdesign.studies.ledger import Ledger, read_points
-from rigdesign.studies.shards import LOCK_NAME, Shard, parse_shard
+from rigdesign.studies.shards import FILES_LOCK, LOCK_NAME, START_LOCK, Shard, parse_shard
 from tests.builders.paths import ROOT
 from tests.builders.study import InProcess, run_study
 from tests.builders.study_functions import CURVES, curves
@@ -165,7 +166,7 @@ def test_two_jobs_of_one_share_and_a_study_over_running_shares_are_refused(tmp_p
 
 def test_the_share_that_finds_another_writing_leaves_the_files_to_it(whole, tmp_path):
     run_share(tmp_path, Shard(1, 2))
-    with FileLock(tmp_path / LOCK_NAME):
+    with FileLock(tmp_path / FILES_LOCK):
         assert run_share(tmp_path, Shard(2, 2)).missing == 0
     assert not (tmp_path / "results.csv").exists()
     run_share(tmp_path, None)
@@ -183,3 +184,21 @@ def test_a_share_takes_nothing_from_a_ledger_it_cannot_read(damage, tmp_path):
     assert read_points(path) == {}
     assert read_points(tmp_path / "nowhere.sqlite") == {}
     assert not (tmp_path / "nowhere.sqlite").exists()
+
+
+def test_a_share_beside_a_running_study_of_all_points_is_refused_and_nothing_is_lost(whole, tmp_path):
+    run_share(tmp_path, Shard(1, 2))
+    with (
+        FileLock(tmp_path / LOCK_NAME),
+        pytest.raises(OutputError, match=r"a study of process \d+ .* runs in it; wait for its end"),
+    ):
+        run_share(tmp_path, Shard(2, 2))
+    assert not (tmp_path / Shard(2, 2).lock_name).exists()
+    assert run_share(tmp_path, None).reused == POINTS // 2
+    assert contents(tmp_path) == whole
+
+
+def test_shares_that_start_at_the_same_moment_wait_for_each_other(tmp_path):
+    start = FileLock(tmp_path / START_LOCK)
+    threading.Timer(0.5, start.release).start()
+    assert run_share(tmp_path, Shard(1, 2)).completed == POINTS // 2

@@ -15,7 +15,7 @@ import pytest
 from rigdesign.base import worker_pool as study_pool
 from rigdesign.base.errors import CaseError, OutputError, UsageError
 from rigdesign.studies import ledger as study_ledger
-from rigdesign.studies.grid import Variation, grid, parse_variation
+from rigdesign.studies.grid import Variation, combinations, parse_variation
 from rigdesign.studies.ledger import Ledger, point_key
 from tests.builders.paths import ROOT
 from tests.builders.study import DRIVER, POINTS, ExampleCase, _events, _stored, run_example, run_study
@@ -66,7 +66,7 @@ def test_variation_faults_say_what_is_wrong(text, named):
 
 
 def test_grid_runs_the_last_variation_fastest():
-    assert grid([Variation("a", ("1", "2")), Variation("b", ("x", "y"))]) == [
+    assert combinations([Variation("a", ("1", "2")), Variation("b", ("x", "y"))]) == [
         ("1", "x"), ("1", "y"), ("2", "x"), ("2", "y"),
     ]  # fmt: skip
 
@@ -78,7 +78,7 @@ def test_grid_runs_the_last_variation_fastest():
 )  # fmt: skip
 def test_grid_faults(variations, named):
     with pytest.raises(UsageError, match=named):
-        grid(variations)
+        combinations(variations)
 
 
 def test_numbers_of_a_variation_share_one_unit():
