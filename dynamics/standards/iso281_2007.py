@@ -94,7 +94,7 @@ def a_ISO(kappa: float, contamination_load: float, contact: Contact) -> float:
     capped = min(kappa, KAPPA_MAXIMUM)
     law = _A_ISO[contact]
     branch = next(branch for branch in law.branches if capped < branch.kappa_below)
-    lubrication = max(law.first - branch.coefficient / capped**branch.exponent, 0.0) ** law.inner
+    lubrication: float = max(law.first - branch.coefficient / capped**branch.exponent, 0.0) ** law.inner
     bracket = 1.0 - lubrication * contamination_load**law.load
     if bracket <= 0.0:
         return A_ISO_MAXIMUM
