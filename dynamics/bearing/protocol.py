@@ -134,7 +134,8 @@ class BearingState:
     cooling_flow: float
     """Part of it that takes up the friction heat; the rest leaves past it [m3/s]."""
     mean_inverse_gap: float
-    """Mean of 1/h of the oil between shaft and shell [1/m]; times the oil conductivity a heat transfer coefficient."""
+    """Mean of 1/h of the oil between shaft and shell [1/m]; times the oil conductivity a heat transfer coefficient.
+    A kind without one gap gives that of the gap which conducts as much."""
     heat_from_bodies: float
     """Heat conducted into the oil from shaft and shell [W]."""
     specific_load: float | None

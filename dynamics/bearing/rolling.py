@@ -9,8 +9,8 @@ on T by the viscosity. With grease the oil flow is 0 and the seats take all of i
 """
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from scipy.optimize import brentq
@@ -19,9 +19,8 @@ from dynamics.bearing.protocol import (
     BearingError,
     BearingNotConvergedError,
     BearingOperation,
-    BearingState,
 )
-from dynamics.bearing.rolling_catalogue import RPM, CatalogueBearing
+from dynamics.bearing.rolling_catalogue import CatalogueBearing
 from dynamics.bearing.rolling_contact import COMMON_GROOVE, BallGroove, contact_law
 from dynamics.bearing.rolling_friction import (
     LAWS,
@@ -36,23 +35,15 @@ from dynamics.bearing.rolling_friction import (
     friction_torque,
 )
 from dynamics.bearing.rolling_heat import HeatPath, SeatConductances, housing_path, shaft_path
-from dynamics.bearing.rolling_life import (
-    LARGEST_AXIAL_SHARE,
-    LifeConditions,
-    RatingLife,
-    check_axial,
-    minimum_load,
-    rating_life,
-)
-from dynamics.bearing.rolling_stiffness import BearingStiffness, RowOfElements, bearing_stiffness
+from dynamics.bearing.rolling_life import LifeConditions, check_axial, minimum_load, rating_life
+from dynamics.bearing.rolling_state import RollingState, limit_warnings
+from dynamics.bearing.rolling_stiffness import RowOfElements, bearing_stiffness
 from dynamics.standards import iso281_2007
 
 MAXIMUM_RISE = 400.0
 """Temperature above that without friction at which the balance is given up [K]."""
 MAXIMUM_DROP = 60.0
 """Temperature below that without friction at which the balance is given up [K]."""
-STABILISED_TEMPERATURE = 393.15
-"""Rings keep their size up to here (SKF: 120 degC) [K]."""
 OIL_CONDUCTIVITY = 0.13
 """Of the oil in the equivalent gap of `RollingState.mean_inverse_gap` [W/(m K)]."""
 
@@ -239,50 +230,6 @@ class _HeatPaths:
         ) / total
 
 
-@dataclass(frozen=True, kw_only=True)
-class RollingState(BearingState):
-    """Steady state of a rolling bearing; beyond the common fields its own, SI units.
-
-    Of the common fields, ``film_temperature`` is that of the node (rolling elements and lubricant);
-    ``mean_inverse_gap`` is that of an oil gap of 0.13 W/(m K) on the bore that conducts as much as the path to the
-    shaft seat;
-    ``heat_from_bodies`` what the operation gives less what flows into the seats, so that
-    power + heat_from_bodies = rho c Q (outlet - inlet); ``torsional_damping`` is 0 at rest.
-    """
-
-    axial_load: float
-    """[N]"""
-    friction: FrictionTorque
-    """The drag torque in its four sources."""
-    viscosity: float
-    """Dynamic, at the bearing temperature [Pa s]."""
-    capacity_rate: float
-    """rho c Q of the oil that passes [W/K]."""
-    shaft_conductance: float
-    """G_s [W/K]; 0 without a shaft temperature."""
-    housing_conductance: float
-    """G_h [W/K]; 0 without a housing temperature."""
-    heat_to_shaft: float
-    """[W]"""
-    heat_to_housing: float
-    """[W]"""
-    inner_ring_temperature: float
-    """Middle of the ring [K]."""
-    outer_ring_temperature: float
-    """Middle of the ring [K]."""
-    life: RatingLife
-    load_utilisation: float
-    """P / C [-]."""
-    speed_utilisation: float
-    """Speed over the limiting speed [-]."""
-    reference_speed_utilisation: float
-    """Speed over the thermal reference speed [-]."""
-    minimum_load: float
-    """Radial load below which rolling elements may slide [N]."""
-    stiffness: BearingStiffness
-    """Tangent stiffness at the load and its displacement."""
-
-
 def _balance(excess: Callable[[float], float], start: float) -> float:
     """Temperature at which the heat is carried away [K]."""
     at_start = excess(start)
@@ -323,8 +270,7 @@ def _state(
     )
     carried_axially = 0.0 if data.kind == "cylindrical_roller" else operation.axial_load
     stiffness = bearing_stiffness(bearing.row, operation.load, carried_axially)
-    least = minimum_load(data, omega, viscosity / oil.density)
-    return RollingState(
+    state = RollingState(
         load=operation.load,
         axial_load=operation.axial_load,
         omega=omega,
@@ -355,81 +301,15 @@ def _state(
         load_utilisation=life.equivalent_load / data.dynamic_rating,
         speed_utilisation=omega / data.limiting_speed,
         reference_speed_utilisation=omega / data.reference_speed,
-        minimum_load=least,
+        minimum_load=minimum_load(data, omega, viscosity / oil.density),
         stiffness=stiffness,
         source=SOURCES[bearing.law],
-        warnings=tuple(_warnings(bearing, operation, temperature, life, stiffness, least)),
+        warnings=(),
     )
+    bath = bearing.law == "skf" and bearing.lubrication == "oil_bath"
+    return replace(state, warnings=tuple(limit_warnings(state, data, drag_in_bath=bath)))
 
 
 def _ring(bearing: float, seat: float, path: HeatPath, conductance: float) -> float:
     """Temperature of the middle of a ring [K]; that of the bearing where no heat flows through it."""
     return bearing - path.ring_share * (bearing - seat) if conductance > 0.0 else bearing
-
-
-def _warnings(
-    bearing: RollingBearing,
-    operation: BearingOperation,
-    temperature: float,
-    life: RatingLife,
-    stiffness: BearingStiffness,
-    least: float,
-) -> Iterator[str]:
-    """Sentences for what lies outside the theory or the catalogue: name, value, limit, remedy."""
-    data, omega = bearing.data, abs(operation.speed)
-    if omega > data.limiting_speed:
-        yield (
-            f"speed = {omega / RPM:.0f} rpm: above the limiting speed {data.limiting_speed / RPM:.0f} rpm; take a "
-            "smaller or more precise bearing"
-        )
-    if bearing.law == "skf" and bearing.lubrication == "oil_bath" and omega > data.reference_speed:
-        yield (
-            f"speed = {omega / RPM:.0f} rpm: above the reference speed {data.reference_speed / RPM:.0f} rpm up to "
-            "which the drag in an oil bath is described; lower the oil level or feed jet oil"
-        )
-    if omega > 0.0 and operation.load < least:
-        yield (
-            f"radial load = {operation.load:.0f} N: below the least load {least:.0f} N, rolling elements may slide; "
-            "preload the bearing or take a smaller one"
-        )
-    if life.equivalent_load > 0.5 * data.dynamic_rating:
-        yield (
-            f"equivalent load = {life.equivalent_load:.0f} N: above half the dynamic rating "
-            f"{0.5 * data.dynamic_rating:.0f} N, outside ISO 281; take a larger bearing"
-        )
-    if life.static_safety < 1.0:
-        yield (
-            f"static safety = {life.static_safety:.2f}: below 1, raceways are indented; take a larger bearing"
-        )
-    if omega > 0.0 and life.viscosity_ratio < iso281_2007.KAPPA_MINIMUM:
-        yield (
-            f"viscosity ratio = {life.viscosity_ratio:.3f}: below 0.1, the modified life is not described; use a "
-            "thicker oil or cool the bearing"
-        )
-    if temperature > STABILISED_TEMPERATURE:
-        yield (
-            f"bearing temperature = {temperature - 273.15:.0f} degC: above 120 degC, rings grow; order stabilised "
-            "rings or cool the bearing"
-        )
-    yield from _axial_warnings(bearing, operation, stiffness)
-
-
-def _axial_warnings(
-    bearing: RollingBearing, operation: BearingOperation, stiffness: BearingStiffness
-) -> Iterator[str]:
-    data, axial = bearing.data, operation.axial_load
-    if data.kind == "cylindrical_roller" and axial > LARGEST_AXIAL_SHARE * operation.load:
-        yield (
-            f"axial load = {axial:.0f} N: above half the radial load {operation.load:.0f} N, flanges overload; take "
-            "the axial load up elsewhere"
-        )
-    if data.kind == "deep_groove_ball" and axial > LARGEST_AXIAL_SHARE * data.static_rating:
-        yield (
-            f"axial load = {axial:.0f} N: above half the static rating {data.static_rating:.0f} N; take an angular "
-            "contact bearing"
-        )
-    if stiffness.held_axially and operation.load > 0.0:
-        yield (
-            f"axial load = {axial:.0f} N: below the {stiffness.axial_load:.0f} N the radial load induces; the "
-            "stiffness is that of a bearing set without end play, give the axial load inside the bearing"
-        )

@@ -78,9 +78,8 @@ def nu_1(n: float, D_pw: float) -> float:
     """
     if n <= 0.0:
         return math.inf
-    if n < 1000.0:
-        return 45000.0 / (n**0.83 * math.sqrt(D_pw))
-    return 4500.0 / math.sqrt(n * D_pw)
+    speed_term: float = 45000.0 * n**-0.83 if n < 1000.0 else 4500.0 * n**-0.5
+    return speed_term / math.sqrt(D_pw)
 
 
 def a_ISO(kappa: float, contamination_load: float, contact: Contact) -> float:
@@ -94,7 +93,7 @@ def a_ISO(kappa: float, contamination_load: float, contact: Contact) -> float:
     capped = min(kappa, KAPPA_MAXIMUM)
     law = _A_ISO[contact]
     branch = next(branch for branch in law.branches if capped < branch.kappa_below)
-    lubrication: float = max(law.first - branch.coefficient / capped**branch.exponent, 0.0) ** law.inner
+    lubrication = max(law.first - branch.coefficient / capped**branch.exponent, 0.0) ** law.inner
     bracket = 1.0 - lubrication * contamination_load**law.load
     if bracket <= 0.0:
         return A_ISO_MAXIMUM

@@ -17,7 +17,7 @@ from dynamics.bearing.protocol import (
     BearingState,
     OilSupply,
 )
-from dynamics.bearing.rolling import RollingBearing, RollingState
+from dynamics.bearing.rolling import RollingBearing
 from dynamics.bearing.rolling_catalogue import catalogue_bearing
 from dynamics.bearing.rolling_friction import LAWS, FrictionLaw
 from dynamics.bearing.rolling_heat import SeatConductances, shaft_path
@@ -27,6 +27,7 @@ from dynamics.bearing.rolling_life import (
     minimum_load,
     static_equivalent_load,
 )
+from dynamics.bearing.rolling_state import RollingState
 
 RPM = math.pi / 30.0
 DENSITY, HEAT_CAPACITY, INLET = 860.0, 2000.0, 343.15
