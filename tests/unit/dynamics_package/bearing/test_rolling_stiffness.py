@@ -189,3 +189,19 @@ def test_no_load_is_no_stiffness() -> None:
     found = bearing_stiffness(row("6208", 10e-6), 0.0, 0.0)
     assert found.radial == 0.0
     assert found.loaded_elements == 0
+
+
+def test_displacement_against_palmgrens_formulas() -> None:
+    """T. A. Harris, Rolling Bearing Analysis, radial displacement at zero clearance, N and mm.
+
+    Ball 4.36e-4 Q^(2/3) / D_w^(1/3) (all conformities in one number), roller 7.68e-5 Q^0.9 / L^0.8.
+    """
+    ball, roller = row("6208"), row("NU 208")
+    found = bearing_stiffness(ball, 2000.0, 0.0)
+    formula = (
+        4.36e-7 * found.largest_element_load ** (2.0 / 3.0) / (ball.elements.diameter * 1e3) ** (1.0 / 3.0)
+    )
+    assert found.radial_displacement == pytest.approx(formula, rel=0.1)
+    found = bearing_stiffness(roller, 2000.0, 0.0)
+    formula = 7.68e-8 * found.largest_element_load**0.9 / (roller.elements.length * 1e3) ** 0.8
+    assert found.radial_displacement == pytest.approx(formula, rel=1e-6)
