@@ -1,1 +1,1 @@
-"""Bearings behind one protocol; the journal bearing: film, temperature, drag torque."""
+"""Bearings behind one protocol: the journal bearing by its film, rolling bearings by their catalogue numbers."""

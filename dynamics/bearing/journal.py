@@ -93,6 +93,7 @@ class JournalBearing:
 
         Raises
         ------
+        BearingError : no oil flow, or an axial load, which a plain bearing does not carry
         BearingNotConvergedError : the film would have to be more than 400 K above or 60 K below the inlet
 
         Source: ISO 7902-1 / DIN 31652-1: heat carried by the oil alone, effective film temperature the mean of
@@ -100,6 +101,15 @@ class JournalBearing:
         """
         curve = characteristic(self.width / self.diameter)
         oil = operation.oil
+        if not oil.flow > 0.0:
+            raise BearingError(
+                f"bearing: oil flow = {oil.flow} m3/s: must be above 0; correct the oil supply"
+            )
+        if operation.axial_load > 0.0:
+            raise BearingError(
+                f"journal bearing: axial_load = {operation.axial_load:.6g} N: a plain cylindrical bearing carries "
+                "none; give it to the thrust bearing"
+            )
 
         def heat_into(film: _Film) -> float:
             given = operation.friction_heat

@@ -25,11 +25,11 @@ class OilSupply:
     """Oil as it is fed to one bearing.
 
     inlet_temperature : [K]
-    flow : above 0 [m3/s]
+    flow : not negative [m3/s]; 0 is grease, only for a kind that gives its heat to its seats as well
     viscosity : dynamic viscosity [Pa s] of a temperature [K], falling with it
     density, heat_capacity : at the inlet [kg/m3], [J/(kg K)]
 
-    Raises BearingError for a number that is not above 0.
+    Raises BearingError for a flow that is negative or another number that is not above 0.
     """
 
     inlet_temperature: float
@@ -39,8 +39,11 @@ class OilSupply:
     heat_capacity: float
 
     def __post_init__(self) -> None:
+        if not self.flow >= 0.0:
+            raise BearingError(
+                f"bearing: oil flow = {self.flow} m3/s: must not be negative; correct the oil supply"
+            )
         for name, value, unit in (
-            ("oil flow", self.flow, "m3/s"),
             ("oil density", self.density, "kg/m3"),
             ("oil heat capacity", self.heat_capacity, "J/(kg K)"),
             ("oil inlet temperature", self.inlet_temperature, "K"),
@@ -60,14 +63,18 @@ class BearingOperation:
     """Operating condition of one bearing.
 
     load : radial force, not negative [N]
+    axial_load : axial force inside the bearing, not negative [N]; for kinds that carry one
     speed : of the shaft; its sign does not matter [rad/s]
     oil : as it is fed
     heat_from_bodies : heat that shaft and shell give to the oil in the bearing; negative if they cool it [W]
     friction_heat : measured or assumed friction heat, not negative [W]; it takes the place of the computed friction in
         the heat balance, the drag torque is the computed one all the same
     friction_factor : multiplies the friction, and with it its heat; not negative [-]
+    shaft_temperature, housing_temperature : of the seats [K], for kinds that conduct heat into them; None where a seat
+        takes none
 
-    Raises BearingError for a load, friction heat or factor that is negative or not finite.
+    Raises BearingError for a load, friction heat or factor that is negative or not finite, or a seat temperature that
+    is not above 0.
     """
 
     load: float
@@ -76,10 +83,14 @@ class BearingOperation:
     heat_from_bodies: float = 0.0
     friction_heat: float | None = None
     friction_factor: float = 1.0
+    axial_load: float = 0.0
+    shaft_temperature: float | None = None
+    housing_temperature: float | None = None
 
     def __post_init__(self) -> None:
         for name, value, unit, remedy in (
             ("load", self.load, " N", "give its magnitude"),
+            ("axial_load", self.axial_load, " N", "give its magnitude"),
             (
                 "friction_heat", self.friction_heat, " W",
                 "give the measured loss, or none to let the bearing make its own",
@@ -89,6 +100,14 @@ class BearingOperation:
             if value is not None and not (value >= 0.0 and math.isfinite(value)):
                 raise BearingError(
                     f"bearing: {name} = {value}{unit}: must be finite and not negative; {remedy}"
+                )
+        for name, temperature in (
+            ("shaft_temperature", self.shaft_temperature),
+            ("housing_temperature", self.housing_temperature),
+        ):
+            if temperature is not None and not (temperature > 0.0 and math.isfinite(temperature)):
+                raise BearingError(
+                    f"bearing: {name} = {temperature} K: must be finite and above 0; give an absolute temperature"
                 )
 
 
@@ -115,7 +134,8 @@ class BearingState:
     cooling_flow: float
     """Part of it that takes up the friction heat; the rest leaves past it [m3/s]."""
     mean_inverse_gap: float
-    """Mean of 1/h of the oil between shaft and shell [1/m]; times the oil conductivity a heat transfer coefficient."""
+    """Mean of 1/h of the oil between shaft and shell [1/m]; times the oil conductivity a heat transfer coefficient.
+    A kind without one gap gives that of the gap which conducts as much."""
     heat_from_bodies: float
     """Heat conducted into the oil from shaft and shell [W]."""
     specific_load: float | None

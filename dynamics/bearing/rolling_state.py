@@ -1,0 +1,120 @@
+"""Steady state of a rolling bearing and what of it lies outside the theory or the catalogue."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from dynamics.bearing.protocol import BearingState
+from dynamics.bearing.rolling_catalogue import RPM, CatalogueBearing
+from dynamics.bearing.rolling_friction import FrictionTorque
+from dynamics.bearing.rolling_life import LARGEST_AXIAL_SHARE, RatingLife
+from dynamics.bearing.rolling_stiffness import BearingStiffness
+from dynamics.standards import iso281_2007
+
+STABILISED_TEMPERATURE = 393.15
+"""Rings keep their size up to here (SKF: 120 degC) [K]."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RollingState(BearingState):
+    """Steady state of a rolling bearing; beyond the common fields its own, SI units.
+
+    Of the common fields, ``film_temperature`` is that of the node (rolling elements and lubricant);
+    ``mean_inverse_gap`` is that of an oil gap of 0.13 W/(m K) on the bore that conducts as much as the path to the
+    shaft seat;
+    ``heat_from_bodies`` what the operation gives less what flows into the seats, so that
+    power + heat_from_bodies = rho c Q (outlet - inlet); ``torsional_damping`` is 0 at rest.
+    """
+
+    axial_load: float
+    """[N]"""
+    friction: FrictionTorque
+    """The drag torque in its four sources."""
+    viscosity: float
+    """Dynamic, at the bearing temperature [Pa s]."""
+    capacity_rate: float
+    """rho c Q of the oil that passes [W/K]."""
+    shaft_conductance: float
+    """G_s [W/K]; 0 without a shaft temperature."""
+    housing_conductance: float
+    """G_h [W/K]; 0 without a housing temperature."""
+    heat_to_shaft: float
+    """[W]"""
+    heat_to_housing: float
+    """[W]"""
+    inner_ring_temperature: float
+    """Middle of the ring [K]."""
+    outer_ring_temperature: float
+    """Middle of the ring [K]."""
+    life: RatingLife
+    load_utilisation: float
+    """P / C [-]."""
+    speed_utilisation: float
+    """Speed over the limiting speed [-]."""
+    reference_speed_utilisation: float
+    """Speed over the thermal reference speed [-]."""
+    minimum_load: float
+    """Radial load below which rolling elements may slide [N]."""
+    stiffness: BearingStiffness
+    """Tangent stiffness at the load and its displacement."""
+
+
+def limit_warnings(state: RollingState, data: CatalogueBearing, *, drag_in_bath: bool) -> Iterator[str]:
+    """Sentences for what lies outside: name, value, limit, remedy.
+
+    drag_in_bath : the drag was computed by the SKF model of an oil bath
+    """
+    omega, life, least = state.omega, state.life, state.minimum_load
+    if omega > data.limiting_speed:
+        yield (
+            f"speed = {omega / RPM:.0f} rpm: above the limiting speed {data.limiting_speed / RPM:.0f} rpm; take a "
+            "smaller or more precise bearing"
+        )
+    if drag_in_bath and omega > data.reference_speed:
+        yield (
+            f"speed = {omega / RPM:.0f} rpm: above the reference speed {data.reference_speed / RPM:.0f} rpm up to "
+            "which the drag in an oil bath is described; lower the oil level or feed jet oil"
+        )
+    if omega > 0.0 and state.load < least:
+        yield (
+            f"radial load = {state.load:.0f} N: below the least load {least:.0f} N, rolling elements may slide; "
+            "preload the bearing or take a smaller one"
+        )
+    if life.equivalent_load > 0.5 * data.dynamic_rating:
+        yield (
+            f"equivalent load = {life.equivalent_load:.0f} N: above half the dynamic rating "
+            f"{0.5 * data.dynamic_rating:.0f} N, outside ISO 281; take a larger bearing"
+        )
+    if life.static_safety < 1.0:
+        yield (
+            f"static safety = {life.static_safety:.2f}: below 1, raceways are indented; take a larger bearing"
+        )
+    if omega > 0.0 and life.viscosity_ratio < iso281_2007.KAPPA_MINIMUM:
+        yield (
+            f"viscosity ratio = {life.viscosity_ratio:.3f}: below 0.1, the modified life is not described; use a "
+            "thicker oil or cool the bearing"
+        )
+    if state.film_temperature > STABILISED_TEMPERATURE:
+        yield (
+            f"bearing temperature = {state.film_temperature - 273.15:.0f} degC: above 120 degC, rings grow; order "
+            "stabilised rings or cool the bearing"
+        )
+    yield from _axial_warnings(state, data)
+
+
+def _axial_warnings(state: RollingState, data: CatalogueBearing) -> Iterator[str]:
+    axial, stiffness = state.axial_load, state.stiffness
+    if data.kind == "cylindrical_roller" and axial > LARGEST_AXIAL_SHARE * state.load:
+        yield (
+            f"axial load = {axial:.0f} N: above half the radial load {state.load:.0f} N, flanges overload; take "
+            "the axial load up elsewhere"
+        )
+    if data.kind == "deep_groove_ball" and axial > LARGEST_AXIAL_SHARE * data.static_rating:
+        yield (
+            f"axial load = {axial:.0f} N: above half the static rating {data.static_rating:.0f} N; take an angular "
+            "contact bearing"
+        )
+    if stiffness.held_axially and state.load > 0.0:
+        yield (
+            f"axial load = {axial:.0f} N: below the {stiffness.axial_load:.0f} N the radial load induces; the "
+            "stiffness is that of a bearing set without end play, give the axial load inside the bearing"
+        )
