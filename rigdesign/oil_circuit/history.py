@@ -1,0 +1,74 @@
+"""An oil circuit alone over a schedule of times, its consumers given by their heat."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigdesign.base.number_faults import refuse
+from rigdesign.oil_circuit.line_balance import HeatTaken
+from rigdesign.oil_circuit.state import CircuitState, CircuitStep, Energies
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class CircuitHistory:
+    """Temperatures at n times, and mean powers of the n - 1 steps between them."""
+
+    times: FloatArray
+    """(n,) [s]"""
+    tank: FloatArray
+    """(n,) [K]"""
+    supplies: Mapping[str, FloatArray]
+    """Consumer -> (n,) [K]."""
+    heater: FloatArray
+    """(n - 1,) of tank and lines [W]."""
+    cooler: FloatArray
+    """(n - 1,) of tank and lines [W]."""
+    energies: Energies
+    """Of all steps."""
+    last: CircuitState
+
+    def time_below(self, consumer: str, temperature: float) -> float:
+        """Time for which the supply of a consumer is below a temperature [s], straight between the times."""
+        supply = self.supplies[consumer] - temperature
+        before, after, length = supply[:-1], supply[1:], np.diff(self.times)
+        low, high = np.minimum(before, after), np.maximum(before, after)
+        crossing = np.where(high > low, -low / np.where(high > low, high - low, 1.0), 0.0)
+        share = np.where(high <= 0.0, np.where(low < 0.0, 1.0, 0.0), np.clip(crossing, 0.0, 1.0))
+        return float(np.sum(share * length))
+
+
+def circuit_history(
+    start: CircuitState, times: Sequence[float], heats: Mapping[str, HeatTaken], *, running: bool = True
+) -> CircuitHistory:
+    """The circuit at rising times [s], the first that of ``start``.
+
+    heats : consumer -> heat into its oil [W], or that as a function of its supply temperature [K]
+
+    Raises CaseError for times that do not rise, and what `CircuitState.step` raises.
+    """
+    lengths = np.diff(np.asarray(times, dtype=np.float64))
+    if not (len(lengths) and np.all(lengths > 0.0)):
+        refuse("times", f"{len(times)} times", "must be at least two, each above the one before", "sort them")
+    state, steps = start, list[CircuitStep]()
+    for length in lengths:
+        steps.append(state.step_with_heats(float(length), heats, running=running))
+        state = steps[-1].state
+    states = [start, *(step.state for step in steps)]
+    moved = Energies()
+    for step in steps:
+        moved = moved + step.energies
+    return CircuitHistory(
+        times=np.asarray(times, dtype=np.float64),
+        tank=np.array([each.tank_temperature for each in states]),
+        supplies={
+            name: np.array([each.supplies[name].temperature for each in states]) for name in start.supplies
+        },
+        heater=np.array([step.energies.heater + step.energies.trim_heaters for step in steps]) / lengths,
+        cooler=np.array([step.energies.tank_cooler + step.energies.line_coolers for step in steps]) / lengths,
+        energies=moved,
+        last=state,
+    )
