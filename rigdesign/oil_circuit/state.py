@@ -21,11 +21,17 @@ from rigdesign.oil_circuit.heat_content import enthalpy
 from rigdesign.oil_circuit.line_balance import HeatTaken, pipe_content
 from rigdesign.oil_circuit.steady import require_heats
 from rigdesign.oil_circuit.steady_result import SteadyCircuit
-from rigdesign.oil_circuit.tank_balance import Contents, Setpoints, TankBalance, TankEquation, tank_content
+from rigdesign.oil_circuit.tank_balance import Contents, TankBalance, TankEquation, tank_content
+from rigdesign.oil_circuit.thermostats import (
+    EDGE,
+    Device,
+    Thermostat,
+    forced_setpoints,
+    switched,
+    thermostats,
+)
 
 GAMMA = 1.0 - math.sqrt(0.5)
-EDGE = 1e-6
-"""Distance from the temperature at which a thermostat switches that counts as standing there [K]."""
 MOST_SWITCHINGS = 500
 """Of the thermostats in one step."""
 
@@ -93,10 +99,8 @@ class CircuitState:
     contents: Contents
     supplies: Mapping[str, OilSupply]
     """Consumer -> what it is fed with in the next step, if the pump runs."""
-    heater_on: bool = False
-    """Of a heater with a band."""
-    cooler_on: bool = False
-    """Of a tank cooler with a band."""
+    on: frozenset[Device] = frozenset()
+    """On-off devices of the tank that work."""
 
     @classmethod
     def uniform(cls, circuit: Circuit, temperature: float) -> "CircuitState":
@@ -170,15 +174,16 @@ class CircuitState:
             line.name: running * sum(self.supplies[each.name].mass_flow for each in line.consumers)
             for line in self.circuit.lines
         }
-        state, left, moved, switchings = self._switched(), duration, Energies(), 0
+        on = switched(self.circuit, self.on, self.tank_temperature)
+        state, left, moved, switchings = replace(self, on=on), duration, Energies(), 0
         while True:
             advanced, energies = state._advanced(left, flows, heats)
-            if advanced._switched() is advanced:
+            if switched(self.circuit, state.on, advanced.tank_temperature) == state.on:
                 return CircuitStep(state=advanced, energies=moved + energies, switchings=switchings)
             until, device = state._next_switching(left, advanced, flows, heats)
             state, energies = state._advanced(until, flows, heats)
+            state = replace(state, on=state.on ^ {device})
             moved, left, switchings = moved + energies, left - until, switchings + 1
-            state = replace(state, **{device: not getattr(state, device)})
             if left <= 1e-9 * duration:
                 return CircuitStep(state=state, energies=moved, switchings=switchings)
             if switchings > MOST_SWITCHINGS:
@@ -187,70 +192,34 @@ class CircuitState:
                     f"{duration:.4g} s; widen heater.band or tank_cooler.band, or take a smaller heater"
                 )
 
-    def _thermostats(self) -> list[tuple[str, float, float]]:
-        """On-off devices: field of their state, temperature of the tank at which they switch next [K], and its sign:
-        1 where it is passed upwards."""
-        heater, cooler = self.circuit.heater, self.circuit.tank_cooler
-        found = []
-        if heater and heater.band:
-            sign = 1.0 if self.heater_on else -1.0
-            found.append(("heater_on", heater.setpoint + 0.5 * sign * heater.band, sign))
-        if cooler and cooler.band:
-            sign = -1.0 if self.cooler_on else 1.0
-            found.append(("cooler_on", cooler.setpoint + 0.5 * sign * cooler.band, sign))
-        return found
-
-    def _switched(self) -> "CircuitState":
-        """The state after its thermostats have looked at the tank."""
-        passed = {
-            device: not getattr(self, device)
-            for device, threshold, sign in self._thermostats()
-            if sign * (self.tank_temperature - threshold) > EDGE
-        }
-        return replace(self, **passed) if passed else self
-
     def _next_switching(
         self,
         duration: float,
         advanced: "CircuitState",
         flows: Mapping[str, float],
         heats: Mapping[str, HeatTaken],
-    ) -> tuple[float, str]:
+    ) -> tuple[float, Device]:
         """Time [s] at which the first thermostat switches on the way to ``advanced``, and the device it switches."""
-
-        def passed(time: float, threshold: float) -> float:
-            return (
-                self._advanced(time, flows, heats)[0].tank_temperature - threshold
-                if time
-                else before - threshold
-            )
-
         before, after, shortest = self.tank_temperature, advanced.tank_temperature, 1e-9 * duration
-        events = []
-        for device, threshold, sign in self._thermostats():
-            if sign * (after - threshold) <= EDGE:
-                continue
-            time = 0.0
-            if sign * (before - threshold) < 0.0:
-                time = float(brentq(passed, 0.0, duration, args=(threshold,), xtol=shortest))
-            events.append((max(time, shortest), device))
-        return min(events)
 
-    def _setpoints(self) -> Setpoints:
-        """Of continuous control; an on-off device is forced by its thermostat."""
-        given = Setpoints.of(self.circuit)
-        heater, cooler = self.circuit.heater, self.circuit.tank_cooler
-        if heater and heater.band:
-            given = replace(given, heater=math.inf if self.heater_on else -math.inf)
-        if cooler and cooler.band:
-            given = replace(given, cooler=-math.inf if self.cooler_on else math.inf)
-        return given
+        def beyond(time: float, thermostat: Thermostat) -> float:
+            reached = self._advanced(time, flows, heats)[0].tank_temperature if time else before
+            return thermostat.passed(reached)
+
+        events: list[tuple[float, Device]] = []
+        for each in thermostats(self.circuit, self.on):
+            if each.passed(after) <= EDGE:
+                continue
+            crosses = each.passed(before) < 0.0
+            time = float(brentq(beyond, 0.0, duration, args=(each,), xtol=shortest)) if crosses else 0.0
+            events.append((max(time, shortest), each.device))
+        return min(events)
 
     def _advanced(
         self, duration: float, flows: Mapping[str, float], heats: Mapping[str, HeatTaken]
     ) -> tuple["CircuitState", Energies]:
         """Both stages of the implicit method, thermostats held."""
-        weight, setpoints = GAMMA * duration, self._setpoints()
+        weight, setpoints = GAMMA * duration, forced_setpoints(self.circuit, self.on)
         equation = TankEquation(
             circuit=self.circuit, mass_flows=flows, heats=heats, before=self.contents, weight=weight
         )
