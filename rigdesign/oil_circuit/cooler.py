@@ -14,6 +14,7 @@ from typing import Literal, Self
 
 from rigdesign.base.errors import CaseError
 from rigdesign.base.number_faults import celsius, refuse, require_above, require_at_least
+from rigdesign.oil_circuit.heat_content import enthalpy, temperature_at
 from rigdesign.properties.oil import Oil
 
 Arrangement = Literal["counterflow", "parallel", "crossflow approximate", "S&T"]
@@ -95,12 +96,10 @@ class Cooler:
         require_above("cooler.rated.flow", rated.flow, "m3/s", "give the oil flow of the data sheet")
         difference = rated.inlet_temperature - coolant.inlet_temperature
         require_above("cooler.rated.inlet_temperature", difference, "K over the coolant", "check both inlets")
-        oil = rated.oil
-        capacity_rate = (
-            oil.density(rated.inlet_temperature)
-            * rated.flow
-            * _mean_heat_capacity(oil, rated.inlet_temperature, rated.heat, rated.flow)
-        )
+        oil, inlet = rated.oil, rated.inlet_temperature
+        mass_flow = oil.density(inlet) * rated.flow
+        outlet = temperature_at(oil, enthalpy(oil, inlet) - rated.heat / mass_flow)
+        capacity_rate = mass_flow * oil.heat_capacity(0.5 * (inlet + outlet))
         least, most = sorted((capacity_rate, coolant.capacity_rate))
         effectiveness = rated.heat / (least * difference)
         best = _effectiveness(1e4, least / most, arrangement)
@@ -126,9 +125,8 @@ class Cooler:
             return 0.0
         heat = 0.0
         for _ in range(50):
-            # c_p linear: that at the mean of inlet and outlet; the outlet by the one of the step before
-            drop = heat / (mass_flow * oil.heat_capacity(inlet_temperature))
-            capacity_rate = mass_flow * oil.heat_capacity(inlet_temperature - 0.5 * drop)
+            outlet = temperature_at(oil, enthalpy(oil, inlet_temperature) - heat / mass_flow)
+            capacity_rate = mass_flow * oil.heat_capacity(0.5 * (inlet_temperature + outlet))
             least, most = sorted((capacity_rate, self.coolant.capacity_rate))
             units = self.conductance / least
             better = _effectiveness(units, least / most, self.arrangement) * least * difference
@@ -171,15 +169,6 @@ class TankCooler:
         require_at_least("tank_cooler.band", self.band, "K", "give 0 for continuous control")
         if self.flow is not None:
             require_above("tank_cooler.flow", self.flow, "m3/s", "leave it out for a cooler in the return")
-
-
-def _mean_heat_capacity(oil: Oil, inlet_temperature: float, heat: float, flow: float) -> float:
-    """c_p at the mean temperature of oil that gives off ``heat`` [J/(kg K)]."""
-    mass_flow = oil.density(inlet_temperature) * flow
-    value = oil.heat_capacity(inlet_temperature)
-    for _ in range(50):
-        value = oil.heat_capacity(inlet_temperature - 0.5 * heat / (mass_flow * value))
-    return value
 
 
 def _effectiveness(units: float, ratio: float, arrangement: Arrangement) -> float:

@@ -176,4 +176,7 @@ def _pipe(
     whole = HeatContent(oil=oil, mass=mass_flow + share * stored.mass, body=conductance)
     given = mass_flow * enthalpy(oil, inlet) + conductance * (room - REFERENCE) + share * content
     outlet = whole.temperature(given)
-    return outlet, conductance * (outlet - room), share * (stored.at(outlet) - content)
+    loss = conductance * (outlet - room)
+    # what flows in and stays: as exact for short steps as for long ones, where E(T_out) - E_before cancels
+    kept = mass_flow * (enthalpy(oil, inlet) - enthalpy(oil, outlet)) - loss
+    return outlet, loss, kept if share else 0.0

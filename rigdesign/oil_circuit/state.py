@@ -2,7 +2,8 @@
 
 Unknowns are the heat contents of tank and pipes. A step is the L-stable diagonally implicit method of second order
 with two stages of weight gamma = 1 - 1/sqrt(2) (Alexander 1977, SIAM J. Numer. Anal. 14): each stage is a balance of
-the tank with storage, the second gives the end of the step. On-off thermostats split a step where they switch.
+the tank with storage, the second gives the end of the step. A step is cut where it would be inexact (a pipe that fills,
+a heater that comes to its setpoint), and where an on-off thermostat switches.
 
 What a consumer gives back during a step is taken as heat: its return temperature against the supply and the flow it
 was told before that step. So heat is kept whatever the step, and the lag between circuit and consumers is one step.
@@ -15,13 +16,13 @@ from dataclasses import dataclass, fields, replace
 from scipy.optimize import brentq
 
 from rigdesign.base.errors import NotConvergedError
-from rigdesign.base.number_faults import require_above
+from rigdesign.base.number_faults import celsius, require_above
 from rigdesign.oil_circuit.circuit import Circuit
 from rigdesign.oil_circuit.heat_content import enthalpy
 from rigdesign.oil_circuit.line_balance import HeatTaken, pipe_content
 from rigdesign.oil_circuit.steady import require_heats
 from rigdesign.oil_circuit.steady_result import SteadyCircuit
-from rigdesign.oil_circuit.tank_balance import Contents, TankBalance, TankEquation, tank_content
+from rigdesign.oil_circuit.tank_balance import RANGE, Contents, TankBalance, TankEquation, tank_content
 from rigdesign.oil_circuit.thermostats import (
     EDGE,
     Device,
@@ -32,6 +33,10 @@ from rigdesign.oil_circuit.thermostats import (
 )
 
 GAMMA = 1.0 - math.sqrt(0.5)
+TOLERANCE = 0.2
+"""Distance from a step of first order (backward Euler) above which a step is halved [K]; its own error is far less."""
+SHORTEST = 1e-9
+"""Share of a step below which its rest is left out."""
 MOST_SWITCHINGS = 500
 """Of the thermostats in one step."""
 
@@ -175,22 +180,60 @@ class CircuitState:
             for line in self.circuit.lines
         }
         on = switched(self.circuit, self.on, self.tank_temperature)
-        state, left, moved, switchings = replace(self, on=on), duration, Energies(), 0
-        while True:
-            advanced, energies = state._advanced(left, flows, heats)
-            if switched(self.circuit, state.on, advanced.tank_temperature) == state.on:
-                return CircuitStep(state=advanced, energies=moved + energies, switchings=switchings)
-            until, device = state._next_switching(left, advanced, flows, heats)
-            state, energies = state._advanced(until, flows, heats)
-            state = replace(state, on=state.on ^ {device})
-            moved, left, switchings = moved + energies, left - until, switchings + 1
-            if left <= 1e-9 * duration:
-                return CircuitStep(state=state, energies=moved, switchings=switchings)
+        state, left, trial, moved, switchings = replace(self, on=on), duration, duration, Energies(), 0
+        while left > SHORTEST * duration:
+            length = min(trial, left)
+            advanced = state._attempt(length, flows, heats)
+            if advanced is None:
+                trial = 0.5 * length
+                if trial < SHORTEST * duration:
+                    raise NotConvergedError(
+                        f"oil circuit {self.circuit.name}: no step from a tank of {celsius(state.tank_temperature)}, "
+                        f"however short: the heat of the consumers leads out of {celsius(RANGE[0])} to "
+                        f"{celsius(RANGE[1])}; correct it, or give it a way out"
+                    )
+                continue
+            device: Device | None = None
+            if switched(self.circuit, state.on, advanced[0].tank_temperature) != state.on:
+                length, device = state._next_switching(length, advanced[0], flows, heats)
+                advanced = state._stages(length, flows, heats)
+            state, moved, left, trial = advanced[0], moved + advanced[1], left - length, 2.0 * length
+            if device:
+                state, switchings = replace(state, on=state.on ^ {device}), switchings + 1
             if switchings > MOST_SWITCHINGS:
                 raise NotConvergedError(
                     f"oil circuit {self.circuit.name}: thermostats switch more than {MOST_SWITCHINGS} times in "
                     f"{duration:.4g} s; widen heater.band or tank_cooler.band, or take a smaller heater"
                 )
+        return CircuitStep(state=state, energies=moved, switchings=switchings)
+
+    def _temperatures(self) -> list[float]:
+        """Of the tank and of every pipe that holds oil [K]."""
+        circuit, found = self.circuit, [self.tank_temperature]
+        for line in circuit.lines:
+            for pipe, content in (
+                (line.supply_pipe, self.contents.supply[line.name]),
+                (line.return_pipe, self.contents.return_[line.name]),
+            ):
+                if pipe.volume:
+                    found.append(
+                        pipe_content(circuit.oil, pipe, circuit.room_temperature).temperature(content)
+                    )
+        return found
+
+    def _attempt(
+        self, duration: float, flows: Mapping[str, float], heats: Mapping[str, HeatTaken]
+    ) -> tuple["CircuitState", Energies] | None:
+        """A step, thermostats held; None where it is too long: one of first order ends elsewhere, or it has no end."""
+        try:
+            advanced = self._stages(duration, flows, heats)
+            equation = self._equation(duration, flows, heats)
+            euler = equation.solve(forced_setpoints(self.circuit, self.on))
+        except NotConvergedError:
+            return None
+        first_order = replace(self, contents=_filled(self.contents, euler, duration))
+        error = max(abs(a - b) for a, b in zip(advanced[0]._temperatures(), first_order._temperatures()))
+        return advanced if error <= TOLERANCE else None
 
     def _next_switching(
         self,
@@ -200,10 +243,10 @@ class CircuitState:
         heats: Mapping[str, HeatTaken],
     ) -> tuple[float, Device]:
         """Time [s] at which the first thermostat switches on the way to ``advanced``, and the device it switches."""
-        before, after, shortest = self.tank_temperature, advanced.tank_temperature, 1e-9 * duration
+        before, after, shortest = self.tank_temperature, advanced.tank_temperature, 1e-7 * duration
 
         def beyond(time: float, thermostat: Thermostat) -> float:
-            reached = self._advanced(time, flows, heats)[0].tank_temperature if time else before
+            reached = self._stages(time, flows, heats)[0].tank_temperature if time else before
             return thermostat.passed(reached)
 
         events: list[tuple[float, Device]] = []
@@ -215,21 +258,26 @@ class CircuitState:
             events.append((max(time, shortest), each.device))
         return min(events)
 
-    def _advanced(
+    def _equation(
+        self, weight: float, flows: Mapping[str, float], heats: Mapping[str, HeatTaken]
+    ) -> TankEquation:
+        return TankEquation(
+            circuit=self.circuit, mass_flows=flows, heats=heats, before=self.contents, weight=weight
+        )
+
+    def _stages(
         self, duration: float, flows: Mapping[str, float], heats: Mapping[str, HeatTaken]
     ) -> tuple["CircuitState", Energies]:
         """Both stages of the implicit method, thermostats held."""
         weight, setpoints = GAMMA * duration, forced_setpoints(self.circuit, self.on)
-        equation = TankEquation(
-            circuit=self.circuit, mass_flows=flows, heats=heats, before=self.contents, weight=weight
-        )
+        equation = self._equation(weight, flows, heats)
         first = equation.solve(setpoints)
         rest = (1.0 - GAMMA) * duration
-        second = replace(equation, before=_filled(self.contents, first, rest)).solve(setpoints)
-        contents = _filled(_filled(self.contents, first, rest), second, weight)
+        between = _filled(self.contents, first, rest)
+        second = replace(equation, before=between).solve(setpoints)
         supplies = _fed(self.circuit, {name: line.supply for name, line in second.lines.items()})
         energies = _moved(self.circuit, first, flows, rest) + _moved(self.circuit, second, flows, weight)
-        return replace(self, contents=contents, supplies=supplies), energies
+        return replace(self, contents=_filled(between, second, weight), supplies=supplies), energies
 
 
 def _fed(circuit: Circuit, supply: Mapping[str, float]) -> dict[str, OilSupply]:

@@ -74,10 +74,11 @@ class Heating:
     """What the tank gets at one temperature without heater and cooler [W], and what its cooler would carry [W]."""
 
     lines: Mapping[str, LineBalance]
+    given: float
     power: float
+    """Given, less what a step to this temperature stores."""
     cooler_capability: float
     room_loss: float
-    stored: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,10 +113,10 @@ class TankEquation:
             stored = (tank_content(circuit).at(temperature) - self.before.tank) / self.weight
         return Heating(
             lines=lines,
+            given=returned + relief - loss,
             power=returned + relief - loss - stored,
             cooler_capability=self._cooler_capability(temperature, lines),
             room_loss=loss + math.fsum(line.room_loss for line in lines.values()),
-            stored=stored,
         )
 
     def solve(self, setpoints: Setpoints) -> TankBalance:
@@ -159,9 +160,9 @@ class TankEquation:
         """The tank at a setpoint, its device at part load."""
         if mark == setpoints.heater:
             cooler = heating.cooler_capability if setpoints.cooler < mark else 0.0
-            return _balance(mark, heating, cooler - heating.power, cooler)
+            return self._balance(mark, heating, cooler - heating.power, cooler)
         heater = self._net(heating, setpoints.heater > mark, False) - heating.power
-        return _balance(mark, heating, heater, heating.power + heater)
+        return self._balance(mark, heating, heater, heating.power + heater)
 
     def _between(self, low: float, high: float, setpoints: Setpoints) -> TankBalance:
         """The tank between two setpoints, every device fully on or off."""
@@ -181,7 +182,18 @@ class TankEquation:
             ) from error
         heating = self.at(found)
         limit = self._net(heating, heater, False) - heating.power
-        return _balance(found, heating, limit, heating.cooler_capability if cooler else 0.0)
+        return self._balance(found, heating, limit, heating.cooler_capability if cooler else 0.0)
+
+    def _balance(self, temperature: float, heating: Heating, heater: float, cooler: float) -> TankBalance:
+        return TankBalance(
+            temperature=temperature,
+            lines=heating.lines,
+            heater_power=heater,
+            cooler_heat=cooler,
+            room_loss=heating.room_loss,
+            # what is given and stays: as exact for short steps as for long ones, where E(T) - E_before cancels
+            stored=0.0 if self.before is None else heating.given + heater - cooler,
+        )
 
 
 def tank_content(circuit: Circuit) -> HeatContent:
@@ -190,15 +202,4 @@ def tank_content(circuit: Circuit) -> HeatContent:
         oil=circuit.oil,
         mass=circuit.oil.density(circuit.room_temperature) * circuit.running_fill,
         body=circuit.tank.body_heat_capacity,
-    )
-
-
-def _balance(temperature: float, heating: Heating, heater: float, cooler: float) -> TankBalance:
-    return TankBalance(
-        temperature=temperature,
-        lines=heating.lines,
-        heater_power=heater,
-        cooler_heat=cooler,
-        room_loss=heating.room_loss,
-        stored=heating.stored,
     )
