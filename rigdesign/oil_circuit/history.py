@@ -1,12 +1,14 @@
 """An oil circuit alone over a schedule of times, its consumers given by their heat."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigdesign.base.number_faults import refuse
+from rigdesign.base.number_faults import celsius, refuse
+from rigdesign.oil_circuit.circuit import SupplyLine
 from rigdesign.oil_circuit.line_balance import HeatTaken
 from rigdesign.oil_circuit.state import CircuitState, CircuitStep, Energies
 
@@ -30,6 +32,40 @@ class CircuitHistory:
     energies: Energies
     """Of all steps."""
     last: CircuitState
+
+    def held_from(self, line: SupplyLine) -> float | None:
+        """First of the times [s] from which on a line is fed within the tolerance of its setpoint; None if never."""
+        if line.setpoint is None:
+            return float(self.times[0])
+        outside = np.abs(self.supplies[line.consumers[0].name] - line.setpoint) > line.tolerance
+        if outside[-1]:
+            return None
+        last = np.flatnonzero(outside)
+        return float(self.times[last[-1] + 1 if len(last) else 0])
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on lines whose setpoint is not held at the end, and on a heater at its limit there."""
+        circuit, found = self.last.circuit, []
+        for line in circuit.lines:
+            if line.setpoint is None or self.held_from(line) is not None:
+                continue
+            reached = float(self.supplies[line.consumers[0].name][-1])
+            limit = ""
+            if reached < line.setpoint:
+                possible = math.fsum(each.trim_power_limit for each in circuit.lines)
+                possible += circuit.heater.power_limit if circuit.heater else 0.0
+                limit = f", with {1e-3 * self.heater[-1]:.4g} of {1e-3 * possible:.4g} kW of the heaters"
+            found.append(
+                f"{circuit.name}.lines.{line.name}: supply temperature after {self.times[-1] - self.times[0]:.4g} s = "
+                f"{celsius(reached)}{limit}: not held at {celsius(line.setpoint)} within {line.tolerance:.3g} K; "
+                + (
+                    "a larger heater or more time"
+                    if reached < line.setpoint
+                    else "a larger cooler or less heat"
+                )
+            )
+        return tuple(found)
 
     def time_below(self, consumer: str, temperature: float) -> float:
         """Time for which the supply of a consumer is below a temperature [s], straight between the times."""

@@ -47,6 +47,9 @@ def test_heater_at_its_limit_follows_the_exponential(start: float) -> None:
     np.testing.assert_allclose(history.tank, exact, atol=2e-3)
     np.testing.assert_allclose(history.supplies["gears"], exact, atol=2e-3)
     np.testing.assert_allclose(history.heater, 3e3, rtol=1e-12)
+    assert history.held_from(warm_up(3e3).lines[0]) is None
+    (text,) = history.warnings
+    assert "with 3 of 3 kW of the heaters: not held at 90 degC within 1 K" in text
     energies = history.energies
     assert abs(energies.imbalance) < 1e-9 * energies.heater
     assert energies.stored == pytest.approx(CAPACITY * (history.tank[-1] - start), rel=1e-9)
@@ -58,6 +61,8 @@ def test_heater_that_is_large_enough_holds_with_6_7_kw() -> None:
     np.testing.assert_allclose(history.tank, SETPOINT, atol=1e-9)
     np.testing.assert_allclose(history.heater, 6700.0, rtol=1e-9)
     assert history.time_below("gears", SETPOINT - 1.0) == 0.0
+    assert history.held_from(warm_up(8e3).lines[0]) == 0.0
+    assert history.warnings == ()
 
 
 def test_time_to_the_setpoint_is_that_of_the_exponential() -> None:
@@ -70,6 +75,10 @@ def test_time_to_the_setpoint_is_that_of_the_exponential() -> None:
     reached = TIME_CONSTANT * math.log(1.0 / (1.0 - 6.7 / 8.0))
     assert history.time_below("gears", SETPOINT - 1e-6) == pytest.approx(reached, rel=5e-3)
     assert history.tank.max() <= SETPOINT + 1e-9
+    within = TIME_CONSTANT * math.log(1.0 / (1.0 - 6.7 / 8.0 * 69.0 / 70.0))
+    assert history.held_from(warm_up(8e3).lines[0]) == pytest.approx(
+        within, abs=6.0 * TIME_CONSTANT / 1200 + 1.0
+    )
 
 
 def test_second_order_in_time() -> None:
