@@ -1,0 +1,161 @@
+"""Steady balance of an oil circuit: temperatures of tank and supplies, heater and coolers against what they can do."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+from rigdesign.base.errors import CaseError, Fault, NotConvergedError
+from rigdesign.base.number_faults import celsius
+from rigdesign.oil_circuit.circuit import Circuit
+from rigdesign.oil_circuit.line_balance import HeatTaken, consumer_return
+from rigdesign.oil_circuit.steady_result import ConsumerOil, DeviceLoad, SteadyCircuit
+from rigdesign.oil_circuit.steady_warnings import device_warnings, steady_warnings
+from rigdesign.oil_circuit.tank_balance import Heating, Setpoints, TankBalance, TankEquation
+
+ITERATIONS = 200
+
+
+class SetpointNotHeldError(CaseError):
+    """A supply temperature demanded as hard that the circuit cannot hold."""
+
+
+def steady_circuit(circuit: Circuit, heats: Mapping[str, HeatTaken]) -> SteadyCircuit:
+    """Balance of a circuit with its pump running.
+
+    Parameters
+    ----------
+    heats : consumer -> heat into its oil [W], or that as a function of its supply temperature [K]; negative where a
+        consumer cools the oil. It should not rise with the temperature, else there may be several balances.
+
+    Raises
+    ------
+    CaseError
+        Consumers without a heat, or heats without a consumer.
+    SetpointNotHeldError
+        A line whose setpoint is hard and is not held.
+    NotConvergedError
+        No balance within the temperatures of `tank_balance.RANGE`.
+
+    Flows count at the supply temperature, so that the mass flow is found by iteration; heater and cooler by their
+    limits. An on-off heater or cooler gives the mean power that holds its setpoint. Where a limit binds, the supply
+    temperature is what the balance gives, with a warning.
+    """
+    require_heats(circuit, heats)
+    setpoints = Setpoints.of(circuit)
+    supplies = {line.name: line.setpoint or circuit.room_temperature for line in circuit.lines}
+    for _ in range(ITERATIONS):
+        flows = {line.name: circuit.oil.density(supplies[line.name]) * line.flow for line in circuit.lines}
+        equation = TankEquation(circuit=circuit, mass_flows=flows, heats=heats)
+        balance = equation.solve(setpoints)
+        better = {name: line.supply for name, line in balance.lines.items()}
+        change = max(abs(better[name] - supplies[name]) for name in better)
+        supplies = better
+        if change < 1e-9:
+            break
+    else:
+        raise NotConvergedError(
+            f"oil circuit {circuit.name}: supply temperatures still move by {change:.3g} K after {ITERATIONS} "
+            "iterations; check whether a heat rises with the supply temperature"
+        )
+    result = _result(equation, balance)
+    _demand(result)
+    return result
+
+
+def require_heats(circuit: Circuit, heats: Mapping[str, object]) -> None:
+    """Raise CaseError unless every consumer has a value, and nothing else."""
+    names = {consumer.name for consumer in circuit.consumers}
+    for name in sorted(names ^ set(heats)):
+        problem = "has no value" if name in names else "is no consumer of the circuit"
+        known = ", ".join(sorted(names))
+        raise CaseError(
+            [Fault(name, "", problem, f"give one for each of {known}")], f"oil circuit {circuit.name}"
+        )
+
+
+def _result(equation: TankEquation, balance: TankBalance) -> SteadyCircuit:
+    circuit = equation.circuit
+    line_coolers, trims, consumers = {}, {}, {}
+    for line in circuit.lines:
+        found = balance.lines[line.name]
+        if line.cooler:
+            line_coolers[line.name] = DeviceLoad(
+                power=found.cooler_heat, needed=found.cooler_needed, capability=found.cooler_capability
+            )
+        if line.trim_power_limit:
+            trims[line.name] = DeviceLoad(
+                power=found.trim_power, needed=found.trim_needed, capability=line.trim_power_limit
+            )
+        for consumer in line.consumers:
+            mass_flow = found.mass_flow * consumer.flow / line.flow
+            heat = found.heats[consumer.name]
+            consumers[consumer.name] = ConsumerOil(
+                supply=found.supply,
+                return_=consumer_return(circuit.oil, found.supply, mass_flow, heat),
+                mass_flow=mass_flow,
+                heat=heat,
+            )
+    pump_heat = circuit.pump.heat_into_oil if circuit.pump else 0.0
+    pump_to_room = circuit.pump.shaft_power - pump_heat if circuit.pump else 0.0
+    draft = SteadyCircuit(
+        circuit=circuit,
+        tank_temperature=balance.temperature,
+        lines=balance.lines,
+        consumers=consumers,
+        heater=_heater_load(equation, balance),
+        tank_cooler=_cooler_load(equation, balance),
+        line_coolers=line_coolers,
+        trim_heaters=trims,
+        pump_heat=pump_heat,
+        room_loss=balance.room_loss + pump_to_room,
+        imbalance=_imbalance(circuit, balance, pump_heat),
+        warnings=(),
+    )
+    return replace(draft, warnings=steady_warnings(draft))
+
+
+def _imbalance(circuit: Circuit, balance: TankBalance, pump_heat: float) -> float:
+    """All heat into the oil of the circuit less all out of it [W]."""
+    lines = balance.lines.values()
+    into = [balance.heater_power, pump_heat]
+    into += [line.trim_power for line in lines]
+    into += [heat for line in lines for heat in line.heats.values()]
+    out = [balance.cooler_heat, balance.room_loss, *(line.cooler_heat for line in lines)]
+    return math.fsum((*into, *(-heat for heat in out)))
+
+
+def _heater_load(equation: TankEquation, balance: TankBalance) -> DeviceLoad | None:
+    heater = equation.circuit.heater
+    if heater is None:
+        return None
+    needed = max(-equation.at(heater.setpoint).power, 0.0)
+    return DeviceLoad(power=balance.heater_power, needed=needed, capability=heater.power_limit)
+
+
+def _cooler_load(equation: TankEquation, balance: TankBalance) -> DeviceLoad | None:
+    placed = equation.circuit.tank_cooler
+    if placed is None:
+        return None
+    there: Heating = equation.at(placed.setpoint)
+    return DeviceLoad(
+        power=balance.cooler_heat, needed=max(there.power, 0.0), capability=there.cooler_capability
+    )
+
+
+def _demand(result: SteadyCircuit) -> None:
+    """Refuse what is hard and not held."""
+    faults = []
+    for line in result.circuit.lines:
+        margin = result.supply_margin(line.name)
+        if line.hard and line.setpoint is not None and margin is not None and margin < 0.0:
+            faults.append(
+                Fault(
+                    f"lines.{line.name}.setpoint",
+                    celsius(line.setpoint),
+                    f"must be held within {line.tolerance:.3g} K, the supply reaches "
+                    f"{celsius(result.lines[line.name].supply)}",
+                    "; ".join(device_warnings(result)) or "give the circuit a heater or a cooler",
+                )
+            )
+    if faults:
+        raise SetpointNotHeldError(faults, f"oil circuit {result.circuit.name}")
