@@ -127,6 +127,13 @@ class AttributeLog:
             self._mapped.pop((self.load_case, component.id, attribute), None)
             self._list(component, found, reason)
 
+    def refuse_rest(self, component: Component, attribute: str, reason: str) -> None:
+        """List an attribute that nothing has asked for."""
+        found = component.attribute(attribute)
+        key = (self.load_case, component.id, attribute)
+        if found is not None and key not in self._mapped:
+            self._list(component, found, reason)
+
     def list_rest(self, component: Component, reason: str) -> None:
         """List all attributes of a component that nothing has asked for."""
         for found in component.attributes:

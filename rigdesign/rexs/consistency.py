@@ -36,6 +36,7 @@ def check_model(model: RexsModel, faults: FaultList) -> RexsModel:
     for relation in model.relations:
         for item in relation.references:
             _check_known(model, f"relation {relation.id}, role {item.role!r}", item.component, faults)
+    _check_unique("load_spectrum", (spectrum.id for spectrum in model.load_spectra), faults)
     for spectrum in model.load_spectra:
         _check_unique(
             f"load_spectrum {spectrum.id}: load_case", (case.id for case in spectrum.load_cases), faults
@@ -48,6 +49,7 @@ def check_model(model: RexsModel, faults: FaultList) -> RexsModel:
 
 
 def _check_parts(model: RexsModel, place: str, components: tuple[Component, ...], faults: FaultList) -> None:
+    _check_unique(f"{place}, component", (component.id for component in components), faults)
     for component in components:
         _check_known(model, f"{place}, component", component.id, faults)
 

@@ -26,13 +26,13 @@ class FaultList:
 
     def add(self, place: str, given: object, problem: str, remedy: str) -> None:
         """Note a fault; raises RexsError when there are too many to go on."""
-        self._faults.append(Fault(place, "" if given is None else str(given)[:1000], problem, remedy))
+        self._faults.append(_fault(place, given, problem, remedy))
         if len(self._faults) >= MOST_FAULTS:
             self.raise_if_any()
 
     def error(self, place: str, given: object, problem: str, remedy: str) -> RexsError:
         """The error of a fault after which nothing can be read, with all faults so far."""
-        self._faults.append(Fault(place, "" if given is None else str(given)[:1000], problem, remedy))
+        self._faults.append(_fault(place, given, problem, remedy))
         return RexsError(self._faults, self.source)
 
     def stop(self, place: str, given: object, problem: str, remedy: str) -> NoReturn:
@@ -68,3 +68,7 @@ class FaultList:
             problem = "missing" if given is None or given == "" else "no text"
             self.add(f"{place}, {key}", given, problem, f"write {key} as a text, as REXS asks for")
         return ""
+
+
+def _fault(place: str, given: object, problem: str, remedy: str) -> Fault:
+    return Fault(place, "" if given is None else printable(str(given)[:1000]), problem, remedy)

@@ -71,6 +71,8 @@ class ShaftSection:
     outer_end: float
     inner_begin: float = 0.0
     inner_end: float = 0.0
+    start_stated: bool = True
+    """False for the only section of a shaft, which then starts at zero."""
 
 
 @dataclass(frozen=True)
@@ -114,6 +116,8 @@ class CatalogueData:
     type : as REXS has it, e.g. ``radial_roller_bearing``
     dynamic_load_rating, static_load_rating, fatigue_limit_load : radial C, C_0, C_u [N]
     contact_angle : of its first row
+    limit_e, radial_factor, axial_factor, static_axial_factor : e, X, Y for F_a/F_r above e, and Y_0
+    contamination_factor : e_C of ISO 281
     limiting_speed, reference_speed : [rad/s]
     """
 
@@ -127,6 +131,11 @@ class CatalogueData:
     fatigue_limit_load: float | None = None
     limiting_speed: float | None = None
     reference_speed: float | None = None
+    limit_e: float | None = None
+    radial_factor: float | None = None
+    axial_factor: float | None = None
+    static_axial_factor: float | None = None
+    contamination_factor: float | None = None
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,8 @@ _TAKEN = (
 """Component types of which a case takes something."""
 _ELSEWHERE = ("data_source", "referenced_component_id")
 """Attributes of a component that stands in another file."""
+_IN_SPACE = ("support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position")
+"""Place and direction in the gear unit."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,12 @@ def import_gear_unit(model: RexsModel) -> GearUnitImport:
     for component in newest.components:
         for attribute in _ELSEWHERE:
             log.refuse(component, attribute, "the component stands in another file; import the whole model")
-        none = f"a {component.type} has no counterpart in a case"
-        log.list_rest(component, "no counterpart in a case" if component.type in _TAKEN else none)
+        if component.type in _TAKEN:
+            for attribute in _IN_SPACE:
+                log.refuse_rest(component, attribute, "the place along the shaft counts")
+            log.list_rest(component, "no counterpart in a case")
+        else:
+            log.list_rest(component, f"a {component.type} has no counterpart in a case")
     return GearUnitImport(
         source=model.source,
         version=model.version,

@@ -29,7 +29,7 @@ class _State:
         return replace(
             self,
             speeds={**base.speeds, **self.speeds},
-            loads={**self.loads, **loads},
+            loads={**loads, **{number: load for number, load in self.loads.items() if number not in loads}},
             lubricant_temperature=base.lubricant_temperature if temperature is None else temperature,
         )
 

@@ -251,4 +251,4 @@ def _shown(value: Value) -> str:
     if isinstance(value, tuple):
         few = ", ".join(_shown(entry) for entry in value[:4])
         return f"[{few}]" if len(value) <= 4 else f"[{few}, … {len(value)} entries]"
-    return repr(value)
+    return shortened(repr(value), _SHOWN)

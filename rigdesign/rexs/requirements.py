@@ -91,17 +91,24 @@ def _mesh(unit: GearUnit, mesh: UnitMesh) -> Iterator[MissingInput]:
 def _shafts(unit: GearUnit) -> Iterator[MissingInput]:
     for shaft in unit.shafts:
         bearings = [item for item in unit.bearings if shaft.id in (item.place.inner, item.place.outer)]
-        yield from _shaft(shaft, bearings)
+        geared = any(gear.shaft == shaft.id for gear in unit.gears)
+        yield from _shaft(shaft, bearings, geared)
     for bearing in unit.bearings:
         yield from _bearing(bearing)
 
 
-def _shaft(shaft: UnitShaft, bearings: list[UnitBearing]) -> Iterator[MissingInput]:
+def _shaft(shaft: UnitShaft, bearings: list[UnitBearing], geared: bool) -> Iterator[MissingInput]:
     if not shaft.sections:
         bore = any(item.inner_diameter for item in bearings)
         yield MissingInput(f"shafts[{shaft.id}].sections", not bore, "diameter of the bearing bores")
+    for section in shaft.sections:
+        if not section.start_stated:
+            yield MissingInput(
+                f"shafts[{shaft.id}].sections[{section.id}].start", False, "zero, as the only one"
+            )
     if len(bearings) < 2:
-        yield MissingInput(f"shafts[{shaft.id}].bearings", True, "state two bearings of the shaft")
+        remedy = "state two bearings of the shaft" if geared else "carried by what it is coupled to"
+        yield MissingInput(f"shafts[{shaft.id}].bearings", geared, remedy)
 
 
 def _bearing(bearing: UnitBearing) -> Iterator[MissingInput]:

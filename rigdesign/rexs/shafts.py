@@ -19,7 +19,8 @@ def _shaft(model: RexsModel, log: AttributeLog, component: Component) -> UnitSha
         for part in model.related(relation, "assembly", component.id, "part")
         if part.type == "shaft_section"
     ]
-    sections = [section for part in parts if (section := _section(log, part, here)) is not None]
+    only = len(parts) == 1
+    sections = [section for part in parts if (section := _section(log, part, here, only)) is not None]
     origin, axis = place_of(component, log, here)
     materials = model.related("reference", "origin", component.id, "referenced")
     return UnitShaft(
@@ -35,10 +36,11 @@ def _shaft(model: RexsModel, log: AttributeLog, component: Component) -> UnitSha
     )
 
 
-def _section(log: AttributeLog, part: Component, shaft: str) -> ShaftSection | None:
+def _section(log: AttributeLog, part: Component, shaft: str, only: bool) -> ShaftSection | None:
     """A section; None, with all its attributes listed, without a length and an outer diameter."""
     here = f"{shaft}.sections[{part.id}]"
-    start = log.number(part, "u_coordinate_on_shaft", "mm", f"{here}.start")
+    stated = log.number(part, "u_coordinate_on_shaft", "mm", f"{here}.start")
+    start = 0.0 if stated is None and only else stated
     length = log.number(part, "length", "mm", f"{here}.length", above=0.0)
     begin = log.number(part, "outer_diameter_begin", "mm", f"{here}.outer_begin", above=0.0)
     end = log.number(part, "outer_diameter_end", "mm", f"{here}.outer_end", above=0.0)
@@ -55,4 +57,5 @@ def _section(log: AttributeLog, part: Component, shaft: str) -> ShaftSection | N
         for attribute in part.attributes:
             log.refuse(part, attribute.id, problem)
         return None
-    return ShaftSection(part.id, start, length, begin, end, max(inner_begin, 0.0), max(inner_end, 0.0))
+    bores = max(inner_begin, 0.0), max(inner_end, 0.0)
+    return ShaftSection(part.id, start, length, begin, end, *bores, start_stated=stated is not None)

@@ -53,6 +53,10 @@ def _bearing(model: RexsModel, log: AttributeLog, component: Component) -> UnitB
 
 def _catalogue(model: RexsModel, log: AttributeLog, component: Component, bearing: str) -> CatalogueData:
     here = f"{bearing}.catalogue"
+
+    def positive(attribute: str, unit: str, field: str) -> float | None:
+        return log.number(component, attribute, unit, f"{here}.{field}", above=0.0)
+
     rows = model.related("ordered_assembly", "assembly", component.id, "part")
     angles = [
         log.number(row, "pressure_angle", "deg", f"{here}.contact_angle")
@@ -65,21 +69,16 @@ def _catalogue(model: RexsModel, log: AttributeLog, component: Component, bearin
         type=log.text(component, "bearing_type", f"{here}.type"),
         rows=log.whole_number(component, "number_of_bearing_rows", f"{here}.rows", least=1),
         contact_angle=next((angle for angle in angles if angle is not None), None),
-        dynamic_load_rating=log.number(
-            component, "radial_dynamic_load_rating", "kN", f"{here}.dynamic_load_rating", above=0.0
-        ),
-        static_load_rating=log.number(
-            component, "radial_static_load_rating", "kN", f"{here}.static_load_rating", above=0.0
-        ),
-        fatigue_limit_load=log.number(
-            component, "fatigue_limit_load", "kN", f"{here}.fatigue_limit_load", above=0.0
-        ),
-        limiting_speed=log.number(
-            component, "limiting_speed", "1 / min", f"{here}.limiting_speed", above=0.0
-        ),
-        reference_speed=log.number(
-            component, "reference_speed", "1 / min", f"{here}.reference_speed", above=0.0
-        ),
+        dynamic_load_rating=positive("radial_dynamic_load_rating", "kN", "dynamic_load_rating"),
+        static_load_rating=positive("radial_static_load_rating", "kN", "static_load_rating"),
+        fatigue_limit_load=positive("fatigue_limit_load", "kN", "fatigue_limit_load"),
+        limiting_speed=positive("limiting_speed", "1 / min", "limiting_speed"),
+        reference_speed=positive("reference_speed", "1 / min", "reference_speed"),
+        limit_e=positive("catalogue_value_e", "none", "limit_e"),
+        radial_factor=positive("radial_factor_x_2", "none", "radial_factor"),
+        axial_factor=positive("axial_factor_y_2", "none", "axial_factor"),
+        static_axial_factor=positive("axial_factor_y_0", "none", "static_axial_factor"),
+        contamination_factor=positive("contamination_factor_iso_281_2007", "none", "contamination_factor"),
     )
 
 

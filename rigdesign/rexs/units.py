@@ -31,12 +31,12 @@ class RexsUnit:
 UNITS: Mapping[str, RexsUnit] = {
     "%": RexsUnit("1", 1e-2),
     "(N / mm^2)^0.5": RexsUnit("Pa^0.5", 1e3),
-    "1 / min": RexsUnit("rad/s", 2.0 * math.pi / 60.0),
+    "1 / min": RexsUnit("rad/s", math.pi / 30.0),
     "1 / mm": RexsUnit("1/m", 1e3),
     "1 / s": RexsUnit("1/s"),
     "1e-6 / C": RexsUnit("1/K", 1e-6),
     "1e-6 mm^3 / (N m)": RexsUnit("m^2/N", 1e-15),
-    "C": RexsUnit("K", 1.0, ZERO_CELSIUS),
+    "C": RexsUnit("K", offset=ZERO_CELSIUS),
     "dB": RexsUnit("dB"),
     "deg": RexsUnit("rad", math.pi / 180.0),
     "h": RexsUnit("s", 3600.0),
@@ -120,7 +120,7 @@ def rexs_unit(text: str) -> RexsUnit:
 
 
 def to_si(number: float, written: str | None, standard: str) -> float:
-    """Value in SI units of a number of a REXS file.
+    """Value in SI units of a number of a REXS file, with 15 digits: 82.46 mm are 0.08246 m.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def to_si(number: float, written: str | None, standard: str) -> float:
     unit = rexs_unit(written) if written else expected
     if unit.dimension != expected.dimension:
         raise RexsUnitError(f"unit {written!r} where the attribute is measured in {standard!r}")
-    return number * unit.factor + unit.offset
+    return float(f"{number * unit.factor + unit.offset:.15g}")
 
 
 def _compact(text: str) -> str:
