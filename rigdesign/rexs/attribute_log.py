@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import hypot, inf
 from typing import TypeVar
 
 from rigdesign.rexs.model import Attribute, AttributeValueError, Component
@@ -112,11 +113,22 @@ class AttributeLog:
         """Three numbers in SI, or None."""
 
         def read(found: Attribute) -> tuple[float, float, float]:
-            numbers = found.vector()
-            if len(numbers) != 3:
-                raise AttributeValueError(f"{len(numbers)} entries where three belong")
-            first, second, third = (to_si(number, found.unit, unit) for number in numbers)
+            first, second, third = (to_si(number, found.unit, unit) for number in _three(found))
             return first, second, third
+
+        return self._take(component, attribute, target, read)
+
+    def direction(
+        self, component: Component, attribute: str, target: str
+    ) -> tuple[float, float, float] | None:
+        """Unit vector of a direction, whatever unit its components have, or None."""
+
+        def read(found: Attribute) -> tuple[float, float, float]:
+            first, second, third = _three(found)
+            length = hypot(first, second, third)
+            if not 1e-12 < length < inf:
+                raise AttributeValueError("no direction")
+            return first / length, second / length, third / length
 
         return self._take(component, attribute, target, read)
 
@@ -164,6 +176,13 @@ class AttributeLog:
     def _list(self, component: Component, found: Attribute, reason: str) -> None:
         listed = _listed(component, found, reason, self.load_case)
         self._listed.setdefault((self.load_case, component.id, found.id), listed)
+
+
+def _three(found: Attribute) -> tuple[float, float, float]:
+    numbers = found.vector()
+    if len(numbers) != 3:
+        raise AttributeValueError(f"{len(numbers)} entries where three belong")
+    return numbers[0], numbers[1], numbers[2]
 
 
 def _listed(component: Component, found: Attribute, reason: str, load_case: str | None) -> ListedAttribute:

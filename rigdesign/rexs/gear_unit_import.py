@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from rigdesign.rexs.attribute_log import AttributeLog, ListedAttribute, MappedAttribute
+from rigdesign.rexs.external_parts import DATA_SOURCE, REFERENCED
 from rigdesign.rexs.gear_unit import GearUnit
 from rigdesign.rexs.loads import read_operation
 from rigdesign.rexs.model import RexsModel
@@ -19,8 +20,6 @@ _TAKEN = (
     "hydrodynamic_radial_plain_bearing", *COUPLINGS, "lubricant", "material", "external_load",
 )  # fmt: skip
 """Component types of which a case takes something."""
-_ELSEWHERE = ("data_source", "referenced_component_id")
-"""Attributes of a component that stands in another file."""
 _IN_SPACE = ("support_vector", "u_axis_vector", "w_axis_vector", "reference_component_for_position")
 """Place and direction in the gear unit."""
 
@@ -56,8 +55,10 @@ def import_gear_unit(model: RexsModel) -> GearUnitImport:
     log = AttributeLog()
     unit = _gear_unit(newest, log)
     for component in newest.components:
-        for attribute in _ELSEWHERE:
-            log.refuse(component, attribute, "the component stands in another file; import the whole model")
+        for attribute in (DATA_SOURCE, REFERENCED):
+            log.refuse(
+                component, attribute, "the component stands in another file, which is not beside the model"
+            )
         if component.type in _TAKEN:
             for attribute in _IN_SPACE:
                 log.refuse_rest(component, attribute, "the place along the shaft counts")

@@ -1,6 +1,6 @@
 """Where a part sits on its shaft, from its coordinate on the shaft and from its place in the gear unit."""
 
-from math import fsum, sqrt
+from math import fsum
 
 from rigdesign.rexs.attribute_log import AttributeLog
 from rigdesign.rexs.gear_unit import Vector
@@ -20,11 +20,7 @@ def shaft_of(model: RexsModel, part: int) -> int | None:
 def place_of(component: Component, log: AttributeLog, target: str) -> tuple[Vector | None, Vector | None]:
     """Origin [m] and unit vector of a component's axis in the coordinates it refers to; None where not stated."""
     origin = log.vector(component, "support_vector", "mm", f"{target}.origin")
-    axis = log.vector(component, "u_axis_vector", "mm", f"{target}.axis")
-    length = sqrt(fsum(part * part for part in axis)) if axis else 0.0
-    if axis is None or length < 1e-12:
-        return origin, None
-    return origin, (axis[0] / length, axis[1] / length, axis[2] / length)
+    return origin, log.direction(component, "u_axis_vector", f"{target}.axis")
 
 
 def gear_position(

@@ -5,6 +5,7 @@ from pathlib import Path
 from rigdesign.base.errors import UsageError
 from rigdesign.base.files import foreign, read_regular
 from rigdesign.rexs.archive import MOST_BYTES, model_in_archive
+from rigdesign.rexs.external_parts import with_external_parts
 from rigdesign.rexs.faults import FaultList
 from rigdesign.rexs.json_reader import parse_json
 from rigdesign.rexs.model import RexsModel
@@ -17,6 +18,8 @@ _WIDE_STARTS = (b"\xff\xfe", b"\xfe\xff")
 def read_rexs(path: str | Path) -> RexsModel:
     """Model of a REXS file: XML (.rexs), JSON (.rexsj) or zip (.rexsz), version 1.0 to 2.0.
 
+    Components that stand in files beside it are put in; not so for an archive.
+
     Raises
     ------
     UsageError
@@ -25,6 +28,10 @@ def read_rexs(path: str | Path) -> RexsModel:
         A file that is no REXS, truncated, damaged, dangerous or contradicts itself; names file, place and remedy.
     """
     path = Path(path)
+    return with_external_parts(_read_one(path), path.parent, _read_one)
+
+
+def _read_one(path: Path) -> RexsModel:
     try:
         content = read_regular(path, MOST_BYTES)
     except (OSError, ValueError) as error:

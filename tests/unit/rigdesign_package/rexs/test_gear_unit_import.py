@@ -148,10 +148,12 @@ def test_a_bearing_without_designation_by_its_dimensions() -> None:
         ('unit="none">16<', 'unit="none">16.5<', 11, "number_of_teeth", "16.5 where a whole number belongs"),
         ('unit="none">16<', 'unit="none">-16<', 11, "number_of_teeth", "below 3"),
         (">NJ 406<", "><", 20, "catalogue_designation", "nothing where a text belongs"),
-        ('id="inner_diameter_begin" unit="mm">0.0', 'id="inner_diameter_begin" unit="mm">60', 5, "length", "a section w"),
+        ('inner_diameter_begin" unit="mm">0.0', 'inner_diameter_begin" unit="mm">60', 5, "length", "a section whose"),
         ('unit="none">true</attribute>\n    </component>\n    <component id="15"',
          'unit="none">yes</attribute>\n    </component>\n    <component id="15"', 14, "is_driving_gear", "yes where"),
         ('unit="mm">23.0', 'unit="mm">23.0</attribute><attribute id="width" unit="mm">24', 20, "width", "stated twice"),
+        ("<c>1.0</c><c>0.0</c><c>0.0</c>", "<c>0</c><c>0</c><c>0</c>", 3, "u_axis_vector", "no direction"),
+        ("<c>1.0</c><c>0.0</c><c>0.0</c>", "<c>1</c>", 3, "u_axis_vector", "1 entries where three belong"),
         ('id="bearing_type"', 'id="data_source"', 20, "data_source", "the component stands in another file"),
     ],
 )  # fmt: skip

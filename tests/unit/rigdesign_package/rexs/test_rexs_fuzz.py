@@ -12,7 +12,7 @@ from rigdesign.rexs.reader import parse_rexs
 from tests.builders.rexs import SUFFIXES, rexs_file
 
 FUZZ = settings(
-    max_examples=150, deadline=2000, suppress_health_check=[HealthCheck.too_slow], derandomize=True
+    max_examples=100, deadline=2000, suppress_health_check=[HealthCheck.too_slow], derandomize=True
 )
 FILES = [rexs_file(version, suffix).read_bytes() for version in ("1.0", "2.0") for suffix in SUFFIXES]
 JSON = [json.loads(rexs_file(version, "rexsj").read_bytes()) for version in ("1.0", "2.0")]
