@@ -7,6 +7,9 @@ from rigdesign.rexs.faults import EXPORT_AGAIN, FaultList
 from rigdesign.rexs.model import Component, RexsModel
 from rigdesign.rexs.versions import is_read
 
+MOST_STATES = 2_000_000
+"""Load cases times shafts and loads, each of which has a state in each case."""
+
 
 def check_version(version: str, place: str, faults: FaultList) -> None:
     """Stop at a version that is not read, before the rest of the file is misunderstood.
@@ -26,8 +29,8 @@ def check_model(model: RexsModel, faults: FaultList) -> RexsModel:
     Raises
     ------
     RexsError
-        No components, an id that occurs twice, or a relation or load case that names a component that is not there;
-        with all faults collected before.
+        No components, an id that occurs twice, or a relation or load case that names a component that is not there,
+        load cases without end; with all faults collected before.
     """
     if not model.components:
         faults.add("model, components", None, "a model without components", EXPORT_AGAIN)
@@ -44,6 +47,13 @@ def check_model(model: RexsModel, faults: FaultList) -> RexsModel:
         for case in spectrum.load_cases:
             _check_parts(model, f"load_case {case.id}", case.components, faults)
         _check_parts(model, "accumulation", spectrum.accumulation, faults)
+    cases = sum(len(spectrum.load_cases) for spectrum in model.load_spectra)
+    carriers = len(model.of_type("shaft", "external_load"))
+    if cases * carriers > MOST_STATES:
+        problem = (
+            f"{cases} load cases of {carriers} shafts and loads, above the limit of {MOST_STATES} states"
+        )
+        faults.add("load_spectrum", None, problem, "export a classified load spectrum")
     faults.raise_if_any()
     return model
 

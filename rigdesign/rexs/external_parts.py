@@ -14,6 +14,8 @@ from rigdesign.rexs.model import Attribute, AttributeValueError, Component, Rela
 
 DATA_SOURCE, REFERENCED = "data_source", "referenced_component_id"
 MOST_COMPONENTS = 100_000
+MOST_PARTS = 1000
+"""Components that stand in other files, over all files."""
 MOST_LEVELS = 5
 """Files that refer to files that refer to files."""
 _FRAME = "reference_component_for_position"
@@ -43,7 +45,7 @@ def with_external_parts(model: RexsModel, folder: Path, read: ReadModel) -> Rexs
     ------
     RexsError
         A file outside the folder or that refers in circles, one that is no REXS, a component that is not in it or is
-        of another type, more than 100,000 components.
+        of another type, more than 1000 such parts or 100,000 components.
     """
     return _Merger(read).merged(model, folder, level=0)
 
@@ -54,6 +56,7 @@ class _Merger:
     def __init__(self, read: ReadModel) -> None:
         self._read = read
         self._complete: dict[Path, RexsModel] = {}
+        self._parts = 0
 
     def merged(self, model: RexsModel, folder: Path, level: int) -> RexsModel:
         """The model with its external parts; ``level`` files led to it."""
@@ -69,8 +72,12 @@ class _Merger:
             if path not in self._complete:
                 self._complete[path] = self.merged(self._read(path), path.parent, level + 1)
             model = _with_part(model, component, self._complete[path], faults)
-            if len(model.components) > MOST_COMPONENTS:
-                faults.stop(place, path.name, f"more than {MOST_COMPONENTS} components in all", EXPORT_AGAIN)
+            self._parts += 1
+            if self._parts > MOST_PARTS or len(model.components) > MOST_COMPONENTS:
+                problem = (
+                    f"more than {MOST_PARTS} parts in other files or {MOST_COMPONENTS} components in all"
+                )
+                faults.stop(place, path.name, problem, EXPORT_AGAIN)
         faults.raise_if_any()
         return model
 

@@ -6,6 +6,7 @@ file does not state or states unusably. Positions count along the shaft from its
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 Vector = tuple[float, float, float]
@@ -275,10 +276,18 @@ class GearUnit:
     operating_time: float | None = None
     """Of the whole spectrum [s]."""
 
+    @cached_property
+    def _gears_by_id(self) -> Mapping[int, UnitGear]:
+        return {gear.id: gear for gear in self.gears}
+
+    @cached_property
+    def _shafts_by_id(self) -> Mapping[int, UnitShaft]:
+        return {shaft.id: shaft for shaft in self.shafts}
+
     def gear(self, number: int) -> UnitGear:
-        """Gear of this id; StopIteration for none."""
-        return next(gear for gear in self.gears if gear.id == number)
+        """Gear of this id; KeyError for none."""
+        return self._gears_by_id[number]
 
     def shaft(self, number: int) -> UnitShaft:
-        """Shaft of this id; StopIteration for none."""
-        return next(shaft for shaft in self.shafts if shaft.id == number)
+        """Shaft of this id; KeyError for none."""
+        return self._shafts_by_id[number]

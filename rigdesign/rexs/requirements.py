@@ -89,10 +89,13 @@ def _mesh(unit: GearUnit, mesh: UnitMesh) -> Iterator[MissingInput]:
 
 
 def _shafts(unit: GearUnit) -> Iterator[MissingInput]:
+    bearings: dict[int | None, list[UnitBearing]] = {}
+    for bearing in unit.bearings:
+        for part in {bearing.place.inner, bearing.place.outer}:
+            bearings.setdefault(part, []).append(bearing)
+    geared = {gear.shaft for gear in unit.gears}
     for shaft in unit.shafts:
-        bearings = [item for item in unit.bearings if shaft.id in (item.place.inner, item.place.outer)]
-        geared = any(gear.shaft == shaft.id for gear in unit.gears)
-        yield from _shaft(shaft, bearings, geared)
+        yield from _shaft(shaft, bearings.get(shaft.id, []), shaft.id in geared)
     for bearing in unit.bearings:
         yield from _bearing(bearing)
 

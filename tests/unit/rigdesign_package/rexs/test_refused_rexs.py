@@ -3,7 +3,7 @@
 import pytest
 
 from rigdesign.base.errors import RexsError
-from rigdesign.rexs import xml_tree
+from rigdesign.rexs import consistency, xml_tree
 from rigdesign.rexs.reader import parse_rexs
 from tests.builders.rexs import changed, rexs_file
 
@@ -108,3 +108,10 @@ def test_elements_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(xml_tree, "MOST_ELEMENTS", 1000)
     text = refusal(b'<model version="2.0"><components>' + b"<c/>" * 2000)
     assert "more than 1000 elements" in text
+
+
+def test_load_cases_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(consistency, "MOST_STATES", 7)
+    assert "2 load cases of 4 shafts and loads, above the limit of 7 states; export a cl" in refusal(
+        changed()
+    )

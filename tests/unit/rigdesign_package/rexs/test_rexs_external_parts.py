@@ -111,7 +111,10 @@ def test_files_that_refer_to_each_other(tmp_path: Path) -> None:
         read_rexs(write(tmp_path, shaft=itself))
 
 
-def test_more_components_than_a_model_has(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(external_parts, "MOST_COMPONENTS", 30)
-    with pytest.raises(RexsError, match="more than 30 components in all"):
+@pytest.mark.parametrize(("limit", "most"), [("MOST_COMPONENTS", 30), ("MOST_PARTS", 0)])
+def test_more_than_a_model_has(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, limit: str, most: int
+) -> None:
+    monkeypatch.setattr(external_parts, limit, most)
+    with pytest.raises(RexsError, match=f"more than .*{most} "):
         read_rexs(write(tmp_path))
