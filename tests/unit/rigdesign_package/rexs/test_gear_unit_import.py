@@ -132,6 +132,13 @@ def test_needed_inputs(old: str, new: str, place: str) -> None:
     assert found.missing[: len(needed)] == tuple(item for item in found.missing if item.needed)
 
 
+def test_a_centre_distance_is_needed_unless_both_profile_shifts_are_there() -> None:
+    without = ('id="center_distance"', 'id="x"')
+    assert missing(imported(without))["meshes[13].centre_distance"] is False
+    shift = ('id="addendum_modification_coefficient" unit="none">0.182', 'id="y" unit="none">0.182')
+    assert missing(imported(without, shift))["meshes[13].centre_distance"] is True
+
+
 def test_a_bearing_without_designation_by_its_dimensions() -> None:
     assert imported(('id="catalogue_designation"', 'id="x"')).missing[0].needed is False
     both = imported(('id="catalogue_designation"', 'id="x"'), ('id="width"', 'id="y"'))
