@@ -1,6 +1,7 @@
 """Whatever is done to a REXS file: our error, or a gear unit that accounts for every attribute."""
 
 import json
+from copy import deepcopy
 from typing import Any
 
 from hypothesis import HealthCheck, given, settings
@@ -92,6 +93,6 @@ def change_somewhere(document: Any, data: st.DataObject) -> None:
     if action == "remove":
         del place[key]
     elif action == "double" and isinstance(place, list):
-        place.append(place[key])
+        place.append(deepcopy(place[key]))
     else:
-        place[key] = data.draw(VALUES)
+        place[key] = deepcopy(data.draw(VALUES))
