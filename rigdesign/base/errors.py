@@ -3,7 +3,8 @@
     RigdesignError              1
     ├── FaultyInputError            a file of the user is wrong; carries every fault found
     │   ├── CaseError           2   the case file or a study path
-    │   └── MeasurementError    5   measured data cannot be used
+    │   ├── MeasurementError    5   measured data cannot be used
+    │   └── RexsError           2   a REXS file that cannot be read
     ├── UsageError              2   a wrong call
     │   └── OutputError         2   an output folder that cannot be written
     ├── NotConvergedError       3   an iteration did not converge, a speed was not reached
@@ -141,6 +142,12 @@ class MeasurementError(FaultyInputError):
     """Measured data that cannot be used; lists all faults at once."""
 
     exit_code = 5
+
+
+class RexsError(FaultyInputError):
+    """A REXS file that cannot be read; lists what is wrong with file and place."""
+
+    exit_code = 2
 
 
 @contextmanager

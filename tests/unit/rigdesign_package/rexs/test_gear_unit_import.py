@@ -1,0 +1,237 @@
+"""The gear unit of a REXS file against the numbers written into it."""
+
+import math
+
+import pytest
+
+from rigdesign.rexs.gear_unit import UnitGear
+from rigdesign.rexs.gear_unit_import import GearUnitImport
+from rigdesign.rexs.reader import parse_rexs
+from tests.builders.rexs import changed, imported
+
+
+def reasons(result: GearUnitImport, component: int) -> dict[str, str]:
+    """Attribute -> why it was not taken over."""
+    return {item.attribute: item.reason for item in result.listed if item.component == component}
+
+
+def missing(result: GearUnitImport) -> dict[str, bool]:
+    """Place -> whether it is needed."""
+    return {item.place: item.needed for item in result.missing}
+
+
+def test_gears_and_mesh() -> None:
+    unit = imported().unit
+    assert unit.gear(11) == UnitGear(
+        id=11, name="pinion", shaft=3, position=pytest.approx(0.0675), teeth=16, normal_module=0.0045,
+        pressure_angle=pytest.approx(math.radians(20.0)), helix_angle=0.0, face_width=0.014, profile_shift=0.182,
+        tip_diameter=0.08246, quality_grade=5, flank_roughness=0.35e-6, material=29,
+    )  # fmt: skip
+    (mesh,) = unit.meshes
+    assert (mesh.pinion, mesh.wheel, mesh.driver, mesh.centre_distance) == (11, 12, 11, 0.0915)
+
+
+def test_shafts_bearings_coupling() -> None:
+    unit = imported().unit
+    shaft = unit.shaft(3)
+    assert [(item.start, item.length, item.outer_begin) for item in shaft.sections] == [
+        (0.0, 0.05, 0.03), (0.05, 0.035, 0.036), (0.085, 0.05, 0.03),
+    ]  # fmt: skip
+    assert (shaft.length, shaft.material, shaft.axis) == (pytest.approx(0.135), 29, (1.0, 0.0, 0.0))
+    bearing = unit.bearings[1]
+    assert (bearing.kind, bearing.place.inner, bearing.place.outer) == ("rolling", 3, 2)
+    assert (bearing.place.inner_position, bearing.width, bearing.radial_clearance) == (0.115, 0.023, 25e-6)
+    assert (bearing.catalogue.designation, bearing.catalogue.dynamic_load_rating) == ("NJ 406", 60500.0)
+    (coupling,) = unit.couplings
+    assert (coupling.place.inner, coupling.place.outer, coupling.torsional_stiffness) == (3, 25, 4e5)
+    assert coupling.radial_stiffness is None
+    assert reasons(imported(), 24)["radial_stiffness"] == "stands for rigid"
+
+
+def test_oil_material_and_load_cases() -> None:
+    unit = imported().unit
+    assert unit.lubricant is not None
+    assert (unit.lubricant.viscosity_40, unit.lubricant.density_15) == (pytest.approx(95e-6), 885.0)
+    assert (unit.materials[0].elastic_modulus, unit.materials[0].thermal_expansion) == (206e9, 11.5e-6)
+    first, second = unit.operating_cases
+    assert (first.id, first.time_share, first.lubricant_temperature) == ("1", 0.6, 363.15)
+    assert first.speeds == {3: pytest.approx(2250.0 * math.pi / 30.0)}
+    assert [(load.shaft, load.torque) for load in first.loads] == [(3, 372.6)]
+    assert (second.speeds[3], second.loads[0].torque) == (pytest.approx(50.0 * math.pi), 302.0)
+    assert second.lubricant_temperature == 353.15
+    assert second.loads[0].transmits_torque is True
+
+
+def test_without_a_spectrum_the_components_are_the_case() -> None:
+    text = changed().decode()
+    spectrum = text[text.index("  <load_spectrum") : text.index("</model>")]
+    result = imported((spectrum, ""))
+    (case,) = result.unit.operating_cases
+    assert (case.id, case.speeds[3], case.lubricant_temperature) == (None, pytest.approx(235.6194), 363.15)
+    assert missing(result)["operating_cases.torque"] is True
+
+
+def test_two_spectra_are_told_apart() -> None:
+    text = changed().decode()
+    spectrum = text[text.index("  <load_spectrum") : text.index("</model>")]
+    result = imported((spectrum, spectrum + spectrum.replace('spectrum id="1"', 'spectrum id="2"')))
+    assert [case.id for case in result.unit.operating_cases] == ["1.1", "1.2", "2.1", "2.2"]
+    assert len({(item.load_case, item.component, item.attribute) for item in result.mapped}) == len(
+        result.mapped
+    )
+
+
+def test_every_attribute_is_mapped_or_listed() -> None:
+    model = parse_rexs(changed(), "unit")
+    cases = [part for case in model.load_spectra[0].load_cases for part in case.components]
+    written = sum(
+        len(part.attributes) for part in (*model.components, *cases, *model.load_spectra[0].accumulation)
+    )
+    result = imported()
+    assert (len(result.mapped), len(result.listed)) == (157, 14)
+    assert len(result.mapped) + len(result.listed) == written
+    width = next(item for item in result.mapped if item.attribute == "face_width" and item.component == 11)
+    assert (width.written, width.target, width.value) == ("14.0 mm", "gears[11].face_width", 0.014)
+    life = next(item for item in result.listed if item.load_case == "accumulation")
+    assert (life.component, life.reason) == (20, "a value over all load cases")
+
+
+def test_what_a_case_needs_beyond_it() -> None:
+    assert missing(imported()) == {
+        "shafts[25].bearings": False, "lubrication": False, "housing": False, "surroundings": False,
+    }  # fmt: skip
+    old = missing(imported(version="1.0"))
+    assert old["gears[11].quality_grade"] is False
+    assert all(not needed for needed in old.values())
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place"),
+    [
+        ('id="number_of_teeth"', 'id="x"', "gears[11].teeth"),
+        ('id="face_width" unit="mm">14.0', 'id="face_width" unit="mm">0', "gears[11].face_width"),
+        ('id="normal_module" unit="mm"', 'id="normal_module" unit="deg"', "gears[11].normal_module"),
+        ('type="cylindrical_stage"', 'type="bevel_stage"', "meshes"),
+        ('type="cylindrical_stage"', 'type="bevel_stage"', "bevel_stage 13"),
+        ('type="lubricant"', 'type="grease"', "lubricant"),
+        ('id="viscosity_at_40', 'id="viscosity_at_50', "lubricant.viscosity_40"),
+        ('"outer_part"', '"other"', ""),
+        ('"inner_part"', '"other"', "shafts[3].bearings"),
+        ('id="torque_around_u_axis"', 'id="torque"', "operating_cases[1].torque"),
+        (
+            'type="rolling_bearing_with_catalog_geometry"',
+            'type="concept_bearing"',
+            "bearings[20].catalogue.designation",
+        ),
+    ],
+)
+def test_needed_inputs(old: str, new: str, place: str) -> None:
+    found = imported((old, new))
+    needed = [item.place for item in found.missing if item.needed]
+    assert (place in needed) if place else needed == []
+    assert found.missing[: len(needed)] == tuple(item for item in found.missing if item.needed)
+
+
+def test_a_centre_distance_is_needed_unless_both_profile_shifts_are_there() -> None:
+    without = ('id="center_distance"', 'id="x"')
+    assert missing(imported(without))["meshes[13].centre_distance"] is False
+    shift = ('id="addendum_modification_coefficient" unit="none">0.182', 'id="y" unit="none">0.182')
+    assert missing(imported(without, shift))["meshes[13].centre_distance"] is True
+
+
+def test_a_bearing_without_designation_by_its_dimensions() -> None:
+    assert imported(('id="catalogue_designation"', 'id="x"')).missing[0].needed is False
+    both = imported(('id="catalogue_designation"', 'id="x"'), ('id="width"', 'id="y"'))
+    assert both.missing[0].place == "bearings[20].catalogue.designation"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "component", "attribute", "reason"),
+    [
+        ('unit="mm">82.46', 'unit="mm">1.0', 11, "tip_diameter", "not the tip of 16 teeth of this module"),
+        ('unit="mm">82.46', 'unit="none">82.46', 11, "tip_diameter", "unit 'none' where the attribute"),
+        ('unit="mm">82.46', 'unit="inch">82.46', 11, "tip_diameter", "unit 'inch' is none of REXS"),
+        ('unit="mm">82.46', 'unit="mm">82,46', 11, "tip_diameter", "82,46 where a number belongs"),
+        ('unit="none">16<', 'unit="none">16.5<', 11, "number_of_teeth", "16.5 where a whole number belongs"),
+        ('unit="none">16<', 'unit="none">-16<', 11, "number_of_teeth", "below 3"),
+        (">NJ 406<", "><", 20, "catalogue_designation", "nothing where a text belongs"),
+        ('inner_diameter_begin" unit="mm">0.0', 'inner_diameter_begin" unit="mm">60', 5, "length", "a section whose"),
+        ('unit="none">true</attribute>\n    </component>\n    <component id="15"',
+         'unit="none">yes</attribute>\n    </component>\n    <component id="15"', 14, "is_driving_gear", "yes where"),
+        ('unit="mm">23.0', 'unit="mm">23.0</attribute><attribute id="width" unit="mm">24', 20, "width", "stated twice"),
+        ("<c>1.0</c><c>0.0</c><c>0.0</c>", "<c>0</c><c>0</c><c>0</c>", 3, "u_axis_vector", "no direction"),
+        ("<c>1.0</c><c>0.0</c><c>0.0</c>", "<c>1</c>", 3, "u_axis_vector", "1 entries where three belong"),
+        ('id="bearing_type"', 'id="data_source"', 20, "data_source", "the component stands in another file"),
+    ],
+)  # fmt: skip
+def test_values_that_cannot_be_used_are_listed(
+    old: str, new: str, component: int, attribute: str, reason: str
+) -> None:
+    assert reasons(imported((old, new)), component)[attribute].startswith(reason)
+
+
+def test_flanks_that_differ() -> None:
+    text = changed().decode()
+    right = text[text.index('<component id="17"') : text.index('<component id="18"')]
+    result = imported((right, right.replace("0.182", "0.3")))
+    assert result.unit.gear(11).profile_shift == 0.182
+    assert "left flank" in reasons(result, 17)["addendum_modification_coefficient"]
+
+
+def test_profile_shift_as_a_length() -> None:
+    new = (
+        'id="addendum_modification_coefficient" unit="none">0.182',
+        'id="addendum_modification" unit="mm">0.819',
+    )
+    assert imported(new).unit.gear(11).profile_shift == pytest.approx(0.182)
+
+
+def test_the_position_of_a_gear_is_that_of_its_middle() -> None:
+    unplaced = ('<attribute id="support_vector"', '<attribute id="vector"')
+    for version in ("1.0", "2.0"):
+        assert imported(version=version).unit.gear(11).position == pytest.approx(0.0675)
+        assert imported(unplaced, version=version).unit.gear(11).position == pytest.approx(0.0675)
+    assert "which its place" in reasons(imported(version="1.0"), 11)["u_coordinate_on_shaft"]
+
+
+def test_a_shaft_that_points_the_other_way() -> None:
+    """A shaft from x = 135 mm backwards: the gear at x = 67.5 mm sits 67.5 mm from its start."""
+    text = changed().decode()
+    shaft = text[text.index('<component id="3"') : text.index('<component id="4"')]
+    turned = shaft.replace("<c>1.0</c>", "<c>-2.0</c>").replace(
+        'mm"><array><c>0.0</c>', 'mm"><array><c>100.0</c>'
+    )
+    unit = imported((shaft, turned)).unit
+    assert unit.shaft(3).axis == (-1.0, 0.0, 0.0)
+    assert unit.gear(11).position == pytest.approx(0.0325)
+
+
+def test_the_only_section_of_a_shaft_starts_at_zero() -> None:
+    text = changed().decode()
+    section = text[text.index('<component id="26"') : text.index('<component id="27"')]
+    result = imported((section, section.replace("u_coordinate_on_shaft", "x")))
+    (found,) = result.unit.shaft(25).sections
+    assert (found.start, found.start_stated) == (0.0, False)
+    assert missing(result)["shafts[25].sections[26].start"] is False
+
+
+def test_the_wheel_may_be_named_first() -> None:
+    mesh = imported(("gear_1", "gear_x"), ("gear_2", "gear_1"), ("gear_x", "gear_2")).unit.meshes[0]
+    assert (mesh.pinion, mesh.wheel) == (11, 12)
+
+
+def test_ring_gears_are_named_and_left_out() -> None:
+    text = changed().decode()
+    wheel = text[text.index('<component id="12"') : text.index('<component id="13"')]
+    result = imported((wheel, wheel.replace('"cylindrical_gear"', '"ring_gear"')))
+    assert result.unit.meshes == ()
+    assert missing(result)["ring_gear 12"] is True
+    assert reasons(result, 12)["number_of_teeth"] == "a ring_gear has no counterpart in a case"
+    assert "not of two cylindrical gears" in reasons(result, 13)["center_distance"]
+
+
+def test_a_hydrodynamic_bearing() -> None:
+    kind = ('type="rolling_bearing_with_catalog_geometry"', 'type="hydrodynamic_radial_plain_bearing"')
+    clearance = ("operating_radial_bearing_clearance", "diameter_clearance_plain_bearing")
+    bearing = imported(kind, clearance).unit.bearings[0]
+    assert (bearing.kind, bearing.inner_diameter, bearing.radial_clearance) == ("journal", 0.03, 25e-6)
