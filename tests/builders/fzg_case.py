@@ -1,26 +1,39 @@
 """FZG back-to-back rig with C-type gears at load stage 10 (DIN ISO 14635), the test gearbox in a small housing.
 
-The sump is stood for by a weak big jet, rolling bearings by journals with the losses of NU406 by ISO/TR 14179-2 and the
-churning measured on such rigs without load; what cools gears and shafts besides the flanks is small.
+The gears dip, or the sump is stood for by a weak big jet with churning of the size that ISO/TR 14179-2 gives; rolling
+bearings are stood for by journals with the losses of NU406 by that document; what cools gears and shafts besides the
+flanks is small.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 
 BEARINGS = {"pinion": "38 W", "wheel": "25 W"}
 CHURNING = {"pinion": "90 W", "wheel": "140 W"}
 SPLIT = "windage_into_gears = 0.1\nseal_into_shaft = 0.25\nseal_into_housing = 0.25\n"
+JETS = (
+    'oil = { oil = "FVA 3", inlet_temperature = "90 degC", flow = "5 l/min", jet_direction = "into_mesh", '
+    'jet_velocity = "0 m/s" }'
+)
+SUMP = 'oil = {{ lubrication = "dip", oil = "FVA 3", level = "0 mm", volume = "1.25 l"{keys} }}'
+HELD = ', sump_temperature = "90 degC"'
 FLANK_FILM = 'law = "flank_film"'
 RIM_FILM = 'law = "constant_film"\nheat_transfer_coefficient = "300 W/(m2 K)"\nfluid = "gear_oil_mean"'
 
 
-def fzg_case(folder: Path, *, split: str = "", rims: str = FLANK_FILM) -> Path:
+def fzg_case(
+    folder: Path, *, split: str = "", rims: str = FLANK_FILM, sumps: Mapping[str, str] | None = None
+) -> Path:
     """Write the case.
 
     split : what the case says of the way of the friction heat, nothing unless given; rims : condition of the gear rims
+    sumps : gearbox -> keys of its sump beyond oil, level and volume; the gears then dip and churn by law
     """
     text = HEAD + "".join(_gearbox(name, split if name == "test" else "") for name in ("test", "slave"))
     for name in ("test", "slave"):
-        text += "".join(_given(name, gear) for gear in ("pinion", "wheel"))
+        text += "".join(_given(name, gear, dips=sumps is not None) for gear in ("pinion", "wheel"))
+        if sumps is not None:
+            text = text.replace(JETS, SUMP.format(keys=sumps[name]), 1)
     path = folder / "case.toml"
     path.write_text(
         text + HOUSING + f'[gearboxes.test.housing.boundary.rims]\nsurfaces = ["gear_*_rim"]\n{rims}\n'
@@ -37,8 +50,7 @@ title = "{box} gearbox"
 role = "{role}"
 meshes.main = {{ pinion = "pinion", wheel = "wheel", normal_module = "4.5 mm", pressure_angle = "20 deg", \
 centre_distance = "91.5 mm", damping = "1000 N s/m" }}
-oil = {{ oil = "FVA 3", inlet_temperature = "90 degC", flow = "5 l/min", jet_direction = "into_mesh", \
-jet_velocity = "0 m/s" }}
+{JETS}
 bearing_oil = {{ oil = "FVA 3", inlet_temperature = "90 degC", flow = "0.5 l/min" }}
 [gearboxes.{box}.heat_split]
 {split}{SPLIT}"""
@@ -75,8 +87,8 @@ locating = {"true" if side == "rear" else "false"}
     return text
 
 
-def _given(box: str, gear: str) -> str:
-    powers = [("windage", gear, CHURNING[gear])]
+def _given(box: str, gear: str, *, dips: bool) -> str:
+    powers = [] if dips else [("windage", gear, CHURNING[gear])]
     powers += [("bearing", f"{gear}_{side}", BEARINGS[gear]) for side in ("front", "rear")]
     return "".join(
         f'[losses.given.{box}_{kind}_{part}]\ngearbox = "{box}"\nkind = "{kind}"\npart = "{part}"\npower = "{power}"\n'

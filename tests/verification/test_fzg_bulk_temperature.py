@@ -11,7 +11,7 @@ from rigdesign.coupling.loop import PointResult, solve_point
 from rigdesign.coupling.time_run import held_points
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.warnings import _thin_rim_films
-from tests.builders.fzg_case import RIM_FILM, fzg_case
+from tests.builders.fzg_case import HELD, RIM_FILM, fzg_case
 
 MICHAELIS = 126.0
 """Dip lubricated C-type gears, 372.6 N m, 2250 rpm, FVA 3 at 90 degC, by hand after Michaelis [degC]."""
@@ -34,6 +34,17 @@ def test_a_case_that_says_nothing_gets_the_film_on_the_flanks(tmp_path: Path) ->
     assert rig.case.gearboxes["test"].heat_split.mesh is None
     assert rig.case.gearboxes["test"].heat_split.rule == "flank_film"
     assert bulk(result) == pytest.approx([MICHAELIS] * 2, abs=6.0)
+
+
+def test_gears_that_dip_reach_the_same_temperature(tmp_path: Path) -> None:
+    """Level at the shafts, teeth flooded once a turn: 122.5 and 119.5 degC, where Michaelis has one value for both.
+
+    The mean is 5 K below his: faces and shafts, which his formula does not know, take a part of the heat.
+    """
+    _, result = settled(fzg_case(tmp_path, sumps={"test": HELD, "slave": HELD}))
+    pinion, wheel = bulk(result)
+    assert wheel < pinion < MICHAELIS
+    assert 0.5 * (pinion + wheel) == pytest.approx(MICHAELIS, abs=6.0)
 
 
 def test_half_of_the_heat_under_a_film_of_walls_is_far_too_hot_and_said(tmp_path: Path) -> None:
