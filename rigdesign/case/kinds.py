@@ -45,6 +45,12 @@ def kind_of(model: type[BaseModel], key: str) -> str:
     return str(typing.get_args(model.model_fields[key].annotation)[0])
 
 
+def variant_of(model: type[BaseModel], models: Sequence[type[BaseModel]]) -> str:
+    """How a case states that a table is this one of several kinds: ``law = radiation``."""
+    key = kind_key(models)
+    return f"{key} = {kind_of(model, key)}"
+
+
 def of_kind(models: Sequence[type[BaseModel]], table: Mapping[str, Any]) -> list[type[BaseModel]]:
     """Of several kinds those that a table may be: the one it states, or the usual one; all where it names none."""
     key = kind_key(models)

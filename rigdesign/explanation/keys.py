@@ -18,7 +18,7 @@ from pydantic.fields import FieldInfo
 from rigdesign.base import units
 from rigdesign.base.quantity_kinds import KINDS
 from rigdesign.case.fields import Name, Quantity
-from rigdesign.case.kinds import kind_key, kind_of
+from rigdesign.case.kinds import variant_of
 from rigdesign.case.model import Case
 from rigdesign.case.paths import Slot, path_pattern, slot_of
 
@@ -33,13 +33,13 @@ _NAME_PATTERN = typing.get_args(Name)[1].metadata
 class KeyEntry:
     """One key.
 
-    path : with placeholders; law : of a boundary condition that has the key, empty elsewhere
+    path : with placeholders; variant : kind of table that has the key, as ``law = radiation``; empty elsewhere
     kind : quantity kind, type or choices, in words; units : accepted spellings, the usual one first
     default : as a case would write it; None where the key is required or nothing stands for it when left out
     """
 
     path: str
-    law: str = ""
+    variant: str = ""
     kind: str
     units: tuple[str, ...] = ()
     bounds: str = ""
@@ -61,16 +61,16 @@ def case_keys() -> tuple[KeyEntry, ...]:
     return tuple(_keys_of(Case, "", ""))
 
 
-def entry_at(path: str, law: str = "") -> KeyEntry | None:
+def entry_at(path: str, variant: str = "") -> KeyEntry | None:
     """The entry of a key or part of a case by its path, for a value of a list that of the list; None if there is none.
 
-    law : of the boundary condition that the path leads into
+    variant : of the table that the path leads into
     """
     table, _, last = path.rpartition(".")
     fitting = [entry for fits, entry in _by_length().get(path.count("."), ()) if fits.fullmatch(path)]
     if not fitting:
-        return entry_at(table, law) if last.isdigit() else None
-    return next((entry for entry in fitting if entry.law in ("", law)), fitting[0])
+        return entry_at(table, variant) if last.isdigit() else None
+    return next((entry for entry in fitting if entry.variant in ("", variant)), fitting[0])
 
 
 def starred(path: str) -> str:
@@ -87,13 +87,13 @@ def _by_length() -> Mapping[int, tuple[tuple[re.Pattern[str], KeyEntry], ...]]:
     return {number: tuple(entries) for number, entries in found.items()}
 
 
-def entry_of(path: str, field: FieldInfo, law: str = "") -> KeyEntry:
+def entry_of(path: str, field: FieldInfo, variant: str = "") -> KeyEntry:
     """The entry of one field."""
     slot = slot_of(field.annotation, field.metadata)
     quantity = slot.quantity
     return KeyEntry(
         path=path,
-        law=law,
+        variant=variant,
         kind=kind_text(slot),
         units=() if quantity is None else tuple(KINDS[quantity.kind].like(quantity.shown_example).units),
         bounds=_bounds(slot),
@@ -172,24 +172,24 @@ def value_text(value: Any, quantity: Quantity | None) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _keys_of(model: type[BaseModel], path: str, law: str) -> Iterator[KeyEntry]:
+def _keys_of(model: type[BaseModel], path: str, variant: str) -> Iterator[KeyEntry]:
     for key, field in model.model_fields.items():
         here = f"{path}.{key}" if path else key
-        yield entry_of(here, field, law)
+        yield entry_of(here, field, variant)
         for inner, below in _tables(slot_of(field.annotation, field.metadata), here):
-            yield from _inner_keys(inner, below, law)
+            yield from _inner_keys(inner, below, variant)
 
 
-def _inner_keys(models: tuple[type[BaseModel], ...], path: str, law: str) -> Iterator[KeyEntry]:
-    """Keys of a table that may be one of several, each with the law that has it."""
+def _inner_keys(models: tuple[type[BaseModel], ...], path: str, variant: str) -> Iterator[KeyEntry]:
+    """Keys of a table that may be one of several, each with the kind that has it."""
     placeholder = path.endswith((f".{NAMED}", f".{NUMBERED}"))
     for model in models:
-        own = kind_of(model, kind_key(models)) if len(models) > 1 else law
+        own = variant_of(model, models) if len(models) > 1 else variant
         if placeholder:
             text = (inspect.getdoc(model) or "").partition("\n\n")[0]
             yield KeyEntry(
                 path=path,
-                law=own,
+                variant=own,
                 kind="table",
                 required=False,
                 description=" ".join(text.split()),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from rigdesign.base.errors import UsageError
-from rigdesign.case.kinds import kind_key, kind_of, of_kind
+from rigdesign.case.kinds import kind_key, of_kind, variant_of
 from rigdesign.case.model import Case
 from rigdesign.case.paths import known_paths, nearest_paths, path_pattern, slot_at
 from rigdesign.case.provenance import take_off
@@ -110,22 +110,22 @@ def explain_path(case: Case, path: str) -> PathExplanation:
 
 
 def _entry(plain: Any, path: str) -> KeyEntry:
-    entry = entry_at(path, _law(plain, path))
+    entry = entry_at(path, _variant(plain, path))
     assert entry is not None, path
     return entry
 
 
-def _law(plain: Any, path: str) -> str:
+def _variant(plain: Any, path: str) -> str:
     """The kind of the nearest table above a key that comes in kinds."""
-    node, law, keys = plain, "", list[str]()
+    node, variant, keys = plain, "", list[str]()
     for key in path.split("."):
         keys.append(key)
         node = node.get(key) if isinstance(node, dict) else None
         place = slot_at(Case, plain, keys) if isinstance(node, dict) else None
         models = [] if place is None else list(place.models())
-        if len(models) > 1 and isinstance(node, dict) and (tag := kind_key(models)):
-            law = kind_of(of_kind(models, node)[0], tag)
-    return law
+        if len(models) > 1 and isinstance(node, dict) and kind_key(models):
+            variant = variant_of(of_kind(models, node)[0], models)
+    return variant
 
 
 def _keys_below(case: Case, plain: Any, known: list[str], path: str) -> Iterator[StatedValue]:

@@ -22,14 +22,14 @@ def key_reference() -> str:
 
 def _sections() -> Iterator[str]:
     entries = case_keys()
-    tables = {(entry.path, entry.law): entry for entry in entries if entry.table}
+    tables = {(entry.path, entry.variant): entry for entry in entries if entry.table}
     groups: dict[tuple[str, str], list[KeyEntry]] = {}
     for entry in entries:
         if not entry.path.endswith((f".{NAMED}", f".{NUMBERED}")):
-            groups.setdefault((entry.path.rpartition(".")[0], entry.law), []).append(entry)
-    for (path, law), keys in groups.items():
-        yield f"## {path or 'case'}" + (f" with law = {law}" if law else "") + "\n"
-        table = tables.get((path, law)) or tables.get((path, ""))
+            groups.setdefault((entry.path.rpartition(".")[0], entry.variant), []).append(entry)
+    for (path, variant), keys in groups.items():
+        yield f"## {path or 'case'}" + (f" with {variant}" if variant else "") + "\n"
+        table = tables.get((path, variant)) or tables.get((path, ""))
         if table is not None and table.description:
             yield f"{_cell(table.description)}\n"
         yield "| key | holds | default | what it is |\n|---|---|---|---|"

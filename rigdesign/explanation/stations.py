@@ -144,6 +144,24 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         rig__oil_supply="velocity with which the oil arrives: power of the jets, film on the flanks"
     ),
     "gearboxes.*.oil.blocked_jets": _at(rig__oil_supply="velocity of the open jets and wetted face width"),
+    "gearboxes.*.oil.lubrication": _at(
+        case__lubrication="injection at the meshes, or a sump into which gears dip"
+    ),
+    "gearboxes.*.oil.level": _at(coupling__dip="depth to which the gears dip: churning, oil that they lift"),
+    "gearboxes.*.oil.volume": _at(
+        coupling__dip="oil bath of the churning laws", transient__oil="heat that the sump stores"
+    ),
+    "gearboxes.*.oil.sump_temperature": _at(
+        coupling__temperatures="temperature at which the sump is held",
+        coupling__boundary="fluid of the films of wetted walls",
+        coupling__dip="viscosity of the oil that is churned",
+    ),
+    "gearboxes.*.oil.churning": _at(coupling__dip="law of the churning loss"),
+    "gearboxes.*.oil.plan_length": _at(coupling__dip="hydraulic length of ISO/TR 14179-2"),
+    "gearboxes.*.oil.plan_width": _at(coupling__dip="hydraulic length of ISO/TR 14179-2"),
+    "gearboxes.*.bearing_oil.lubrication": _at(
+        case__lubrication="oil that is fed, splash of the gears, or grease"
+    ),
     "gearboxes.*.bearing_oil": _at(rig__oil_supply="oil that is fed", coupling__oil=_OIL_FLOW),
     "gearboxes.*.bearing_oil.inlet_temperature": _at(
         rig__oil_supply="temperature of the oil that is fed",
@@ -165,8 +183,8 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.bearings.*.torsional_damping": _at(
         coupling__bearing_films="drag torque where losses.bearing_drag is constant"
     ),
-    "gearboxes.*.bearings.*.radial_stiffness": _at(case__gearbox="kept for the record, enters nothing"),
-    "gearboxes.*.bearings.*.radial_damping": _at(case__gearbox="kept for the record, enters nothing"),
+    "gearboxes.*.bearings.*.radial_stiffness": _at(case__bearings="kept for the record, enters nothing"),
+    "gearboxes.*.bearings.*.radial_damping": _at(case__bearings="kept for the record, enters nothing"),
     "gearboxes.*.seals.*": _at(
         coupling__losses="loss of the seals",
         case__geometry="gap between shaft and wall",
@@ -184,7 +202,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__flank_heat="friction heat between pinion and wheel"
     ),
     "gearboxes.*.heat_split.mesh": _at(
-        case__gearbox="by which rule the friction heat divides",
+        case__heat_split="by which rule the friction heat divides",
         coupling__flank_heat="friction heat between gears and oil",
     ),
     "gearboxes.*.heat_split.mesh_into_gears": _at(coupling__flank_heat="friction heat between gears and oil"),

@@ -61,8 +61,8 @@ def print_path(found: PathExplanation) -> None:
     console = new_console(wrap=True)
     console.print(Text(found.asked, "bold"))
     _answer(console, "is", _plain(found.key.description))
-    if found.key.law:
-        _answer(console, "of law", found.key.law)
+    if found.key.variant:
+        _answer(console, "where", found.key.variant)
     if found.key.table:
         _print_keys(console, found)
         return

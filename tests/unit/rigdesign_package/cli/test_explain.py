@@ -67,7 +67,7 @@ def test_a_star_stands_for_any_name(prototype: Case) -> None:
 def test_a_table_lists_its_keys(prototype: Case, rigdesign: Rigdesign) -> None:
     found = explain_path(prototype, "gearboxes.test.oil")
     names = [key.path.rpartition(".")[2] for key in found.keys]
-    assert names[:3] == ["oil", "inlet_temperature", "flow"] and found.checks == ()
+    assert names[:4] == ["lubrication", "oil", "inlet_temperature", "flow"] and found.checks == ()
     rows = [line.split() for line in rigdesign("explain", PROTOTYPE, "gearboxes.test.oil").out.splitlines()]
     assert ["flow", "5", "l/min", "*", "Flow", "per", "mesh."] in rows and ["*", "assumed"] in rows
 
