@@ -56,6 +56,7 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
     from rigdesign.validation import (
         benchmarks,
         films,
+        fzg_losses,
         gears,
         iso_example,
         losses,
@@ -76,6 +77,7 @@ def _topics(with_run: bool, say: Callable[[str], None]) -> list[Topic]:
         ("film coefficients and oil", films.film_rows),
         ("thermal model of the main rig", partial(_main_rig, with_run)),
         ("tooth-loss factors", partial(losses.loss_rows, prototype)),
+        ("FZG gears and a journal film", fzg_losses.fzg_loss_rows),
         ("ISO/TR 6336-30 example 1", iso_example.iso_example_rows),
         ("conduction benchmarks", benchmarks.benchmark_rows),
         ("oscillator, energy and closure", partial(mechanics.mechanics_rows, prototype)),
