@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from rigdesign.case.fields import Gap, Length, Name, Offset, Part, Size, Text
+from rigdesign.case.fields import Gap, Length, Name, Offset, Part, Size, Text, fault
 from rigdesign.case.films import FilmFactor
 from rigdesign.case.joint import FootContact
 from rigdesign.case.mesh import HousingMesh
@@ -16,8 +16,8 @@ class HousingShaft(Part):
 
     lateral_position: Offset
     """y of its axis; the pinion usually at minus half the centre distance."""
-    seal_diameter: Length
-    """Diameter in the partition seals and in the cold sections."""
+    seal_diameter: Length | None = None
+    """Diameter in the partition seals and in the cold sections; left out in a housing without partitions."""
     outside_diameter: Length
     """Diameter in the end seals and outside the housing."""
     overhang_front: Gap
@@ -43,17 +43,22 @@ class ClampingFieldInput(Part):
     """Built-in material or a name under ``materials``."""
 
 
+PARTITIONS = ("cold_length_front", "cold_length_rear", "partition_thickness")
+"""Keys of a housing with partitions: all of them or none."""
+
+
 class Housing(Part):
-    """A box with a warm chamber between two cold sections, on a clamping field.
+    """A box on a clamping field: a warm chamber between two cold sections, or one chamber without partitions.
 
     x runs along the shafts from front to rear, y from pinion to wheel, z up.
     """
 
     warm_length: Size
-    """Clear length of the warm chamber, between the partitions."""
-    cold_length_front: Size
-    """Clear length of the front cold section, between end wall and partition."""
-    cold_length_rear: Size
+    """Clear length of the warm chamber, between the partitions; without partitions from end wall to end wall."""
+    cold_length_front: Size | None = None
+    """Clear length of the front cold section, between end wall and partition. Left out together with
+    ``cold_length_rear`` and ``partition_thickness``: one chamber, its end walls carry the bearings and stand in it."""
+    cold_length_rear: Size | None = None
     """Clear length of the rear cold section, between partition and end wall."""
     width: Size
     """Outer width, across the shafts."""
@@ -65,7 +70,7 @@ class Housing(Part):
     """Thickness of the floor."""
     top_thickness: Length
     """Thickness of the top."""
-    partition_thickness: Length
+    partition_thickness: Length | None = None
     """Thickness of the walls between warm chamber and cold sections: length of their seals."""
     end_wall_thickness: Length
     """Thickness of the walls that carry the bearings."""
@@ -102,3 +107,18 @@ class Housing(Part):
     """True: a Niemann/Winter film to room air already contains radiation, explicit radiation of those surfaces is
     left out of the verdicts; the other reading is computed as well. Other films contain none: with them explicit
     radiation stays."""
+
+    @property
+    def one_chamber(self) -> bool:
+        """Whether it has no partitions."""
+        return self.partition_thickness is None
+
+    @model_validator(mode="after")
+    def _all_partitions_or_none(self) -> "Housing":
+        missing = [key for key in PARTITIONS if getattr(self, key) is None]
+        if missing and len(missing) < len(PARTITIONS):
+            raise fault(
+                f"{', '.join(missing)} missing beside {', '.join(key for key in PARTITIONS if key not in missing)}",
+                "write all three for a housing with partitions, or none of them for one chamber",
+            )
+        return self

@@ -182,13 +182,16 @@ def partition_gap(solved: SolvedRig, warm: WarmGearbox, seal: str) -> float | No
     housing = solved.case.gearboxes[warm.gearbox].housing
     if housing is None or shaft not in housing.shafts:
         return None
+    entry = housing.shafts[shaft]
+    if entry.seal_diameter is None:
+        return None
     point = next(p for p in solved.points if p.point.stage == warm.stage)
     rows = point.last.fields[warm.gearbox].solution.balance.rows
     plate, journal = (
         _mean_temperature(rows, names)
         for names in ((f"partition_warm_{side}", f"partition_cold_{side}"), (f"shaft_{shaft}_seal_{side}",))
     )
-    entry, materials = housing.shafts[shaft], solved.rig.materials
+    materials = solved.rig.materials
     reference = solved.case.ambient.reference_temperature
     wide = materials[housing.material].expansion_coefficient * (plate - reference)
     thick = materials[entry.material].expansion_coefficient * (journal - reference)

@@ -13,19 +13,35 @@ FLANK_FILM = 'law = "flank_film"'
 RIM_FILM = 'law = "constant_film"\nheat_transfer_coefficient = "300 W/(m2 K)"\nfluid = "gear_oil_mean"'
 
 
-def fzg_case(folder: Path, *, split: str = "", rims: str = FLANK_FILM) -> Path:
+def fzg_case(folder: Path, *, split: str = "", rims: str = FLANK_FILM, one_chamber: bool = False) -> Path:
     """Write the case.
 
     split : what the case says of the way of the friction heat, nothing unless given; rims : condition of the gear rims
+    one_chamber : the test gearbox without partitions, of the same length
     """
     text = HEAD + "".join(_gearbox(name, split if name == "test" else "") for name in ("test", "slave"))
     for name in ("test", "slave"):
         text += "".join(_given(name, gear) for gear in ("pinion", "wheel"))
     path = folder / "case.toml"
+    housing = _one_chamber(HOUSING) if one_chamber else HOUSING
     path.write_text(
-        text + HOUSING + f'[gearboxes.test.housing.boundary.rims]\nsurfaces = ["gear_*_rim"]\n{rims}\n'
+        text + housing + f'[gearboxes.test.housing.boundary.rims]\nsurfaces = ["gear_*_rim"]\n{rims}\n'
     )
     return path
+
+
+def _one_chamber(housing: str) -> str:
+    """The housing without its partitions; end walls are wetted like the rest of the chamber."""
+    gone = ("cold_length_", "partition_thickness", "seal_diameter")
+    kept = "\n".join(line for line in housing.splitlines() if not line.startswith(gone)) + "\n"
+    for old, new in (
+        ('warm_length = "60 mm"', 'warm_length = "116 mm"'),
+        ('"partition_*", "cold_*"', '"end_wall_*"'),
+        ('"shaft_*_cold_*", ', ""),
+    ):
+        assert old in kept
+        kept = kept.replace(old, new)
+    return kept
 
 
 def _gearbox(box: str, split: str) -> str:

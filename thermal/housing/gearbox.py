@@ -11,12 +11,19 @@ Surfaces, with ``<s>`` the name of a shaft and ``<side>`` front or rear (low or 
     chamber_wall, chamber_floor, chamber_top, partition_warm_<side>           warm chamber inside
     cold_floor_<side>, partition_cold_<side>, cold_wall_<side>                cold section inside; its wall is
                                   sides, top, end wall, bearing bosses, shoulders and covers
+                                  without partitions there is one chamber: in place of the surfaces above
+    outer_warm                    all of side walls and top outside; the end faces are outer_end_<side>
+    chamber_wall, chamber_floor, chamber_top, end_wall_<side>                 inside; an end wall with its bearing
+                                  bosses, shoulders and covers
+
     bearing_bore_<s>_<side>       the bore of a bearing
-    seal_bore_<s>_<side>          in the partition; seal_bore_<s>_<side>_end in the end wall
+    seal_bore_<s>_<side>          in the partition; seal_bore_<s>_<side>_end in the end wall, where the shaft leaves
     field_top, field_sides, field_bottom                  or housing_foot for a housing without a field
     shaft_<s>_journal_<side>, shaft_<s>_seal_<side>, shaft_<s>_seal_<side>_end, shaft_<s>_warm,
     shaft_<s>_cold_<side>, shaft_<s>_outside_<side>, shaft_<s>_end_<side>, shaft_<s>_bore
     gear_<s>_rim, gear_<s>_side_<side>
+                                  without partitions a shaft has no seal_<side> and no cold_<side>; shaft_<s>_warm
+                                  reaches from bearing to bearing
 
 Surfaces of parts that are not there (no overhang, no bore, no gear) do not exist. Bodies: ``housing``,
 ``field``

@@ -93,6 +93,39 @@ def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
                 "put them on shafts of their own",
             )  # fmt: skip
         yield from _bores(at, gearbox, shaft)
+        yield from _seal_diameter(at, housing, shaft)
+        yield from _rubbing_without_a_seal(at, gearbox, housing, shaft)
+
+
+def _rubbing_without_a_seal(at: str, gearbox: Gearbox, housing: Housing, shaft: str) -> Iterator[Fault]:
+    """One chamber has seals only where a shaft leaves it."""
+    entry = housing.shafts[shaft]
+    if not housing.one_chamber or entry.overhang_front > 0.0 or entry.overhang_rear > 0.0:
+        return
+    for name, seals in gearbox.seals.items():
+        if seals.shaft == shaft and seals.rubbing_torque:
+            yield Fault(
+                f"{at}.seals.{name}.rubbing_torque", show(seals.rubbing_torque, "torque"),
+                f"has no seal to rub in: shaft {shaft} leaves the one chamber nowhere",
+                "set it to 0, or give the shaft its overhang_front or overhang_rear",
+            )  # fmt: skip
+
+
+def _seal_diameter(at: str, housing: Housing, shaft: str) -> Iterator[Fault]:
+    """The diameter in the seals of the partitions goes with the partitions."""
+    path, diameter = f"{at}.housing.shafts.{shaft}.seal_diameter", housing.shafts[shaft].seal_diameter
+    if diameter is None and not housing.one_chamber:
+        yield Fault(
+            path, "", "a housing with partitions needs the shaft diameter in their seals",
+            "add it, or leave out cold_length_front, cold_length_rear and partition_thickness",
+        )  # fmt: skip
+    if diameter is not None and housing.one_chamber:
+        yield Fault(
+            path, show(diameter, "length"),
+            "does nothing in a housing without partitions, in which a shaft has the bore of its gear from bearing to "
+            "bearing",
+            "remove it, or give the housing its partitions",
+        )  # fmt: skip
 
 
 def _bores(at: str, gearbox: Gearbox, shaft: str) -> Iterator[Fault]:
