@@ -223,6 +223,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         case__geometry="shaft in the temperature field, diameters of its seals"
     ),
     "gearboxes.*.housing.boundary.*": _at(coupling__boundary=_BOUNDARY),
+    "gearboxes.*.housing.boundary.*.ribs": _at(case__ribs="fin array as a factor on the film"),
     "gearboxes.*.housing.boundary.*.taken_from": _at(
         coupling__boundary="doubt of a printed coefficient: warns where the field differs from what was assumed"
     ),

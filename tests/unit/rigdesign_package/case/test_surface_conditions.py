@@ -8,11 +8,11 @@ from rigdesign.case.films import (
     PRINTED_LAWS,
     ConstantFilm,
     NiemannWinter,
-    RotatingCylinder,
     SurfaceFilm,
     TakenFrom,
     VerticalPlate,
 )
+from rigdesign.case.shaft_films import RotatingCylinder
 from rigdesign.case.surface_conditions import Condition, FlankFilm, GapExchange, SurfaceExchange
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace, SurfaceSite
 from thermal.films import convection
