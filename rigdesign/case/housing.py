@@ -1,9 +1,11 @@
 """Geometry of a gearbox housing and what its surfaces exchange heat with."""
 
 from collections.abc import Mapping
+from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from rigdesign.case.faces import FaceSelection
 from rigdesign.case.fields import Gap, Length, Name, Offset, Part, Size, Text, fault
 from rigdesign.case.films import FilmFactor
 from rigdesign.case.joint import FootContact
@@ -95,6 +97,15 @@ class Housing(Part):
     ``seal_bore_…`` and ``shaft_<shaft>_seal_…`` for heat of the seals into housing and shaft (``heat_split``), and
     ``field``, ``housing_foot`` and ``field_seat`` for a ``foot_contact``. Heights of films, diameters and speeds of
     shafts stay those of this table; clearances are read where bearings, shafts and gears carry the names of the box."""
+    step_file: Text | None = None
+    """A STEP file next to the case file in place of the parametric box: one closed solid, the body ``housing``, meshed
+    at the fidelity of the run. Its faces have the names that ``boundary`` covers, in the file or by ``faces``; gears
+    and shafts are not drawn. Heights of films, diameters and speeds of shafts stay those of this table."""
+    faces: Mapping[Name, Annotated[tuple[FaceSelection, ...], Field(min_length=1)]] = {}
+    """Surface -> which faces of the STEP file it is, where they have no names there. Each entry adds the faces that meet
+    all it says: ``plane = { point = ["0 mm", "0 mm", "15 mm"], normal = [0, 0, 1] }``, ``cylinder = { point = …,
+    direction = [1, 0, 0], radius = "40 mm" }``, ``box = { low = […], high = […] }``. ``rigdesign mesh CASE --out DIR``
+    draws the part with its faces numbered."""
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
     """Shafts in the housing by name, each with two bearings and a seal."""
     boundary: Mapping[Name, Condition] = Field(min_length=1)
@@ -109,9 +120,24 @@ class Housing(Part):
     radiation stays."""
 
     @property
+    def part_file(self) -> str | None:
+        """The file in place of the parametric box: of a mesh or STEP; None for the box."""
+        return self.mesh_file or self.step_file
+
+    @property
     def one_chamber(self) -> bool:
         """Whether it has no partitions."""
         return self.partition_thickness is None
+
+    @model_validator(mode="after")
+    def _one_file(self) -> "Housing":
+        if self.mesh_file is not None and self.step_file is not None:
+            raise fault("mesh_file and step_file both stand for the box", "remove one of them")
+        if self.faces and self.step_file is None:
+            raise fault(
+                "faces name those of a STEP file, and there is none", "add step_file, or remove faces"
+            )
+        return self
 
     @model_validator(mode="after")
     def _all_partitions_or_none(self) -> "Housing":

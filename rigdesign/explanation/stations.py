@@ -202,6 +202,8 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.housing": _at(case__geometry=_BOX),
     "gearboxes.*.housing.material": _at(rig__model="heat conduction and thermal expansion of the housing"),
     "gearboxes.*.housing.mesh_file": _at(rig__user_mesh="mesh in place of the parametric box"),
+    "gearboxes.*.housing.step_file": _at(rig__user_mesh="CAD part in place of the parametric box"),
+    "gearboxes.*.housing.faces": _at(rig__user_mesh="names of the faces of a STEP file"),
     "gearboxes.*.housing.ambient_film_factor": _at(coupling__boundary="films to room air"),
     "gearboxes.*.housing.bearing_film_factor": _at(
         coupling__boundary="conductance between bearing films and walls"

@@ -33,16 +33,23 @@ def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
         names = tuple(surface_names(housing_geometry(gearbox)))
     except ThermalInputError as error:
         return [Fault(f"{at}.housing", "", str(error), "correct the measures of the housing")]
-    if housing.mesh_file is None:
+    if housing.part_file is None:
         return boundary_faults(name, gearbox, names)
-    if housing.mesh.sizes():
-        return [
-            Fault(
-                f"{at}.housing.mesh", "", "element sizes do nothing to a mesh that is read from a file",
-                "remove them or mesh_file",
-            )
-        ]  # fmt: skip
-    return []
+    return list(_idle_sizes(at, housing))
+
+
+def _idle_sizes(at: str, housing: Housing) -> Iterator[Fault]:
+    """Element sizes of zones that a housing from a file does not have."""
+    if housing.mesh_file is not None and housing.mesh.sizes():
+        yield Fault(
+            f"{at}.housing.mesh", "", "element sizes do nothing to a mesh that is read from a file",
+            "remove them or mesh_file",
+        )  # fmt: skip
+    if housing.step_file is not None and (idle := sorted(set(housing.mesh.sizes()) - {"wall"})):
+        yield Fault(
+            f"{at}.housing.mesh", "", f"element sizes of {', '.join(idle)} do nothing to a STEP file, which has one",
+            "remove them; walls is that of the whole part",
+        )  # fmt: skip
 
 
 def boundary_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> list[Fault]:

@@ -89,9 +89,9 @@ def refused(case: Case, *words: str) -> None:
 
 def test_faults_of_a_mesh_file_are_faults_of_its_key(tmp_path: Path) -> None:
     key = 'gearboxes.test.housing.mesh_file = "box.msh"'
-    refused(on_file(tmp_path), key, "correct the path of the mesh")
+    refused(on_file(tmp_path), key, "correct the path of the file")
     (tmp_path / "file").write_text("", encoding="utf-8")
-    refused(on_file(tmp_path, name="file/box.msh"), "file/box.msh", "correct the path of the mesh")
+    refused(on_file(tmp_path, name="file/box.msh"), "file/box.msh", "correct the path of the file")
     _, mesh = box()
     file = write_msh(
         mesh, tmp_path / "box.msh", renamed={"chamber_floor": "sump", "gear_test_pinion": "gear"}
