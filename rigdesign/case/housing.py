@@ -92,18 +92,19 @@ class Housing(Part):
     """A gmsh .msh next to the case file in place of the parametric box: 10-node tetrahedra or hexahedra of 20 or
     27 nodes, in metres, physical volumes named like the bodies of the box, physical surfaces with the names that
     ``boundary`` covers, every boundary facet in one of them; ``rigdesign mesh CASE --out DIR`` writes an example.
-    A housing alone will do where heat goes nowhere else: the body ``housing`` is always needed, ``gear_<shaft>_rim``
-    for heat of the mesh into the gears (or ``flank_film``), body ``gear_<shaft>`` for windage into the gears, the
-    ``seal_bore_…`` and ``shaft_<shaft>_seal_…`` for heat of the seals into housing and shaft (``heat_split``), and
+    A housing alone will do: shafts and gears that it lacks and whose surfaces have conditions are drawn from the
+    tables, others are left out, and no heat may go there (``heat_split``). The body ``housing`` is always needed,
     ``field``, ``housing_foot`` and ``field_seat`` for a ``foot_contact``. Heights of films, diameters and speeds of
-    shafts stay those of this table; clearances are read where bearings, shafts and gears carry the names of the box."""
+    shafts stay those of this table; clearances are read where bearings, shafts and gears carry the names of the box
+    and journals stand in their bores."""
     step_file: Text | None = None
     """A STEP file next to the case file in place of the parametric box: one closed solid, the body ``housing``, meshed
-    at the fidelity of the run. Its faces have the names that ``boundary`` covers, in the file or by ``faces``; gears
-    and shafts are not drawn. Heights of films, diameters and speeds of shafts stay those of this table."""
+    at the fidelity of the run, in the frame of the box (x along the shafts from the front end, z up from the foot). Its
+    faces have the names that ``boundary`` covers, in the file or by ``faces``; shafts and gears are drawn from the
+    tables."""
     faces: Mapping[Name, Annotated[tuple[FaceSelection, ...], Field(min_length=1)]] = {}
-    """Surface -> which faces of the STEP file it is, where they have no names there. Each entry adds the faces that meet
-    all it says: ``plane = { point = ["0 mm", "0 mm", "15 mm"], normal = [0, 0, 1] }``, ``cylinder = { point = …,
+    """Surface -> which faces of the STEP file it is, where they have no names there. Each entry adds the faces that
+    meet all it says: ``plane = { point = ["0 mm", "0 mm", "15 mm"], normal = [0, 0, 1] }``, ``cylinder = { point = …,
     direction = [1, 0, 0], radius = "40 mm" }``, ``box = { low = […], high = […] }``. ``rigdesign mesh CASE --out DIR``
     draws the part with its faces numbered."""
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)

@@ -151,7 +151,7 @@ def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
 
 
 def axis_rise(solved: SolvedRig, warm: WarmGearbox) -> float:
-    """Free expansion of the housing and of the field under it up to the shaft axes [m], by their mean temperatures."""
+    """Free expansion of the housing and of the field under it, if meshed, up to the shaft axes [m], by their means."""
     name = warm.gearbox
     housing = solved.case.gearboxes[name].housing
     assert housing is not None
@@ -164,6 +164,8 @@ def axis_rise(solved: SolvedRig, warm: WarmGearbox) -> float:
         ("field", housing.field.material, housing.field.thickness),
         ("housing", housing.material, housing.shaft_height),
     ):
+        if body not in bodies:
+            continue
         values, volumes = elements.at_points(field, bodies[body])
         places, _ = elements.at_points(elements.mesh.points[:, :2], bodies[body])
         under = ((places >= low) & (places <= high)).all(axis=1)

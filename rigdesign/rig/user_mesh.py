@@ -1,28 +1,33 @@
-"""The file of a housing in place of the parametric box, mesh or STEP: read once, held against the case."""
+"""The file of a housing in place of the parametric box, mesh or STEP: read once, held against the case.
+
+Shafts and gears that the file lacks and of which ``boundary`` speaks are drawn from the tables of the case, as in the
+box.
+"""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-
-import numpy as np
 
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.files import check_regular
 from rigdesign.base.units import show
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.geometry import conditions_of
 from rigdesign.case.housing import Housing
 from rigdesign.case.rules.surfaces import boundary_faults
-from thermal.fe.mesh import MeshError, NamedMesh
+from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
 from thermal.housing.face_rules import FaceRule
 from thermal.housing.fitted import fitted_model
-from thermal.housing.geometry import HousingGeometry
+from thermal.housing.gearbox import build_shaft
+from thermal.housing.geometry import HousingGeometry, ShaftGeometry
 from thermal.housing.mesh_file import read_mesh
 from thermal.housing.parametric_stations import seal_stations
 from thermal.housing.solids import MeshSizes
-from thermal.housing.stations import GearboxModel
-from thermal.housing.step_file import StepPart, read_part, read_step
-from thermal.housing.surfaces import body_names, joined_surfaces
+from thermal.housing.stations import GearboxModel, Point
+from thermal.housing.step_file import StepPart, part_size, read_part, read_step
+from thermal.housing.surfaces import body_names, joined_surfaces, shaft_faces
 
 LARGEST_MESH = 2_000_000_000
 """Bytes of a mesh file; a gearbox of a million nodes has a tenth."""
@@ -56,9 +61,13 @@ def user_model(
     file = case.parent / housing.part_file
     with _file_faults(at, given, case):
         check_regular(file, LARGEST_MESH if key == "mesh_file" else LARGEST_STEP)
-        model = _model(housing, file, geometry, sizes)
-    faults = _size_faults(at, given, housing, model.mesh) if key == "step_file" else []
-    faults += _part_faults(at, given, gearbox, geometry, model)
+        step = key == "step_file"
+        if step and (wrong := _size_faults(at, given, housing, part_size(file))):
+            raise CaseError(wrong, str(case))
+        part = _Part(file, file.stat().st_mtime_ns, _face_rules(housing), sizes.wall, sizes.circle, step)
+        mesh = _read(part)
+        model = _whole(part, geometry, _drawn_shafts(housing, geometry, mesh), sizes)
+    faults = _part_faults(at, given, gearbox, geometry, model)
     joined = joined_surfaces(geometry)
     surfaces = tuple(surface for surface in model.mesh.surfaces if surface not in joined)
     if faults := [*faults, *boundary_faults(name, gearbox, surfaces)]:
@@ -102,16 +111,20 @@ def _face_rules(housing: Housing) -> NamedRules:
     return tuple((name, tuple(one.rule for one in own)) for name, own in housing.faces.items())
 
 
-def _model(housing: Housing, file: Path, geometry: HousingGeometry, sizes: MeshSizes) -> GearboxModel:
-    changed = file.stat().st_mtime_ns
-    if housing.step_file is None:
-        return _read(file, changed, geometry)
-    return _meshed(file, changed, geometry, _face_rules(housing), sizes)
+def _drawn_shafts(housing: Housing, geometry: HousingGeometry, mesh: NamedMesh) -> tuple[ShaftGeometry, ...]:
+    """Shafts of the case that the mesh lacks with all their surfaces, and on which a condition stands."""
+    drawn = []
+    for shaft in geometry.shafts:
+        surfaces = [face.name for face in shaft_faces(geometry, shaft)]
+        lacking = f"shaft_{shaft.name}" not in mesh.bodies and not mesh.surfaces.keys() & set(surfaces)
+        if lacking and conditions_of(housing, surfaces):
+            drawn.append(shaft)
+    return tuple(drawn)
 
 
-def _size_faults(at: str, given: str, housing: Housing, mesh: NamedMesh) -> list[Fault]:
-    """A part far from the size of the case was drawn in another unit."""
-    _, width, height = np.ptp(mesh.points, axis=0).tolist()
+def _size_faults(at: str, given: str, housing: Housing, size: Point) -> list[Fault]:
+    """A part far from the size of the case was drawn in another unit; meshed by mistake it would never end."""
+    _, width, height = size
     return [
         Fault(
             at, given, f"is {show(found, 'length', digits=4)} {word}, housing.{key} is {show(stated, 'length')}",
@@ -168,20 +181,41 @@ def _lacking(at: str, given: str, model: GearboxModel, lost: Mapping[str, str]) 
     )
     return Fault(
         at, given, f"has the bodies {', '.join(model.mesh.bodies)} and lacks {listed}",
-        "add them to the mesh under these names (rigdesign mesh CASE --out DIR writes an example), or set the shares "
-        "of heat_split that go into parts without a mesh to 0",
+        "add them to the mesh under these names (rigdesign mesh CASE --out DIR writes an example), or give the "
+        "surfaces of missing shafts and gears their boundary conditions, so that they are drawn from the tables, or "
+        "set the shares of heat_split that go into parts without a mesh to 0",
     )  # fmt: skip
 
 
-@lru_cache(maxsize=8)
-def _read(file: Path, changed: int, geometry: HousingGeometry) -> GearboxModel:
-    """The model; ``changed`` is when the file was, so that a new one is read again."""
-    return fitted_model(read_mesh(file), geometry)
+@dataclass(frozen=True)
+class _Part:
+    """A file to read; rules and sizes count for a STEP file only."""
+
+    file: Path
+    changed: int
+    """When the file was, so that a new one is read again."""
+    rules: NamedRules
+    size: float
+    """Largest element [m]."""
+    circle: int
+    """Elements round a full circle."""
+    step: bool
 
 
 @lru_cache(maxsize=8)
-def _meshed(
-    file: Path, changed: int, geometry: HousingGeometry, rules: NamedRules, sizes: MeshSizes
+def _read(part: _Part) -> NamedMesh:
+    """What the file holds."""
+    if part.step:
+        return read_step(part.file, dict(part.rules), part.size, part.circle)
+    return read_mesh(part.file)
+
+
+@lru_cache(maxsize=8)
+def _whole(
+    part: _Part, geometry: HousingGeometry, drawn: tuple[ShaftGeometry, ...], sizes: MeshSizes
 ) -> GearboxModel:
-    """The model of a STEP file; ``changed`` as in `_read`."""
-    return fitted_model(read_step(file, dict(rules), sizes.wall, sizes.circle), geometry)
+    """The model with the shafts that are drawn from the tables."""
+    mesh = _read(part)
+    if drawn:
+        mesh = disjoint_union(mesh, *(build_shaft(geometry, shaft, sizes) for shaft in drawn))
+    return fitted_model(mesh, geometry)

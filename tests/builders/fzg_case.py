@@ -30,6 +30,25 @@ def fzg_case(folder: Path, *, split: str = "", rims: str = FLANK_FILM, one_chamb
     return path
 
 
+def step_case(folder: Path) -> Path:
+    """Write the case with one chamber, its housing ``housing.step`` of that folder on a foot that conducts."""
+    path = fzg_case(folder, one_chamber=True)
+    text = path.read_text()
+    for old, new in (
+        ('shaft_height = "110 mm"', 'shaft_height = "110 mm"\nstep_file = "housing.step"'),
+        ('field = { surfaces = ["field_top", "field_sides"], law = "recknagel_plate" }\n', ""),
+        (
+            'bottom = { surfaces = ["field_bottom"], law = "insulated" }',
+            'foot = { surfaces = ["housing_foot"], law = "constant_film", heat_transfer_coefficient = "40 W/(m2 K)", '
+            'fluid = "ambient" }',
+        ),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    return path
+
+
 def _one_chamber(housing: str) -> str:
     """The housing without its partitions; end walls are wetted like the rest of the chamber."""
     gone = ("cold_length_", "partition_thickness", "seal_diameter")

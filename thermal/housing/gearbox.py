@@ -38,7 +38,7 @@ from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Literal
 
-from thermal.fe.mesh import MeshError, disjoint_union
+from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
 from thermal.housing.geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
 from thermal.housing.meshing import Component, gmsh_session, mesh_component
 from thermal.housing.parametric_stations import (
@@ -80,6 +80,7 @@ __all__ = [
     "ShaftGeometry",
     "body_names",
     "build_gearbox",
+    "build_shaft",
     "exact_areas",
     "exact_volumes",
     "mesh_sizes",
@@ -153,13 +154,28 @@ def _components(geometry: HousingGeometry, sizes: MeshSizes) -> Iterator[Compone
             size=housing_size(geometry, sizes),
         )
     for shaft in geometry.shafts:
-        yield Component(
-            name=f"shaft {shaft.name}",
-            draw=partial(draw_shaft, geometry, shaft),
-            faces=shaft_faces(geometry, shaft),
-            size=shaft_size(geometry, shaft, sizes),
-            axes=[(shaft.y, geometry.shaft_height, math.inf)],
-        )
+        yield _shaft_component(geometry, shaft, sizes)
+
+
+def _shaft_component(geometry: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> Component:
+    """A shaft with its gear."""
+    return Component(
+        name=f"shaft {shaft.name}",
+        draw=partial(draw_shaft, geometry, shaft),
+        faces=shaft_faces(geometry, shaft),
+        size=shaft_size(geometry, shaft, sizes),
+        axes=[(shaft.y, geometry.shaft_height, math.inf)],
+    )
+
+
+@lru_cache(maxsize=32)
+def build_shaft(geometry: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> NamedMesh:
+    """Mesh one shaft of a gearbox with its gear, for a housing that is not the box.
+
+    Errors and memory as of `build_gearbox`.
+    """
+    with gmsh_session() as gmsh:
+        return mesh_component(gmsh, _shaft_component(geometry, shaft, sizes), sizes.circle)
 
 
 @lru_cache(maxsize=32)

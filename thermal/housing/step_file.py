@@ -105,6 +105,14 @@ def read_part(path: Path, rules: Mapping[str, Sequence[FaceRule]], size: float) 
         return StepPart(faces, named_faces(faces, rules), triangles)
 
 
+def part_size(path: Path) -> Point:
+    """Lengths of the part along x, y and z [m]. Raises MeshError as `read_step`, but for names."""
+    with _part(path) as gmsh:
+        low, high = np.reshape(gmsh.model.getBoundingBox(3, gmsh.model.getEntities(3)[0][1]), (2, 3))
+        x, y, z = (high - low).tolist()
+        return x, y, z
+
+
 def read_step(path: Path, rules: Mapping[str, Sequence[FaceRule]], size: float, circle: int) -> NamedMesh:
     """Mesh the one solid of a STEP file as the body ``housing``.
 
