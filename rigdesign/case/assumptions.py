@@ -24,7 +24,7 @@ class AssumptionRecord:
 def implied_assumptions(gearboxes: Mapping[str, Gearbox]) -> Iterator[AssumptionRecord]:
     """Inputs that are left out and whose place an idealisation takes, in the order of the case."""
     for name, box in gearboxes.items():
-        if box.housing is not None and box.housing.foot_contact is None:
+        if box.housing is not None and box.housing.foot_contact is None and box.housing.step_file is None:
             yield AssumptionRecord(
                 path=f"gearboxes.{name}.housing.foot_contact",
                 value="perfect",

@@ -93,15 +93,15 @@ class Housing(Part):
     27 nodes, in metres, physical volumes named like the bodies of the box, physical surfaces with the names that
     ``boundary`` covers, every boundary facet in one of them; ``rigdesign mesh CASE --out DIR`` writes an example.
     A housing alone will do: shafts and gears that it lacks and whose surfaces have conditions are drawn from the
-    tables, others are left out, and no heat may go there (``heat_split``). The body ``housing`` is always needed,
-    ``field``, ``housing_foot`` and ``field_seat`` for a ``foot_contact``. Heights of films, diameters and speeds of
-    shafts stay those of this table; clearances are read where bearings, shafts and gears carry the names of the box
-    and journals stand in their bores."""
+    tables, others are left out, and no heat may go there (``heat_split``). A ``foot_contact`` draws the field under
+    ``housing_foot`` where it is lacking. The body ``housing`` is always needed. Heights of films, diameters and speeds
+    of shafts stay those of this table; clearances are read where bearings, shafts and gears carry the names of the
+    box and journals stand in their bores."""
     step_file: Text | None = None
     """A STEP file next to the case file in place of the parametric box: one closed solid, the body ``housing``, meshed
     at the fidelity of the run, in the frame of the box (x along the shafts from the front end, z up from the foot). Its
     faces have the names that ``boundary`` covers, in the file or by ``faces``; shafts and gears are drawn from the
-    tables."""
+    tables, and the field with a ``foot_contact``."""
     faces: Mapping[Name, Annotated[tuple[FaceSelection, ...], Field(min_length=1)]] = {}
     """Surface -> which faces of the STEP file it is, where they have no names there. Each entry adds the faces that
     meet all it says: ``plane = { point = ["0 mm", "0 mm", "15 mm"], normal = [0, 0, 1] }``, ``cylinder = { point = …,

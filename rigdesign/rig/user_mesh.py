@@ -1,14 +1,16 @@
 """The file of a housing in place of the parametric box, mesh or STEP: read once, held against the case.
 
 Shafts and gears that the file lacks and of which ``boundary`` speaks are drawn from the tables of the case, as in the
-box.
+box, and so is the field under a foot with a ``foot_contact``.
 """
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
+
+import numpy as np
 
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.files import check_regular
@@ -20,14 +22,14 @@ from rigdesign.case.rules.surfaces import boundary_faults
 from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
 from thermal.housing.face_rules import FaceRule
 from thermal.housing.fitted import fitted_model
-from thermal.housing.gearbox import build_shaft
+from thermal.housing.gearbox import build_field, build_shaft
 from thermal.housing.geometry import HousingGeometry, ShaftGeometry
 from thermal.housing.mesh_file import read_mesh
 from thermal.housing.parametric_stations import seal_stations
 from thermal.housing.solids import MeshSizes
 from thermal.housing.stations import GearboxModel, Point
 from thermal.housing.step_file import StepPart, part_size, read_part, read_step
-from thermal.housing.surfaces import body_names, joined_surfaces, shaft_faces
+from thermal.housing.surfaces import FOOT, body_names, joined_surfaces, shaft_faces
 
 LARGEST_MESH = 2_000_000_000
 """Bytes of a mesh file; a gearbox of a million nodes has a tenth."""
@@ -66,7 +68,8 @@ def user_model(
             raise CaseError(wrong, str(case))
         part = _Part(file, file.stat().st_mtime_ns, _face_rules(housing), sizes.wall, sizes.circle, step)
         mesh = _read(part)
-        model = _whole(part, geometry, _drawn_shafts(housing, geometry, mesh), sizes)
+        drawn = _Drawn(_drawn_shafts(housing, geometry, mesh), _foot_width(geometry, mesh))
+        model = _whole(part, geometry, drawn, sizes)
     faults = _part_faults(at, given, gearbox, geometry, model)
     joined = joined_surfaces(geometry)
     surfaces = tuple(surface for surface in model.mesh.surfaces if surface not in joined)
@@ -120,6 +123,13 @@ def _drawn_shafts(housing: Housing, geometry: HousingGeometry, mesh: NamedMesh) 
         if lacking and conditions_of(housing, surfaces):
             drawn.append(shaft)
     return tuple(drawn)
+
+
+def _foot_width(geometry: HousingGeometry, mesh: NamedMesh) -> float | None:
+    """Width of the foot under which a field is to be drawn [m]; None where the mesh has one or nothing joins it."""
+    if not geometry.foot_joint or "field" in mesh.bodies or FOOT not in mesh.surfaces:
+        return None
+    return 2.0 * float(np.abs(mesh.points[np.unique(mesh.surfaces[FOOT]), 1]).max())
 
 
 def _size_faults(at: str, given: str, housing: Housing, size: Point) -> list[Fault]:
@@ -210,12 +220,20 @@ def _read(part: _Part) -> NamedMesh:
     return read_mesh(part.file)
 
 
+@dataclass(frozen=True)
+class _Drawn:
+    """Parts that the file lacks and the tables of the case describe."""
+
+    shafts: tuple[ShaftGeometry, ...]
+    foot_width: float | None
+    """Of the foot on the field [m]; None without a field to draw."""
+
+
 @lru_cache(maxsize=8)
-def _whole(
-    part: _Part, geometry: HousingGeometry, drawn: tuple[ShaftGeometry, ...], sizes: MeshSizes
-) -> GearboxModel:
-    """The model with the shafts that are drawn from the tables."""
+def _whole(part: _Part, geometry: HousingGeometry, drawn: _Drawn, sizes: MeshSizes) -> GearboxModel:
+    """The model with the parts that are drawn from the tables."""
     mesh = _read(part)
-    if drawn:
-        mesh = disjoint_union(mesh, *(build_shaft(geometry, shaft, sizes) for shaft in drawn))
-    return fitted_model(mesh, geometry)
+    parts = [build_shaft(geometry, shaft, sizes) for shaft in drawn.shafts]
+    if drawn.foot_width is not None:
+        parts.append(build_field(replace(geometry, width=drawn.foot_width), sizes))
+    return fitted_model(disjoint_union(mesh, *parts) if parts else mesh, geometry)

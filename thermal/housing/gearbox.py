@@ -79,6 +79,7 @@ __all__ = [
     "MeshSizes",
     "ShaftGeometry",
     "body_names",
+    "build_field",
     "build_gearbox",
     "build_shaft",
     "exact_areas",
@@ -147,14 +148,19 @@ def _components(geometry: HousingGeometry, sizes: MeshSizes) -> Iterator[Compone
         axes=bend_axes(geometry),
     )
     if geometry.foot_joint:
-        yield Component(
-            name="field",
-            draw=partial(draw_field, geometry),
-            faces=field_faces(geometry),
-            size=housing_size(geometry, sizes),
-        )
+        yield _field_component(geometry, sizes)
     for shaft in geometry.shafts:
         yield _shaft_component(geometry, shaft, sizes)
+
+
+def _field_component(geometry: HousingGeometry, sizes: MeshSizes) -> Component:
+    """The field as a body of its own."""
+    return Component(
+        name="field",
+        draw=partial(draw_field, geometry),
+        faces=field_faces(geometry),
+        size=housing_size(geometry, sizes),
+    )
 
 
 def _shaft_component(geometry: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> Component:
@@ -176,6 +182,16 @@ def build_shaft(geometry: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSize
     """
     with gmsh_session() as gmsh:
         return mesh_component(gmsh, _shaft_component(geometry, shaft, sizes), sizes.circle)
+
+
+@lru_cache(maxsize=32)
+def build_field(geometry: HousingGeometry, sizes: MeshSizes) -> NamedMesh:
+    """Mesh the field of a gearbox with the seat of its foot, for a housing that is not the box.
+
+    Errors and memory as of `build_gearbox`.
+    """
+    with gmsh_session() as gmsh:
+        return mesh_component(gmsh, _field_component(geometry, sizes), sizes.circle)
 
 
 @lru_cache(maxsize=32)

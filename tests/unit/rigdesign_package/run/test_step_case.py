@@ -10,6 +10,8 @@ from rigdesign.base.errors import CaseError
 from rigdesign.case.model import Case
 from rigdesign.cli import ending
 from rigdesign.cli import main as cli
+from rigdesign.coupling.loop import solve_point
+from rigdesign.coupling.time_run import held_points
 from rigdesign.results.result import RunResult
 from rigdesign.rig.model import build_rig
 from tests.builders import step_housing
@@ -56,7 +58,7 @@ def test_a_rig_with_a_step_housing_is_solved_with_its_clearances() -> None:
         "housing", "shaft_test_pinion", "shaft_test_wheel", "gear_test_pinion", "gear_test_wheel",
     }  # fmt: skip
     assert thermal.bodies["gear_test_pinion"]["mean_degC"] == pytest.approx(126.0, abs=8.0)
-    assert {row.surface for row in thermal.heat} >= step_housing.rules().keys() - {"chamber_top"}
+    assert {row.surface for row in thermal.heat} >= step_housing.rules().keys()
     (expansion,) = result.expansion
     assert [gap["seal"] for gap in expansion.seal_gaps] == ["test_pinion_rear_end", "test_wheel_rear_end"]
     assert all(0.0 < row["diametral_clearance_hot_um"] < 80.0 for row in expansion.bearings)
@@ -140,3 +142,29 @@ def test_shafts_beside_their_bores_leave_the_heat_and_take_the_clearances(tmp_pa
     assert "clearances need bores round their journals: bearing_bore_test_pinion_front" in model.no_expansion
     assert "110) mm" in model.no_expansion and "115) mm" in model.no_expansion
     assert not model.bearings
+
+
+def test_a_foot_contact_draws_the_field_under_the_part(tmp_path: Path) -> None:
+    """The field takes heat through the whole foot, flange included, and carries the housing."""
+    file = STEP_CASE.parent / "housing.step"
+    body = (
+        'foot_contact = { conductance = "2000 W/(m2 K)" }\n'
+        '[gearboxes.test.housing.boundary]\nremove = ["foot"]\n'
+        'field = { surfaces = ["field_top", "field_sides"], law = "recknagel_plate" }\n'
+        'bottom = { surfaces = ["field_bottom"], law = "insulated" }\n'
+    )
+    rig = build_rig(variant(tmp_path, file, body), "quick")
+    model = rig.models["test"]
+    assert (model.no_expansion, model.fixed_body, model.foot_surface) == ("", "field", "field_bottom")
+    seat = model.mesh.points[model.mesh.surfaces["field_seat"]].reshape(-1, 3)
+    assert (seat.min(axis=0), seat.max(axis=0)) == (
+        pytest.approx([0.0, -0.16, 0.0], abs=1e-9), pytest.approx([0.176, 0.16, 0.0], abs=1e-9),
+    )  # fmt: skip
+    last = solve_point(rig, held_points(rig)[-1]).last
+    heat = last.fields["test"].solution.balance
+    through = [row.power for row in heat.rows if row.surface == "field_seat"]
+    assert sum(through) == pytest.approx(
+        -heat.by_surface()["field_top"] - heat.by_surface()["field_sides"], rel=1e-4
+    )
+    assert 5.0 < sum(through) < 500.0
+    assert not any("foot_contact" in record.path for record in rig.case.assumptions)
