@@ -3,7 +3,10 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from rigdesign.base.units import show
+from rigdesign.case.films import FAN_VELOCITY, ForcedAir
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.surface_conditions import Condition
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,10 +24,24 @@ class AssumptionRecord:
 def implied_assumptions(gearboxes: Mapping[str, Gearbox]) -> Iterator[AssumptionRecord]:
     """Inputs that are left out and whose place an idealisation takes, in the order of the case."""
     for name, box in gearboxes.items():
-        if box.housing is not None and box.housing.foot_contact is None:
+        if box.housing is not None and box.housing.foot_contact is None and box.housing.step_file is None:
             yield AssumptionRecord(
                 path=f"gearboxes.{name}.housing.foot_contact",
                 value="perfect",
                 reason="not stated: foot and field share their nodes, no joint holds heat back and the field holds "
                 "the foot; write a conductance (bolted machined faces about 2000 W/(m2 K), 75 to 7000 plausible)",
+            )
+        if box.housing is not None:
+            yield from _fans(f"gearboxes.{name}.housing.boundary", box.housing.boundary)
+
+
+def _fans(at: str, boundary: Mapping[str, Condition]) -> Iterator[AssumptionRecord]:
+    """Air streams of unknown velocity."""
+    for entry, condition in boundary.items():
+        if isinstance(condition, ForcedAir) and condition.velocity is None:
+            yield AssumptionRecord(
+                path=f"{at}.{entry}.velocity",
+                value=show(FAN_VELOCITY, "velocity"),
+                reason="not stated: fans of motors and gear units blow 1.5 to 6 m/s along the housing; measure it",
+                range=("1.5 m/s", "6 m/s"),
             )

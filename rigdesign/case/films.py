@@ -1,7 +1,7 @@
 """Film laws of the case: each class states its keys, what it needs of its surface, and the law it stands for.
 
-A new law of a still wall or of a shaft is a formula in `thermal.films`, its class here, and its name in `PlateFilm`
-or `ShaftFilm`. A coefficient that the case gives: `rigdesign.case.given_film`.
+A new law of a still wall or of a shaft is a formula in `thermal.films`, its class here or in `shaft_films`, and its
+name in `PlateFilm` or `ShaftFilm`. A coefficient that the case gives: `rigdesign.case.given_film`.
 """
 
 from abc import abstractmethod
@@ -12,7 +12,8 @@ from pydantic import Field
 
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
-from rigdesign.case.fields import Part, Size, Text
+from rigdesign.case.fields import Part, Size, Text, Velocity
+from rigdesign.case.ribs import Ribs
 from rigdesign.case.surface_place import SurfacePlace, SurfaceSite
 from thermal.films import convection
 from thermal.films.law import FilmLaw
@@ -27,12 +28,11 @@ Fluid = Literal[
     "bearing_oil_outlet",
 ]
 """What wets a surface: room air, or the oil of the chamber at inlet, outlet or their mean."""
-Medium = Literal["air", "mist"]
-"""What a surface of the chamber turns in: dry air at the film temperature, or the mist whose density
-``losses.chamber_density`` gives for windage."""
 FilmFactor = Annotated[float, Field(gt=0.0, le=10.0)]
 """Multiplies a film: what it really is, over what its law or the case says."""
 
+FAN_VELOCITY = 3.0
+"""Velocity of the air of a fan along a housing [m/s] where the case says none."""
 ROOM, WARM_WALL = 293.15, 343.15
 """Temperatures of air and wall [K] at which a law is evaluated for whether its coefficient contains radiation."""
 
@@ -99,10 +99,20 @@ class PublishedFilm(SurfaceFilm):
 class StillAirFilm(PublishedFilm):
     """A film between a still wall or plate and room air."""
 
+    ribs: Ribs | None = None
+    """Ribs on the surface that are not drawn: the film counts on their area too, at their fin efficiency."""
+
     @property
     def wetted_by(self) -> Fluid:
         """Room air."""
         return "ambient"
+
+    def film_law(self, place: SurfacePlace) -> FilmLaw:
+        """Its law with the numbers of a surface, on the ribs too where there are some."""
+        if self.ribs is None:
+            return super().film_law(place)
+        law = self.ribs.on(self.correlation_at(place), place)
+        return convection.scaled(law, self.film_factor)
 
 
 class HousingHeightFilm(StillAirFilm):
@@ -193,96 +203,21 @@ class HorizontalPlate(StillAirFilm):
         return laws[self.correlation](self.length, self.facing)
 
 
-PlateFilm = NiemannWinter | RecknagelPlate | IsoTr14179 | VerticalPlate | HorizontalPlate
-"""Film between a still wall or plate and room air."""
+class ForcedAir(HousingHeightFilm):
+    """Wall in the air stream of a fan, plate in a stream with free convection under it; no radiation in it."""
 
-
-class TurningFilm(PublishedFilm):
-    """A film that takes diameter and speed from a shaft or gear."""
-
-    def faults_on(self, site: SurfaceSite) -> Iterator[Fault]:
-        """It needs a surface of a shaft or gear."""
-        if not site.on_shaft:
-            yield Fault(
-                "surfaces", f'"{site.surface}"',
-                f"is no surface of a shaft or gear: {self.law} takes its diameter from there",
-                "take it out, or choose a film for still walls",
-            )  # fmt: skip
-
-
-class HorizontalCylinder(TurningFilm):
-    """Shaft at rest in still room air (Churchill and Chu); diameter from the shaft."""
-
-    law: Literal["horizontal_cylinder"]
-    """Selects the film of a shaft at rest."""
-
-    @property
-    def wetted_by(self) -> Fluid:
-        """Room air."""
-        return "ambient"
+    law: Literal["forced_air"]
+    """Selects the film of a wall in moving air."""
+    length: Size
+    """Length of the wall along the stream."""
+    velocity: Velocity | None = None
+    """Velocity of the air along the wall; 3 m/s when left out, which the report lists as an assumption."""
 
     def correlation_at(self, place: SurfacePlace) -> FilmLaw:
         """The law as published."""
-        return convection.horizontal_cylinder_churchill_chu(place.turning.diameter, place.turning.speed)
+        velocity = FAN_VELOCITY if self.velocity is None else self.velocity
+        return convection.forced_air_plate(velocity, self.length, self.height or place.height)
 
 
-class RotatingCylinder(TurningFilm):
-    """Rotating shaft in air or oil mist; diameter and speed from the shaft."""
-
-    law: Literal["rotating_cylinder"]
-    """Selects the film of a rotating shaft."""
-    correlation: Literal["becker", "jungnickel", "kays_bjorklund", "etemad", "dropkin_carmi"] = "becker"
-    """becker, etemad, dropkin_carmi: air at the film temperature; kays_bjorklund: with buoyancy, down to zero speed;
-    jungnickel: constants of air near room temperature."""
-    fluid: Fluid
-    """Fluid whose temperature counts: room air, or one of the oils at inlet, mean or outlet."""
-    medium: Medium = "air"
-    """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``)."""
-
-    @property
-    def wetted_by(self) -> Fluid:
-        """The fluid it names."""
-        return self.fluid
-
-    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
-        """The law as published, in the medium of the entry."""
-        shaft = place.turning
-        if self.correlation == "jungnickel":
-            return convection.rotating_cylinder_jungnickel(shaft.speed, shaft.diameter)
-        laws = {
-            "becker": convection.rotating_cylinder_becker,
-            "kays_bjorklund": convection.rotating_cylinder_kays_bjorklund,
-            "etemad": convection.rotating_cylinder_etemad,
-            "dropkin_carmi": convection.rotating_cylinder_dropkin_carmi,
-        }
-        density = place.mist_density if self.medium == "mist" else None
-        return laws[self.correlation](shaft.speed, shaft.diameter, density)
-
-
-class RotatingDisc(TurningFilm):
-    """Rotating end or gear face in air or oil mist; radius and speed from the shaft."""
-
-    law: Literal["rotating_disc"]
-    """Selects the film of a rotating end or gear face."""
-    correlation: Literal["kreith", "jungnickel"] = "kreith"
-    """kreith: air at the film temperature; jungnickel: constants of air near room temperature."""
-    fluid: Fluid
-    """Fluid whose temperature counts: room air, or one of the oils at inlet, mean or outlet."""
-    medium: Medium = "air"
-    """air: dry air; mist: density of ``losses.chamber_density`` (not for ``jungnickel``)."""
-
-    @property
-    def wetted_by(self) -> Fluid:
-        """The fluid it names."""
-        return self.fluid
-
-    def correlation_at(self, place: SurfacePlace) -> FilmLaw:
-        """The law as published, in the medium of the entry."""
-        speed, radius = place.turning.speed, 0.5 * place.turning.diameter
-        if self.correlation == "jungnickel":
-            return convection.rotating_disc_jungnickel(speed, radius)
-        return convection.rotating_disc(speed, radius, place.mist_density if self.medium == "mist" else None)
-
-
-ShaftFilm = HorizontalCylinder | RotatingCylinder | RotatingDisc
-"""Film that takes its diameter from a shaft or gear."""
+PlateFilm = NiemannWinter | RecknagelPlate | IsoTr14179 | VerticalPlate | HorizontalPlate | ForcedAir
+"""Film between a still wall or plate and room air."""

@@ -40,14 +40,14 @@ def housing_geometry(gearbox: Gearbox, gear_diameters: Mapping[str, float] | Non
     shafts = tuple(_shaft(name, shaft, gearbox, diameters) for name, shaft in housing.shafts.items())
     return HousingGeometry(
         chamber_length=housing.warm_length,
-        cold_length_front=housing.cold_length_front,
-        cold_length_rear=housing.cold_length_rear,
+        cold_length_front=housing.cold_length_front or 0.0,
+        cold_length_rear=housing.cold_length_rear or 0.0,
         height=housing.height,
         width=housing.width,
         wall_thickness=housing.wall_thickness,
         floor_thickness=housing.floor_thickness,
         top_thickness=housing.top_thickness,
-        partition_thickness=housing.partition_thickness,
+        partition_thickness=housing.partition_thickness or 0.0,
         end_wall_thickness=housing.end_wall_thickness,
         shaft_height=housing.shaft_height,
         shafts=shafts,
@@ -99,12 +99,13 @@ def _shaft(name: str, shaft: HousingShaft, gearbox: Gearbox, diameters: Mapping[
     front, rear = (bearing_on(gearbox, name, side) for side in ("front", "rear"))
     seals = next(seals for seals in gearbox.seals.values() if seals.shaft == name)
     on_shaft = gear_on(gearbox, name)
+    seal_diameter = shaft.seal_diameter or 0.0
     return ShaftGeometry(
         name=name,
         y=shaft.lateral_position,
         journal_diameter=front.diameter,
-        seal_diameter=shaft.seal_diameter,
-        seat_diameter=on_shaft[1].bore_diameter if on_shaft else shaft.seal_diameter,
+        seal_diameter=seal_diameter,
+        seat_diameter=on_shaft[1].bore_diameter if on_shaft else seal_diameter or shaft.outside_diameter,
         overhang_diameter=shaft.outside_diameter,
         bearing_width=front.width,
         bearing_clearance=0.5 * front.diametral_clearance,

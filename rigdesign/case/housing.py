@@ -1,10 +1,12 @@
 """Geometry of a gearbox housing and what its surfaces exchange heat with."""
 
 from collections.abc import Mapping
+from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
-from rigdesign.case.fields import Gap, Length, Name, Offset, Part, Size, Text
+from rigdesign.case.faces import FaceSelection
+from rigdesign.case.fields import Gap, Length, Name, Offset, Part, Size, Text, fault
 from rigdesign.case.films import FilmFactor
 from rigdesign.case.joint import FootContact
 from rigdesign.case.mesh import HousingMesh
@@ -16,8 +18,8 @@ class HousingShaft(Part):
 
     lateral_position: Offset
     """y of its axis; the pinion usually at minus half the centre distance."""
-    seal_diameter: Length
-    """Diameter in the partition seals and in the cold sections."""
+    seal_diameter: Length | None = None
+    """Diameter in the partition seals and in the cold sections; left out in a housing without partitions."""
     outside_diameter: Length
     """Diameter in the end seals and outside the housing."""
     overhang_front: Gap
@@ -43,17 +45,22 @@ class ClampingFieldInput(Part):
     """Built-in material or a name under ``materials``."""
 
 
+PARTITIONS = ("cold_length_front", "cold_length_rear", "partition_thickness")
+"""Keys of a housing with partitions: all of them or none."""
+
+
 class Housing(Part):
-    """A box with a warm chamber between two cold sections, on a clamping field.
+    """A box on a clamping field: a warm chamber between two cold sections, or one chamber without partitions.
 
     x runs along the shafts from front to rear, y from pinion to wheel, z up.
     """
 
     warm_length: Size
-    """Clear length of the warm chamber, between the partitions."""
-    cold_length_front: Size
-    """Clear length of the front cold section, between end wall and partition."""
-    cold_length_rear: Size
+    """Clear length of the warm chamber, between the partitions; without partitions from end wall to end wall."""
+    cold_length_front: Size | None = None
+    """Clear length of the front cold section, between end wall and partition. Left out together with
+    ``cold_length_rear`` and ``partition_thickness``: one chamber, its end walls carry the bearings and stand in it."""
+    cold_length_rear: Size | None = None
     """Clear length of the rear cold section, between partition and end wall."""
     width: Size
     """Outer width, across the shafts."""
@@ -65,7 +72,7 @@ class Housing(Part):
     """Thickness of the floor."""
     top_thickness: Length
     """Thickness of the top."""
-    partition_thickness: Length
+    partition_thickness: Length | None = None
     """Thickness of the walls between warm chamber and cold sections: length of their seals."""
     end_wall_thickness: Length
     """Thickness of the walls that carry the bearings."""
@@ -85,11 +92,21 @@ class Housing(Part):
     """A gmsh .msh next to the case file in place of the parametric box: 10-node tetrahedra or hexahedra of 20 or
     27 nodes, in metres, physical volumes named like the bodies of the box, physical surfaces with the names that
     ``boundary`` covers, every boundary facet in one of them; ``rigdesign mesh CASE --out DIR`` writes an example.
-    A housing alone will do where heat goes nowhere else: the body ``housing`` is always needed, ``gear_<shaft>_rim``
-    for heat of the mesh into the gears (or ``flank_film``), body ``gear_<shaft>`` for windage into the gears, the
-    ``seal_bore_…`` and ``shaft_<shaft>_seal_…`` for heat of the seals into housing and shaft (``heat_split``), and
-    ``field``, ``housing_foot`` and ``field_seat`` for a ``foot_contact``. Heights of films, diameters and speeds of
-    shafts stay those of this table; clearances are read where bearings, shafts and gears carry the names of the box."""
+    A housing alone will do: shafts and gears that it lacks and whose surfaces have conditions are drawn from the
+    tables, others are left out, and no heat may go there (``heat_split``). A ``foot_contact`` draws the field under
+    ``housing_foot`` where it is lacking. The body ``housing`` is always needed. Heights of films, diameters and speeds
+    of shafts stay those of this table; clearances are read where bearings, shafts and gears carry the names of the
+    box and journals stand in their bores."""
+    step_file: Text | None = None
+    """A STEP file next to the case file in place of the parametric box: one closed solid, the body ``housing``, meshed
+    at the fidelity of the run, in the frame of the box (x along the shafts from the front end, z up from the foot). Its
+    faces have the names that ``boundary`` covers, in the file or by ``faces``; shafts and gears are drawn from the
+    tables, and the field with a ``foot_contact``."""
+    faces: Mapping[Name, Annotated[tuple[FaceSelection, ...], Field(min_length=1)]] = {}
+    """Surface -> which faces of the STEP file it is, where they have no names there. Each entry adds the faces that
+    meet all it says: ``plane = { point = ["0 mm", "0 mm", "15 mm"], normal = [0, 0, 1] }``, ``cylinder = { point = …,
+    direction = [1, 0, 0], radius = "40 mm" }``, ``box = { low = […], high = […] }``. ``rigdesign mesh CASE --out DIR``
+    draws the part with its faces numbered."""
     shafts: Mapping[Name, HousingShaft] = Field(min_length=1)
     """Shafts in the housing by name, each with two bearings and a seal."""
     boundary: Mapping[Name, Condition] = Field(min_length=1)
@@ -102,3 +119,33 @@ class Housing(Part):
     """True: a Niemann/Winter film to room air already contains radiation, explicit radiation of those surfaces is
     left out of the verdicts; the other reading is computed as well. Other films contain none: with them explicit
     radiation stays."""
+
+    @property
+    def part_file(self) -> str | None:
+        """The file in place of the parametric box: of a mesh or STEP; None for the box."""
+        return self.mesh_file or self.step_file
+
+    @property
+    def one_chamber(self) -> bool:
+        """Whether it has no partitions."""
+        return self.partition_thickness is None
+
+    @model_validator(mode="after")
+    def _one_file(self) -> "Housing":
+        if self.mesh_file is not None and self.step_file is not None:
+            raise fault("mesh_file and step_file both stand for the box", "remove one of them")
+        if self.faces and self.step_file is None:
+            raise fault(
+                "faces name those of a STEP file, and there is none", "add step_file, or remove faces"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _all_partitions_or_none(self) -> "Housing":
+        missing = [key for key in PARTITIONS if getattr(self, key) is None]
+        if missing and len(missing) < len(PARTITIONS):
+            raise fault(
+                f"{', '.join(missing)} missing beside {', '.join(key for key in PARTITIONS if key not in missing)}",
+                "write all three for a housing with partitions, or none of them for one chamber",
+            )
+        return self

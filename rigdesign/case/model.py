@@ -143,8 +143,8 @@ class Case(Part):
             "marks": [mark.as_record() for mark in sorted(marks, key=lambda mark: mark.path)],
         }
         for name, box in self.gearboxes.items():
-            if box.housing is not None and box.housing.mesh_file is not None:
-                file = self.path.parent / box.housing.mesh_file
+            if box.housing is not None and box.housing.part_file is not None:
+                file = self.path.parent / box.housing.part_file
                 content[f"mesh_file.{name}"] = (
                     hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else ""
                 )

@@ -9,8 +9,9 @@ from pydantic import Field, model_validator
 from rigdesign.base.errors import Fault
 from rigdesign.base.units import show
 from rigdesign.case.fields import Clearance, HeatTransferCoefficient, Temperature, Text, fault
-from rigdesign.case.films import FilmFactor, PlateFilm, ShaftFilm, SurfaceCondition
+from rigdesign.case.films import FilmFactor, PlateFilm, SurfaceCondition
 from rigdesign.case.given_film import ConstantFilm
+from rigdesign.case.shaft_films import ShaftFilm
 from rigdesign.case.surface_place import SurfacePlace, SurfaceSite
 from thermal.films import convection
 from thermal.films.law import ExchangeLaw

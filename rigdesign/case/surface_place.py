@@ -38,6 +38,8 @@ class SurfacePlace:
 
     height: float
     """Of the housing [m]."""
+    wall_conductivity: float = 50.0
+    """Of the housing [W/(m K)]; grey iron where no housing is stated."""
     shaft: ShaftPlace | None = None
     """None for a surface that does not turn."""
     mist_density: float | None = None

@@ -107,6 +107,7 @@ class _Context:
         fluid = condition.wetted_by
         return SurfacePlace(
             height=self.housing.height,
+            wall_conductivity=self.rig.materials[self.housing.material].conductivity,
             shaft=shaft,
             mist_density=self.rig.case.losses.chamber_density,
             wetted_share=1.0 if fluid is None else self.wetting(fluid, surface),

@@ -220,6 +220,8 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.housing": _at(case__geometry=_BOX),
     "gearboxes.*.housing.material": _at(rig__model="heat conduction and thermal expansion of the housing"),
     "gearboxes.*.housing.mesh_file": _at(rig__user_mesh="mesh in place of the parametric box"),
+    "gearboxes.*.housing.step_file": _at(rig__user_mesh="CAD part in place of the parametric box"),
+    "gearboxes.*.housing.faces": _at(rig__user_mesh="names of the faces of a STEP file"),
     "gearboxes.*.housing.ambient_film_factor": _at(coupling__boundary="films to room air"),
     "gearboxes.*.housing.bearing_film_factor": _at(
         coupling__boundary="conductance between bearing films and walls"
@@ -241,6 +243,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         case__geometry="shaft in the temperature field, diameters of its seals"
     ),
     "gearboxes.*.housing.boundary.*": _at(coupling__boundary=_BOUNDARY),
+    "gearboxes.*.housing.boundary.*.ribs": _at(case__ribs="fin array as a factor on the film"),
     "gearboxes.*.housing.boundary.*.taken_from": _at(
         coupling__boundary="doubt of a printed coefficient: warns where the field differs from what was assumed"
     ),

@@ -84,9 +84,9 @@ class Places:
         )
 
     def from_file(self, gearbox: str) -> bool:
-        """Whether the housing of a gearbox is a mesh file, whose surfaces only its reader knows."""
+        """Whether the housing of a gearbox is a file, whose surfaces only its reader knows."""
         box = self._case.gearboxes.get(gearbox)
-        return box is not None and box.housing is not None and box.housing.mesh_file is not None
+        return box is not None and box.housing is not None and box.housing.part_file is not None
 
     def _geometries(self) -> Iterator[tuple[str, HousingGeometry]]:
         """Parametric housings."""

@@ -151,7 +151,7 @@ def _expansion(solved: SolvedRig) -> list[dict[str, Any]]:
 
 
 def axis_rise(solved: SolvedRig, warm: WarmGearbox) -> float:
-    """Free expansion of the housing and of the field under it up to the shaft axes [m], by their mean temperatures."""
+    """Free expansion of the housing and of the field under it, if meshed, up to the shaft axes [m], by their means."""
     name = warm.gearbox
     housing = solved.case.gearboxes[name].housing
     assert housing is not None
@@ -164,6 +164,8 @@ def axis_rise(solved: SolvedRig, warm: WarmGearbox) -> float:
         ("field", housing.field.material, housing.field.thickness),
         ("housing", housing.material, housing.shaft_height),
     ):
+        if body not in bodies:
+            continue
         values, volumes = elements.at_points(field, bodies[body])
         places, _ = elements.at_points(elements.mesh.points[:, :2], bodies[body])
         under = ((places >= low) & (places <= high)).all(axis=1)
@@ -182,13 +184,16 @@ def partition_gap(solved: SolvedRig, warm: WarmGearbox, seal: str) -> float | No
     housing = solved.case.gearboxes[warm.gearbox].housing
     if housing is None or shaft not in housing.shafts:
         return None
+    entry = housing.shafts[shaft]
+    if entry.seal_diameter is None:
+        return None
     point = next(p for p in solved.points if p.point.stage == warm.stage)
     rows = point.last.fields[warm.gearbox].solution.balance.rows
     plate, journal = (
         _mean_temperature(rows, names)
         for names in ((f"partition_warm_{side}", f"partition_cold_{side}"), (f"shaft_{shaft}_seal_{side}",))
     )
-    entry, materials = housing.shafts[shaft], solved.rig.materials
+    materials = solved.rig.materials
     reference = solved.case.ambient.reference_temperature
     wide = materials[housing.material].expansion_coefficient * (plate - reference)
     thick = materials[entry.material].expansion_coefficient * (journal - reference)

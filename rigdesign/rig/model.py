@@ -111,9 +111,9 @@ class Rig:
         return self.meshed(self.fidelity)
 
     def surface_names(self, name: str) -> tuple[str, ...]:
-        """Surfaces of a housing that want a boundary condition: of the box, or all of a mesh file."""
+        """Surfaces of a housing that want a boundary condition: of the box, or all of a file."""
         housing = self.case.gearboxes[name].housing
-        if housing is not None and housing.mesh_file is not None:
+        if housing is not None and housing.part_file is not None:
             return tuple(self.models[name].mesh.surfaces)
         return tuple(surface_names(self.geometries[name]))
 
@@ -123,10 +123,11 @@ class Rig:
         for name, geometry in self.geometries.items():
             housing = self.case.gearboxes[name].housing
             assert housing is not None
-            if housing.mesh_file is not None:
-                models[name] = user_model(name, self.case.gearboxes[name], geometry, self.case.path)
+            sizes = mesh_sizes(geometry, fidelity, housing.mesh.sizes())
+            if housing.part_file is not None:
+                models[name] = user_model(name, self.case.gearboxes[name], geometry, self.case.path, sizes)
                 continue
-            models[name] = build_gearbox(geometry, mesh_sizes(geometry, fidelity, housing.mesh.sizes()))
+            models[name] = build_gearbox(geometry, sizes)
         return models
 
     def with_models(self, models: Mapping[str, GearboxModel]) -> "Rig":

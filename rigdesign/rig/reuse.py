@@ -34,4 +34,5 @@ def _made_of(box: Gearbox) -> tuple[object, ...]:
     shafts = [shaft.material for shaft in housing.shafts.values()]
     gears = [gear.material for gear in box.gears.values()]
     contact = housing.foot_contact is None
-    return (housing.mesh_file, housing.mesh, housing.material, housing.field.material, contact, shafts, gears)
+    file = housing.part_file, housing.faces
+    return (file, housing.mesh, housing.material, housing.field.material, contact, shafts, gears)

@@ -26,9 +26,10 @@ class ShaftSeal:
 def shaft_seals(rig: Rig, box_name: str, shaft_name: str) -> list[ShaftSeal]:
     """Seals of a shaft in one gearbox, those in the walls of the chamber first.
 
-    With a housing its geometry decides; a shaft that is not in it has none. Without one the chamber has no walls, and a
-    shaft leaves the gearbox on the side where a coupling, the motor or a part of another gearbox sits beyond its
-    bearings; the seal then has the diameter of the shaft at the outer edge of that bearing.
+    With a housing its geometry decides: a shaft that is not in it has none, and one chamber has none inside. Without a
+    housing the chamber has no walls, and a shaft leaves the gearbox on the side where a coupling, the motor or a part
+    of another gearbox sits beyond its bearings; the seal then has the diameter of the shaft at the outer edge of that
+    bearing.
     """
     geometry = rig.geometries.get(box_name)
     if geometry is None:
@@ -37,7 +38,9 @@ def shaft_seals(rig: Rig, box_name: str, shaft_name: str) -> list[ShaftSeal]:
     if shaft is None:
         return []
     land = geometry.bearing_depths(shaft)[0]
-    walls = [ShaftSeal(diameter=shaft.seal_diameter, length=geometry.partition_thickness, leaves=False)] * 2
+    partitions = 0 if geometry.one_chamber else 2
+    walls = [ShaftSeal(diameter=shaft.seal_diameter, length=geometry.partition_thickness, leaves=False)]
+    walls *= partitions
     exits = [
         ShaftSeal(diameter=shaft.overhang_diameter, length=land, leaves=True)
         for overhang in (shaft.overhang_front, shaft.overhang_rear)

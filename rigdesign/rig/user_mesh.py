@@ -1,62 +1,165 @@
-"""The mesh file of a housing in place of the parametric box: read once, held against the case."""
+"""The file of a housing in place of the parametric box, mesh or STEP: read once, held against the case.
 
-from collections.abc import Mapping
+Shafts and gears that the file lacks and of which ``boundary`` speaks are drawn from the tables of the case, as in the
+box, and so is the field under a foot with a ``foot_contact``.
+"""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
+
 from rigdesign.base.errors import CaseError, Fault
 from rigdesign.base.files import check_regular
+from rigdesign.base.units import show
 from rigdesign.case.gearbox import Gearbox
+from rigdesign.case.geometry import conditions_of
+from rigdesign.case.housing import Housing
 from rigdesign.case.rules.surfaces import boundary_faults
-from thermal.fe.mesh import MeshError
+from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
+from thermal.housing.face_rules import FaceRule
 from thermal.housing.fitted import fitted_model
-from thermal.housing.geometry import HousingGeometry
+from thermal.housing.gearbox import build_field, build_shaft
+from thermal.housing.geometry import HousingGeometry, ShaftGeometry
 from thermal.housing.mesh_file import read_mesh
 from thermal.housing.parametric_stations import seal_stations
-from thermal.housing.stations import GearboxModel
-from thermal.housing.surfaces import body_names, joined_surfaces
+from thermal.housing.solids import MeshSizes
+from thermal.housing.stations import GearboxModel, Point
+from thermal.housing.step_file import StepPart, part_size, read_part, read_step
+from thermal.housing.surfaces import FOOT, body_names, joined_surfaces, shaft_faces
 
 LARGEST_MESH = 2_000_000_000
 """Bytes of a mesh file; a gearbox of a million nodes has a tenth."""
+LARGEST_STEP = 200_000_000
+"""Bytes of a STEP file; a gearbox with every fillet has a tenth."""
+LARGEST_RATIO = 3.0
+"""Of the height and width of a STEP file and those of the case; beyond it the part has another unit."""
+
+NamedRules = tuple[tuple[str, tuple[FaceRule, ...]], ...]
+"""Rules that pick faces, by surface."""
 
 
-def user_model(name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Path) -> GearboxModel:
-    """Model of the mesh file of gearbox ``name``, next to its ``case`` file.
+def user_model(
+    name: str, gearbox: Gearbox, geometry: HousingGeometry, case: Path, sizes: MeshSizes
+) -> GearboxModel:
+    """Model of the mesh or STEP file of gearbox ``name``, next to its ``case`` file.
+
+    sizes : of the elements of a STEP file
 
     Raises
     ------
     CaseError
-        A file that is no mesh to compute with, one that lacks a part into which the case lets heat go, bodies without
-        a material, surfaces without a condition or conditions without a surface.
+        A file that is no mesh or part to compute with, one that lacks a part into which the case lets heat go, bodies
+        without a material, surfaces without a condition or conditions without a surface, a part of another size than
+        the case says.
     """
     housing = gearbox.housing
-    assert housing is not None and housing.mesh_file is not None
-    at, given = f"gearboxes.{name}.housing.mesh_file", f'"{housing.mesh_file}"'
-    file = case.parent / housing.mesh_file
-    try:
-        check_regular(file, LARGEST_MESH)
-        model = _read(file, file.stat().st_mtime_ns, geometry)
-    except OSError as error:
-        raise CaseError(
-            [Fault(at, given, str(error.strerror), "correct the path of the mesh")], str(case)
-        ) from error
-    except MeshError as error:
-        text, _, remedy = str(error).rpartition("; ")
-        raise CaseError([Fault(at, given, text, remedy)], str(case)) from error
-    held = (*model.mesh.bodies, *model.mesh.surfaces)
-    lost = {name: why for name, why in _needed(gearbox, geometry).items() if name not in held}
-    known = body_names(geometry)
-    faults = [_lacking(at, given, model, lost)] if lost else []
-    faults += [
-        Fault(at, given, f"body {body!r} has no material", f"name bodies {', '.join(known)}")
-        for body in model.mesh.bodies
-        if body not in known
-    ]
+    assert housing is not None and housing.part_file is not None
+    key = "mesh_file" if housing.mesh_file is not None else "step_file"
+    at, given = f"gearboxes.{name}.housing.{key}", f'"{housing.part_file}"'
+    file = case.parent / housing.part_file
+    with _file_faults(at, given, case):
+        check_regular(file, LARGEST_MESH if key == "mesh_file" else LARGEST_STEP)
+        step = key == "step_file"
+        if step and (wrong := _size_faults(at, given, housing, part_size(file))):
+            raise CaseError(wrong, str(case))
+        part = _Part(file, file.stat().st_mtime_ns, _face_rules(housing), sizes.wall, sizes.circle, step)
+        mesh = _read(part)
+        drawn = _Drawn(_drawn_shafts(housing, geometry, mesh), _foot_width(geometry, mesh))
+        model = _whole(part, geometry, drawn, sizes)
+    faults = _part_faults(at, given, gearbox, geometry, model)
     joined = joined_surfaces(geometry)
     surfaces = tuple(surface for surface in model.mesh.surfaces if surface not in joined)
     if faults := [*faults, *boundary_faults(name, gearbox, surfaces)]:
         raise CaseError(faults, str(case))
     return model
+
+
+def step_part(name: str, gearbox: Gearbox, case: Path, size: float) -> StepPart:
+    """Faces of the STEP file of gearbox ``name`` with triangles of about ``size`` [m], whether or not all have a name.
+
+    Raises
+    ------
+    CaseError
+        A file that is no part to compute with.
+    """
+    housing = gearbox.housing
+    assert housing is not None and housing.step_file is not None
+    at, given = f"gearboxes.{name}.housing.step_file", f'"{housing.step_file}"'
+    with _file_faults(at, given, case):
+        file = case.parent / housing.step_file
+        check_regular(file, LARGEST_STEP)
+        return read_part(file, dict(_face_rules(housing)), size)
+
+
+@contextmanager
+def _file_faults(at: str, given: str, case: Path) -> Iterator[None]:
+    """What is wrong with a file as a fault of its key."""
+    try:
+        yield
+    except OSError as error:
+        raise CaseError(
+            [Fault(at, given, str(error.strerror), "correct the path of the file")], str(case)
+        ) from error
+    except MeshError as error:
+        text, _, remedy = str(error).rpartition("; ")
+        raise CaseError([Fault(at, given, text, remedy)], str(case)) from error
+
+
+def _face_rules(housing: Housing) -> NamedRules:
+    """Rules of a housing that pick faces of its STEP file, by surface."""
+    return tuple((name, tuple(one.rule for one in own)) for name, own in housing.faces.items())
+
+
+def _drawn_shafts(housing: Housing, geometry: HousingGeometry, mesh: NamedMesh) -> tuple[ShaftGeometry, ...]:
+    """Shafts of the case that the mesh lacks with all their surfaces, and on which a condition stands."""
+    drawn = []
+    for shaft in geometry.shafts:
+        surfaces = [face.name for face in shaft_faces(geometry, shaft)]
+        lacking = f"shaft_{shaft.name}" not in mesh.bodies and not mesh.surfaces.keys() & set(surfaces)
+        if lacking and conditions_of(housing, surfaces):
+            drawn.append(shaft)
+    return tuple(drawn)
+
+
+def _foot_width(geometry: HousingGeometry, mesh: NamedMesh) -> float | None:
+    """Width of the foot under which a field is to be drawn [m]; None where the mesh has one or nothing joins it."""
+    if not geometry.foot_joint or "field" in mesh.bodies or FOOT not in mesh.surfaces:
+        return None
+    return 2.0 * float(np.abs(mesh.points[np.unique(mesh.surfaces[FOOT]), 1]).max())
+
+
+def _size_faults(at: str, given: str, housing: Housing, size: Point) -> list[Fault]:
+    """A part far from the size of the case was drawn in another unit; meshed by mistake it would never end."""
+    _, width, height = size
+    return [
+        Fault(
+            at, given, f"is {show(found, 'length', digits=4)} {word}, housing.{key} is {show(stated, 'length')}",
+            "check the unit of the STEP file, its axes (x along the shafts, z up) and the key",
+        )
+        for key, word, found, stated in (
+            ("width", "wide", width, housing.width), ("height", "high", height, housing.height)
+        )
+        if not 1.0 / LARGEST_RATIO <= found / stated <= LARGEST_RATIO
+    ]  # fmt: skip
+
+
+def _part_faults(
+    at: str, given: str, gearbox: Gearbox, geometry: HousingGeometry, model: GearboxModel
+) -> list[Fault]:
+    """Parts that the case needs and the mesh lacks, and bodies without a material."""
+    held = (*model.mesh.bodies, *model.mesh.surfaces)
+    lost = {name: why for name, why in _needed(gearbox, geometry).items() if name not in held}
+    known = body_names(geometry)
+    faults = [_lacking(at, given, model, lost)] if lost else []
+    return faults + [
+        Fault(at, given, f"body {body!r} has no material", f"name bodies {', '.join(known)}")
+        for body in model.mesh.bodies
+        if body not in known
+    ]
 
 
 def _needed(gearbox: Gearbox, geometry: HousingGeometry) -> dict[str, str]:
@@ -88,12 +191,49 @@ def _lacking(at: str, given: str, model: GearboxModel, lost: Mapping[str, str]) 
     )
     return Fault(
         at, given, f"has the bodies {', '.join(model.mesh.bodies)} and lacks {listed}",
-        "add them to the mesh under these names (rigdesign mesh CASE --out DIR writes an example), or set the shares "
-        "of heat_split that go into parts without a mesh to 0",
+        "add them to the mesh under these names (rigdesign mesh CASE --out DIR writes an example), or give the "
+        "surfaces of missing shafts and gears their boundary conditions, so that they are drawn from the tables, or "
+        "set the shares of heat_split that go into parts without a mesh to 0",
     )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class _Part:
+    """A file to read; rules and sizes count for a STEP file only."""
+
+    file: Path
+    changed: int
+    """When the file was, so that a new one is read again."""
+    rules: NamedRules
+    size: float
+    """Largest element [m]."""
+    circle: int
+    """Elements round a full circle."""
+    step: bool
+
+
 @lru_cache(maxsize=8)
-def _read(file: Path, changed: int, geometry: HousingGeometry) -> GearboxModel:
-    """The model; ``changed`` is when the file was, so that a new one is read again."""
-    return fitted_model(read_mesh(file), geometry)
+def _read(part: _Part) -> NamedMesh:
+    """What the file holds."""
+    if part.step:
+        return read_step(part.file, dict(part.rules), part.size, part.circle)
+    return read_mesh(part.file)
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """Parts that the file lacks and the tables of the case describe."""
+
+    shafts: tuple[ShaftGeometry, ...]
+    foot_width: float | None
+    """Of the foot on the field [m]; None without a field to draw."""
+
+
+@lru_cache(maxsize=8)
+def _whole(part: _Part, geometry: HousingGeometry, drawn: _Drawn, sizes: MeshSizes) -> GearboxModel:
+    """The model with the parts that are drawn from the tables."""
+    mesh = _read(part)
+    parts = [build_shaft(geometry, shaft, sizes) for shaft in drawn.shafts]
+    if drawn.foot_width is not None:
+        parts.append(build_field(replace(geometry, width=drawn.foot_width), sizes))
+    return fitted_model(disjoint_union(mesh, *parts) if parts else mesh, geometry)

@@ -22,12 +22,18 @@ RIM_FILM = 'law = "constant_film"\nheat_transfer_coefficient = "300 W/(m2 K)"\nf
 
 
 def fzg_case(
-    folder: Path, *, split: str = "", rims: str = FLANK_FILM, sumps: Mapping[str, str] | None = None
+    folder: Path,
+    *,
+    split: str = "",
+    rims: str = FLANK_FILM,
+    sumps: Mapping[str, str] | None = None,
+    one_chamber: bool = False,
 ) -> Path:
     """Write the case.
 
     split : what the case says of the way of the friction heat, nothing unless given; rims : condition of the gear rims
     sumps : gearbox -> keys of its sump beyond oil, level and volume; the gears then dip and churn by law
+    one_chamber : the test gearbox without partitions, of the same length
     """
     text = HEAD + "".join(_gearbox(name, split if name == "test" else "") for name in ("test", "slave"))
     for name in ("test", "slave"):
@@ -35,10 +41,44 @@ def fzg_case(
         if sumps is not None:
             text = text.replace(JETS, SUMP.format(keys=sumps[name]), 1)
     path = folder / "case.toml"
+    housing = _one_chamber(HOUSING) if one_chamber else HOUSING
     path.write_text(
-        text + HOUSING + f'[gearboxes.test.housing.boundary.rims]\nsurfaces = ["gear_*_rim"]\n{rims}\n'
+        text + housing + f'[gearboxes.test.housing.boundary.rims]\nsurfaces = ["gear_*_rim"]\n{rims}\n'
     )
     return path
+
+
+def step_case(folder: Path) -> Path:
+    """Write the case with one chamber, its housing ``housing.step`` of that folder on a foot that conducts."""
+    path = fzg_case(folder, one_chamber=True)
+    text = path.read_text()
+    for old, new in (
+        ('shaft_height = "110 mm"', 'shaft_height = "110 mm"\nstep_file = "housing.step"'),
+        ('field = { surfaces = ["field_top", "field_sides"], law = "recknagel_plate" }\n', ""),
+        (
+            'bottom = { surfaces = ["field_bottom"], law = "insulated" }',
+            'foot = { surfaces = ["housing_foot"], law = "constant_film", heat_transfer_coefficient = "40 W/(m2 K)", '
+            'fluid = "ambient" }',
+        ),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    return path
+
+
+def _one_chamber(housing: str) -> str:
+    """The housing without its partitions; end walls are wetted like the rest of the chamber."""
+    gone = ("cold_length_", "partition_thickness", "seal_diameter")
+    kept = "\n".join(line for line in housing.splitlines() if not line.startswith(gone)) + "\n"
+    for old, new in (
+        ('warm_length = "60 mm"', 'warm_length = "116 mm"'),
+        ('"partition_*", "cold_*"', '"end_wall_*"'),
+        ('"shaft_*_cold_*", ', ""),
+    ):
+        assert old in kept
+        kept = kept.replace(old, new)
+    return kept
 
 
 def _gearbox(box: str, split: str) -> str:

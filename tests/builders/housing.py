@@ -30,6 +30,16 @@ PROTOTYPE = HousingGeometry(
     field=ClampingField(length=0.8, width=1.2, thickness=0.15),
 )  # fmt: skip
 
+ONE_CHAMBER = replace(
+    PROTOTYPE,
+    cold_length_front=0.0, cold_length_rear=0.0, partition_thickness=0.0,
+    shafts=(
+        replace(PINION, seal_diameter=0.0, bearing_width=0.04),
+        replace(WHEEL, seal_diameter=0.0, bearing_clearance=5e-5, overhang_diameter=0.044),
+    ),
+)  # fmt: skip
+"""The same without partitions: bosses that stand in the chamber, a blind end, an overhang thicker than its journal."""
+
 
 def area(mesh: NamedMesh, surface: str) -> float:
     return sum(size for size, _ in _triangles(mesh.points, mesh.surfaces[surface]))

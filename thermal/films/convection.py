@@ -2,14 +2,16 @@
 
 A law is called with the area-mean wall temperature and the fluid temperature [K] (for an exchange: the means
 of the two surfaces) and returns a coefficient with its formula, inputs, range, source and warnings.
-This module holds the laws that are a number or a sum of others; correlations live in `thermal.films.still` and
-`thermal.films.rotating` and are re-exported here.
+This module holds the laws that are a number or a sum of others; correlations live in `thermal.films.still`,
+`thermal.films.forced`, `thermal.films.ribs` and `thermal.films.rotating` and are re-exported here.
 """
 
 from dataclasses import replace
 
+from thermal.films.forced import forced_air_plate
 from thermal.films.inputs import FilmError, not_negative, outside, positive
 from thermal.films.law import FilmCoefficient, FilmLaw
+from thermal.films.ribs import ribbed
 from thermal.films.rotating import (
     narrow_gap_jungnickel,
     narrow_gap_taylor,
@@ -37,6 +39,7 @@ __all__ = [
     "FilmError",
     "bearing_film",
     "constant",
+    "forced_air_plate",
     "formula_4",
     "horizontal_cylinder_churchill_chu",
     "horizontal_plate_mcadams",
@@ -49,6 +52,7 @@ __all__ = [
     "niemann_winter",
     "oil_wetted",
     "recknagel_plate",
+    "ribbed",
     "rotating_cylinder_becker",
     "rotating_cylinder_dropkin_carmi",
     "rotating_cylinder_etemad",

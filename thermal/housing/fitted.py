@@ -1,7 +1,8 @@
 """Stations of a user's mesh: circles fitted to the bores and shafts that carry the names of a gearbox.
 
-The surfaces and bodies that count are those that `thermal.housing.gearbox` names. Where one is missing or is no
-cylinder about an axis along x, heat can be computed but no clearance be read, and the model says why.
+The surfaces and bodies that count are those that `thermal.housing.gearbox` names. Where one is missing, is no
+cylinder about an axis along x, or a journal does not stand in its bore, heat can be computed but no clearance be read,
+and the model says why.
 """
 
 from dataclasses import dataclass, replace
@@ -114,9 +115,24 @@ def _missing(mesh: NamedMesh, geometry: HousingGeometry) -> str:
     if lost:
         return ", ".join(lost)
     cylinders += [name for s in seals for name in (s.bore_surface, s.shaft_surface) if name in mesh.surfaces]
-    flat = [
-        name
-        for name in cylinders
-        if fit_cylinder(mesh.points[np.unique(mesh.surfaces[name][:, :3])]).roundness > ROUND
+    fits = {name: fit_cylinder(mesh.points[np.unique(mesh.surfaces[name][:, :3])]) for name in cylinders}
+    flat = [name for name, fit in fits.items() if fit.roundness > ROUND]
+    if flat:
+        return f"cylinders about an axis along x: {', '.join(flat)}"
+    apart = [
+        f"{b.bore_surface} about {_millimetres(bore)}, {b.journal_surface} about {_millimetres(journal)}"
+        for b in bearings
+        if not _together(bore := fits[b.bore_surface], journal := fits[b.journal_surface])
     ]
-    return f"cylinders about an axis along x: {', '.join(flat)}" if flat else ""
+    return f"bores round their journals: {'; '.join(apart)}" if apart else ""
+
+
+def _together(bore: FittedCylinder, journal: FittedCylinder) -> bool:
+    """Whether a journal turns in its bore: on its axis, and in it over half of the shorter one at least."""
+    off = np.hypot(bore.centre[1] - journal.centre[1], bore.centre[2] - journal.centre[2])
+    overlap = 0.5 * (bore.length + journal.length) - abs(bore.centre[0] - journal.centre[0])
+    return bool(off <= ROUND * journal.radius and overlap >= 0.5 * min(bore.length, journal.length))
+
+
+def _millimetres(fit: FittedCylinder) -> str:
+    return f"({', '.join(f'{1e3 * value:.4g}' for value in fit.centre)}) mm"

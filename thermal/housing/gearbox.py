@@ -11,12 +11,19 @@ Surfaces, with ``<s>`` the name of a shaft and ``<side>`` front or rear (low or 
     chamber_wall, chamber_floor, chamber_top, partition_warm_<side>           warm chamber inside
     cold_floor_<side>, partition_cold_<side>, cold_wall_<side>                cold section inside; its wall is
                                   sides, top, end wall, bearing bosses, shoulders and covers
+                                  without partitions there is one chamber: in place of the surfaces above
+    outer_warm                    all of side walls and top outside; the end faces are outer_end_<side>
+    chamber_wall, chamber_floor, chamber_top, end_wall_<side>                 inside; an end wall with its bearing
+                                  bosses, shoulders and covers
+
     bearing_bore_<s>_<side>       the bore of a bearing
-    seal_bore_<s>_<side>          in the partition; seal_bore_<s>_<side>_end in the end wall
+    seal_bore_<s>_<side>          in the partition; seal_bore_<s>_<side>_end in the end wall, where the shaft leaves
     field_top, field_sides, field_bottom                  or housing_foot for a housing without a field
     shaft_<s>_journal_<side>, shaft_<s>_seal_<side>, shaft_<s>_seal_<side>_end, shaft_<s>_warm,
     shaft_<s>_cold_<side>, shaft_<s>_outside_<side>, shaft_<s>_end_<side>, shaft_<s>_bore
     gear_<s>_rim, gear_<s>_side_<side>
+                                  without partitions a shaft has no seal_<side> and no cold_<side>; shaft_<s>_warm
+                                  reaches from bearing to bearing
 
 Surfaces of parts that are not there (no overhang, no bore, no gear) do not exist. Bodies: ``housing``,
 ``field``
@@ -31,7 +38,7 @@ from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Literal
 
-from thermal.fe.mesh import MeshError, disjoint_union
+from thermal.fe.mesh import MeshError, NamedMesh, disjoint_union
 from thermal.housing.geometry import ClampingField, GearDisc, GeometryError, HousingGeometry, ShaftGeometry
 from thermal.housing.meshing import Component, gmsh_session, mesh_component
 from thermal.housing.parametric_stations import (
@@ -72,7 +79,9 @@ __all__ = [
     "MeshSizes",
     "ShaftGeometry",
     "body_names",
+    "build_field",
     "build_gearbox",
+    "build_shaft",
     "exact_areas",
     "exact_volumes",
     "mesh_sizes",
@@ -139,20 +148,50 @@ def _components(geometry: HousingGeometry, sizes: MeshSizes) -> Iterator[Compone
         axes=bend_axes(geometry),
     )
     if geometry.foot_joint:
-        yield Component(
-            name="field",
-            draw=partial(draw_field, geometry),
-            faces=field_faces(geometry),
-            size=housing_size(geometry, sizes),
-        )
+        yield _field_component(geometry, sizes)
     for shaft in geometry.shafts:
-        yield Component(
-            name=f"shaft {shaft.name}",
-            draw=partial(draw_shaft, geometry, shaft),
-            faces=shaft_faces(geometry, shaft),
-            size=shaft_size(geometry, shaft, sizes),
-            axes=[(shaft.y, geometry.shaft_height, math.inf)],
-        )
+        yield _shaft_component(geometry, shaft, sizes)
+
+
+def _field_component(geometry: HousingGeometry, sizes: MeshSizes) -> Component:
+    """The field as a body of its own."""
+    return Component(
+        name="field",
+        draw=partial(draw_field, geometry),
+        faces=field_faces(geometry),
+        size=housing_size(geometry, sizes),
+    )
+
+
+def _shaft_component(geometry: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> Component:
+    """A shaft with its gear."""
+    return Component(
+        name=f"shaft {shaft.name}",
+        draw=partial(draw_shaft, geometry, shaft),
+        faces=shaft_faces(geometry, shaft),
+        size=shaft_size(geometry, shaft, sizes),
+        axes=[(shaft.y, geometry.shaft_height, math.inf)],
+    )
+
+
+@lru_cache(maxsize=32)
+def build_shaft(geometry: HousingGeometry, shaft: ShaftGeometry, sizes: MeshSizes) -> NamedMesh:
+    """Mesh one shaft of a gearbox with its gear, for a housing that is not the box.
+
+    Errors and memory as of `build_gearbox`.
+    """
+    with gmsh_session() as gmsh:
+        return mesh_component(gmsh, _shaft_component(geometry, shaft, sizes), sizes.circle)
+
+
+@lru_cache(maxsize=32)
+def build_field(geometry: HousingGeometry, sizes: MeshSizes) -> NamedMesh:
+    """Mesh the field of a gearbox with the seat of its foot, for a housing that is not the box.
+
+    Errors and memory as of `build_gearbox`.
+    """
+    with gmsh_session() as gmsh:
+        return mesh_component(gmsh, _field_component(geometry, sizes), sizes.circle)
 
 
 @lru_cache(maxsize=32)

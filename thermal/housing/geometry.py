@@ -10,9 +10,15 @@ cold section, partition with contactless seals, warm chamber with gears, partiti
     z = 0      -----------------------------------------------------------------------------
               ################################ clamping field ################################
 
+Without partitions it is one chamber between two end walls, which carry the bearings and stand in it:
+
+    x ->      0                                                                     length
+              | end |                         chamber                           | end |
+    z = shaft_height  ==[J]==================[ gear ]========================[J]====== shaft
+
 x runs along the shafts, y across, z up; y = 0 is the middle of the housing and of the field. All lengths in
 metres, as drawn. A bearing sits at the inner side of its end wall, the end seal (or, at a blind shaft end, the
-cover) outside of it; a bearing wider than the wall leaves room for protrudes into the cold section on a boss.
+cover) outside of it; a bearing wider than the wall leaves room for protrudes into the housing on a boss.
 """
 
 import math
@@ -27,6 +33,8 @@ Side = Literal["front", "rear"]
 SIDES: tuple[Side, Side] = ("front", "rear")
 MINIMUM_LAND = 1e-3
 """Least length or thickness [m] that geometry may leave between two features."""
+PARTITIONS = ("cold_length_front", "cold_length_rear", "partition_thickness")
+"""Measures that a housing has all of, or none of."""
 SMALLEST_STEP = 1e-6
 """Protrusion [m] below which a bearing counts as flush with its wall."""
 
@@ -47,7 +55,7 @@ class GearDisc:
     width: float
     """Face width [m]."""
     offset: float = 0.0
-    """x of the disc's mid-plane relative to the middle of the warm chamber [m]."""
+    """x of the disc's mid-plane relative to the middle of the chamber [m]."""
 
     def __post_init__(self) -> None:
         _require_positive(self, "outer_diameter", "width")
@@ -62,10 +70,10 @@ class ShaftGeometry:
     y: float
     """Position of the axis as drawn across the housing."""
     journal_diameter: float
-    seal_diameter: float
-    """Diameter in the partition seals and in the cold sections between partition and bearing."""
+    seal_diameter: float = 0.0
+    """Diameter in the partition seals and in the cold sections between partition and bearing; 0 without partitions."""
     seat_diameter: float
-    """Diameter in the warm chamber: gear seat, and bore of the gear."""
+    """Diameter in the chamber: gear seat, and bore of the gear."""
     overhang_diameter: float
     """Diameter in the end seals and outside the housing."""
     bearing_width: float
@@ -89,10 +97,11 @@ class ShaftGeometry:
                 "starting with a letter"
             )
         _require_positive(
-            self, "journal_diameter", "seal_diameter", "seat_diameter", "overhang_diameter",
-            "bearing_width", "seal_gap",
+            self, "journal_diameter", "seat_diameter", "overhang_diameter", "bearing_width", "seal_gap",
         )  # fmt: skip
-        _require_not_negative(self, "bearing_clearance", "bore_diameter", "overhang_front", "overhang_rear")
+        _require_not_negative(
+            self, "seal_diameter", "bearing_clearance", "bore_diameter", "overhang_front", "overhang_rear"
+        )
         if not math.isfinite(self.y):
             raise GeometryError(
                 f"shaft {self.name}: y = {self.y} is no number; give the axis position in metres"
@@ -109,7 +118,9 @@ class ShaftGeometry:
                 f"shaft {self.name}: bore_diameter = {self.bore_diameter:g} m is below "
                 f"{2.0 * MINIMUM_LAND:g} m; give 0 for a solid shaft or a wider bore"
             )
-        zones = ("journal_diameter", "seal_diameter", "seat_diameter", "overhang_diameter")
+        zones = ["journal_diameter", "seat_diameter", "overhang_diameter"]
+        if self.seal_diameter > 0.0:
+            zones.insert(1, "seal_diameter")
         thinnest = min(zones, key=lambda zone: float(getattr(self, zone)))
         limit = getattr(self, thinnest) - 2.0 * MINIMUM_LAND
         if self.bore_diameter > limit:
@@ -152,10 +163,12 @@ class HousingGeometry:
     """
 
     chamber_length: float
-    """Clear length of the warm chamber."""
-    cold_length_front: float
-    """Clear length of the front cold section, between end wall and partition."""
-    cold_length_rear: float
+    """Clear length of the warm chamber; without partitions from end wall to end wall."""
+    cold_length_front: float = 0.0
+    """Clear length of the front cold section, between end wall and partition; 0 without partitions."""
+    cold_length_rear: float = 0.0
+    partition_thickness: float = 0.0
+    """0 with both cold lengths 0: one chamber without partitions."""
     height: float
     """Outer height of the housing above the field."""
     width: float
@@ -163,7 +176,6 @@ class HousingGeometry:
     wall_thickness: float
     floor_thickness: float
     top_thickness: float
-    partition_thickness: float
     end_wall_thickness: float
     shaft_height: float
     """Height of all shaft axes above the field."""
@@ -171,7 +183,7 @@ class HousingGeometry:
     end_seal_width: float = 6e-3
     """Least length of the end seal (blind end: thickness of the cover) outside of each bearing."""
     boss_wall: float = 12e-3
-    """Radial wall of the boss around a bearing that protrudes into the cold section."""
+    """Radial wall of the boss around a bearing that protrudes into the housing."""
     field: ClampingField | None = None
     foot_joint: bool = False
     """True: foot and field are bodies of their own that touch. False: they share their nodes (perfect contact)."""
@@ -179,8 +191,10 @@ class HousingGeometry:
     def __post_init__(self) -> None:
         if self.foot_joint and self.field is None:
             raise GeometryError("foot_joint = True without a field; give the field the housing stands on")
-        optional = {"shafts", "field", "foot_joint"}
+        optional = {"shafts", "field", "foot_joint", *PARTITIONS}
         _require_positive(self, *(f.name for f in fields(self) if f.name not in optional))
+        if any(getattr(self, name) != 0.0 for name in PARTITIONS):
+            _require_positive(self, *PARTITIONS)
         self._check_walls()
         if not self.shafts:
             raise GeometryError("shafts is empty; a gearbox needs at least one shaft")
@@ -196,6 +210,11 @@ class HousingGeometry:
             self._check_neighbours(first, second)
 
     # ------------------------------------------------------------------ stations along x
+
+    @property
+    def one_chamber(self) -> bool:
+        """Whether there are no partitions and no cold sections."""
+        return self.partition_thickness == 0.0
 
     @property
     def length(self) -> float:
@@ -216,7 +235,9 @@ class HousingGeometry:
 
     @property
     def warm_limits(self) -> tuple[float, float]:
-        """x of the two warm/cold lines on the outside [m]: the mid-planes of the partitions."""
+        """x of the two warm/cold lines on the outside [m]: the mid-planes of the partitions, or the end faces."""
+        if self.one_chamber:
+            return 0.0, self.length
         return sum(self.partition_front) / 2.0, sum(self.partition_rear) / 2.0
 
     @property
@@ -245,8 +266,16 @@ class HousingGeometry:
         return inner - shaft.bearing_width, inner
 
     def protrusion(self, shaft: ShaftGeometry) -> float:
-        """Length of the boss that carries the bearing into the cold section [m]; 0 without a boss."""
+        """Length of the boss that carries the bearing into the housing [m]; 0 without a boss."""
         return self.bearing_depths(shaft)[1] - self.end_wall_thickness
+
+    @property
+    def gear_room(self) -> tuple[float, float]:
+        """x between which gears have room [m]: partitions, or the bosses of the bearings and the end walls."""
+        if not self.one_chamber:
+            return self.partition_front[1], self.partition_rear[0]
+        deepest = max(self.bearing_depths(shaft)[1] for shaft in self.shafts)
+        return deepest, self.length - deepest
 
     def gear_limits(self, shaft: ShaftGeometry) -> tuple[float, float]:
         """x of the two sides of the gear of ``shaft`` [m]; ValueError for a shaft without a gear."""
@@ -307,8 +336,20 @@ class HousingGeometry:
                         f"shaft {shaft.name}: radius {radius:g} m of its {what} does not fit the "
                         f"{distance:g} m between axis and {wall}; move the axis or enlarge the housing"
                     )
+        if self.one_chamber != (shaft.seal_diameter == 0.0):
+            wanted = "0 in a housing without partitions" if self.one_chamber else "greater than 0"
+            raise GeometryError(
+                f"shaft {shaft.name}: seal_diameter = {shaft.seal_diameter:g} m must be {wanted}; it is the diameter "
+                "in the seals of the partitions"
+            )
+        if self.one_chamber and 2.0 * self.protrusion(shaft) + MINIMUM_LAND > self.chamber_length:
+            raise GeometryError(
+                f"shaft {shaft.name}: bearing_width = {shaft.bearing_width:g} m protrudes {self.protrusion(shaft):g} m "
+                f"from each end wall, chamber_length = {self.chamber_length:g} m leaves no room between; narrow the "
+                "bearing or thicken the end wall"
+            )
         for side in SIDES:
-            if self.protrusion(shaft) + MINIMUM_LAND > self.cold_length(side):
+            if not self.one_chamber and self.protrusion(shaft) + MINIMUM_LAND > self.cold_length(side):
                 raise GeometryError(
                     f"shaft {shaft.name}: bearing_width = {shaft.bearing_width:g} m protrudes "
                     f"{self.protrusion(shaft):g} m from the end wall, more than cold_length_{side} = "
@@ -321,22 +362,24 @@ class HousingGeometry:
                 )
         if shaft.gear is not None:
             start, end = self.gear_limits(shaft)
-            if start < self.partition_front[1] + MINIMUM_LAND or end > self.partition_rear[0] - MINIMUM_LAND:
+            low, high = self.gear_room
+            if start < low + MINIMUM_LAND or end > high - MINIMUM_LAND:
                 raise GeometryError(
                     f"shaft {shaft.name}: gear of width {shaft.gear.width:g} m at offset "
-                    f"{shaft.gear.offset:g} m does not fit chamber_length = "
-                    f"{self.chamber_length:g} m; lengthen the chamber"
+                    f"{shaft.gear.offset:g} m does not fit chamber_length = {self.chamber_length:g} m, of which "
+                    f"{high - low:g} m are free; lengthen the chamber"
                 )
 
     def _radii(self, shaft: ShaftGeometry) -> dict[str, float]:
         """Radius of everything that turns in, or is cut into, the housing around one axis."""
         radii = {
             "seat": shaft.seat_diameter / 2.0,
-            "partition seal bore": self.seal_radius(shaft),
             "bearing": self.boss_radius(shaft)
             if self.protrusion(shaft) > 0.0
             else self.bearing_radius(shaft),
         }
+        if not self.one_chamber:
+            radii["partition seal bore"] = self.seal_radius(shaft)
         if shaft.overhang_front or shaft.overhang_rear:
             radii["end seal bore"] = self.end_seal_radius(shaft)
         if shaft.gear is not None:

@@ -40,7 +40,7 @@ def read_mesh(path: Path) -> NamedMesh:
             gmsh.open(str(path))
         except Exception as error:  # gmsh raises bare Exception
             raise MeshError(f"{path.name}: gmsh cannot read it: {error}; write the mesh again") from error
-        return _collected(gmsh, path.name)
+        return collected_mesh(gmsh, path.name)
 
 
 def _check_whole(path: Path) -> None:
@@ -74,7 +74,11 @@ def _has_line(content: bytes, words: str) -> bool:
     return False
 
 
-def _collected(gmsh: ModuleType, name: str) -> NamedMesh:
+def collected_mesh(gmsh: ModuleType, name: str) -> NamedMesh:
+    """The mesh of the current gmsh model, its physical groups as bodies and surfaces; ``name`` of its file.
+
+    Raises MeshError as `read_mesh`.
+    """
     shape, kind = _cell_kind(gmsh, name)
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     index = np.zeros(int(tags.max()) + 1, dtype=np.int32)

@@ -42,13 +42,15 @@ def bearing_stations(geometry: HousingGeometry) -> tuple[BearingStation, ...]:
 
 
 def seal_stations(geometry: HousingGeometry) -> tuple[SealStation, ...]:
-    """Seals of every shaft: ``<shaft>_<side>`` in the partitions, ``<shaft>_<side>_end`` in the end walls."""
+    """Seals of every shaft: ``<shaft>_<side>`` in partitions, ``<shaft>_<side>_end`` where it leaves an end wall."""
     stations = []
     for shaft in geometry.shafts:
-        places = [
-            ("front", sum(geometry.partition_front) / 2.0, shaft.seal_diameter),
-            ("rear", sum(geometry.partition_rear) / 2.0, shaft.seal_diameter),
-        ]
+        places: list[tuple[str, float, float]] = []
+        if not geometry.one_chamber:
+            places += [
+                ("front", sum(geometry.partition_front) / 2.0, shaft.seal_diameter),
+                ("rear", sum(geometry.partition_rear) / 2.0, shaft.seal_diameter),
+            ]
         land = geometry.bearing_depths(shaft)[0]
         places += [
             (f"{side}_end", geometry.mirrored(side, land / 2.0), shaft.overhang_diameter)

@@ -46,11 +46,12 @@ def draw_housing(g: HousingGeometry, occ: Any) -> dict[str, list[int]]:
     """Box on a field that shares its nodes, chambers and bores cut out, warm/cold lines imprinted outside."""
     half, wide = g.width / 2.0, 2.0 * g.inner_half_width
     solid = [(3, occ.addBox(0.0, -half, 0.0, g.length, g.width, g.height))]
-    chambers = [
-        (g.end_wall_thickness, g.cold_length_front),
-        (g.partition_front[1], g.chamber_length),
-        (g.partition_rear[1], g.cold_length_rear),
-    ]
+    chambers = [(g.partition_front[1], g.chamber_length)]
+    if not g.one_chamber:
+        chambers += [
+            (g.end_wall_thickness, g.cold_length_front),
+            (g.partition_rear[1], g.cold_length_rear),
+        ]
     hollow = [
         (3, occ.addBox(x, -g.inner_half_width, g.floor_thickness, length, wide, g.inner_height))
         for x, length in chambers
@@ -63,8 +64,9 @@ def draw_housing(g: HousingGeometry, occ: Any) -> dict[str, list[int]]:
             outer, inner = g.bearing_depths(shaft)
             reach = sorted((g.mirrored(side, outer), g.mirrored(side, inner)))
             bores.append(_cylinder(occ, axis, g.bearing_radius(shaft), *reach))
-            partition = g.partition_front if side == "front" else g.partition_rear
-            bores.append(_cylinder(occ, axis, g.seal_radius(shaft), *partition))
+            if not g.one_chamber:
+                partition = g.partition_front if side == "front" else g.partition_rear
+                bores.append(_cylinder(occ, axis, g.seal_radius(shaft), *partition))
             if shaft.overhang(side) > 0.0:
                 land = sorted((g.mirrored(side, 0.0), g.mirrored(side, outer)))
                 bores.append(_cylinder(occ, axis, g.end_seal_radius(shaft), *land))
@@ -76,8 +78,10 @@ def draw_housing(g: HousingGeometry, occ: Any) -> dict[str, list[int]]:
         solid, _ = occ.fuse(solid, bosses)
     solid, _ = occ.cut(solid, bores)
     tools = [] if g.field is None or g.foot_joint else [_plate(g, g.field, occ)]
-    lines = [(1, line) for x in g.warm_limits for line in _portal(occ, x, half, g.height)]
-    _, origin = occ.fragment(solid, tools + lines)
+    limits = () if g.one_chamber else g.warm_limits
+    lines = [(1, line) for x in limits for line in _portal(occ, x, half, g.height)]
+    added = tools + lines
+    origin = occ.fragment(solid, added)[1] if added else [solid]
     bodies = {"housing": [tag for _, tag in origin[0]]}
     if tools:
         bodies["field"] = [tag for _, tag in origin[1]]
@@ -138,10 +142,9 @@ def bend_axes(g: HousingGeometry) -> list[BendAxis]:
 
 def _circles(g: HousingGeometry, shaft: ShaftGeometry) -> list[tuple[float, Literal["seal", "bearing"]]]:
     """Radius and zone of every bore and boss of a shaft in the housing."""
-    circles: list[tuple[float, Literal["seal", "bearing"]]] = [
-        (g.seal_radius(shaft), "seal"),
-        (g.bearing_radius(shaft), "bearing"),
-    ]
+    circles: list[tuple[float, Literal["seal", "bearing"]]] = [(g.bearing_radius(shaft), "bearing")]
+    if not g.one_chamber:
+        circles.append((g.seal_radius(shaft), "seal"))
     if shaft.overhang_front or shaft.overhang_rear:
         circles.append((g.end_seal_radius(shaft), "seal"))
     if g.protrusion(shaft) > 0.0:

@@ -5,7 +5,8 @@ piece of cylinder or ring about a shaft axis), so that a face of the mesh is rec
 closed-form area next to it is what the mesh is checked against.
 
 Shoulders of a shaft belong to its warm or cold zone, never to a journal or seal; shoulders and covers next to
-a bearing belong to ``cold_wall_<side>``, so that every bore and journal is a pure cylinder.
+a bearing belong to ``cold_wall_<side>`` (``end_wall_<side>`` without partitions), so that every bore and journal is a
+pure cylinder.
 """
 
 import math
@@ -150,20 +151,28 @@ def shaft_zones(geometry: HousingGeometry, shaft: ShaftGeometry) -> tuple[ShaftZ
     zones: list[ShaftZone] = []
     for side in SIDES:
         outer, inner = geometry.bearing_depths(shaft)
-        face = (
-            geometry.partition_front[0] if side == "front" else geometry.length - geometry.partition_rear[1]
-        )
         half = [
             (f"{prefix}_outside_{side}", shaft.overhang_diameter, -shaft.overhang(side), 0.0),
             (f"{prefix}_seal_{side}_end", shaft.overhang_diameter, 0.0, outer),
             (f"{prefix}_journal_{side}", shaft.journal_diameter, outer, inner),
-            (f"{prefix}_cold_{side}", shaft.seal_diameter, inner, face),
-            (f"{prefix}_seal_{side}", shaft.seal_diameter, face, face + geometry.partition_thickness),
         ]
+        if not geometry.one_chamber:
+            face = (
+                geometry.partition_front[0]
+                if side == "front"
+                else geometry.length - geometry.partition_rear[1]
+            )
+            half += [
+                (f"{prefix}_cold_{side}", shaft.seal_diameter, inner, face),
+                (f"{prefix}_seal_{side}", shaft.seal_diameter, face, face + geometry.partition_thickness),
+            ]
         for name, diameter, start, end in half if shaft.overhang(side) > 0.0 else half[2:]:
             low, high = sorted((geometry.mirrored(side, start), geometry.mirrored(side, end)))
             zones.append(ShaftZone(name, diameter / 2.0, low, high))
+    inner = geometry.bearing_depths(shaft)[1]
     cuts = [geometry.partition_front[1], geometry.partition_rear[0]]
+    if geometry.one_chamber:
+        cuts = [inner, geometry.length - inner]
     if shaft.gear is not None:
         cuts[1:1] = geometry.gear_limits(shaft)
     zones += [ShaftZone(f"{prefix}_warm", shaft.seat_diameter / 2.0, *cut) for cut in pairwise(cuts)]
@@ -193,7 +202,7 @@ def shaft_faces(geometry: HousingGeometry, shaft: ShaftGeometry) -> list[NamedFa
     for first, second in pairwise(zones):
         low, high = sorted((first.radius, second.radius))
         if high > low:
-            owner = _shoulder_owner(first.surface, second.surface)
+            owner = _shoulder_owner(geometry, shaft, first.surface, second.surface)
             add(owner, AxialPatch(axis, (low, high), (first.end, first.end)), _ring(low, high))
     for side, zone, x in (("front", zones[0], zones[0].start), ("rear", zones[-1], zones[-1].end)):
         name = f"shaft_{shaft.name}_end_{side}"
@@ -214,9 +223,12 @@ def shaft_faces(geometry: HousingGeometry, shaft: ShaftGeometry) -> list[NamedFa
 
 def housing_faces(geometry: HousingGeometry) -> list[NamedFace]:
     """The named surfaces of the housing, and of the field that shares its nodes."""
-    faces = _outer_faces(geometry) + _chamber_faces(geometry)
+    if geometry.one_chamber:
+        faces = _plain_outer_faces(geometry) + _chamber_faces(geometry)
+    else:
+        faces = _outer_faces(geometry) + _chamber_faces(geometry) + _partition_faces(geometry)
     for side in SIDES:
-        faces += _cold_faces(geometry, side)
+        faces += [_end_wall_face(geometry, side)] if geometry.one_chamber else _cold_faces(geometry, side)
         faces += [face for shaft in geometry.shafts for face in _bore_faces(geometry, shaft, side)]
     if geometry.field is None or geometry.foot_joint:
         return [*faces, NamedFace(FOOT, (_foot(geometry),), geometry.length * geometry.width)]
@@ -231,13 +243,29 @@ def _outer_faces(g: HousingGeometry) -> list[NamedFace]:
         patches: list[Patch] = _mantle((start, end), g.width / 2.0, (0.0, g.height))
         area = girth * (end - start)
         if name != "outer_warm":
-            side: Side = "front" if name.endswith("front") else "rear"
-            x = g.mirrored(side, 0.0)
-            patches.append(BoxPatch((x, x), (-g.width / 2.0, g.width / 2.0), (0.0, g.height)))
-            through = [shaft for shaft in g.shafts if shaft.overhang(side) > 0.0]
-            area += g.width * g.height - sum(_ring(0.0, g.end_seal_radius(shaft)) for shaft in through)
+            patch, extra = _end_face(g, "front" if name.endswith("front") else "rear")
+            patches.append(patch)
+            area += extra
         faces.append(NamedFace(name, tuple(patches), area))
     return faces
+
+
+def _plain_outer_faces(g: HousingGeometry) -> list[NamedFace]:
+    """Outside of one chamber: side walls and top in one, and each end face by itself."""
+    mantle = tuple(_mantle((0.0, g.length), g.width / 2.0, (0.0, g.height)))
+    faces = [NamedFace("outer_warm", mantle, (2.0 * g.height + g.width) * g.length)]
+    for side in SIDES:
+        patch, area = _end_face(g, side)
+        faces.append(NamedFace(f"outer_end_{side}", (patch,), area))
+    return faces
+
+
+def _end_face(g: HousingGeometry, side: Side) -> tuple[Patch, float]:
+    """One end of the box outside, and its area less the bores of the shafts that leave there."""
+    x = g.mirrored(side, 0.0)
+    through = [shaft for shaft in g.shafts if shaft.overhang(side) > 0.0]
+    area = g.width * g.height - sum(_ring(0.0, g.end_seal_radius(shaft)) for shaft in through)
+    return BoxPatch((x, x), (-g.width / 2.0, g.width / 2.0), (0.0, g.height)), area
 
 
 def _chamber_faces(g: HousingGeometry) -> list[NamedFace]:
@@ -246,16 +274,34 @@ def _chamber_faces(g: HousingGeometry) -> list[NamedFace]:
     left, right, top = _mantle(reach, half, (floor, ceiling))
     bottom = BoxPatch(reach, (-half, half), (floor, floor))
     side_area, flat_area = g.chamber_length * g.inner_height, g.chamber_length * 2.0 * half
-    section = _partition_area(g)
     return [
         NamedFace("chamber_wall", (left, right), 2.0 * side_area),
         NamedFace("chamber_floor", (bottom,), flat_area),
         NamedFace("chamber_top", (top,), flat_area),
-        *(
-            NamedFace(f"partition_warm_{side}", (BoxPatch((x, x), (-half, half), (floor, ceiling)),), section)
-            for side, x in zip(SIDES, reach)
-        ),
     ]
+
+
+def _partition_faces(g: HousingGeometry) -> list[NamedFace]:
+    """The sides of the partitions that face the warm chamber."""
+    half, height = g.inner_half_width, (g.floor_thickness, g.height - g.top_thickness)
+    return [
+        NamedFace(f"partition_warm_{side}", (BoxPatch((x, x), (-half, half), height),), _partition_area(g))
+        for side, x in zip(SIDES, (g.partition_front[1], g.partition_rear[0]))
+    ]
+
+
+def _end_wall_face(g: HousingGeometry, side: Side) -> NamedFace:
+    """Inside of an end wall of one chamber, with bosses, shoulders and covers of its bearings."""
+    half, wall = g.inner_half_width, g.mirrored(side, g.end_wall_thickness)
+    patches: list[Patch] = [
+        BoxPatch((wall, wall), (-half, half), (g.floor_thickness, g.height - g.top_thickness))
+    ]
+    area = 2.0 * half * g.inner_height
+    for shaft in g.shafts:
+        more, extra = _bearing_surroundings(g, shaft, side)
+        patches += more
+        area += extra
+    return NamedFace(f"end_wall_{side}", tuple(patches), area)
 
 
 def _cold_faces(g: HousingGeometry, side: Side) -> list[NamedFace]:
@@ -316,8 +362,9 @@ def _bore_faces(g: HousingGeometry, shaft: ShaftGeometry, side: Side) -> list[Na
     face, outer, inner = (g.mirrored(side, depth) for depth in (0.0, *g.bearing_depths(shaft)))
     bores = [
         (f"bearing_bore_{shaft.name}_{side}", g.bearing_radius(shaft), outer, inner),
-        (f"seal_bore_{shaft.name}_{side}", g.seal_radius(shaft), *partition),
     ]
+    if not g.one_chamber:
+        bores.append((f"seal_bore_{shaft.name}_{side}", g.seal_radius(shaft), *partition))
     if shaft.overhang(side) > 0.0:
         bores.append((f"seal_bore_{shaft.name}_{side}_end", g.end_seal_radius(shaft), face, outer))
     return [
@@ -360,7 +407,8 @@ def _housing_volume(g: HousingGeometry) -> float:
     for shaft in g.shafts:
         outer, inner = g.bearing_depths(shaft)
         for side in SIDES:
-            volume -= _ring(0.0, g.seal_radius(shaft)) * g.partition_thickness
+            if not g.one_chamber:
+                volume -= _ring(0.0, g.seal_radius(shaft)) * g.partition_thickness
             volume -= _ring(0.0, g.bearing_radius(shaft)) * (inner - outer)
             volume += _ring(0.0, g.boss_radius(shaft)) * g.protrusion(shaft)
             if shaft.overhang(side) > 0.0:
@@ -382,14 +430,16 @@ def _mantle(x: Range, half: float, z: Range) -> list[Patch]:
     ]
 
 
-def _shoulder_owner(first: str, second: str) -> str:
-    """The warm or cold zone a step of the shaft belongs to; outside a bearing, the cold zone inside it."""
+def _shoulder_owner(geometry: HousingGeometry, shaft: ShaftGeometry, first: str, second: str) -> str:
+    """The warm or cold zone a step of the shaft belongs to; outside a bearing, the zone inside it."""
     for name in (first, second):
         if name.endswith("_warm"):
             return name
     for name in (first, second):
         if "_cold_" in name:
             return name
+    if geometry.one_chamber:
+        return f"shaft_{shaft.name}_warm"
     journal = first if "_journal_" in first else second
     return journal.replace("_journal_", "_cold_")
 

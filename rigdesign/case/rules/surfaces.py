@@ -33,16 +33,23 @@ def housing_faults(name: str, gearbox: Gearbox) -> list[Fault]:
         names = tuple(surface_names(housing_geometry(gearbox)))
     except ThermalInputError as error:
         return [Fault(f"{at}.housing", "", str(error), "correct the measures of the housing")]
-    if housing.mesh_file is None:
+    if housing.part_file is None:
         return boundary_faults(name, gearbox, names)
-    if housing.mesh.sizes():
-        return [
-            Fault(
-                f"{at}.housing.mesh", "", "element sizes do nothing to a mesh that is read from a file",
-                "remove them or mesh_file",
-            )
-        ]  # fmt: skip
-    return []
+    return list(_idle_sizes(at, housing))
+
+
+def _idle_sizes(at: str, housing: Housing) -> Iterator[Fault]:
+    """Element sizes of zones that a housing from a file does not have."""
+    if housing.mesh_file is not None and housing.mesh.sizes():
+        yield Fault(
+            f"{at}.housing.mesh", "", "element sizes do nothing to a mesh that is read from a file",
+            "remove them or mesh_file",
+        )  # fmt: skip
+    if housing.step_file is not None and (idle := sorted(set(housing.mesh.sizes()) - {"wall"})):
+        yield Fault(
+            f"{at}.housing.mesh", "", f"element sizes of {', '.join(idle)} do nothing to a STEP file, which has one",
+            "remove them; walls is that of the whole part",
+        )  # fmt: skip
 
 
 def boundary_faults(name: str, gearbox: Gearbox, names: tuple[str, ...]) -> list[Fault]:
@@ -93,6 +100,39 @@ def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
                 "put them on shafts of their own",
             )  # fmt: skip
         yield from _bores(at, gearbox, shaft)
+        yield from _seal_diameter(at, housing, shaft)
+        yield from _rubbing_without_a_seal(at, gearbox, housing, shaft)
+
+
+def _rubbing_without_a_seal(at: str, gearbox: Gearbox, housing: Housing, shaft: str) -> Iterator[Fault]:
+    """One chamber has seals only where a shaft leaves it."""
+    entry = housing.shafts[shaft]
+    if not housing.one_chamber or entry.overhang_front > 0.0 or entry.overhang_rear > 0.0:
+        return
+    for name, seals in gearbox.seals.items():
+        if seals.shaft == shaft and seals.rubbing_torque:
+            yield Fault(
+                f"{at}.seals.{name}.rubbing_torque", show(seals.rubbing_torque, "torque"),
+                f"has no seal to rub in: shaft {shaft} leaves the one chamber nowhere",
+                "set it to 0, or give the shaft its overhang_front or overhang_rear",
+            )  # fmt: skip
+
+
+def _seal_diameter(at: str, housing: Housing, shaft: str) -> Iterator[Fault]:
+    """The diameter in the seals of the partitions goes with the partitions."""
+    path, diameter = f"{at}.housing.shafts.{shaft}.seal_diameter", housing.shafts[shaft].seal_diameter
+    if diameter is None and not housing.one_chamber:
+        yield Fault(
+            path, "", "a housing with partitions needs the shaft diameter in their seals",
+            "add it, or leave out cold_length_front, cold_length_rear and partition_thickness",
+        )  # fmt: skip
+    if diameter is not None and housing.one_chamber:
+        yield Fault(
+            path, show(diameter, "length"),
+            "does nothing in a housing without partitions, in which a shaft has the bore of its gear from bearing to "
+            "bearing",
+            "remove it, or give the housing its partitions",
+        )  # fmt: skip
 
 
 def _bores(at: str, gearbox: Gearbox, shaft: str) -> Iterator[Fault]:

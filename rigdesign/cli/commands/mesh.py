@@ -9,7 +9,7 @@ from rigdesign.cli.ending import NOTHING_KEPT, interrupted
 
 @app.command
 def mesh(case: Path, /, *, out: OutFolder, fidelity: Fidelity = "standard") -> int:
-    """Write the housings of a case as gmsh files with all their names: examples of what mesh_file reads.
+    """Write the housings of a case as gmsh files with all their names, and pictures of STEP parts with numbered faces.
 
     Parameters
     ----------

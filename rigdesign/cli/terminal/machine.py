@@ -1,7 +1,6 @@
 """What a machine has, and the meshes that were written."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.text import Text
@@ -10,6 +9,7 @@ from rigdesign.cli.terminal.console import new_console
 
 if TYPE_CHECKING:
     from rigdesign.base.system import MachineFinding
+    from rigdesign.cli.mesh_export import ExportedFile
 
 
 def print_findings(findings: Sequence["MachineFinding"]) -> None:
@@ -20,8 +20,8 @@ def print_findings(findings: Sequence["MachineFinding"]) -> None:
         console.print(mark + Text(f"{finding.subject:12s} {finding.text}"))
 
 
-def print_meshes(written: Sequence[tuple[str, Path, int]]) -> None:
-    """Every mesh that was written, and the lines that make a case read it."""
+def print_meshes(written: Sequence["ExportedFile"]) -> None:
+    """Every file that was written, and what to do with it."""
     console = new_console()
-    for name, file, nodes in written:
-        console.print(f'{file}: {nodes} nodes; [gearboxes.{name}.housing] mesh_file = "{file.name}" reads it')
+    for done in written:
+        console.print(f"{done.file}: {done.remark}")

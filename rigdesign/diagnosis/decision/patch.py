@@ -169,13 +169,15 @@ def variant_text(case: Case, title: str, values: Mapping[str, Mapping[str, Any]]
 
 
 def _mesh_files(case: Case, folder: Path) -> dict[str, str]:
-    """Paths of mesh files as seen from the folder of the variant: a case file counts them from its own."""
+    """Paths of mesh and STEP files as seen from the folder of the variant: a case file counts them from its own."""
     return {
-        f"gearboxes.{name}.housing.mesh_file": Path(
-            os.path.relpath(case.path.resolve().parent / box.housing.mesh_file, folder.resolve())
+        f"gearboxes.{name}.housing.{key}": Path(
+            os.path.relpath(case.path.resolve().parent / file, folder.resolve())
         ).as_posix()
         for name, box in case.gearboxes.items()
-        if box.housing is not None and box.housing.mesh_file is not None
+        if box.housing is not None
+        for key, file in (("mesh_file", box.housing.mesh_file), ("step_file", box.housing.step_file))
+        if file is not None
     }
 
 

@@ -6,11 +6,11 @@ import pytest
 
 from rigdesign.case.films import (
     NiemannWinter,
-    RotatingCylinder,
     SurfaceFilm,
     VerticalPlate,
 )
 from rigdesign.case.given_film import PRINTED_LAWS, ConstantFilm, TakenFrom
+from rigdesign.case.shaft_films import RotatingCylinder
 from rigdesign.case.surface_conditions import Condition, FlankFilm, GapExchange, SurfaceExchange
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace, SurfaceSite
 from thermal.films import convection

@@ -15,11 +15,13 @@ from rigdesign.coupling.boundary import boundary_conditions
 from rigdesign.coupling.initial_state import initial_state
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.time_run import held_points
+from rigdesign.properties.materials import MATERIALS
 from rigdesign.rig.model import build_rig
 from tests.builders.paths import CASES
 from thermal.conditions.boundary import Exchange, Film
 from thermal.films import convection
 from thermal.films.law import FilmCoefficient, FilmLaw
+from thermal.films.ribs import RibArray
 
 PROTOTYPE = CASES / "uhcf_prototype" / "case.toml"
 BOUNDARY = "gearboxes.test.housing.boundary"
@@ -68,6 +70,17 @@ WALLS = {
     ),
     'law = "horizontal_plate"\ncorrelation = "rohsenow"\nlength = "80 mm"': (
         convection.horizontal_plate_rohsenow(0.08)
+    ),
+    'law = "forced_air"\nlength = "300 mm"\nvelocity = "4 m/s"': convection.forced_air_plate(
+        4.0, 0.3, HEIGHT
+    ),
+    'law = "forced_air"\nlength = "300 mm"': convection.forced_air_plate(3.0, 0.3, HEIGHT),
+    'law = "vertical_plate"\nribs = { height = "20 mm", thickness = "5 mm", pitch = "25 mm" }': (
+        convection.ribbed(
+            convection.vertical_plate_churchill(HEIGHT),
+            RibArray(height=0.02, thickness=0.005, pitch=0.025),
+            MATERIALS["structural_steel"].conductivity,
+        )
     ),
 }
 SHAFTS = {
@@ -124,6 +137,21 @@ def test_a_factor_scales_film_and_gap_and_stands_among_their_inputs(tmp_path: Pa
 def test_a_film_of_a_shaft_belongs_on_a_shaft(tmp_path: Path) -> None:
     table = 'surfaces = ["outer_*"]\nlaw = "rotating_cylinder"\nfluid = "ambient"\n'
     with pytest.raises(CaseError, match=r'"outer_warm": is no surface of a shaft or gear.*still walls'):
+        with_film(tmp_path, "housing_air", table)
+
+
+def test_an_air_stream_of_unknown_velocity_is_an_assumption_with_its_range(tmp_path: Path) -> None:
+    table = 'surfaces = ["outer_*"]\nlaw = "forced_air"\nlength = "300 mm"\n'
+    case = with_film(tmp_path, "housing_air", table)
+    (found,) = [record for record in case.assumptions if record.path == f"{BOUNDARY}.housing_air.velocity"]
+    assert (found.value, found.range) == ("3 m/s", ("1.5 m/s", "6 m/s"))
+    stated = with_film(tmp_path, "housing_air", table + 'velocity = "2 m/s"\n')
+    assert not any(record.path == f"{BOUNDARY}.housing_air.velocity" for record in stated.assumptions)
+
+
+def test_ribs_without_a_gap_are_refused(tmp_path: Path) -> None:
+    table = 'ribs = { height = "20 mm", thickness = "5 mm", pitch = "5 mm" }\n'
+    with pytest.raises(CaseError, match="leave no gap"):
         with_film(tmp_path, "housing_air", table)
 
 

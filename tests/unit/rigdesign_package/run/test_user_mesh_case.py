@@ -89,9 +89,9 @@ def refused(case: Case, *words: str) -> None:
 
 def test_faults_of_a_mesh_file_are_faults_of_its_key(tmp_path: Path) -> None:
     key = 'gearboxes.test.housing.mesh_file = "box.msh"'
-    refused(on_file(tmp_path), key, "correct the path of the mesh")
+    refused(on_file(tmp_path), key, "correct the path of the file")
     (tmp_path / "file").write_text("", encoding="utf-8")
-    refused(on_file(tmp_path, name="file/box.msh"), "file/box.msh", "correct the path of the mesh")
+    refused(on_file(tmp_path, name="file/box.msh"), "file/box.msh", "correct the path of the file")
     _, mesh = box()
     file = write_msh(
         mesh, tmp_path / "box.msh", renamed={"chamber_floor": "sump", "gear_test_pinion": "gear"}
@@ -178,26 +178,34 @@ def housing_alone(mesh: NamedMesh) -> NamedMesh:
     return named_mesh(mesh.points[used], packed.reshape(cells.shape).astype(np.int32), bodies, surfaces)
 
 
-def test_a_housing_alone_is_held_against_what_the_case_needs_first(tmp_path: Path) -> None:
+def test_a_housing_alone_gets_its_shafts_and_gears_from_the_tables(tmp_path: Path) -> None:
+    """Housing and field from the file, shafts and gears drawn as in the box: the same temperatures and verdicts."""
+    whole, mesh = box()
+    write_msh(housing_alone(mesh), tmp_path / "box.msh")
+    found = run_case(on_file(tmp_path), "quick")
+    ours, theirs = whole.thermal[0], found.thermal[0]
+    assert theirs.max_temperature_degC == pytest.approx(ours.max_temperature_degC, abs=1e-3)
+    assert {row.surface: row.power_W for row in theirs.heat} == pytest.approx(
+        {row.surface: row.power_W for row in ours.heat}, rel=1e-4, abs=1e-3
+    )
+    assert [(check.id, check.verdict) for check in found.checks] == [
+        (check.id, check.verdict) for check in whole.checks
+    ]
+
+
+def test_heat_into_parts_that_are_nowhere_is_refused(tmp_path: Path) -> None:
+    """No condition on shafts and gears: they are left out, and the case may let no heat go there."""
     _, mesh = box()
     write_msh(housing_alone(mesh), tmp_path / "box.msh")
-    refused(
-        on_file(tmp_path), "has the bodies field, housing and lacks gear_test_pinion_rim, gear_test_wheel_rim for",
-        "gear_test_pinion, gear_test_wheel for heat_split.windage_into_gears",
-        "rigdesign mesh CASE --out DIR writes an example", "shares of heat_split",
-    )  # fmt: skip
-    films = (
-        '[gearboxes.test.housing.boundary.gear_rims]\nsurfaces = ["gear_*_rim"]\nlaw = "flank_film"\n'
-        '[gearboxes.test.heat_split]\nremove = ["mesh_into_gears"]\n'
-    )
-    refused(
-        on_file(tmp_path, films),
-        'lacks gear_test_pinion_rim, gear_test_wheel_rim for heat_split.mesh = "flank_film"',
-    )
     shares = (
         "mesh_into_gears = {0}\nwindage_into_gears = {0}\nseal_into_shaft = {0}\nseal_into_housing = {0}\n"
     )
-    refused(on_file(tmp_path, ALONE + shares.format(0.2)), "shaft_test_pinion_seal_front")
+    refused(
+        on_file(tmp_path, ALONE + shares.format(0.2)),
+        "has the bodies field, housing and lacks gear_test_pinion_rim, gear_test_wheel_rim for",
+        "gear_test_pinion, gear_test_wheel for heat_split.windage_into_gears", "shaft_test_pinion_seal_front",
+        "rigdesign mesh CASE --out DIR writes an example", "drawn from the tables", "shares of heat_split",
+    )  # fmt: skip
     found = run_case(on_file(tmp_path, ALONE + shares.format(0.0)), "quick")
     assert 30.0 < found.thermal[0].max_temperature_degC < 190.0
     assert abs(found.thermal[0].closure_relative) < 1e-6

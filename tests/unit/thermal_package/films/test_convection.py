@@ -21,6 +21,7 @@ LAWS: dict[str, Callable[[], FilmLaw]] = {
     "horizontal_cylinder_churchill_chu": lambda: films.horizontal_cylinder_churchill_chu(0.04),
     "iso_tr_14179_2_free": lambda: films.iso_tr_14179_2_free(0.28),
     "iso_tr_14179_2_radiation": lambda: films.iso_tr_14179_2_radiation(0.6),
+    "forced_air_plate": lambda: films.forced_air_plate(3.0, 0.4, 0.28),
     "rotating_cylinder_jungnickel": lambda: films.rotating_cylinder_jungnickel(1000.0, 0.04),
     "rotating_disc_jungnickel": lambda: films.rotating_disc_jungnickel(1000.0, 0.05),
     "narrow_gap_jungnickel": lambda: films.narrow_gap_jungnickel(1000.0, 0.02, 5e-4),
@@ -57,7 +58,7 @@ def test_no_film_turns_negative_or_infinite_without_a_temperature_difference(nam
 
 
 def test_every_law_is_exported_and_covered_here() -> None:
-    apart = {"FilmError", "series", "scaled", "formula_4"}
+    apart = {"FilmError", "series", "scaled", "ribbed", "formula_4"}
     exported = {"recknagel_plate" if name.startswith("recknagel_plate") else name for name in LAWS}
     assert exported | apart == set(films.__all__)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.builders.housing import PINION, PROTOTYPE, WHEEL, _triangles, area
+from tests.builders.housing import ONE_CHAMBER, PINION, PROTOTYPE, WHEEL, _triangles, area
 from thermal.fe.mesh import MeshError, NamedMesh, facet_keys, facet_table
 from thermal.housing.curving import bend_round_axes, jacobian_ratio, straighten_inverted
 from thermal.housing.gearbox import (
@@ -48,9 +48,12 @@ def volume(mesh: NamedMesh, body: str) -> float:
     return sum(flux for _, flux in _triangles(mesh.points, table.nodes[table.on_boundary])) / 3.0
 
 
-@pytest.fixture(scope="module", params=["two shafts on a field", "three shafts"])
+BUILT = {"two shafts on a field": PROTOTYPE, "three shafts": THREE_SHAFTS, "one chamber": ONE_CHAMBER}
+
+
+@pytest.fixture(scope="module", params=BUILT)
 def built(request: pytest.FixtureRequest) -> tuple[HousingGeometry, GearboxModel]:
-    geometry = PROTOTYPE if request.param == "two shafts on a field" else THREE_SHAFTS
+    geometry = BUILT[request.param]
     return geometry, build_gearbox(geometry, "quick")
 
 
@@ -154,6 +157,13 @@ def test_stations() -> None:
     named |= {name for s in model.shafts for name in (s.start_surface, s.end_surface)}
     named |= {name for g in model.gears for name in (g.rim_surface, *g.side_surfaces)}
     assert named <= set(model.mesh.surfaces)
+
+
+def test_one_chamber_has_seals_only_where_its_shafts_leave() -> None:
+    model = build_gearbox(ONE_CHAMBER, "quick")
+    assert [s.name for s in model.seals] == ["pinion_rear_end", "wheel_front_end", "wheel_rear_end"]
+    assert not any(word in name for name in model.mesh.surfaces for word in ("cold", "partition"))
+    assert [b.centre[0] for b in model.bearings[:2]] == pytest.approx([0.026, ONE_CHAMBER.length - 0.026])
 
 
 DIGEST = """

@@ -144,6 +144,62 @@ def test_refused_shafts(change: dict[str, Any], words: tuple[str, ...]) -> None:
         assert word in str(error.value)
 
 
+def chamber(**changes: Any) -> HousingGeometry:
+    """The gearbox without partitions: bearings that protrude 16 mm into the chamber."""
+    bare = {"seal_diameter": 0.0, "bearing_width": 0.04}
+    shafts = (shaft(**bare), shaft(name="wheel", y=0.04975, overhang_front=0.05, **bare))
+    none = {"cold_length_front": 0.0, "cold_length_rear": 0.0, "partition_thickness": 0.0}
+    return gearbox(**(none | {"shafts": shafts} | changes))
+
+
+def test_one_chamber_is_a_hollow_box_with_bosses() -> None:
+    """Volume and surfaces written down by hand: box less clearance, bores and end seals, plus bosses."""
+    g = chamber()
+    inner, half = (0.28 - 0.027), 0.32 / 2 - 0.013
+    bore, boss, seal = 0.02, 0.032, 0.018 + 0.6e-3
+    assert g.length == pytest.approx(0.16)
+    rings = -4 * bore**2 * 0.04 + 4 * boss**2 * 0.016 - 3 * seal**2 * 0.006
+    box = 0.16 * 0.32 * 0.28 - 0.1 * 2 * half * inner
+    assert exact_volumes(g)["housing"] == pytest.approx(box + math.pi * rings)
+    areas = exact_areas(g)
+    assert areas["outer_warm"] == pytest.approx((2 * 0.28 + 0.32) * 0.16)
+    assert areas["outer_end_front"] == pytest.approx(0.32 * 0.28 - math.pi * seal**2)
+    assert areas["outer_end_rear"] == pytest.approx(0.32 * 0.28 - 2 * math.pi * seal**2)
+    cover, shoulder = bore**2, bore**2 - seal**2
+    mantles = 2 * 2 * boss * 0.016
+    assert areas["end_wall_front"] == pytest.approx(
+        2 * half * inner + math.pi * (-2 * bore**2 + mantles + cover + shoulder)
+    )
+    assert not any("cold" in name or "partition" in name for name in areas)
+
+
+def test_shafts_of_one_chamber_reach_from_bearing_to_bearing() -> None:
+    g = chamber()
+    zones = shaft_zones(g, g.shafts[1])
+    assert [zone.surface.removeprefix("shaft_wheel_") for zone in zones] == [
+        "outside_front", "seal_front_end", "journal_front", "warm", "warm", "warm", "journal_rear", "seal_rear_end",
+        "outside_rear",
+    ]  # fmt: skip
+    for first, second in pairwise(zones):
+        assert first.end == pytest.approx(second.start, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"cold_length_front": 0.05}, ("cold_length_rear = 0.0", "greater than 0")),
+        ({"shafts": (shaft(),)}, ("seal_diameter = 0.045", "must be 0", "without partitions")),
+        ({"chamber_length": 0.038}, ("gear of width 0.007", "0.006 m are free", "lengthen")),
+        ({"chamber_length": 0.03}, ("bearing_width = 0.04", "no room between", "thicken")),
+    ],
+)
+def test_refused_housings_of_one_chamber(change: dict[str, Any], words: tuple[str, ...]) -> None:
+    with pytest.raises(GeometryError) as error:
+        chamber(**change)
+    for word in words:
+        assert word in str(error.value)
+
+
 def test_geometry_is_a_key() -> None:
     assert hash(gearbox()) == hash(gearbox())
     assert gearbox() != replace(gearbox(), height=0.29)
