@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.coupling.bearing_seats import bearing_seats
 from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, STORED, boundary_conditions
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
@@ -107,3 +108,17 @@ def heat_stored(field: HousingField) -> float:
 def body_mean(rig: Rig, field: HousingField, body: str) -> float:
     """Volume mean temperature of a body [K]."""
     return rig.conduction[field.gearbox].elements.body_mean(field.temperature, body)
+
+
+def seat_temperatures(rig: Rig, fields: Mapping[str, HousingField]) -> dict[str, float]:
+    """Mean temperature of every seat that takes heat of a bearing [K], by ``gearbox.bearing.seat``."""
+    return {
+        f"{name}.{seat}": surface_mean(rig, fields[name.split(".")[0]], found.surface)
+        for name, _, _ in rig.bearings()
+        for seat, found in bearing_seats(rig, name).items()
+    }
+
+
+def surface_mean(rig: Rig, field: HousingField, surface: str) -> float:
+    """Area mean temperature of a surface [K]."""
+    return rig.conduction[field.gearbox].elements.surfaces[surface].mean(field.temperature)

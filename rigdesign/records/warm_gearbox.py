@@ -103,7 +103,7 @@ def _bearings(rig: Rig, result: PointResult, name: str, shape: Expansion) -> Ite
         film = result.last.bearings[full]
         yield BearingClearance(
             name=full,
-            clearance_as_drawn=entry.diametral_clearance,
+            clearance_as_drawn=entry.drawn_clearance,
             clearance=result.last.coupling_state.bearing_clearance[full],
             bore_ovality=bearing_expansion(rig, name, shape, entry).bore_ovality,
             minimum_film=film.minimum_film,
