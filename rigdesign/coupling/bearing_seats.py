@@ -71,14 +71,20 @@ class WarmBearing:
 def bearing_temperatures(
     bearings: Mapping[str, BearingState], seats: Mapping[str, float]
 ) -> dict[str, WarmBearing]:
-    """Every bearing that conducts heat to its seats, by ``gearbox.bearing``; a seat that takes none is as warm as it.
+    """Every bearing that conducts heat to its seats, by ``gearbox.bearing``.
 
-    seats : as of `seat_temperatures`
+    seats : temperatures [K] by ``gearbox.bearing.seat``
     """
+    return bearings_between(
+        {name: state.star for name, state in bearings.items() if state.star is not None}, seats
+    )
+
+
+def bearings_between(stars: Mapping[str, HeatStar], seats: Mapping[str, float]) -> dict[str, WarmBearing]:
+    """Bearings by ``gearbox.bearing`` between their seats; a seat that takes no heat is as warm as its bearing."""
     return {
-        name: warm_bearing(state.star, (seats.get(f"{name}.{SHAFT}"), seats.get(f"{name}.{HOUSING}")))
-        for name, state in bearings.items()
-        if state.star is not None
+        name: warm_bearing(star, (seats.get(f"{name}.{SHAFT}"), seats.get(f"{name}.{HOUSING}")))
+        for name, star in stars.items()
     }
 
 

@@ -113,12 +113,17 @@ def body_mean(rig: Rig, field: HousingField, body: str) -> float:
 def seat_temperatures(rig: Rig, fields: Mapping[str, HousingField]) -> dict[str, float]:
     """Mean temperature of every seat that takes heat of a bearing [K], by ``gearbox.bearing.seat``."""
     return {
-        f"{name}.{seat}": surface_mean(rig, fields[name.split(".")[0]], found.surface)
-        for name, _, _ in rig.bearings()
-        for seat, found in bearing_seats(rig, name).items()
+        key: value
+        for name, field in fields.items()
+        for key, value in seat_means(rig, name, field.temperature).items()
     }
 
 
-def surface_mean(rig: Rig, field: HousingField, surface: str) -> float:
-    """Area mean temperature of a surface [K]."""
-    return rig.conduction[field.gearbox].elements.surfaces[surface].mean(field.temperature)
+def seat_means(rig: Rig, name: str, temperature: NDArray[np.float64]) -> dict[str, float]:
+    """Of one housing; temperature : (n_nodes,) [K]."""
+    surfaces = rig.conduction[name].elements.surfaces
+    return {
+        f"{name}.{part}.{seat}": surfaces[found.surface].mean(temperature)
+        for part in rig.case.gearboxes[name].bearings
+        for seat, found in bearing_seats(rig, f"{name}.{part}").items()
+    }

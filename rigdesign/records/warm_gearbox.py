@@ -8,6 +8,7 @@ from rigdesign.coupling.alignment import (
     clearance_share,
     coupled_ends,
     coupling_places,
+    held_clearance,
 )
 from rigdesign.coupling.expansion import axes_of, bearing_expansion
 from rigdesign.coupling.loop import PointResult
@@ -119,7 +120,7 @@ def bore_alignments(rig: Rig, result: PointResult, name: str, shape: Expansion) 
         full = f"{name}.{part}"
         expansion = bearing_expansion(rig, name, shape, entry)
         found = expansion.bore_roundness
-        clearance = result.last.coupling_state.bearing_clearance[full]
+        clearance = held_clearance(entry, result.last.coupling_state.bearing_clearance[full])
         yield BoreAlignment(
             bearing=full,
             tilt=expansion.tilt,
