@@ -1,7 +1,7 @@
 """Bearings of a gearbox as the case states them, each kind with the bearing of the solver it stands for.
 
 A kind is a class whose key ``type`` has one choice, joined in `BearingInput`; all kinds answer alike:
-``shaft_diameter``, ``housing_bore``, ``width``, ``drawn_clearance`` (measures as drawn), ``has_film``,
+``label``, ``shaft_diameter``, ``housing_bore``, ``width``, ``drawn_clearance`` (measures as drawn), ``has_film``,
 ``needs_fed_oil``, ``shell_conductance`` (what others have to know of it), ``as_it_runs`` (bearing of the solver),
 ``running_clearance`` (clearance of the warm rig), ``induced_axial_load``, ``assumptions`` and ``own_faults``.
 """
@@ -71,6 +71,11 @@ class JournalBearingInput(Part):
     """For the record: the drivetrain is torsional."""
     radial_damping: LinearDamping | None = None
     """For the record: the drivetrain is torsional."""
+
+    @property
+    def label(self) -> str:
+        """Kind, for tables."""
+        return "plain bearing"
 
     @property
     def shaft_diameter(self) -> float:

@@ -186,6 +186,11 @@ class RollingBearingInput(Part):
         return catalogue_data(self.designation or "", self.catalogue)
 
     @property
+    def label(self) -> str:
+        """Designation, for tables."""
+        return self.data.designation
+
+    @property
     def shaft_diameter(self) -> float:
         """Of the seat on the shaft [m]."""
         return self.data.bore

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from dynamics.bearing.protocol import BearingState
+from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.omissions import Omissions, of_gearboxes, thrust, warming, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
@@ -11,8 +12,15 @@ from rigdesign.results.check import Check
 from rigdesign.results.units import MEGAPASCAL, MICROMETRE, UM
 
 GROUP = "bearings"
+
+
+def _films_without_housing(solved: SolvedRig, name: str, box: Gearbox) -> bool:
+    """A gearbox without a housing that has plain bearings."""
+    return without_housing(solved, name, box) and any(b.has_film for b in box.bearings.values())
+
+
 SHAFT_HEAT = of_gearboxes(
-    "heat of shafts and shells into the films of gearbox {box}: it has no housing", without_housing
+    "heat of shafts and shells into the films of gearbox {box}: it has no housing", _films_without_housing
 )
 THRUST_TILT = of_gearboxes("tilting moment of the axial force of the gears of gearbox {box}", thrust)
 

@@ -23,7 +23,7 @@ def clearances(
     temperature: NDArray[np.float64],
     shape: Expansion,
     speed: float,
-    seated: Mapping[str, WarmBearing],
+    seated: Mapping[str, WarmBearing] | None = None,
 ) -> Clearances:
     """Every clearance of the housing of gearbox ``name``.
 
