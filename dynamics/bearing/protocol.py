@@ -112,6 +112,35 @@ class BearingOperation:
 
 
 @dataclass(frozen=True, kw_only=True)
+class HeatStar:
+    """A bearing as one node between shaft seat, housing seat and oil.
+
+    heat + oil (T_oil - T) + shaft (T_shaft - T) + housing (T_housing - T) = 0
+
+    shaft, housing : conductances to the seats [W/K]; 0 to one that takes no heat
+    oil : rho c Q of the oil that passes [W/K]
+    oil_temperature : with which it comes [K]
+    heat : friction heat in the balance [W]
+    """
+
+    shaft: float
+    housing: float
+    oil: float
+    oil_temperature: float
+    heat: float
+
+    @property
+    def total(self) -> float:
+        """Sum of the three [W/K]."""
+        return self.shaft + self.housing + self.oil
+
+    def node(self, shaft: float, housing: float) -> float:
+        """Temperature of the node between seats of these temperatures [K]."""
+        carried = self.shaft * shaft + self.housing * housing + self.oil * self.oil_temperature
+        return (self.heat + carried) / self.total
+
+
+@dataclass(frozen=True, kw_only=True)
 class BearingState:
     """Steady state of one bearing of any kind; SI units."""
 
@@ -148,6 +177,8 @@ class BearingState:
     """Document behind the friction."""
     warnings: tuple[str, ...]
     """What lies outside the theory: name, value, limit, remedy."""
+    star: HeatStar | None = None
+    """Of a kind that conducts its heat to its seats; None for a film that takes up the heat of its walls."""
 
 
 class Bearing(Protocol):

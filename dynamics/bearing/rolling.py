@@ -19,6 +19,7 @@ from dynamics.bearing.protocol import (
     BearingError,
     BearingNotConvergedError,
     BearingOperation,
+    HeatStar,
 )
 from dynamics.bearing.rolling_catalogue import CatalogueBearing
 from dynamics.bearing.rolling_contact import COMMON_GROOVE, BallGroove, contact_law
@@ -124,7 +125,7 @@ class RollingBearing:
         """
         check_axial(self.data, operation.axial_load)
         paths = self._paths(operation)
-        carried = paths.capacity_rate + paths.shaft + paths.housing
+        carried = paths.total
         if carried == 0.0:
             raise BearingError(
                 f"rolling bearing {self.data.designation}: oil flow = 0 m3/s, shaft and housing without temperature or "
@@ -220,14 +221,18 @@ class _HeatPaths:
         return self.operation.oil.inlet_temperature if given is None else given
 
     @property
+    def total(self) -> float:
+        """Sum of what oil and seats carry [W/K]."""
+        return self.capacity_rate + self.shaft + self.housing
+
+    @property
     def without_friction(self) -> float:
         """Mean of oil inlet and seats, weighed by what they carry [K]."""
-        total = self.capacity_rate + self.shaft + self.housing
         return (
             self.capacity_rate * self.operation.oil.inlet_temperature
             + self.shaft * self.shaft_temperature
             + self.housing * self.housing_temperature
-        ) / total
+        ) / self.total
 
 
 def _balance(excess: Callable[[float], float], start: float) -> float:
@@ -288,6 +293,13 @@ def _state(
         heat_from_bodies=operation.heat_from_bodies - to_shaft - to_housing,
         shaft_conductance=paths.shaft,
         housing_conductance=paths.housing,
+        star=HeatStar(
+            shaft=paths.shaft,
+            housing=paths.housing,
+            oil=paths.capacity_rate,
+            oil_temperature=oil.inlet_temperature,
+            heat=paths.total * (temperature - paths.without_friction),
+        ),
         heat_to_shaft=to_shaft,
         heat_to_housing=to_housing,
         inner_ring_temperature=_ring(temperature, paths.shaft_temperature, paths.shaft_ring, paths.shaft),

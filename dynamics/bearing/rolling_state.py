@@ -58,6 +58,11 @@ class RollingState(BearingState):
     """Tangent stiffness at the load and its displacement."""
 
 
+def rolling_state(state: BearingState) -> RollingState | None:
+    """The state with what only a rolling bearing has; None for another kind."""
+    return state if isinstance(state, RollingState) else None
+
+
 def limit_warnings(state: RollingState, data: CatalogueBearing, *, drag_in_bath: bool) -> Iterator[str]:
     """Sentences for what lies outside: name, value, limit, remedy.
 

@@ -1,29 +1,21 @@
 """Assumptions of a case: those it marks, and those it makes by saying nothing, which a report lists as well."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from rigdesign.base.units import show
+from rigdesign.case.assumption_record import AssumptionRecord
 from rigdesign.case.films import FAN_VELOCITY, ForcedAir
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.surface_conditions import Condition
 
-
-@dataclass(frozen=True, kw_only=True)
-class AssumptionRecord:
-    """An input marked as assumed in the case file, or left out and replaced by an idealisation."""
-
-    path: str
-    value: str
-    reason: str
-    range: tuple[str, str] | None = None
-    decides: tuple[str, ...] = ()
-    """Ids of the checks that depend on it."""
+__all__ = ["AssumptionRecord", "implied_assumptions"]
 
 
 def implied_assumptions(gearboxes: Mapping[str, Gearbox]) -> Iterator[AssumptionRecord]:
     """Inputs that are left out and whose place an idealisation takes, in the order of the case."""
     for name, box in gearboxes.items():
+        for part, bearing in box.bearings.items():
+            yield from bearing.assumptions(f"gearboxes.{name}.bearings.{part}")
         if box.housing is not None and box.housing.foot_contact is None and box.housing.step_file is None:
             yield AssumptionRecord(
                 path=f"gearboxes.{name}.housing.foot_contact",

@@ -1,7 +1,20 @@
-"""Bearings of a gearbox as the case states them, each kind with the bearing of the solver it stands for."""
+"""Bearings of a gearbox as the case states them, each kind with the bearing of the solver it stands for.
 
-from typing import TYPE_CHECKING, Literal, TypeAlias
+A kind is a class whose key ``type`` has one choice, joined in `BearingInput`; all kinds answer alike:
+``label``, ``shaft_diameter``, ``housing_bore``, ``width``, ``drawn_clearance`` (measures as drawn), ``has_film``,
+``needs_fed_oil``, ``shell_conductance`` (what others have to know of it), ``as_it_runs`` (bearing of the solver),
+``running_clearance`` (clearance of the warm rig), ``induced_axial_load``, ``assumptions`` and ``own_faults``.
+"""
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+
+from pydantic import Tag
+
+from rigdesign.base.errors import Fault
+from rigdesign.base.units import show
+from rigdesign.case.assumption_record import AssumptionRecord
+from rigdesign.case.bearing_place import BearingPlace, BearingSeats
 from rigdesign.case.fields import (
     Clearance,
     Force,
@@ -16,6 +29,8 @@ from rigdesign.case.fields import (
     Share,
     TorsionalDamping,
 )
+from rigdesign.case.kinds import kind_from
+from rigdesign.case.rolling_bearing import RollingBearingInput
 
 if TYPE_CHECKING:
     from dynamics.bearing.protocol import Bearing
@@ -24,6 +39,8 @@ if TYPE_CHECKING:
 class JournalBearingInput(Part):
     """Plain journal bearing."""
 
+    type: Literal["journal"] = "journal"
+    """Selects a plain bearing."""
     shaft: Name
     """Shaft that it carries."""
     side: Literal["front", "rear"]
@@ -56,21 +73,70 @@ class JournalBearingInput(Part):
     """For the record: the drivetrain is torsional."""
 
     @property
+    def label(self) -> str:
+        """Kind, for tables."""
+        return "plain bearing"
+
+    @property
+    def shaft_diameter(self) -> float:
+        """Of the journal [m]."""
+        return self.diameter
+
+    @property
+    def housing_bore(self) -> float:
+        """Of the bore in the housing [m]."""
+        return self.diameter + self.diametral_clearance
+
+    @property
+    def drawn_clearance(self) -> float:
+        """On the diameter, as drawn [m]."""
+        return self.diametral_clearance
+
+    @property
+    def has_film(self) -> bool:
+        """Its oil film takes up heat of shaft and shell."""
+        return True
+
+    @property
     def needs_fed_oil(self) -> bool:
         """Splash or grease do not carry a plain bearing."""
         return True
 
-    def at_clearance(self, diametral_clearance: float) -> "Bearing":
-        """The bearing for the solver with its clearance as it runs [m]; BearingError where that is impossible."""
+    def induced_axial_load(self, radial: float) -> float:
+        """None: a film pushes radially [N]."""
+        return 0.0
+
+    def as_it_runs(self, place: BearingPlace) -> "Bearing":
+        """The bearing for the solver at its place; BearingError where that is impossible."""
         from dynamics.bearing.journal import JournalBearing
 
         return JournalBearing(
             diameter=self.diameter,
             width=self.width,
-            diametral_clearance=diametral_clearance,
+            diametral_clearance=place.clearance,
             feed_share=self.feed_share,
         )
 
+    def running_clearance(self, seats: BearingSeats) -> float:
+        """Clearance as it runs, on the diameter [m]: thermal expansion of bore and journal, journal by rotation."""
+        return self.diametral_clearance + (-seats.spin + seats.bore_less_journal)
 
-BearingInput: TypeAlias = JournalBearingInput
+    def assumptions(self, at: str) -> Iterator[AssumptionRecord]:
+        """None: a plain bearing states what it needs."""
+        yield from ()
+
+    def own_faults(self, at: str) -> Iterator[Fault]:
+        """What is wrong with it whatever stands around it."""
+        if self.diametral_clearance >= 0.05 * self.diameter:
+            yield Fault(
+                f"{at}.diametral_clearance", show(self.diametral_clearance, "length"),
+                f"is above a twentieth of the diameter {show(self.diameter, 'length')}",
+                "write bore minus journal, usually 0.001 to 0.003 of the diameter",
+            )  # fmt: skip
+
+
+BearingInput: TypeAlias = Annotated[
+    Annotated[JournalBearingInput, Tag("journal")] | Annotated[RollingBearingInput, Tag("rolling")],
+    kind_from("type", "journal"),
+]
 """Bearing of any kind; a further kind joins here."""

@@ -104,6 +104,11 @@ class Gearbox(Part):
         return self.oil.oil if isinstance(self.bearing_oil, SplashOil) else self.bearing_oil.oil
 
     @property
+    def splash_share(self) -> float:
+        """Share of the oil that gears lift or jets inject which passes each bearing; 0 where none is thrown on them."""
+        return self.bearing_oil.splash_share if isinstance(self.bearing_oil, SplashOil) else 0.0
+
+    @property
     def gear_oil_temperature(self) -> float | None:
         """Temperature at which the oil of the gears is fed or its sump is held [K]; None for a free sump."""
         return self.oil.inlet_temperature if isinstance(self.oil, JetOil) else self.oil.sump_temperature

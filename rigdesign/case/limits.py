@@ -9,6 +9,7 @@ from rigdesign.base import units
 from rigdesign.case.fields import (
     Deviation,
     Flow,
+    Hours,
     Name,
     Part,
     Play,
@@ -39,7 +40,7 @@ class ClearanceLimits(Part):
     tip_clearance_minimum: Play | None = None
     """Least warm clearance between the tip of a gear and the root of its partner."""
     bearing_clearance_minimum: Play | None = None
-    """Least warm diametral clearance of a bearing."""
+    """Least warm diametral clearance of a plain bearing."""
 
 
 class AlignmentLimits(Part):
@@ -61,7 +62,9 @@ class TemperatureLimits(Part):
     housing_maximum: Temperature | None = None
     """Most at the hottest place of a housing."""
     bearing_film_maximum: Temperature | None = None
-    """Most of the lubricant film of a bearing."""
+    """Most of the lubricant film of a plain bearing."""
+    rolling_bearing_maximum: Temperature | None = None
+    """Most of a rolling bearing; 120 degC, up to which its rings keep their size, when left out."""
     oil_outlet_maximum: Temperature | None = None
     """Most of any oil that leaves a gearbox."""
     tempering_distance_minimum: TemperatureDifference | None = None
@@ -82,7 +85,7 @@ class OilLimits(Part):
 
 
 class BearingLimits(Part):
-    """Journal bearings."""
+    """Journal bearings and rolling bearings."""
 
     start_torque_limit: Torque | None = None
     """Most torque below the transition speed."""
@@ -90,6 +93,14 @@ class BearingLimits(Part):
     """Least oil film of a journal bearing at a held stage."""
     specific_load_maximum: Stress | None = None
     """Most radial load over diameter times width."""
+    rating_life_minimum: Hours | None = None
+    """Least modified rating life of a rolling bearing; the planned test time when left out."""
+    static_safety_minimum: Positive | None = None
+    """Least static safety of a rolling bearing."""
+    operating_clearance_minimum: Deviation | None = None
+    """Least radial internal clearance of a rolling bearing as it runs; negative where a preload is allowed."""
+    operating_clearance_maximum: Deviation | None = None
+    """Most radial internal clearance of a rolling bearing as it runs."""
 
 
 class DynamicsLimits(Part):
@@ -231,7 +242,7 @@ class Limits(Part):
     oil: OilLimits = OilLimits()
     """Limits of the oil plant and the room."""
     bearing: BearingLimits = BearingLimits()
-    """Limits of the journal bearings."""
+    """Limits of the bearings."""
     dynamics: DynamicsLimits = DynamicsLimits()
     """Limits of the additional dynamic load and of resonances."""
     strength: StrengthLimits = StrengthLimits()

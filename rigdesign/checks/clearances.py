@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from rigdesign.checks.films import no_film
 from rigdesign.checks.omissions import EXPANSION, HEAT, of_gearboxes, sealed, unexpanded, with_play
 from rigdesign.checks.places import housed_seals
 from rigdesign.checks.registry import REGISTRY, RigRule, RuleFamily, Topic, Values
@@ -71,6 +72,7 @@ def _bearing_clearances(solved: SolvedRig) -> Values:
         (clearance, f"{name}, stage {point.point.stage}")
         for point in solved.points
         for name, clearance in point.last.coupling_state.bearing_clearance.items()
+        if solved.rig.bearing(name).has_film
     )
 
 
@@ -154,6 +156,7 @@ RULES = (
         comparison=">=",
         limit=lambda limits: limits.clearances.bearing_clearance_minimum,
         values=_bearing_clearances,
+        absent=no_film,
         leaves_out=(NOT_EXPANDED, *HEAT),
         moved_by=frozenset({"housing"}),
     ),

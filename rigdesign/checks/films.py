@@ -1,19 +1,26 @@
 """Checks of the films of the journal bearings, and what all values of a film leave out."""
 
-import math
 from collections.abc import Iterator
 
 from dynamics.bearing.protocol import BearingState
+from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.omissions import Omissions, of_gearboxes, thrust, warming, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
-from rigdesign.records.solved_rig import SolvedRig
+from rigdesign.records.solved_rig import NO_HOUSING, SolvedRig
 from rigdesign.results.check import Check
-from rigdesign.results.units import MEGAPASCAL, MICROMETRE, MPA, UM
+from rigdesign.results.units import MEGAPASCAL, MICROMETRE, UM
 
 GROUP = "bearings"
+
+
+def _films_without_housing(solved: SolvedRig, name: str, box: Gearbox) -> bool:
+    """A gearbox without a housing that has plain bearings."""
+    return without_housing(solved, name, box) and any(b.has_film for b in box.bearings.values())
+
+
 SHAFT_HEAT = of_gearboxes(
-    "heat of shafts and shells into the films of gearbox {box}: it has no housing", without_housing
+    "heat of shafts and shells into the films of gearbox {box}: it has no housing", _films_without_housing
 )
 THRUST_TILT = of_gearboxes("tilting moment of the axial force of the gears of gearbox {box}", thrust)
 
@@ -22,12 +29,20 @@ def films(solved: SolvedRig) -> Iterator[tuple[str, BearingState]]:
     """(place and stage, state) of every journal bearing at every held stage."""
     for point in solved.points:
         for name, state in point.last.bearings.items():
-            yield f"{name}, stage {point.point.stage}", state
+            if state.star is None:
+                yield f"{name}, stage {point.point.stage}", state
+
+
+def no_film(solved: SolvedRig) -> str:
+    """Why there are no films, where there are none."""
+    rolling = all(not entry.has_film for _, _, entry in solved.rig.bearings())
+    return "all bearings are rolling bearings: they have no film" if rolling else NO_HOUSING
 
 
 def _tilted(solved: SolvedRig, check: Check) -> Omissions:
     """The tilt of a shaft in its bore, which the expansion knows and the film does not."""
-    bores = [bore for warm in solved.warm for bore in warm.bores]
+    journals = {name for name, _, entry in solved.rig.bearings() if entry.has_film}
+    bores = [bore for warm in solved.warm for bore in warm.bores if bore.bearing in journals]
     if bores:
         worst = max(bores, key=lambda bore: bore.tilt * bore.width)
         size = 0.5 * (UM * worst.tilt * worst.width)
@@ -36,47 +51,9 @@ def _tilted(solved: SolvedRig, check: Check) -> Omissions:
 
 
 def _thrust_load(solved: SolvedRig, check: Check) -> Omissions:
-    """Tilting moment of the axial force of helical gears, T tan(beta), on the two bearings of a shaft [MPa]."""
-    sizes = [
-        (
-            abs(point.last.coupling_state.mesh_torque[full]) * math.tan(abs(mesh.helix_angle)) * ratio,
-            name,
-            bearing,
-        )
-        for point in solved.points
-        for name, box in solved.case.gearboxes.items()
-        if thrust(solved, name, box)
-        for own, mesh in box.meshes.items()
-        if not mesh.double_helical
-        for full in (f"{name}.{own}",)
-        for gear, ratio in ((mesh.pinion, 1.0), (mesh.wheel, _wheel_ratio(solved, full)))
-        for bearing in box.bearings.values()
-        if bearing.shaft == box.gears[gear].shaft and bearing.radial_load is None
-    ]
-    found = [
-        MPA * moment / (span * bearing.diameter * bearing.width)
-        for moment, name, bearing in sizes
-        for span in (_span(solved, name, bearing.shaft),)
-        if span
-    ]
-    if sizes and len(found) == len(sizes):
-        size = max(found)
-        yield Omission(f"tilting moment of the axial force of helical gears, {size:.2g} MPa", size)
-    elif sizes:
-        yield Omission("tilting moment of the axial force of helical gears")
-
-
-def _wheel_ratio(solved: SolvedRig, mesh: str) -> float:
-    """Torque of the wheel over that of the pinion."""
-    teeth = solved.rig.pairs[mesh].teeth
-    return teeth[1] / teeth[0]
-
-
-def _span(solved: SolvedRig, name: str, shaft: str) -> float:
-    """Distance of the two bearings of a shaft [m]; zero where it is not stated."""
-    bearings = solved.case.gearboxes[name].bearings.values()
-    places = [b.position for b in bearings if b.shaft == shaft and b.position is not None]
-    return max(places) - min(places) if len(places) > 1 else 0.0
+    """Tilting moment of the axial force of helical gears where the bearings of a shaft state no positions."""
+    if any(thrust(solved, name, box) for name, box in solved.case.gearboxes.items()):
+        yield Omission("tilting moment of the axial force of helical gears: bearings without position")
 
 
 def _thicknesses(solved: SolvedRig) -> Values:
@@ -101,6 +78,7 @@ RULES = (
         comparison=">=",
         limit=lambda limits: limits.bearing.film_thickness_minimum,
         values=_thicknesses,
+        absent=no_film,
         leaves_out=(SHAFT_HEAT, THRUST_TILT, _tilted, warming),
         moved_by=frozenset({"housing"}),
     ),
@@ -116,6 +94,7 @@ RULES = (
         source="limits.bearing.specific_load_maximum",
         limit=lambda limits: limits.bearing.specific_load_maximum,
         values=_specific_loads,
+        absent=no_film,
         leaves_out=(_thrust_load, warming),
         moved_by=frozenset({"housing"}),
     ),

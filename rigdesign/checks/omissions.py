@@ -13,6 +13,7 @@ from rigdesign.base.units import show
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.checks.registry import REGISTRY, Finder
 from rigdesign.checks.rules import Omission
+from rigdesign.coupling.bearing_loads import tilt_counted
 from rigdesign.coupling.loads import laws_of
 from rigdesign.coupling.shaft_torques import torques_left_out
 from rigdesign.coupling.tooth_deviations import averaged_gears
@@ -57,9 +58,17 @@ def unexpanded(solved: SolvedRig, name: str, box: Gearbox) -> bool:
 
 
 def thrust(solved: SolvedRig, name: str, box: Gearbox) -> bool:
-    """A gearbox whose gears push axially: their tilting moment loads bearings that take their load from the teeth."""
-    helical = any(mesh.helix_angle and not mesh.double_helical for mesh in box.meshes.values())
-    return helical and any(bearing.radial_load is None for bearing in box.bearings.values())
+    """A gearbox whose gears push axially, where the tilting moment of that is in the load of not all its bearings."""
+    pushed = {
+        box.gears[gear].shaft
+        for mesh in box.meshes.values()
+        if mesh.helix_angle and not mesh.double_helical
+        for gear in (mesh.pinion, mesh.wheel)
+    }
+    return any(
+        bearing.shaft in pushed and bearing.radial_load is None and not tilt_counted(box, bearing.shaft)
+        for bearing in box.bearings.values()
+    )
 
 
 def sealed(solved: SolvedRig, name: str, box: Gearbox) -> bool:

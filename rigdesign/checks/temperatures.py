@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from rigdesign.case.gearbox import Gearbox
-from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT, films
+from rigdesign.checks.films import SHAFT_HEAT, THRUST_TILT, films, no_film
 from rigdesign.checks.omissions import HEAT, Omissions, of_gearboxes, without_housing
 from rigdesign.checks.registry import REGISTRY, RigRule, Topic, Values
 from rigdesign.checks.rules import Omission
@@ -123,6 +123,7 @@ RULES = (
         source="limits.temperatures.bearing_film_maximum; ISO 7902-1 heat balance",
         limit=lambda limits: limits.temperatures.bearing_film_maximum,
         values=_film_temperatures,
+        absent=no_film,
         leaves_out=(SHAFT_HEAT, THRUST_TILT, *HEAT),
         moved_by=frozenset({"housing"}),
     ),

@@ -1,5 +1,6 @@
 """Alignment of the hot rig by the names of the case: bearings, bores, gear axes, couplings. SI units."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -7,6 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from dynamics.standards.iso1328_1_2013 import tolerances
+from rigdesign.case.bearings import BearingInput
 from rigdesign.case.drivetrain import CouplingInput
 from rigdesign.coupling.expansion import axes_of, bearing_expansion
 from rigdesign.rig.model import Rig
@@ -33,7 +35,8 @@ def alignment(rig: Rig, name: str, shape: Expansion, clearances: Mapping[str, fl
         full = f"{name}.{part}"
         expansion = bearing_expansion(rig, name, shape, entry)
         tilts[full] = expansion.tilt
-        rounds[full] = clearance_share(expansion.bore_roundness.peak_to_valley, clearances[full])
+        clearance = held_clearance(entry, clearances[full])
+        rounds[full] = clearance_share(expansion.bore_roundness.peak_to_valley, clearance)
     deviations = {mesh: axis_deviation(rig, name, mesh, shape) for mesh in box.meshes}
     return {
         "bearing_tilt": tilts,
@@ -41,6 +44,12 @@ def alignment(rig: Rig, name: str, shape: Expansion, clearances: Mapping[str, fl
         "axis_inclination": {f"{name}.{mesh}": abs(found.inclination) for mesh, found in deviations.items()},
         "axis_skew": {f"{name}.{mesh}": abs(found.skew) for mesh, found in deviations.items()},
     }
+
+
+def held_clearance(entry: BearingInput, hot: float) -> float:
+    """Clearance against which a bore counts as out of round [m]: the hot one of a film, that of an unmounted rolling
+    bearing, whose fits use it up; boundless for one that is set without clearance."""
+    return hot if entry.has_film else entry.drawn_clearance or math.inf
 
 
 def clearance_share(peak_to_valley: float, clearance: float) -> float:

@@ -1,19 +1,19 @@
 """Bearings at one operating point: what they carry and what heats their oil."""
 
-import math
 from collections.abc import Callable
+from dataclasses import replace
 
 from dynamics.bearing.protocol import Bearing, BearingOperation, BearingState, OilSupply
 from rigdesign.base.errors import named
+from rigdesign.case.bearing_place import BearingPlace
 from rigdesign.case.bearings import BearingInput
-from rigdesign.case.gearbox import Gearbox
-from rigdesign.case.gears import GearMesh
+from rigdesign.coupling.bearing_loads import bearing_loads
+from rigdesign.coupling.bearing_seats import HOUSING, SHAFT, bearing_seats, seats_of
+from rigdesign.coupling.dip import splash_to_bearing
 from rigdesign.coupling.given_losses import given_power
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.rig.model import Rig
-from rigdesign.rig.oil_supply import bearing_feed
-
-GRAVITY = 9.81
+from rigdesign.rig.oil_supply import OilFeed, bearing_feed, injected_flow
 
 
 def solve_bearing(bearing: Bearing, operation: BearingOperation) -> BearingState:
@@ -44,11 +44,15 @@ def solve_bearings(
     loads = bearing_loads(rig, coupling_state)
     for name, box, entry in rig.bearings():
         box_name, part = name.split(".")
-        feed = bearing_feed(rig, box_name, coupling_state.oil_outlet[f"{box_name}.gear_oil"])
+        feed = _supply(rig, box_name, point, coupling_state)
+        seats = seats_of(name, coupling_state)
+        if seats == (None, None) and feed.flow == 0.0:
+            seats = None, feed.inlet  # stands in oil that nothing moves: all round it is as warm as that
         with named(f"gearboxes.{box_name}.bearings.{part}"):
-            bearing = entry.at_clearance(coupling_state.bearing_clearance[name])
+            bearing = entry.as_it_runs(_place(rig, name, coupling_state.bearing_clearance[name]))
             operation = BearingOperation(
-                load=loads[name],
+                load=loads[name].radial,
+                axial_load=loads[name].axial,
                 speed=rig.shaft_speed(entry.shaft, point.speed),
                 oil=OilSupply(
                     inlet_temperature=feed.inlet,
@@ -57,12 +61,38 @@ def solve_bearings(
                     density=feed.oil.density(feed.inlet),
                     heat_capacity=feed.oil.heat_capacity(feed.inlet),
                 ),
-                heat_from_bodies=coupling_state.bearing_heat[name],
+                heat_from_bodies=coupling_state.bearing_heat[name] if entry.has_film else 0.0,
                 friction_heat=_imposed_heat(rig, name, entry, point),
                 friction_factor=box.loss_factors.bearing,
+                shaft_temperature=seats[0],
+                housing_temperature=seats[1],
             )
             states[name] = solve(bearing, operation)
     return states
+
+
+def _place(rig: Rig, name: str, clearance: float) -> BearingPlace:
+    """What the gearbox makes of the place of a bearing."""
+    box = rig.case.gearboxes[name.split(".")[0]]
+    factors = {seat: found.factor for seat, found in bearing_seats(rig, name).items()}
+    return BearingPlace(
+        clearance=clearance,
+        lubrication=box.bearing_oil.lubrication,
+        sump_level=None if box.sump is None else box.sump.level,
+        seat_factors=(factors.get(SHAFT, 1.0), factors.get(HOUSING, 1.0)),
+    )
+
+
+def _supply(rig: Rig, box_name: str, point: OperatingPoint, coupling_state: CouplingState) -> OilFeed:
+    """Oil that passes each bearing of a gearbox: fed, a share of what the gears lift or the jets inject, or none."""
+    box, chamber = rig.case.gearboxes[box_name], coupling_state.oil_outlet[f"{box_name}.gear_oil"]
+    feed = bearing_feed(rig, box_name, chamber)
+    share = box.splash_share
+    if share == 0.0:
+        return feed
+    if box.sump is not None:
+        return replace(feed, flow=splash_to_bearing(rig, box_name, point, chamber, share))
+    return replace(feed, flow=share * injected_flow(box) * len(box.meshes))
 
 
 def _imposed_heat(rig: Rig, name: str, entry: BearingInput, point: OperatingPoint) -> float | None:
@@ -80,61 +110,3 @@ def constant_drag(rig: Rig, box: str, entry: BearingInput, point: OperatingPoint
         return None
     factor = rig.case.gearboxes[box].loss_factors.bearing
     return factor * entry.torsional_damping * rig.shaft_speed(entry.shaft, point.speed) ** 2
-
-
-def bearing_loads(rig: Rig, coupling_state: CouplingState) -> dict[str, float]:
-    """Radial load of every bearing [N]: tooth forces and weight by the lever rule on its shaft.
-
-    Tooth forces add as vectors where the housing says where the axes stand: at an idler between two wheels the
-    tangential forces add and the separating ones cancel. Without a housing they add as if all pointed one way.
-    Weight is counted with the tangential force, which is on the safe side. Axial forces of a double-helical gear
-    cancel; those of a single-helical one and their tilting moment are left out.
-    """
-    return {
-        name: _radial_load(rig, name, box, entry, coupling_state)
-        if entry.radial_load is None
-        else entry.radial_load
-        for name, box, entry in rig.bearings()
-    }
-
-
-def _radial_load(
-    rig: Rig, name: str, box: Gearbox, entry: BearingInput, coupling_state: CouplingState
-) -> float:
-    box_name = name.split(".")[0]
-    tangential, separating, weight = 0.0, 0.0, 0.5 * GRAVITY * rig.shaft_mass(entry.shaft)
-    first = box.first_meshes()
-    for gear_name, gear in box.gears.items():
-        if gear.shaft != entry.shaft:
-            continue
-        share = _lever(box, entry.shaft, entry.position, gear.position)
-        mesh_name, side = first[gear_name]
-        weight += share * GRAVITY * box.halves(gear_name) * rig.pairs[f"{box_name}.{mesh_name}"].masses[side]
-        for mesh_name, mesh in box.meshes.items():
-            if gear_name in (mesh.pinion, mesh.wheel):
-                full = f"{box_name}.{mesh_name}"
-                towards, drives = _direction(box, mesh, gear_name, coupling_state.mesh_torque[full])
-                pair = rig.pairs[full]
-                force = share * abs(coupling_state.mesh_torque[full]) / pair.base_radii[0]
-                tangential += towards * drives * force * math.cos(pair.working_pressure_angle)
-                separating += towards * force * math.sin(pair.working_pressure_angle)
-    return math.hypot(abs(tangential) + weight, separating)
-
-
-def _direction(box: Gearbox, mesh: GearMesh, gear: str, torque: float) -> tuple[float, float]:
-    """Side on which the partner stands, +1 towards y, and +1 if the gear drives it; 1, 1 without a housing."""
-    if box.housing is None:
-        return 1.0, 1.0
-    here, there = (mesh.pinion, mesh.wheel) if gear == mesh.pinion else (mesh.wheel, mesh.pinion)
-    y = [box.housing.shafts[box.gears[name].shaft].lateral_position for name in (here, there)]
-    return math.copysign(1.0, y[1] - y[0]), math.copysign(1.0, torque if here == mesh.pinion else -torque)
-
-
-def _lever(box: Gearbox, shaft: str, position: float | None, gear_position: float | None) -> float:
-    """Share of a gear force that one of the two bearings of a shaft carries."""
-    stations = [bearing.position for bearing in box.bearings.values() if bearing.shaft == shaft]
-    if position is None or gear_position is None or None in stations or len(stations) != 2:
-        return 1.0 / len(stations)
-    first, second = (station for station in stations if station is not None)
-    other = second if position == first else first
-    return abs(other - gear_position) / abs(other - position)

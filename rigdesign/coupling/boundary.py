@@ -12,6 +12,7 @@ from rigdesign.case.geometry import bearing_on, conditions_of
 from rigdesign.case.given_film import ConstantFilm, TakenFrom
 from rigdesign.case.housing import Housing
 from rigdesign.case.surface_place import ShaftPlace, SurfacePlace
+from rigdesign.coupling.bearing_heat import seat_conditions, seat_sources
 from rigdesign.coupling.flank_heat import gear_flanks, rim_surfaces
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.point_losses import PointLosses
@@ -160,6 +161,8 @@ def boundary_conditions(
     conditions: list[Condition] = [*foot_joint(rig, name)]
     for entry, surface, stood_for in rows:
         condition = housing.boundary[entry]
+        if isinstance(condition, laws.BearingFilm) and _bearing_of(context, surface)[1].star is not None:
+            continue
         if radiation_included and isinstance(condition, laws.ThermalRadiation) and surface in covered:
             conditions += _excess_radiation(context, condition, surface)
             continue
@@ -167,6 +170,7 @@ def boundary_conditions(
         if isinstance(found, Film):
             found = replace(found, law=behind_shell(rig, name, surface, found.law))
         conditions.append(found)
+    conditions += _joined_bearings(context)
     if context.box.gear_oil_temperature is None and not sump_given:
         conditions = _with_free_sump(context, conditions, losses.losses)
     return [*conditions, *_sources(context, losses.losses), *_stored(rig, name)]
@@ -177,10 +181,13 @@ def _with_free_sump(
 ) -> list[Condition]:
     """The conditions with the sump as an unknown: films to its oil feel a volume that the losses in it heat."""
     chamber = context.coupling_state.oil_outlet[f"{context.name}.{GEAR_OIL}"]
-    films = [
-        c for c in conditions if isinstance(c, Film) and c.kind == GEAR_OIL and c.fluid_temperature == chamber
-    ]
     fed = context.box.fed_bearings is not None
+    own = (GEAR_OIL,) if fed else (GEAR_OIL, BEARING_OIL, BEARING_FILM)
+    films = [
+        c
+        for c in conditions
+        if isinstance(c, Film) and c.kind.startswith(own) and c.fluid_temperature == chamber
+    ]
     heat = math.fsum(
         placed.into_oil - (placed.into_bearing_oil if fed else 0.0)
         for placed in losses
@@ -190,7 +197,7 @@ def _with_free_sump(
         specific_heat=gear_oil(context.rig, context.name).heat_capacity(chamber),
         volumes=(Volume(name=GEAR_OIL, power=heat),),
         films=tuple(
-            VolumeFilm(surface=film.surface, volume=GEAR_OIL, kind=GEAR_OIL, law=film.law) for film in films
+            VolumeFilm(surface=film.surface, volume=GEAR_OIL, kind=film.kind, law=film.law) for film in films
         ),
     )
     return [*(condition for condition in conditions if condition not in films), sump]
@@ -280,11 +287,7 @@ def _excess_radiation(
 
 def _bearing_film(context: _Context, condition: laws.BearingFilm, surface: str) -> Film:
     """Conductance of the film from its mean temperature; the sink is that temperature, no source in addition."""
-    shaft = context.shaft(surface).name
-    side = "front" if surface.endswith("front") else "rear"
-    entry = bearing_on(context.box, shaft, side)
-    part = next(name for name, bearing in context.box.bearings.items() if bearing is entry)
-    state = context.bearings[f"{context.name}.{part}"]
+    part, state = _bearing_of(context, surface)
     oil = bearing_oil(context.rig, context.name)
     return Film(
         surface=surface,
@@ -295,6 +298,26 @@ def _bearing_film(context: _Context, condition: laws.BearingFilm, surface: str) 
             context.housing.bearing_film_factor * condition.film_factor,
         ),
     )
+
+
+def _bearing_of(context: _Context, surface: str) -> tuple[str, BearingState]:
+    """Name and state of the bearing whose journal or bore a surface is."""
+    shaft = context.shaft(surface).name
+    side = "front" if surface.endswith("front") else "rear"
+    entry = bearing_on(context.box, shaft, side)
+    part = next(name for name, bearing in context.box.bearings.items() if bearing is entry)
+    return part, context.bearings[f"{context.name}.{part}"]
+
+
+def _joined_bearings(context: _Context) -> Iterator[BoundaryCondition]:
+    """Conduction through the bearings that are joined to their seats, into shaft, housing and oil."""
+    chamber = context.coupling_state.oil_outlet[f"{context.name}.{GEAR_OIL}"]
+    inlet = bearing_feed(context.rig, context.name, chamber).inlet
+    for part in context.box.bearings:
+        full = f"{context.name}.{part}"
+        star = context.bearings[full].star
+        if star is not None:
+            yield from seat_conditions(context.rig, full, star, inlet, f"{BEARING_FILM}:{part}")
 
 
 def _sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCondition]:
@@ -308,6 +331,10 @@ def _sources(context: _Context, losses: Sequence[PlacedLoss]) -> list[BoundaryCo
             sources.append(BodySource(body=f"gear_{shaft}", power=placed.into_body, kind="windage"))
         elif placed.loss.kind == "seal":
             sources += _seal_sources(context, placed)
+        elif placed.loss.kind == "bearing":
+            sources += seat_sources(
+                context.rig, placed.name, context.bearings[placed.name], placed.loss.power
+            )
     return sources
 
 

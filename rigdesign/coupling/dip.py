@@ -6,7 +6,14 @@ from dataclasses import dataclass, replace
 from dynamics.gear.pair import GearPair
 from dynamics.losses.churning import ChurningLaw, stage_churning
 from dynamics.losses.churning_comparison import compare_churning
-from dynamics.losses.immersion import DippedGear, OilBath, RunningGear, immersion, tooth_space_flow
+from dynamics.losses.immersion import (
+    DippedGear,
+    OilBath,
+    RunningGear,
+    immersion,
+    splash_flow,
+    tooth_space_flow,
+)
 from dynamics.losses.mesh_loss import Loss
 from rigdesign.case.gearbox import Gearbox
 from rigdesign.case.lubrication import DipOil
@@ -81,6 +88,25 @@ def churning(
         for gear, own, loss in zip(gears, running, losses, strict=True):
             if first[gear][0] == mesh_name and immersion(own.gear, bath).depth > 0.0:
                 yield gear, loss
+
+
+def splash_to_bearing(rig: Rig, name: str, point: OperatingPoint, temperature: float, share: float) -> float:
+    """Oil that the dipped gears of the gearbox ``name`` throw on each bearing [m3/s]; none at low speed.
+
+    temperature : of the sump [K]; share : of what they lift
+    """
+    box = rig.case.gearboxes[name]
+    assert box.sump is not None
+    bath = oil_bath(rig, name, box.sump, temperature)
+    return sum(
+        splash_flow(
+            dipped_gear(box, gear, rig.pairs[f"{name}.{mesh}"], index),
+            bath,
+            rig.shaft_speed(box.gears[gear].shaft, point.speed),
+            share,
+        )
+        for gear, (mesh, index) in box.first_meshes().items()
+    )
 
 
 def _by_law(stage: tuple[RunningGear, RunningGear], bath: OilBath, sump: DipOil) -> tuple[Loss, Loss]:

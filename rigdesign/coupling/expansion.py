@@ -5,8 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from rigdesign.case.bearing_place import BearingSeats
 from rigdesign.case.bearings import BearingInput
+from rigdesign.coupling.bearing_seats import WarmBearing
 from rigdesign.coupling.temperatures import HousingField
+from rigdesign.properties.materials import Material
 from rigdesign.rig.model import Rig
 from thermal.expansion.clearances import BearingExpansion, CentreDistance
 from thermal.expansion.expansion import Expansion, expand
@@ -80,19 +83,50 @@ def bearing_expansion(rig: Rig, name: str, shape: Expansion, entry: BearingInput
     return shape.bearings[station.name]
 
 
-def hot_clearances(rig: Rig, speed: float, expansion: Mapping[str, HousingExpansion]) -> dict[str, float]:
-    """Hot diametral clearance of every bearing [m]: thermal expansion of bore and journal, centrifugal of the journal.
+def hot_clearances(
+    rig: Rig,
+    speed: float,
+    expansion: Mapping[str, HousingExpansion],
+    bearings: Mapping[str, WarmBearing] | None = None,
+) -> dict[str, float]:
+    """Clearance of every bearing as it runs, on the diameter [m].
 
-    A gearbox without a housing has journal and shell at one temperature: only the spin counts.
+    bearings : temperatures of those that conduct heat to their seats, by ``gearbox.bearing``
+
+    A film runs in the thermal expansion of bore and journal; a gearbox without a housing has both at one temperature,
+    so that only the spin counts. Rings follow their fits and their own temperatures.
     """
+    known = bearings or {}
     clearances = {}
     for full, _, entry in rig.bearings():
         name = full.split(".")[0]
-        change = -centrifugal_expansion(rig, entry, speed)
-        if name in expansion:
-            change += bearing_expansion(rig, name, expansion[name].deformed, entry).clearance_change
-        clearances[full] = entry.diametral_clearance + change
+        if not entry.has_film and full not in known:
+            clearances[full] = entry.drawn_clearance
+            continue
+        change = 0.0
+        if name in expansion and entry.has_film:
+            change = bearing_expansion(rig, name, expansion[name].deformed, entry).clearance_change
+        clearances[full] = entry.running_clearance(_seats(rig, full, entry, speed, change, known.get(full)))
     return clearances
+
+
+def _seats(
+    rig: Rig, full: str, entry: BearingInput, speed: float, change: float, warm: WarmBearing | None
+) -> BearingSeats:
+    """Warm seats of a bearing; change : of the bore less that of the journal [m]."""
+    housing = rig.case.gearboxes[full.split(".")[0]].housing
+    walls = rig.materials["structural_steel" if housing is None else housing.material]
+    cold = rig.case.ambient.reference_temperature
+    return BearingSeats(
+        bore_less_journal=change,
+        spin=centrifugal_expansion(rig, entry, speed),
+        shaft=cold if warm is None else warm.shaft,
+        bearing=cold if warm is None else warm.bearing,
+        housing=cold if warm is None else warm.housing,
+        shaft_expansion=_shaft_material(rig, entry).expansion_coefficient,
+        housing_expansion=walls.expansion_coefficient,
+        shaft_bore=0.0 if housing is None else housing.shafts[entry.shaft].bore_diameter,
+    )
 
 
 def centrifugal_expansion(rig: Rig, entry: BearingInput, speed: float) -> float:
@@ -100,14 +134,16 @@ def centrifugal_expansion(rig: Rig, entry: BearingInput, speed: float) -> float:
 
     Source: Timoshenko and Goodier, Theory of Elasticity, section 32.
     """
-    power = rig.case.drivetrain
-    name = (
-        power.shafts[entry.shaft].material if power and entry.shaft in power.shafts else "case_hardened_steel"
-    )
-    steel = rig.materials[name]
-    radius = 0.5 * entry.diameter
+    steel = _shaft_material(rig, entry)
+    radius = 0.5 * entry.shaft_diameter
     omega = rig.shaft_speed(entry.shaft, speed)
     return steel.density * omega**2 * radius**3 * (1.0 - steel.poisson_ratio) / (2.0 * steel.elastic_modulus)
+
+
+def _shaft_material(rig: Rig, entry: BearingInput) -> Material:
+    power = rig.case.drivetrain
+    known = power is not None and entry.shaft in power.shafts
+    return rig.materials[power.shafts[entry.shaft].material if power and known else "case_hardened_steel"]
 
 
 def uniform_expansion(rig: Rig, name: str, temperature: float) -> dict[str, float]:

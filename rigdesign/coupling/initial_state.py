@@ -1,5 +1,6 @@
 """Where the coupling loop starts: all of the rig at room temperature, its oil as it is fed."""
 
+from rigdesign.coupling.bearing_seats import initial_seats
 from rigdesign.coupling.expansion import uniform_expansion
 from rigdesign.coupling.loads import first_torques
 from rigdesign.coupling.state import CouplingState, OperatingPoint
@@ -26,10 +27,11 @@ def initial_state(rig: Rig, point: OperatingPoint) -> CouplingState:
             for box in case.gearboxes
             for mesh, distance in uniform_expansion(rig, box, case.ambient.temperature).items()
         },
-        bearing_clearance={name: entry.diametral_clearance for name, _, entry in rig.bearings()},
+        bearing_clearance={name: entry.drawn_clearance for name, _, entry in rig.bearings()},
         bearing_heat={name: 0.0 for name, _, _ in rig.bearings()},
         wall_heat=dict.fromkeys(streams, 0.0),
         oil_outlet=streams,
         mesh_torque=first_torques(rig, point),
         axial_expansion=dict.fromkeys(rig.pairs, 0.0),
+        seat_temperature=initial_seats(rig, case.ambient.temperature),
     )

@@ -16,6 +16,7 @@ from rigdesign.base.quantity_kinds import ZERO_CELSIUS
 from rigdesign.case.gearbox import Gearbox, Seals
 from rigdesign.case.heat_split import HeatSplit
 from rigdesign.coupling.bearing_films import constant_drag
+from rigdesign.coupling.bearing_heat import body_shares
 from rigdesign.coupling.dip import churning
 from rigdesign.coupling.flank_heat import MeshSplit, mesh_split
 from rigdesign.coupling.given_losses import given_power
@@ -251,7 +252,8 @@ def _bearing_loss(
         },
         warnings=state.warnings,
     )
-    return PlacedLoss(gearbox=box_name, part=part, loss=loss, into_body=0.0)
+    share = math.fsum(share for _, share in body_shares(rig, f"{box_name}.{part}", state))
+    return PlacedLoss(gearbox=box_name, part=part, loss=loss, into_body=share * loss.power)
 
 
 def _windage(

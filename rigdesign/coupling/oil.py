@@ -60,9 +60,10 @@ def oil_streams(
         into_bearings = math.fsum(placed.into_bearing_oil for placed in own)
         into_gears = math.fsum(placed.into_oil - placed.into_bearing_oil for placed in own)
         films = math.fsum(heat for part, heat in bearing_heat.items() if part.split(".")[0] == name)
+        heat = wall_heat[f"{name}.gear_oil"]
         if box.fed_bearings is None:
             into_gears, films = math.fsum((into_gears, into_bearings, films)), 0.0
-        heat = wall_heat[f"{name}.gear_oil"]
+            heat += wall_heat[f"{name}.bearing_oil"]
         leak = None
         if box.jets is None:
             gear = _sump(name, chambers[name], into_gears + heat)

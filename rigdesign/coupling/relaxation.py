@@ -3,9 +3,11 @@
 import math
 from dataclasses import replace
 
+from rigdesign.coupling.bearing_seats import bearing_temperatures
 from rigdesign.coupling.expansion import hot_clearances, uniform_expansion
 from rigdesign.coupling.iteration import SOLVED, IterationParts, IterationResult, PointProblem
 from rigdesign.coupling.state import CouplingState
+from rigdesign.coupling.temperatures import seat_temperatures
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, wall_flow
 
@@ -32,7 +34,10 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
             axial_expansion |= done.expansion[name].axial_expansion
         else:
             centre_distance |= uniform_expansion(rig, name, streams[f"{name}.bearing_oil"].chamber)
-    clearance |= hot_clearances(rig, done.point.speed, done.expansion)
+    seats = seat_temperatures(rig, done.fields)
+    clearance |= hot_clearances(
+        rig, done.point.speed, done.expansion, bearing_temperatures(done.bearings, seats)
+    )
     torque = old.mesh_torque
     if done.response is not None:
         signed = done.response.flank * done.response.mean
@@ -43,6 +48,8 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
         bearing_clearance=clearance,
         bearing_heat={
             name: relaxed(old.bearing_heat[name], heat, 0.5 * _film_gain(rig, done, name))
+            if rig.bearing(name).has_film
+            else heat
             for name, heat in done.bearing_heat.items()
         },
         wall_heat={
@@ -52,6 +59,7 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
         oil_outlet={stream.name: stream.chamber for stream in done.streams},
         mesh_torque=torque,
         axial_expansion=axial_expansion,
+        seat_temperature=seats,
     )
 
 

@@ -5,7 +5,7 @@ Parts are named by gearbox and own name: gear ``test.pinion``, mesh ``test.main`
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 Values = Mapping[str, float]
 
@@ -39,6 +39,9 @@ class CouplingState:
     """Mean torque of each mesh at its pinion [N m], positive where the pinion drives: it loads the bearings."""
     axial_expansion: Values
     """Axial expansion that shifts a helical gear against its partner, by mesh [m]: it changes the bracing."""
+    seat_temperature: Values = field(default_factory=dict)
+    """Mean temperature of every seat that takes heat of a rolling bearing, ``gearbox.bearing.shaft`` and
+    ``gearbox.bearing.housing`` [K]: it warms the bearing."""
 
     def freeze(self, arrows: frozenset[str], initial: "CouplingState") -> "CouplingState":
         """This coupling state with the named arrows cut: those fields stay as in ``initial``.
@@ -56,7 +59,7 @@ class CouplingState:
         )
 
 
-TEMPERATURES = ("gear_temperature", "oil_outlet")
+TEMPERATURES = ("gear_temperature", "oil_outlet", "seat_temperature")
 LENGTHS = ("centre_distance", "bearing_clearance", "axial_expansion")
 
 

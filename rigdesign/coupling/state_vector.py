@@ -18,6 +18,7 @@ SCALES = {
     "bearing_heat": 10.0,
     "wall_heat": 10.0,
     "mesh_torque": 1.0,
+    "seat_temperature": 1.0,
 }
 """Unit of each field of the coupling state in the vector [K, m, W, N m]."""
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.coupling.bearing_seats import bearing_seats
 from rigdesign.coupling.boundary import BEARING_FILM, BEARING_OIL, GEAR_OIL, STORED, boundary_conditions
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
@@ -107,3 +108,22 @@ def heat_stored(field: HousingField) -> float:
 def body_mean(rig: Rig, field: HousingField, body: str) -> float:
     """Volume mean temperature of a body [K]."""
     return rig.conduction[field.gearbox].elements.body_mean(field.temperature, body)
+
+
+def seat_temperatures(rig: Rig, fields: Mapping[str, HousingField]) -> dict[str, float]:
+    """Mean temperature of every seat that takes heat of a bearing [K], by ``gearbox.bearing.seat``."""
+    return {
+        key: value
+        for name, field in fields.items()
+        for key, value in seat_means(rig, name, field.temperature).items()
+    }
+
+
+def seat_means(rig: Rig, name: str, temperature: NDArray[np.float64]) -> dict[str, float]:
+    """Of one housing; temperature : (n_nodes,) [K]."""
+    surfaces = rig.conduction[name].elements.surfaces
+    return {
+        f"{name}.{part}.{seat}": surfaces[found.surface].mean(temperature)
+        for part in rig.case.gearboxes[name].bearings
+        for seat, found in bearing_seats(rig, f"{name}.{part}").items()
+    }

@@ -300,7 +300,11 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "limits.alignment": _at(checks__alignment=_LIMIT),
     "limits.temperatures": _at(checks__temperatures=_LIMIT),
     "limits.oil": _at(checks__oil=_LIMIT),
-    "limits.bearing": _at(checks__films=_LIMIT, checks__ramp="torque below the transition speed"),
+    "limits.bearing": _at(
+        checks__films=_LIMIT,
+        checks__rolling_bearings=_LIMIT,
+        checks__ramp="torque below the transition speed",
+    ),
     "limits.dynamics": _at(checks__dynamics=_LIMIT),
     "limits.dynamics.dangerous_amplification": _at(records__resonances="which resonances are dangerous"),
     "limits.dynamics.dangerous_force_share": _at(records__resonances="which resonances are dangerous"),

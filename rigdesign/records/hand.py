@@ -204,13 +204,16 @@ def partition_gap(solved: SolvedRig, warm: WarmGearbox, seal: str) -> float | No
 def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: str) -> float | None:
     """Hot diametral clearance [m] of the bearing ``gearbox.bearing``: its end wall widens the bore by its mean strain.
 
-    None for a user's mesh that has no material where the box has its end wall. Source: as `partition_gap`.
+    None for a user's mesh that has no material where the box has its end wall, and for a bearing whose rings move its
+    clearance. Source: as `partition_gap`.
     """
     rig = solved.rig
     name, part = full.split(".")
     box = solved.case.gearboxes[name]
     assert box.housing is not None
     entry, geometry = box.bearings[part], rig.geometries[name]
+    if not entry.has_film:
+        return None
     point = next(p for p in solved.points if p.point.stage == warm.stage)
     field = point.last.fields[name]
     elements, cells = rig.conduction[name].elements, rig.models[name].mesh.bodies["housing"]
@@ -226,7 +229,7 @@ def end_wall_clearance(solved: SolvedRig, warm: WarmGearbox, full: str) -> float
     wide = materials[box.housing.material].expansion_coefficient * (wall - reference)
     thick = materials[box.housing.shafts[entry.shaft].material].expansion_coefficient * (journal - reference)
     spin = centrifugal_expansion(rig, entry, point.point.speed)
-    return entry.diametral_clearance + entry.diameter * (wide - thick) - spin
+    return entry.drawn_clearance + entry.shaft_diameter * (wide - thick) - spin
 
 
 def _mean_temperature(rows: Sequence[HeatFlow], surfaces: tuple[str, ...]) -> float:

@@ -8,6 +8,7 @@ from rigdesign.coupling.alignment import (
     clearance_share,
     coupled_ends,
     coupling_places,
+    held_clearance,
 )
 from rigdesign.coupling.expansion import axes_of, bearing_expansion
 from rigdesign.coupling.loop import PointResult
@@ -103,7 +104,7 @@ def _bearings(rig: Rig, result: PointResult, name: str, shape: Expansion) -> Ite
         film = result.last.bearings[full]
         yield BearingClearance(
             name=full,
-            clearance_as_drawn=entry.diametral_clearance,
+            clearance_as_drawn=entry.drawn_clearance,
             clearance=result.last.coupling_state.bearing_clearance[full],
             bore_ovality=bearing_expansion(rig, name, shape, entry).bore_ovality,
             minimum_film=film.minimum_film,
@@ -119,7 +120,7 @@ def bore_alignments(rig: Rig, result: PointResult, name: str, shape: Expansion) 
         full = f"{name}.{part}"
         expansion = bearing_expansion(rig, name, shape, entry)
         found = expansion.bore_roundness
-        clearance = result.last.coupling_state.bearing_clearance[full]
+        clearance = held_clearance(entry, result.last.coupling_state.bearing_clearance[full])
         yield BoreAlignment(
             bearing=full,
             tilt=expansion.tilt,

@@ -86,6 +86,9 @@ class RunResult:
     dynamics: DynamicsResult | None
     losses: list[LossRow]
     oil: list[OilRow]
+    rolling_bearings: list[dict[str, Any]] = field(default_factory=list)
+    """Per rolling bearing and held stage {bearing, stage, designation, loads, friction torque by source, temperatures,
+    heat into the seats, operating_clearance_um, lives, safety, stiffness}; units in the keys."""
     cooler: list[dict[str, float | str]]
     """Per held stage {stage, losses_W, pump_W, heater_W, cooler_W, room_W, not_heat_W, open_W, flow_l_min}: losses of
     the shafts, jets of the pump and heaters put in what cooler and room take out; losses that are no heat stand

@@ -241,6 +241,11 @@ class Rig:
             for name, bearing in box.bearings.items()
         ]
 
+    def bearing(self, name: str) -> BearingInput:
+        """The bearing ``gearbox.bearing`` of the case."""
+        box, part = name.split(".")
+        return self.case.gearboxes[box].bearings[part]
+
     def shaft_mass(self, shaft: str) -> float:
         """Mass of the sections of a shaft of the drivetrain [kg]; zero without a drivetrain."""
         power = self.case.drivetrain

@@ -26,11 +26,13 @@ from rigdesign.records.dynamics import dynamic_loads
 from rigdesign.records.dynamics_section import dynamics_section
 from rigdesign.records.hand import hand_checks
 from rigdesign.records.housing import compared_temperatures, fields_of
+from rigdesign.records.rolling_bearings import rolling_bearings
 from rigdesign.records.solved_rig import SolvedRig, housing_fields, solved_rig
 from rigdesign.results.check import Check, Checks
 from rigdesign.results.result import Finding, RunResult
 from rigdesign.results.rows.coupling import coupling_row
 from rigdesign.results.rows.housing import cooling_row, loss_rows, oil_rows, thermal_row
+from rigdesign.results.rows.rolling_bearings import rolling_bearing_row
 from rigdesign.results.rows.warm_gearbox import expansion_row
 from rigdesign.rig.model import Rig, build_rig
 from rigdesign.run.dynamic_work import DynamicWork
@@ -148,6 +150,7 @@ def _assemble(solved: SolvedRig, clock: "_Clock") -> RunResult:
         else dynamics_section(rig, solved.run, solved.loads),
         losses=[row for stage, found in losses.items() for row in loss_rows(stage, found)],
         oil=[row for p in points for row in oil_rows(p.point.stage, p.last.streams)],
+        rolling_bearings=[rolling_bearing_row(found) for found in rolling_bearings(rig, points)],
         cooler=[cooling_row(balance) for balance in solved.cooling],
         thermal=[thermal_row(found) for found in solved.temperatures],
         expansion=[expansion_row(warm) for warm in solved.warm],

@@ -145,6 +145,7 @@ def _warmed(rig: Rig, done: IterationResult, after: CouplingState) -> IterationR
         bearing_clearance=after.bearing_clearance,
         axial_expansion=after.axial_expansion,
         bearing_heat=done.bearing_heat,
+        seat_temperature=after.seat_temperature,
     )
     return replace(
         done,

@@ -21,7 +21,7 @@ from rigdesign.run.transient_oil import oil_power_curve, worst_powers
 from rigdesign.run.warnings import oil_at_room_temperature
 from rigdesign.transient.branch import Branch
 from rigdesign.transient.clearances import QUANTITIES, Quantity, smallest
-from rigdesign.transient.limits import clearance_limits
+from rigdesign.transient.limits import clearance_limits, limited
 from rigdesign.transient.phases import SCHEDULE
 from rigdesign.transient.soak import hours
 from rigdesign.transient.thermal_history import TransientRun, run_transient
@@ -154,7 +154,9 @@ def _least(solved: SolvedRig, branches: Sequence[Branch], planned: bool) -> Iter
             (
                 (*smallest(found, quantity), branch, at)
                 for branch in branches
-                for at, found in enumerate(branch.clearances)
+                for at, clearances in enumerate(branch.clearances)
+                for found in (limited(solved.case, clearances),)
+                if found[quantity]
             ),
             key=lambda entry: entry[0],
         )
@@ -176,7 +178,13 @@ def _steady_clearances(solved: SolvedRig) -> Mapping[Quantity, Sequence[float]]:
     return {
         "seal_gap": [seal.minimum for warm in solved.warm for seal in warm.seals],
         "axial_play": [shaft.play for warm in solved.warm for shaft in warm.shafts],
-        "bearing_clearance": [bearing.clearance for warm in solved.warm for bearing in warm.bearings],
+        "bearing_clearance": [
+            bearing.clearance
+            for warm in solved.warm
+            for bearing in warm.bearings
+            if solved.rig.bearing(bearing.name).has_film
+            or not any(e.has_film for _, _, e in solved.rig.bearings())
+        ],
         "backlash": [mesh.backlash for warm in solved.warm for mesh in warm.meshes],
         "tip_clearance": [mesh.tip_clearance for warm in solved.warm for mesh in warm.meshes],
     }

@@ -9,6 +9,7 @@ from dynamics.mesh.flank import reach_beyond
 from dynamics.response.modal_model import DEFAULT_CUTOFF
 from dynamics.response.speed_sweep import CurvePoint
 from rigdesign.base.units import show
+from rigdesign.checks.omissions import thrust
 from rigdesign.coupling.boundary import GEAR_OIL, printed_films
 from rigdesign.coupling.flank_heat import film_of_oil, rim_surfaces
 from rigdesign.coupling.loads import laws_of
@@ -330,5 +331,14 @@ def not_modelled(solved: SolvedRig) -> list[str]:
             )
         single = [name for name, mesh in box.meshes.items() if mesh.helix_angle and not mesh.double_helical]
         if single:
-            items.append(f"{name}: axial force of {', '.join(single)} and its tilting moment on the bearings")
+            journals = [
+                part for part, bearing in box.bearings.items() if bearing.has_film and bearing.locating
+            ]
+            if thrust(solved, name, box):
+                items.append(
+                    f"{name}: axial force of {', '.join(single)} and its tilting moment on the bearings"
+                )
+            elif journals:
+                faces = ", ".join(journals)
+                items.append(f"{name}: axial force of {', '.join(single)} on the thrust faces of {faces}")
     return items

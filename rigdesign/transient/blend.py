@@ -64,6 +64,7 @@ def _network(a: StreamNetwork, b: StreamNetwork, share: float) -> StreamNetwork:
     volumes = _by(b.volumes, lambda v: v.name)
     supplies = _by(b.supplies, lambda s: s.name)
     films = _by(b.films, lambda f: (f.surface, f.kind))
+    links = _by(b.links, lambda link: (link.a, link.b))
     return replace(
         a,
         specific_heat=_mean(a.specific_heat, b.specific_heat, share),
@@ -85,6 +86,10 @@ def _network(a: StreamNetwork, b: StreamNetwork, share: float) -> StreamNetwork:
             for film in a.films
         ),
         streams=_streams(a.streams, b.streams, share),
+        links=tuple(
+            replace(link, conductance=_mean(link.conductance, links[link.a, link.b].conductance, share))
+            for link in a.links
+        ),
     )  # fmt: skip
 
 

@@ -6,6 +6,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from rigdesign.coupling.bearing_seats import WarmBearing
 from rigdesign.coupling.expansion import hot_clearances, named_expansion
 from rigdesign.rig.model import Rig
 from thermal.expansion.expansion import Expansion
@@ -17,9 +18,16 @@ Clearances = Mapping[Quantity, Mapping[str, float]]
 
 
 def clearances(
-    rig: Rig, name: str, temperature: NDArray[np.float64], shape: Expansion, speed: float
+    rig: Rig,
+    name: str,
+    temperature: NDArray[np.float64],
+    shape: Expansion,
+    speed: float,
+    seated: Mapping[str, WarmBearing] | None = None,
 ) -> Clearances:
-    """Every clearance of the housing of gearbox ``name``; speed : where the case counts it [rad/s].
+    """Every clearance of the housing of gearbox ``name``.
+
+    speed : where the case counts it [rad/s]; seated : bearings that conduct heat to their seats, by ``gearbox.bearing``
 
     Gears grow with the mean temperature of their bodies and with their speed, journals with theirs.
     """
@@ -44,7 +52,7 @@ def clearances(
         )
         backlash[full], tip[full] = pair.transverse_backlash, min(pair.tip_clearances)
     play = {b.shaft: b.axial_play for b in box.bearings.values() if b.locating}
-    bearings = hot_clearances(rig, speed, {name: expansion})
+    bearings = hot_clearances(rig, speed, {name: expansion}, seated)
     return {
         "seal_gap": {seal.name: seal.minimum for seal in shape.seals.values()},
         "axial_play": {s.name: play[s.name] - s.axial_play_change for s in shape.shafts.values()},

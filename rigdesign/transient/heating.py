@@ -1,12 +1,14 @@
 """What heats and cools the housings at any time of a phase: every operating point computed once."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from rigdesign.coupling.bearing_seats import WarmBearing, bearings_between
 from rigdesign.coupling.loop import PointResult, governing_point
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.coupling.stage_losses import stage_losses
 from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
+from rigdesign.transient.bearing_nodes import between
 from rigdesign.transient.blend import blended
 from rigdesign.transient.oil import oil_conditions
 from rigdesign.transient.phases import Phase
@@ -44,6 +46,22 @@ class Heating:
             heats = self._rig.case.losses.mesh_damping_heats_oil
             self._states[point] = stage_losses(self._rig, point, self._test, dynamic=heats)
         return self._states[point]
+
+    def seated_bearings(
+        self, name: str, phase: Phase, time: float, seats: Mapping[str, float]
+    ) -> dict[str, WarmBearing]:
+        """Bearings of gearbox ``name`` that conduct heat to their seats, ``time`` [s] into a phase.
+
+        seats : their temperatures [K], by ``gearbox.bearing.seat``
+        """
+        before, after, share = phase.between(time)
+        first, second = (self.state(knot.point).bearings for knot in (before, after))
+        stars = {
+            full: between(old.star, new.star, share, oil=phase.oil)
+            for full, old in first.items()
+            if (new := second[full]).star is not None and old.star is not None and full.split(".")[0] == name
+        }
+        return bearings_between(stars, seats)
 
     def stage(self, name: str, phase: Phase) -> ThermalStage:
         """A phase as the heat model of gearbox ``name`` takes it."""

@@ -15,11 +15,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from rigdesign.case.lubrication import DipOil
+from rigdesign.coupling.bearing_heat import BEARING_LOSS, BEARING_SEATS
 from rigdesign.coupling.boundary import AIR, BEARING_FILM, BEARING_OIL, GEAR_OIL, boundary_conditions
 from rigdesign.coupling.losses import PlacedLoss
 from rigdesign.coupling.point_losses import PointLosses
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, gear_oil, injected_flow, wall_flow
+from rigdesign.transient.bearing_nodes import bearing_nodes, seated_bearings, with_nodes
 from rigdesign.transient.still_air import at_least, still
 from thermal.conditions.boundary import Film
 from thermal.conditions.streams import Stream, StreamNetwork, Supply, Volume, VolumeFilm, VolumeLink
@@ -33,6 +35,8 @@ MOVED = 1.0
 """Step [K] of the outlet by which the share of the inlet in each film is read."""
 THERMOSTAT = 1e6
 """Conductance that ties a held sump to its temperature [W/K]: 10 kW move it by 10 mK."""
+HEATER_AND_COOLER = "heater and cooler"
+"""Kind of that tie."""
 FEED = "feed"
 LEAK = "gear oil leaked"
 
@@ -70,11 +74,31 @@ def oil_conditions(rig: Rig, name: str, state: PointLosses, *, oil: bool) -> tup
         if not (oil or turning or film.kind.startswith(BEARING_FILM)) and film is condition:
             film = replace(film, law=still(floor))
         wetted.append((film, (other.fluid_temperature - condition.fluid_temperature) / MOVED))
-    return (
-        *bodies,
-        _gear_network(rig, name, state, losses, wetted, oil),
-        _bearing_network(rig, name, state, losses, wetted, oil),
+    nodes = bearing_nodes(rig, name, state, losses)
+    seated = {f"{BEARING_FILM}:{part}" for part in nodes}
+    films = [(film, slope) for film, slope in wetted if film.kind not in seated]
+    rest = [c for c in bodies if getattr(c, "kind", "") not in (BEARING_SEATS, BEARING_LOSS)]
+    gears = _gear_network(rig, name, state, losses, films, oil)
+    if rig.case.gearboxes[name].fed_bearings is None:
+        return *rest, with_nodes(gears, nodes, GEAR_OIL if oil else None)
+    return *rest, gears, _bearing_network(rig, name, state, losses, films, oil)
+
+
+def _gear_heat(rig: Rig, name: str, losses: Sequence[PlacedLoss]) -> float:
+    """Losses into the gear oil [W]: with those of bearings that are not fed, but for the friction of nodes."""
+    if rig.case.gearboxes[name].fed_bearings is not None:
+        return math.fsum(p.into_oil - p.into_bearing_oil for p in losses if p.gearbox == name)
+    seated = seated_bearings(rig, name)
+    return math.fsum(
+        placed.into_oil
+        for placed in losses
+        if placed.gearbox == name and not (placed.loss.kind == "bearing" and placed.part in seated)
     )
+
+
+def _gear_kinds(rig: Rig, name: str) -> tuple[str, ...]:
+    """Kinds of the films to the gear oil; bearings that are not fed leave theirs in it."""
+    return (GEAR_OIL,) if rig.case.gearboxes[name].fed_bearings is not None else (GEAR_OIL, BEARING_OIL)
 
 
 def _steady(rig: Rig, name: str, state: PointLosses, losses: Sequence[PlacedLoss]) -> list[Condition]:
@@ -124,9 +148,8 @@ def _gear_network(
         return _sump_network(rig, name, box.sump, state, losses, wetted)
     fed = replace(gear_feed(rig, name, outlet), flow=wall_flow(box))
     feed = f"{GEAR_OIL} {FEED}"
-    stream = _films(GEAR_OIL, feed, fed.inlet, wetted, oil)
-    own = [placed for placed in losses if placed.gearbox == name]
-    power = math.fsum(placed.into_oil - placed.into_bearing_oil for placed in own)
+    stream = _films(GEAR_OIL, feed, fed.inlet, wetted, oil, _gear_kinds(rig, name))
+    power = _gear_heat(rig, name, losses)
     # oil that goes from the meshes straight to the outlet takes its part of their heat along
     flow = fed.mass_flow
     if oil and box.oil_paths.short_circuit:
@@ -157,14 +180,9 @@ def _sump_network(
     chamber = state.coupling_state.oil_outlet[f"{name}.{GEAR_OIL}"]
     feed = f"{GEAR_OIL} {FEED}"
     lubricant = gear_oil(rig, name)
-    fed_bearings = rig.case.gearboxes[name].fed_bearings is not None
-    heat = math.fsum(
-        placed.into_oil - (placed.into_bearing_oil if fed_bearings else 0.0)
-        for placed in losses
-        if placed.gearbox == name
-    )
+    heat = _gear_heat(rig, name, losses)
     specific_heat = lubricant.heat_capacity(chamber)
-    stream = _films(GEAR_OIL, feed, chamber, wetted, oil=False)
+    stream = _films(GEAR_OIL, feed, chamber, wetted, False, _gear_kinds(rig, name))
     return StreamNetwork(
         specific_heat=specific_heat,
         volumes=(
@@ -180,7 +198,7 @@ def _sump_network(
         else (Supply(name=feed, temperature=sump.sump_temperature),),
         links=()
         if sump.sump_temperature is None
-        else (VolumeLink(a=GEAR_OIL, b=feed, conductance=THERMOSTAT, kind="heater and cooler"),),
+        else (VolumeLink(a=GEAR_OIL, b=feed, conductance=THERMOSTAT, kind=HEATER_AND_COOLER),),
     )
 
 
@@ -205,6 +223,7 @@ def _bearing_network(
         _films(BEARING_OIL, feed, fed.inlet, wetted, oil),
         *(_films(f"{BEARING_FILM}:{part}", feed, fed.inlet, wetted, oil) for part in box.bearings),
     ]
+    nodes = bearing_nodes(rig, name, state, losses)
     outlet = state.coupling_state.oil_outlet[f"{name}.{BEARING_OIL}"]
     specific_heat = fed.oil.heat_capacity(fed.mean(outlet))
     each = fed.mass_flow
@@ -218,7 +237,10 @@ def _bearing_network(
             Volume(name=BEARING_OIL, power=others),
             *(Volume(name=f"{BEARING_FILM}:{part}", power=friction[part]) for part in box.bearings),
         ),
-        films=tuple(film for part in parts for film in part.films),
+        films=(
+            *(film for part in parts for film in part.films),
+            *(film for node in nodes.values() for film in node.films),
+        ),
         supplies=(
             Supply(name=feed, temperature=fed.inlet),
             *(() if leak is None else (Supply(name=LEAK, temperature=leak[0]),)),
@@ -260,14 +282,21 @@ def _bearing_streams(feed: str, flows: dict[str, float], each: float, leak: floa
     return (*streams, Stream(source=BEARING_OIL, target=None, mass_flow=total))
 
 
-def _films(kind: str, feed: str, inlet: float, wetted: Sequence[tuple[Film, float]], oil: bool) -> _Stream:
-    """Films of one kind on their volume: each feels as much of the inlet as the steady one does."""
+def _films(
+    kind: str,
+    feed: str,
+    inlet: float,
+    wetted: Sequence[tuple[Film, float]],
+    oil: bool,
+    kinds: tuple[str, ...] = (),
+) -> _Stream:
+    """Films of one kind on their volume, or of several ``kinds``: each feels as much of the inlet as the steady one."""
     films, supplies = [], []
     for film, slope in wetted:
-        if film.kind != kind:
+        if film.kind not in (kinds or (kind,)):
             continue
         if not oil:
-            films.append(VolumeFilm(surface=film.surface, volume=kind, kind=kind, law=film.law))
+            films.append(VolumeFilm(surface=film.surface, volume=kind, kind=film.kind, law=film.law))
         elif slope == 0.0:
             place = f"{film.surface} fluid"
             supplies.append(Supply(name=place, temperature=film.fluid_temperature))

@@ -17,7 +17,7 @@ from rigdesign.coupling.state import OperatingPoint
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import gear_oil, injected_flow, wall_flow
 from rigdesign.transient.heating import Heating
-from rigdesign.transient.oil import LEAK
+from rigdesign.transient.oil import HEATER_AND_COOLER, LEAK
 from rigdesign.transient.phases import Phase, Timeline
 from thermal.conditions.streams import StreamNetwork
 
@@ -108,9 +108,10 @@ def _housing_heats(rig: Rig, heating: Heating, history: OilHistory) -> dict[str,
         outlets = {kind: float(values[at]) for kind, values in history.outlets.items()}
         gear, leaked = _gear_heat(rig, history.gearbox, networks[GEAR_OIL], outlets[GEAR_OIL])
         heats[f"{history.gearbox}.{GEAR_OIL}"][at] = gear - leaked
-        heats[f"{history.gearbox}.{BEARING_OIL}"][at] = _bearing_heat(
-            rig.case, history.gearbox, networks[BEARING_OIL], outlets[BEARING_OIL]
-        )
+        if BEARING_OIL in networks:
+            heats[f"{history.gearbox}.{BEARING_OIL}"][at] = _bearing_heat(
+                rig.case, history.gearbox, networks[BEARING_OIL], outlets[BEARING_OIL]
+            )
     return heats
 
 
@@ -122,7 +123,8 @@ def _gear_heat(rig: Rig, name: str, network: StreamNetwork, outlet: float) -> tu
     box = rig.case.gearboxes[name]
     if box.jets is None:
         held = box.gear_oil_temperature
-        return sum(link.conductance * (outlet - (held or outlet)) for link in network.links), 0.0
+        ties = (link.conductance for link in network.links if link.kind == HEATER_AND_COOLER)
+        return sum(ties) * (outlet - (held or outlet)), 0.0
     inlet = box.jets.inlet_temperature
     flow = sum(stream.mass_flow for stream in network.streams if stream.target is None)
     taken = flow * network.specific_heat * (outlet - inlet)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rigdesign.coupling.alignment import Alignment, alignment
 from rigdesign.coupling.boundary import BEARING_OIL, GEAR_OIL
 from rigdesign.coupling.loop import PointResult
+from rigdesign.coupling.temperatures import seat_means
 from rigdesign.rig.model import Rig
 from rigdesign.transient.branch import Branch
 from rigdesign.transient.clearances import Clearances, clearances
@@ -81,12 +82,12 @@ def run_transient(
     for name in rig.models:
         histories = _histories(rig, heating, name, say)
         say(f"expanding {name} over {sum(len(h.fields) for h in histories)} times")
-        own, missed[name] = _read(rig, name, histories)
+        own, missed[name] = _read(rig, heating, name, histories)
         by_name = {branch.name: branch for branch in own}
 
         def trial(step: int, name: str = name, histories: list[ThermalHistory] = histories) -> bool:
             say(f"{name}: warm-up of {histories[0].solution.times[step] / 3600.0:.2f} h")
-            (tried,), _ = _read(rig, name, [_after_warm_up(rig, heating, name, histories[0], step)])
+            (tried,), _ = _read(rig, heating, name, [_after_warm_up(rig, heating, name, histories[0], step)])
             return first_broken(rig.case, tried) is None
 
         soaks.append(soak_of(rig.case, by_name[SCHEDULE], by_name.get("cold_start"), trial))
@@ -109,11 +110,13 @@ def _oil_history(branch: Branch) -> OilHistory:
     )
 
 
-def _read(rig: Rig, name: str, histories: Sequence[ThermalHistory]) -> tuple[list[Branch], float]:
+def _read(
+    rig: Rig, heating: Heating, name: str, histories: Sequence[ThermalHistory]
+) -> tuple[list[Branch], float]:
     """Clearances of the histories of one housing, and what the patterns of their expansion miss [K]."""
     fields = [np.asarray(field, dtype=np.float64) for history in histories for field in history.fields]
     basis = ExpansionBasis.of(rig.expansion[name], rig.case.ambient.reference_temperature, fields)
-    return [read_branch(rig, name, history, basis) for history in histories], basis.missed
+    return [read_branch(rig, heating, name, history, basis) for history in histories], basis.missed
 
 
 def _after_warm_up(
@@ -200,7 +203,9 @@ def march(
     return ThermalHistory(event, phases, 0.0 if start is None else start.time, solution, fields, ends)
 
 
-def read_branch(rig: Rig, name: str, history: ThermalHistory, basis: ExpansionBasis) -> Branch:
+def read_branch(
+    rig: Rig, heating: Heating, name: str, history: ThermalHistory, basis: ExpansionBasis
+) -> Branch:
     """Clearances and alignment of a history at every time."""
     solution = history.solution
     begins = np.concatenate([[0.0], np.cumsum([phase.duration for phase in history.phases])])
@@ -209,10 +214,12 @@ def read_branch(rig: Rig, name: str, history: ThermalHistory, basis: ExpansionBa
     axes: list[Mapping[str, ShaftAxis]] = []
     for time, number, field in zip(solution.times, solution.stages, history.fields, strict=True):
         phase = history.phases[number]
-        speed = phase.speed(min(float(time - begins[number]), phase.duration))
+        since = min(float(time - begins[number]), phase.duration)
+        speed = phase.speed(since)
         temperature = np.asarray(field, dtype=np.float64)
         shape = basis.shape(temperature)
-        read.append(clearances(rig, name, temperature, shape, speed))
+        seated = heating.seated_bearings(name, phase, since, seat_means(rig, name, temperature))
+        read.append(clearances(rig, name, temperature, shape, speed, seated))
         aligned.append(alignment(rig, name, shape, read[-1]["bearing_clearance"]))
         axes.append(shape.axes)
     return Branch(

@@ -8,6 +8,7 @@ from rigdesign.base.units import show
 from rigdesign.case.component_limits import PLACES, has_result
 from rigdesign.case.faults import unknown, written
 from rigdesign.case.paths import known_paths, nearest_paths
+from rigdesign.case.rules.bearings import bearing_faults
 from rigdesign.case.rules.drivetrain import drivetrain_faults
 from rigdesign.case.rules.gears import gearbox_faults
 from rigdesign.case.rules.losses import loss_faults
@@ -34,6 +35,7 @@ def broken_rules(case: "Case") -> list[Fault]:
     rules: tuple[Callable[[Case], Iterator[Fault]], ...] = (
         _substances,
         gearbox_faults,
+        bearing_faults,
         drivetrain_faults,
         loss_faults,
         lubrication_faults,

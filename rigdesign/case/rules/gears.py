@@ -173,12 +173,6 @@ def _bearings(at: str, box: "Gearbox") -> Iterator[Fault]:
                 f"{here}.locating", "true", f"shaft {bearing.shaft} is fixed axially more than once",
                 "let one bearing per shaft be locating",
             )  # fmt: skip
-        if bearing.diametral_clearance >= 0.05 * bearing.diameter:
-            yield Fault(
-                f"{here}.diametral_clearance", show(bearing.diametral_clearance, "length"),
-                f"is above a twentieth of the diameter {show(bearing.diameter, 'length')}",
-                "write bore minus journal, usually 0.001 to 0.003 of the diameter",
-            )  # fmt: skip
         if bearing.axial_play and not bearing.locating:
             yield Fault(
                 f"{here}.axial_play", show(bearing.axial_play, "length"), "the bearing is not locating",

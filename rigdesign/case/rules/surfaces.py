@@ -76,8 +76,12 @@ def _shafts(at: str, gearbox: Gearbox, housing: Housing) -> Iterator[Fault]:
             )  # fmt: skip
             continue
         front, rear = (bearing_on(gearbox, shaft, side) for side in ("front", "rear"))
-        for key in ("diameter", "width", "diametral_clearance"):
-            if getattr(front, key) != getattr(rear, key):
+        for key, measures in (
+            ("diameter", (front.shaft_diameter, rear.shaft_diameter)),
+            ("width", (front.width, rear.width)),
+            ("bore in the housing", (front.housing_bore, rear.housing_bore)),
+        ):
+            if measures[0] != measures[1]:
                 yield Fault(
                     f"{at}.bearings", "",
                     f"the two bearings of shaft {shaft} differ in {key}, one value per shaft is modelled",

@@ -18,13 +18,15 @@ OIL, BODIES, COOLER, ROOM, HEATERS = "oil", "gears, shafts, housings", "cooler",
 TURNING, STANDING = "gears and shafts", "housing and field"
 WORDS = {
     "mesh_loss": "tooth friction",
-    "bearing": "journal bearings",
+    "bearing": "bearings",
     "squeeze": "squeezed oil",
     "mesh": "tooth friction",
     "air": "room air",
     "radiation": "radiation to the room",
     "bearing_film": "bearing films",
     "exchange": "seal gaps",
+    "bearing_seats": "through rolling bearings",
+    "bearing_loss": "rolling bearings",
 }
 LABEL_ROOM = 0.062
 """Between labels, as a share of the height."""

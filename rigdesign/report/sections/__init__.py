@@ -9,6 +9,7 @@ from rigdesign.report.sections.inputs import DRIVETRAIN_INPUTS, INPUTS
 from rigdesign.report.sections.loads import LOAD_DETAILS, LOADS
 from rigdesign.report.sections.losses import LOSS_DETAILS, LOSSES
 from rigdesign.report.sections.ranges import RANGE_DETAILS, RANGES
+from rigdesign.report.sections.rolling_bearings import ROLLING_BEARINGS
 from rigdesign.report.sections.section import ReportSection
 from rigdesign.report.sections.temperatures import TEMPERATURE_DETAILS, TEMPERATURES
 from rigdesign.report.sections.transient import TRANSIENT
@@ -21,6 +22,7 @@ SECTIONS: tuple[ReportSection, ...] = (
     RANGES,
     LOADS,
     LOSSES,
+    ROLLING_BEARINGS,
     TEMPERATURES,
     VIEWER,
     CLEARANCES,

@@ -229,7 +229,7 @@ def with_films(*states: tuple[float, float, float]) -> SolvedRig:
     """Bearings with (film [um], specific load [MPa], transition speed [rpm]) at 180 N m."""
     bearings = {
         f"test.b{index}": SimpleNamespace(
-            minimum_film=1e-6 * film, specific_load=1e6 * pressure, transition_speed=speed * RPM
+            minimum_film=1e-6 * film, specific_load=1e6 * pressure, transition_speed=speed * RPM, star=None
         )
         for index, (film, pressure, speed) in enumerate(states)
     }
@@ -265,7 +265,7 @@ def test_transition_speed_is_vogelpohls_under_the_load_of_the_start_torque() -> 
 
 def test_a_hotter_room_uses_no_less_of_a_temperature_limit() -> None:
     """A bearing film of 100 degC (limit 120 degC) in rooms of 5 to 40 degC: 80/100 of it is used in each."""
-    film = SimpleNamespace(film_temperature=373.15, minimum_film=2e-5, specific_load=1e6)
+    film = SimpleNamespace(film_temperature=373.15, minimum_film=2e-5, specific_load=1e6, star=None)
     points = [
         held("test", (1.1, 1.2), streams=[], bearings={"test.pinion_front": film},
              coupling_state=SimpleNamespace(gear_temperature={}, bearing_clearance={}))

@@ -1,0 +1,392 @@
+"""Rolling bearing as the case states it: by designation or by the numbers of its catalogue, with fits and clearance."""
+
+from collections.abc import Iterator
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from rigdesign.base.errors import Fault
+from rigdesign.base.units import show
+from rigdesign.case.assumption_record import AssumptionRecord
+from rigdesign.case.bearing_place import BearingPlace, BearingSeats
+from rigdesign.case.fields import (
+    Angle,
+    Deviation,
+    Force,
+    Gap,
+    Length,
+    LinearDamping,
+    LinearStiffness,
+    Name,
+    Part,
+    Play,
+    Positive,
+    Share,
+    Speed,
+    Text,
+    Torque,
+    TorsionalDamping,
+    fault,
+)
+
+if TYPE_CHECKING:
+    from dynamics.bearing.protocol import Bearing
+    from dynamics.bearing.rolling_catalogue import CatalogueBearing
+
+SHAFT_INTERFERENCE = (0.3e-3, 0.0, 0.7e-3)
+"""Effective interference on the shaft over the bore: usual, least, most (k6 with normal tolerances, 30 to 100 mm)."""
+HOUSING_INTERFERENCE = (-0.2e-3, -0.4e-3, 0.0)
+"""Effective interference in the housing over the outside diameter: usual, least, most (H7, loose)."""
+
+Cleanliness = Literal[
+    "extreme cleanliness",
+    "high cleanliness",
+    "normal cleanliness",
+    "slight contamination",
+    "typical contamination",
+    "severe contamination",
+    "very severe contamination",
+]
+
+
+class CatalogueNumbers(Part):
+    """Numbers of a bearing as its catalogue prints them."""
+
+    kind: Literal["deep_groove_ball", "cylindrical_roller", "tapered_roller", "angular_contact_ball"]
+    """Kind of bearing."""
+    series: Text
+    """Dimension series, for the coefficients of its friction, e.g. ``62``, ``2``, ``302``, ``72B``."""
+    bore: Length
+    """Bore d."""
+    outside_diameter: Length
+    """Outside diameter D."""
+    width: Length
+    """Width B; T of a tapered roller bearing."""
+    dynamic_rating: Force
+    """Basic dynamic load rating C."""
+    static_rating: Force
+    """Basic static load rating C_0."""
+    limiting_speed: Speed
+    """Mechanical speed limit."""
+    reference_speed: Speed
+    """Thermal reference speed."""
+    fatigue_limit: Force | None = None
+    """Fatigue load limit; the simplified one of ISO 281 when left out."""
+    contact_angle: Angle = 0.0
+    """Nominal contact angle; of a tapered roller bearing atan(e / 1.5)."""
+    axial_limit: float = Field(default=0.0, ge=0.0)
+    """e of a tapered or angular contact bearing."""
+    axial_factor: float = Field(default=0.0, ge=0.0)
+    """Y of a tapered or angular contact bearing."""
+    static_axial_factor: float = Field(default=0.0, ge=0.0)
+    """Y_0 of a tapered or angular contact bearing."""
+    f_0: Positive | None = None
+    """Factor f_0 of a deep groove ball bearing; that of ISO 76 when left out."""
+    minimum_load_factor: float = Field(default=0.0, ge=0.0)
+    """Minimum load factor k_r of ball and cylindrical roller bearings; 0 asks for no least load."""
+    inner_raceway: Gap = 0.0
+    """Raceway diameter F of a cylindrical roller bearing."""
+    outer_raceway: Gap = 0.0
+    """Raceway diameter E of a cylindrical roller bearing."""
+    carries_axial_load: bool = True
+    """False for NU and N."""
+
+    @model_validator(mode="after")
+    def _computable(self) -> "CatalogueNumbers":
+        from dynamics.bearing.protocol import BearingError
+
+        try:
+            catalogue_data("", self)
+        except BearingError as error:
+            problem, _, remedy = str(error).partition(": ")[2].partition("; ")
+            raise fault(problem, remedy or "correct the number by the catalogue") from None
+        return self
+
+
+class RollingBearingInput(Part):
+    """Rolling bearing."""
+
+    type: Literal["rolling"]
+    """Selects a rolling bearing."""
+    shaft: Name
+    """Shaft that it carries."""
+    side: Literal["front", "rear"]
+    """End of the housing it sits in; the front is where x starts."""
+    designation: Text | None = None
+    """Of a tabled bearing, e.g. ``NU 208``."""
+    catalogue: CatalogueNumbers | None = None
+    """Numbers of a bearing that is not tabled."""
+    locating: bool = False
+    """Fixes its shaft axially and takes the axial force of its gears; one per shaft."""
+    axial_play: Play = 0.0
+    """Free axial travel of the shaft between a stop at this bearing and one at the other, as drawn."""
+    position: Gap | None = None
+    """Distance of its middle from the start of its shaft in the drivetrain."""
+    radial_load: Force | None = None
+    """Load at the held stages; from the tooth forces when left out."""
+    friction_law: Literal["skf", "iso_tr_14179_2"] = "skf"
+    """Law of the friction torque: the four sources of SKF, or ISO/TR 14179-2 (Palmgren)."""
+    oil_kind: Literal["mineral", "synthetic", "transmission"] = "mineral"
+    """Sliding friction of the SKF law in full film."""
+    oil_level: Play | None = None
+    """Oil at rest above the lowest point of the outer raceway; from the level of the sump when left out, 0 for a
+    bearing that is shut off from it."""
+    clearance_class: Literal["C2", "CN", "C3", "C4", "C5"] = "CN"
+    """Class of the radial internal clearance; its middle counts."""
+    radial_clearance: Play | None = None
+    """Radial internal clearance of the unmounted bearing in place of a class; 0 for bearings set at assembly."""
+    shaft_interference: Deviation | None = None
+    """Effective interference of the inner ring on the shaft, on the diameter, negative if loose; 0.0003 of the bore
+    (k6) when left out."""
+    housing_interference: Deviation | None = None
+    """Effective interference of the outer ring in the housing; -0.0002 of the outside diameter (H7) when left out."""
+    seat_outside_diameter: Length | None = None
+    """Outside diameter of the housing round the outer ring; rigid when left out."""
+    contamination: Cleanliness = "normal cleanliness"
+    """Cleanliness of the lubricant, ISO 281 table 13."""
+    contamination_factor: Share | None = None
+    """Factor e_C of ISO 281 in place of ``contamination``."""
+    reliability: Annotated[float, Field(ge=0.9, le=0.99)] = 0.9
+    """Of the rating life."""
+    seal_torque: Torque = 0.0
+    """Friction torque of the bearing's own contact seals."""
+    torsional_damping: TorsionalDamping | None = None
+    """Drag torque over speed, used where ``losses.bearing_drag`` is constant."""
+    radial_stiffness: LinearStiffness | None = None
+    """For the record: the drivetrain is torsional."""
+    radial_damping: LinearDamping | None = None
+    """For the record: the drivetrain is torsional."""
+
+    @field_validator("designation")
+    @classmethod
+    def _tabled(cls, value: str | None) -> str | None:
+        from dynamics.bearing.protocol import BearingError
+
+        try:
+            if value is not None:
+                catalogue_data(value, None)
+        except BearingError as error:
+            problem, _, remedy = str(error).partition(": ")[2].partition("; ")
+            raise fault(problem, remedy) from None
+        return value
+
+    @model_validator(mode="after")
+    def _one_source(self) -> "RollingBearingInput":
+        if (self.designation is None) == (self.catalogue is None):
+            raise fault(
+                "needs either its designation or the numbers of its catalogue",
+                'write designation = "NU 208", or a table catalogue, not both',
+            )
+        return self
+
+    @property
+    def data(self) -> "CatalogueBearing":
+        """Numbers of its catalogue."""
+        return catalogue_data(self.designation or "", self.catalogue)
+
+    @property
+    def label(self) -> str:
+        """Designation, for tables."""
+        return self.data.designation
+
+    @property
+    def shaft_diameter(self) -> float:
+        """Of the seat on the shaft [m]."""
+        return self.data.bore
+
+    @property
+    def housing_bore(self) -> float:
+        """Of the seat in the housing [m]."""
+        return self.data.outside_diameter
+
+    @property
+    def width(self) -> float:
+        """Along the shaft [m]."""
+        return self.data.width
+
+    @property
+    def drawn_clearance(self) -> float:
+        """Radial internal clearance of the unmounted bearing, on the diameter [m]."""
+        from dynamics.bearing.rolling_clearance import class_clearance
+
+        if self.radial_clearance is not None:
+            return self.radial_clearance
+        if self.data.contact_angle > 0.0:
+            return 0.0
+        return 0.5 * sum(class_clearance(self.data, self.clearance_class))
+
+    @property
+    def has_film(self) -> bool:
+        """It joins shaft and housing by rolling elements, not by a film that takes up their heat."""
+        return False
+
+    @property
+    def needs_fed_oil(self) -> bool:
+        """Splash and grease carry a rolling bearing."""
+        return False
+
+    @property
+    def shell_conductance(self) -> None:
+        """It has no shell: the joints of its rings belong to its own heat paths."""
+        return
+
+    @property
+    def interferences(self) -> tuple[float, float]:
+        """On the shaft and in the housing [m]."""
+        on_shaft, in_housing = self.shaft_interference, self.housing_interference
+        data = self.data
+        return (
+            SHAFT_INTERFERENCE[0] * data.bore if on_shaft is None else on_shaft,
+            HOUSING_INTERFERENCE[0] * data.outside_diameter if in_housing is None else in_housing,
+        )
+
+    def induced_axial_load(self, radial: float) -> float:
+        """Axial force that a radial load produces inside the bearing [N]; 0 without a contact angle."""
+        from dynamics.bearing.rolling_life import induced_axial_load
+
+        return induced_axial_load(self.data, radial)
+
+    def as_it_runs(self, place: BearingPlace) -> "Bearing":
+        """The bearing for the solver at its place; BearingError where that is impossible."""
+        from dynamics.bearing.rolling import RollingBearing
+        from dynamics.bearing.rolling_heat import SeatConductances, housing_path, shaft_path
+
+        level = self._oil_level(place)
+        bath = {"fed": "oil_jet", "grease": "grease", "splash": "oil_bath" if level else "oil_spot"}
+        data = self.data
+        return RollingBearing(
+            data=data,
+            law=self.friction_law,
+            lubrication=bath[place.lubrication],  # type: ignore[arg-type]
+            oil_level=level or None,
+            oil_kind=self.oil_kind,
+            clearance=place.clearance,
+            contamination=self.contamination
+            if self.contamination_factor is None
+            else self.contamination_factor,
+            reliability=self.reliability,
+            seal_torque=self.seal_torque,
+            seats=SeatConductances(
+                shaft=place.seat_factors[0] * shaft_path(data).conductance,
+                housing=place.seat_factors[1] * housing_path(data).conductance,
+            ),
+        )
+
+    def running_clearance(self, seats: BearingSeats) -> float:
+        """Radial internal clearance as it runs, on the diameter [m]; negative is preload."""
+        from dynamics.bearing.rolling_clearance import (
+            Fit,
+            RingTemperatures,
+            SeatMaterial,
+            operating_clearance,
+        )
+        from dynamics.bearing.rolling_heat import housing_path, shaft_path
+
+        on_shaft, in_housing = self.interferences
+        data, node = self.data, seats.bearing
+        fit = Fit(
+            shaft_interference=on_shaft,
+            housing_interference=in_housing,
+            shaft_bore=seats.shaft_bore,
+            housing_outside=self.seat_outside_diameter or float("inf"),
+            shaft=SeatMaterial(expansion=seats.shaft_expansion),
+            housing=SeatMaterial(expansion=seats.housing_expansion),
+        )
+        warm = RingTemperatures(
+            shaft=seats.shaft,
+            inner_ring=node - shaft_path(data).ring_share * (node - seats.shaft),
+            elements=node,
+            outer_ring=node - housing_path(data).ring_share * (node - seats.housing),
+            housing=seats.housing,
+        )
+        return operating_clearance(data, self.drawn_clearance, fit, warm).clearance
+
+    def own_faults(self, at: str) -> Iterator[Fault]:
+        """What is wrong with it whatever stands around it."""
+        data = self.data
+        if self.locating and not data.locating:
+            yield Fault(
+                f"{at}.locating", "true", f"{data.designation} carries no axial load: its rings move past each other",
+                "let the other bearing locate the shaft, or take NJ, NUP or a ball bearing",
+            )  # fmt: skip
+        if self.oil_level is not None and self.oil_level > data.outside_diameter:
+            yield Fault(
+                f"{at}.oil_level", show(self.oil_level, "length"),
+                f"is above the outside diameter {show(data.outside_diameter, 'length')}",
+                "count it from the lowest point of the outer raceway",
+            )  # fmt: skip
+        if self.seat_outside_diameter is not None and self.seat_outside_diameter <= data.outside_diameter:
+            yield Fault(
+                f"{at}.seat_outside_diameter", show(self.seat_outside_diameter, "length"),
+                f"is not above the outside diameter {show(data.outside_diameter, 'length')} of the bearing",
+                "write the outside diameter of the boss, or leave it out for a rigid one",
+            )  # fmt: skip
+        if self.radial_clearance is None and data.contact_angle == 0.0:
+            yield from self._unclassed(at)
+        for key, value, size in (
+            ("shaft_interference", self.shaft_interference, data.bore),
+            ("housing_interference", self.housing_interference, data.outside_diameter),
+        ):
+            if value is not None and abs(value) > 2e-3 * size:
+                yield Fault(
+                    f"{at}.{key}", show(value, "length"),
+                    f"is more than two thousandths of the seat {show(size, 'length')}",
+                    "write the interference on the diameter, usually 0 to 0.0007 of it",
+                )  # fmt: skip
+
+    def assumptions(self, at: str) -> Iterator[AssumptionRecord]:
+        """What takes the place of keys that are left out."""
+        data = self.data
+        for key, value, size, shares, fit in (
+            ("shaft_interference", self.shaft_interference, data.bore, SHAFT_INTERFERENCE, "k6"),
+            (
+                "housing_interference", self.housing_interference, data.outside_diameter, HOUSING_INTERFERENCE,
+                "H7",
+            ),
+        ):  # fmt: skip
+            if value is None:
+                usual, least, most = (f"{1e6 * share * size:.0f} um" for share in shares)
+                yield AssumptionRecord(
+                    path=f"{at}.{key}",
+                    value=usual,
+                    reason=f"not stated: effective interference of a {fit} seat; it moves the operating clearance",
+                    range=(least, most),
+                )
+
+    def _unclassed(self, at: str) -> Iterator[Fault]:
+        from dynamics.errors import DynamicsInputError
+
+        try:
+            _ = self.drawn_clearance
+        except DynamicsInputError as error:
+            yield Fault(
+                f"{at}.clearance_class", f'"{self.clearance_class}"', str(error), "write radial_clearance instead"
+            )  # fmt: skip
+
+    def _oil_level(self, place: BearingPlace) -> float:
+        """Oil above the lowest point of the outer raceway [m]; 0 where none stands there."""
+        data = self.data
+        if self.oil_level is not None:
+            return self.oil_level
+        if place.sump_level is None:
+            return 0.0
+        level = 0.5 * data.elements.outer_raceway + place.sump_level
+        return min(max(level, 0.0), data.outside_diameter)
+
+
+@cache
+def catalogue_data(designation: str, numbers: CatalogueNumbers | None) -> "CatalogueBearing":
+    """Numbers of a tabled bearing, or those of the case.
+
+    Raises
+    ------
+    BearingError
+        A designation that is not tabled, numbers that do not go together.
+    """
+    from dynamics.bearing.rolling_catalogue import CatalogueBearing, catalogue_bearing
+
+    if numbers is None:
+        return catalogue_bearing(designation)
+    given = dict(numbers)
+    return CatalogueBearing(designation="of the case", locating=given.pop("carries_axial_load"), **given)

@@ -1,0 +1,99 @@
+"""Seats of bearings that conduct their heat into shaft and housing: where they are, how warm they are.
+
+A rolling bearing is one node between the surface of its shaft, its bore in the housing and its oil (`HeatStar`). The
+surfaces that the case covers with ``bearing_film`` take its heat; where another condition covers one, or the gearbox
+has no housing, that seat takes none and the oil carries all.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from dynamics.bearing.protocol import BearingState, HeatStar
+from rigdesign.case.geometry import matched
+from rigdesign.case.surface_conditions import BearingFilm
+from rigdesign.coupling.state import CouplingState
+from rigdesign.rig.model import Rig
+
+SHAFT, HOUSING = "shaft", "housing"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Seat:
+    """A surface that takes heat of a bearing, and the factor on the conductance to it."""
+
+    surface: str
+    factor: float
+
+
+def bearing_seats(rig: Rig, name: str) -> dict[str, Seat]:
+    """Seats by `SHAFT` and `HOUSING` of the bearing ``gearbox.bearing``; only those that take its heat."""
+    box_name, part = name.split(".")
+    box = rig.case.gearboxes[box_name]
+    entry, housing = box.bearings[part], box.housing
+    if housing is None or entry.has_film:
+        return {}
+    places = {
+        SHAFT: f"shaft_{entry.shaft}_journal_{entry.side}",
+        HOUSING: f"bearing_bore_{entry.shaft}_{entry.side}",
+    }
+    known = rig.surface_names(box_name)
+    return {
+        seat: Seat(surface=surface, factor=housing.bearing_film_factor * condition.film_factor)
+        for condition in housing.boundary.values()
+        if isinstance(condition, BearingFilm)
+        for seat, surface in places.items()
+        if surface in known and matched(condition.surfaces, (surface,))
+    }
+
+
+def initial_seats(rig: Rig, temperature: float) -> dict[str, float]:
+    """All seats at one temperature [K], by ``gearbox.bearing.seat``."""
+    return {
+        f"{name}.{seat}": temperature for name, _, _ in rig.bearings() for seat in bearing_seats(rig, name)
+    }
+
+
+def seats_of(name: str, state: CouplingState) -> tuple[float | None, float | None]:
+    """Temperatures of the seats of a bearing on shaft and in housing [K]; None for one that takes no heat."""
+    known = state.seat_temperature
+    return known.get(f"{name}.{SHAFT}"), known.get(f"{name}.{HOUSING}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class WarmBearing:
+    """Temperatures of a bearing and of its seats on the shaft and in the housing [K]."""
+
+    shaft: float
+    bearing: float
+    housing: float
+
+
+def bearing_temperatures(
+    bearings: Mapping[str, BearingState], seats: Mapping[str, float]
+) -> dict[str, WarmBearing]:
+    """Every bearing that conducts heat to its seats, by ``gearbox.bearing``.
+
+    seats : temperatures [K] by ``gearbox.bearing.seat``
+    """
+    return bearings_between(
+        {name: state.star for name, state in bearings.items() if state.star is not None}, seats
+    )
+
+
+def bearings_between(stars: Mapping[str, HeatStar], seats: Mapping[str, float]) -> dict[str, WarmBearing]:
+    """Bearings by ``gearbox.bearing`` between their seats; a seat that takes no heat is as warm as its bearing."""
+    return {
+        name: warm_bearing(star, (seats.get(f"{name}.{SHAFT}"), seats.get(f"{name}.{HOUSING}")))
+        for name, star in stars.items()
+    }
+
+
+def warm_bearing(star: HeatStar, seats: tuple[float | None, float | None]) -> WarmBearing:
+    """A bearing between seats of these temperatures [K]; None for one that takes no heat."""
+    shaft, housing = (star.oil_temperature if seat is None else seat for seat in seats)
+    node = star.node(shaft, housing)
+    return WarmBearing(
+        shaft=node if seats[0] is None else shaft,
+        bearing=node,
+        housing=node if seats[1] is None else housing,
+    )

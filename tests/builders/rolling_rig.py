@@ -1,0 +1,52 @@
+"""FZG rigs on NU 406 and NJ 406: dip, splash, grease or fed oil, some shafts on plain bearings."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from tests.builders.fzg_case import fzg_case
+
+SPLASH = 'bearing_oil = { lubrication = "splash" }\n'
+GREASE = 'bearing_oil = { lubrication = "grease", oil = "FVA 3" }\n'
+FED = 'bearing_oil = { oil = "FVA 3", inlet_temperature = "90 degC", flow = "0.5 l/min" }\n'
+DIP = 'oil = { lubrication = "dip", oil = "FVA 3", level = "0 mm", volume = "1.25 l", sump_temperature = "90 degC" }\n'
+JOURNAL = 'diameter = "30 mm"\nwidth = "23 mm"\ndiametral_clearance = "50 um"\n'
+
+
+def rolling_case(
+    folder: Path,
+    *,
+    test_oil: str = SPLASH,
+    slave_oil: str = SPLASH,
+    dip: bool = True,
+    plain: Sequence[str] = (),
+    law: str = "iso_tr_14179_2",
+) -> Path:
+    """Write the case; plain : shafts that stay on plain bearings with their given losses."""
+    parts = re.split(r"(?=^\[)", fzg_case(folder).read_text(), flags=re.MULTILINE)
+    kept = (_part(part, plain, law) for part in parts if not _given_bearing(part, plain))
+    text = "".join(
+        part for part in kept if not (dip and part.startswith("[losses.given") and "windage" in part)
+    )
+    oils = iter((test_oil, slave_oil))
+    text = re.sub(r"^bearing_oil = \{.*\n", lambda _: next(oils), text, flags=re.MULTILINE)
+    if dip:
+        text = re.sub(r"^oil = \{ oil.*\n", DIP, text, flags=re.MULTILINE)
+    path = folder / "case.toml"
+    path.write_text(text)
+    return path
+
+
+def _given_bearing(part: str, plain: Sequence[str]) -> bool:
+    """A given loss of a bearing that is a rolling bearing here."""
+    return 'kind = "bearing"' in part and not any(
+        f'"{box}"' in part and f'part = "{gear}_' in part
+        for box, _, gear in (shaft.partition("_") for shaft in plain)
+    )
+
+
+def _part(part: str, plain: Sequence[str], law: str) -> str:
+    if ".bearings." not in part.split("]")[0] or any(f'shaft = "{shaft}"' in part for shaft in plain):
+        return part
+    designation = "NJ 406" if "locating = true" in part else "NU 406"
+    return part.replace(JOURNAL, f'type = "rolling"\ndesignation = "{designation}"\nfriction_law = "{law}"\n')

@@ -1,0 +1,178 @@
+"""Rolling bearings in the coupling loop: one node between shaft, housing and oil, and what loads it."""
+
+import math
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from dynamics.bearing.protocol import BearingOperation, HeatStar, OilSupply
+from dynamics.bearing.rolling import RollingBearing
+from dynamics.bearing.rolling_catalogue import catalogue_bearing
+from dynamics.bearing.rolling_heat import SeatConductances, shaft_path
+from rigdesign import load_case
+from rigdesign.case.bearing_place import BearingSeats
+from rigdesign.coupling.bearing_films import solve_bearings
+from rigdesign.coupling.bearing_heat import conductances
+from rigdesign.coupling.bearing_loads import bearing_loads
+from rigdesign.coupling.initial_state import initial_state
+from rigdesign.coupling.loads import mesh_models
+from rigdesign.coupling.losses import rotating_losses
+from rigdesign.coupling.oil import oil_streams
+from rigdesign.coupling.point_losses import PointLosses
+from rigdesign.coupling.state import CouplingState, OperatingPoint
+from rigdesign.coupling.temperatures import (
+    heat_into_films,
+    heat_into_oil,
+    seat_temperatures,
+    solve_housing,
+    sump_temperatures,
+)
+from rigdesign.coupling.time_run import held_points
+from rigdesign.rig.model import Rig, build_rig
+from rigdesign.transient.oil import oil_conditions
+from tests.builders.rolling_rig import FED, GREASE, SPLASH, rolling_case
+from thermal.conduction.steady import solve_steady
+
+OIL = OilSupply(
+    inlet_temperature=353.15, flow=2e-6, viscosity=lambda _: 0.02, density=850.0, heat_capacity=2000.0
+)
+
+
+def test_one_bearing_against_a_network_by_hand() -> None:
+    """G_s = 2, G_h = 4, C = 3.4 W/K between 95, 85 and 80 degC: T = (P + 2*95 + 4*85 + 3.4*80) / 9.4."""
+    bearing = RollingBearing(data=catalogue_bearing("NU 208"), seats=SeatConductances(shaft=2.0, housing=4.0))
+    state = bearing.operating_state(
+        BearingOperation(
+            load=4000.0, speed=150.0, oil=OIL, shaft_temperature=368.15, housing_temperature=358.15
+        )
+    )
+    by_hand = (state.power + 2.0 * 95.0 + 4.0 * 85.0 + 3.4 * 80.0) / 9.4
+    assert state.film_temperature - 273.15 == pytest.approx(by_hand, abs=1e-6)
+    star = state.star
+    assert star is not None and star.heat == pytest.approx(state.power, rel=1e-9)
+    assert star.node(368.15, 358.15) == pytest.approx(state.film_temperature, abs=1e-9)
+
+
+def test_star_and_triangle_carry_the_same() -> None:
+    """Into the shaft: G_s (T - T_s) of the star = exchange + film + source of the triangle, written out."""
+    star = HeatStar(shaft=2.0, housing=4.0, oil=3.4, oil_temperature=353.15, heat=40.0)
+    shaft, housing = 368.15, 358.15
+    exchange = 2.0 * 4.0 / 9.4 * (housing - shaft)
+    film = 2.0 * 3.4 / 9.4 * (353.15 - shaft)
+    assert 2.0 * (star.node(shaft, housing) - shaft) == pytest.approx(
+        exchange + film + 40.0 * 2.0 / 9.4, rel=1e-12
+    )
+
+
+@cache
+def _solved(oil: str) -> tuple[Rig, PointLosses]:
+    """The test gearbox at the held stage, its bearings at the seats that the field gives."""
+    with TemporaryDirectory() as folder:
+        rig = build_rig(load_case(rolling_case(Path(folder), test_oil=oil)), "quick")
+    point = held_points(rig)[0]
+    state = initial_state(rig, point)
+    state = replace(state, seat_temperature=dict.fromkeys(state.seat_temperature, 363.15))
+    models = mesh_models(rig, point, state)
+    for _ in range(2):
+        losses = _losses(rig, point, state, models)
+        field = solve_housing(rig, "test", losses)
+        state = replace(state, seat_temperature=seat_temperatures(rig, {"test": field}))
+    return rig, _losses(rig, point, state, models)
+
+
+def _losses(rig: Rig, point: OperatingPoint, state: CouplingState, models: object) -> PointLosses:
+    bearings = solve_bearings(rig, point, state)
+    losses = rotating_losses(rig, point, state, models, bearings)  # type: ignore[arg-type]
+    return PointLosses(point=point, coupling_state=state, bearings=bearings, losses=tuple(losses))
+
+
+@pytest.mark.parametrize(("oil", "passing"), [(SPLASH, True), (GREASE, False), (FED, True)])
+def test_the_field_closes_and_takes_what_the_bearings_give(oil: str, passing: bool) -> None:
+    rig, losses = _solved(oil)
+    field = solve_housing(rig, "test", losses)
+    assert abs(field.solution.balance.closure) < 1e-6
+    seats, rows = seat_temperatures(rig, {"test": field}), field.solution.balance.rows
+    for part in ("pinion_front", "wheel_rear"):
+        full = f"test.{part}"
+        star = losses.bearings[full].star
+        assert star is not None and (star.oil > 0.0) == passing
+        shaft, housing = seats[f"{full}.shaft"], seats[f"{full}.housing"]
+        node = star.node(shaft, housing)
+        assert node == pytest.approx(losses.bearings[full].film_temperature, abs=0.02)
+        for (seat, conductance), wall in zip(conductances(rig, full, star), (shaft, housing), strict=True):
+            kinds = (f"bearing_film:{part}", "bearing_seats", "bearing_loss")
+            taken = math.fsum(row.power for row in rows if row.surface == seat.surface and row.kind in kinds)
+            assert taken == pytest.approx(conductance * (node - wall), abs=1e-3)
+    # what the bodies do not take, the oil does: all heat of the gearbox is in its streams
+    heat, films = heat_into_oil(field), heat_into_films(field)
+    none = {f"{name}.{kind}": 0.0 for name in rig.case.gearboxes for kind in ("gear_oil", "bearing_oil")}
+    films = dict.fromkeys(losses.bearings, 0.0) | films
+    sumps = sump_temperatures(rig, {"test": field})
+    streams = oil_streams(rig, losses.losses, films, none | heat, sumps)
+    into_oil = math.fsum(stream.heat for stream in streams if stream.name.startswith("test."))
+    given = math.fsum(p.loss.power + p.pumped for p in losses.losses if p.gearbox == "test")
+    away = math.fsum(row.power for row in rows if row.kind in ("air", "radiation"))
+    assert into_oil == pytest.approx(given + away, rel=1e-6)
+
+
+@pytest.mark.parametrize("oil", [SPLASH, FED])
+def test_over_time_a_held_stage_is_the_steady_one_and_without_oil_the_seats_take_all(oil: str) -> None:
+    rig, losses = _solved(oil)
+    steady = solve_steady(rig.conduction["test"], oil_conditions(rig, "test", losses, oil=True))
+    for part in ("pinion_front", "wheel_rear"):
+        full = f"test.{part}"
+        node = steady.volumes[f"bearing_film:{part}"]
+        assert node == pytest.approx(losses.bearings[full].film_temperature, abs=0.3)
+    if oil == FED:
+        return  # no surface of this housing is wetted by the oil of the bearings once it is gone
+    dry = solve_steady(rig.conduction["test"], oil_conditions(rig, "test", losses, oil=False))
+    rows = [row for row in dry.balance.rows if row.kind == "bearing_film:pinion_front" and row.area > 0.0]
+    assert math.fsum(row.power for row in rows) == pytest.approx(
+        losses.bearings["test.pinion_front"].power, rel=1e-4
+    )
+    assert not [row for row in dry.balance.rows if row.kind in ("bearing_seats", "bearing_loss")]
+
+
+def test_fits_and_temperatures_make_the_operating_clearance(tmp_path: Path) -> None:
+    """CN 20 to 45 um; 9 um on a solid shaft widen the raceway by d/F of it; 10 K of the shaft add 30 mm alpha 10 K."""
+    entry = load_case(rolling_case(tmp_path)).gearboxes["test"].bearings["pinion_front"]
+    cold = BearingSeats(
+        bore_less_journal=0.0, spin=0.0, shaft=293.15, bearing=293.15, housing=293.15,
+        shaft_expansion=11.5e-6, housing_expansion=11.5e-6,
+    )  # fmt: skip
+    assert entry.drawn_clearance == pytest.approx(32.5e-6)
+    assert (entry.shaft_diameter, entry.housing_bore) == (0.03, 0.09)
+    share = 0.03 / catalogue_bearing("NU 406").elements.inner_raceway
+    assert entry.running_clearance(cold) == pytest.approx(32.5e-6 - 9e-6 * share, rel=1e-6)
+    warm = entry.running_clearance(replace(cold, shaft=303.15))
+    ring = 10.0 * shaft_path(catalogue_bearing("NU 406")).ring_share  # the inner ring follows its seat
+    grown = 9e-6 + 0.03 * (11.5e-6 * 10.0 - 12.5e-6 * ring)
+    raceway = 12.5e-6 * ring * 0.03 / share
+    assert warm == pytest.approx(32.5e-6 - grown * share - raceway, rel=1e-6)
+
+
+def test_axial_force_goes_to_the_locating_bearing_and_tilts_the_shaft(tmp_path: Path) -> None:
+    """15 degrees: F_a = T / r tan(beta), on NJ 406; over 139 mm between the bearings F_a r_w loads both."""
+    path = rolling_case(tmp_path, dip=False, test_oil=FED, slave_oil=FED)
+    path.write_text(
+        path.read_text().replace(
+            'normal_module = "4.5 mm"', 'normal_module = "4.35 mm", helix_angle = "15 deg"'
+        )
+    )
+    rig = build_rig(load_case(path), "quick")
+    state = initial_state(rig, held_points(rig)[0])
+    loads = bearing_loads(rig, state)
+    pair, torque = rig.pairs["test.main"], state.mesh_torque["test.main"]
+    axial = torque / pair.gears[0].reference_radius * math.tan(math.radians(15.0))
+    assert loads["test.pinion_rear"].axial == pytest.approx(axial, rel=1e-9)
+    assert loads["test.pinion_front"].axial == 0.0
+    weight = 9.81 * (0.5 * rig.shaft_mass("test_pinion") + 0.5 * pair.masses[0])
+    force = 0.5 * torque / pair.base_radii[0]
+    alpha = pair.working_pressure_angle
+    by_hand = math.hypot(
+        force * math.cos(alpha) + weight, force * math.sin(alpha) + axial * pair.working_radii[0] / 0.139
+    )
+    assert loads["test.pinion_front"].radial == pytest.approx(by_hand, rel=1e-9)
