@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from rigdesign.case.defaults.known import relaxed
 from rigdesign.case.model import Case
 
 _MARK_PROPERTIES: dict[str, Any] = {
@@ -21,8 +22,12 @@ _MARK_PROPERTIES: dict[str, Any] = {
 
 
 def json_schema() -> dict[str, Any]:
-    """Schema of a case file (draft 2020-12): patterns for quantities, choices, names, descriptions."""
+    """Schema of a case file (draft 2020-12): patterns for quantities, choices, names, descriptions.
+
+    A key is required only if the tool knows no default for it.
+    """
     schema = Case.model_json_schema()
+    relaxed(schema)
     for table in [schema, *schema.get("$defs", {}).values()]:
         properties = table.get("properties", {})
         for name, entry in properties.items():
