@@ -190,7 +190,8 @@ BAD = [
         "helical gear",
     ),
     (
-        'drivetrain = { remove = ["couplings"], couplings = {}, bracing.mode = "twist_held", bracing.remove = ["coupling"] }',
+        'drivetrain = { remove = ["couplings"], couplings = {}, '
+        'bracing = { mode = "twist_held", remove = ["coupling"] } }',
         "drivetrain.bracing.coupling",
         "needs the coupling",
         "name a coupling",
@@ -557,10 +558,8 @@ def test_a_stage_whose_name_is_no_text_is_a_fault(tmp_path: Path) -> None:
 
 
 def test_losses_need_a_drivetrain_or_to_be_given(tmp_path: Path) -> None:
-    found = {
-        fault.path: fault
-        for fault in faults(tmp_path, 'remove = ["drivetrain"]\ngearboxes.remove = ["reference"]')
-    }
+    text = 'remove = ["drivetrain"]\ngearboxes.remove = ["reference"]'
+    found = {fault.path: fault for fault in faults(tmp_path, text)}
     assert "with a drivetrain" in found["losses.basis"].problem
     assert "[drivetrain]" in found["losses.basis"].remedy
 
