@@ -74,7 +74,7 @@ def written_out(tree: Mapping[str, Any], file: str) -> tuple[dict[str, Any], Equ
     Raises
     ------
     CaseError
-        A gearbox like one that is not there, or like itself; all of them at once.
+        A gearbox like one that is not there, or like itself, all of them at once; keys removed that are not there.
     """
     boxes = unmarked(tree.get("gearboxes"))
     if not isinstance(boxes, dict):
@@ -84,7 +84,10 @@ def written_out(tree: Mapping[str, Any], file: str) -> tuple[dict[str, Any], Equ
         raise CaseError(faults, file)
     full: dict[str, Any] = {}
     for name in boxes:
-        full[name] = _copied(name, boxes, like)
+        try:
+            full[name] = _copied(name, boxes, like)
+        except CaseError as error:
+            raise CaseError(error.faults, file) from None
     bearings: dict[tuple[str, str], frozenset[str]] = {}
     for name, box in full.items():
         if isinstance(box, dict):
@@ -124,7 +127,8 @@ def _copied(name: str, boxes: Mapping[str, Any], like: Mapping[str, str]) -> Any
     try:
         return merge(_renamed(taken, like[name], name), copy.deepcopy(own))
     except CaseError as error:
-        raise CaseError(f"gearboxes.{name}: {error}") from None
+        problem, _, remedy = str(error).partition("; ")
+        raise CaseError([Fault(f"gearboxes.{name}", "", problem, remedy)]) from None
 
 
 def _renamed(box: dict[str, Any], old: str, new: str) -> dict[str, Any]:

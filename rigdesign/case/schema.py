@@ -36,6 +36,7 @@ def json_schema() -> dict[str, Any]:
         "type": "string",
         "description": "case file this one is laid over; required keys may then be left out",
     }
+    schema["$defs"] |= {f"mark_{name}": entry for name, entry in _MARK_PROPERTIES.items()}
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     return schema
 
@@ -51,7 +52,10 @@ def _with_marks(entry: dict[str, Any]) -> dict[str, Any]:
     value = {key: item for key, item in entry.items() if key not in ("title", "description", "default")}
     marked = {
         "type": "object",
-        "properties": {"value": value, **_MARK_PROPERTIES},
+        "properties": {
+            "value": value,
+            **{name: {"$ref": f"#/$defs/mark_{name}"} for name in _MARK_PROPERTIES},
+        },
         "required": ["value"],
         "additionalProperties": False,
     }

@@ -5,6 +5,7 @@ from rigdesign.case.defaults.parts import (
     bearing_width,
     mesh_of,
     normal_module,
+    only_mesh,
     section_diameter,
     shaft_diameter,
     shafts_of,
@@ -193,16 +194,37 @@ def _jet_flow(tree: RawTree, box: str) -> Filling:
 
 @book.default("gearboxes.*.oil.volume")
 def _sump_volume(tree: RawTree, box: str) -> Filling:
-    at = f"gearboxes.{box}.housing"
-    level, axis = tree.length(f"gearboxes.{box}.oil.level"), tree.length(f"{at}.shaft_height")
-    length, width = tree.length(f"{at}.warm_length"), tree.length(f"{at}.width")
-    if not _dips(tree, box) or None in (level, axis, length, width):
+    level = tree.length(f"gearboxes.{box}.oil.level")
+    if not _dips(tree, box) or level is None:
         return None
-    wall, floor = (tree.length(f"{at}.{key}") or 0.01 for key in ("wall_thickness", "floor_thickness"))
-    assert level is not None and axis is not None and length is not None and width is not None
+    if not tree.has(f"gearboxes.{box}.housing"):
+        return _volume_round_gears(tree, box, level)
+    at = f"gearboxes.{box}.housing"
+    keys = ("warm_length", "width", "wall_thickness", "shaft_height", "floor_thickness")
+    sizes = [tree.length(f"{at}.{key}") for key in keys]
+    known = [size for size in sizes if size is not None]
+    if len(known) < len(keys):
+        return None
+    length, width, wall, axis, floor = known
     litres = 1e3 * length * (width - 2.0 * wall) * (axis + level - floor)
     reason = "chamber up to the oil level, without gears"
     return around(litres, "l", reason, (0.7, 1.1)) if litres > 0.0 else None
+
+
+def _volume_round_gears(tree: RawTree, box: str, level: float) -> Filling:
+    """A gearbox without a housing: walls 20 mm off the tips, 30 mm off the faces of its only pair."""
+    mesh = f"gearboxes.{box}.meshes.{only_mesh(tree, box)}"
+    module, distance = tree.length(f"{mesh}.normal_module"), tree.length(f"{mesh}.centre_distance")
+    gears = [f"gearboxes.{box}.gears.{tree.text(f'{mesh}.{side}')}" for side in ("pinion", "wheel")]
+    teeth = [number for gear in gears if (number := tree.number(f"{gear}.teeth")) is not None]
+    faces = [face for gear in gears if (face := tree.length(f"{gear}.face_width")) is not None]
+    if module is None or distance is None or len(teeth) < 2 or not faces:
+        return None
+    width = distance + module * (0.5 * sum(teeth) + 2.0) + 0.04
+    depth = module * (0.5 * max(teeth) + 1.0) + 0.02 + level
+    litres = 1e3 * width * (max(faces) + 0.06) * depth
+    reason = "box with walls 20 mm off the tips and 30 mm off the faces of the gears"
+    return around(litres, "l", reason) if litres > 0.0 else None
 
 
 @book.default("gearboxes.*.bearing_oil")
