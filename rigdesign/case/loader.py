@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from rigdesign.base import units
 from rigdesign.base.errors import CaseError, Fault
-from rigdesign.case.defaults.fill import with_defaults
+from rigdesign.case.defaults.fill import filled_as_a_whole, with_defaults
 from rigdesign.case.equal_parts import EqualParts, written_out
 from rigdesign.case.faults import faults_of, written
 from rigdesign.case.model import Case, Origin
@@ -53,12 +53,12 @@ def changed_together(case: Case, values: Mapping[str, object]) -> Case:
             raise CaseError([Fault(path, "", "no such path in this case", remedy)], str(case.path))
         for place, slot in found.items():
             keys, new = place.split("."), _coerced(value, slot)
-            if _stands(stated, keys) or not _stands(case.origin.tree, keys):
+            if _stands(stated, keys):
                 stated = _replaced(stated, keys, new)
             else:
                 left_out.append((keys, new))
     for keys, new in left_out:
-        stated = _replaced(_with_default(stated, with_defaults(stated), keys), keys, new)
+        stated = _replaced(_with_default(stated, keys), keys, new)
     return _build(stated, case.path, EqualParts({}, {}, {}))
 
 
@@ -79,15 +79,23 @@ def _stands(tree: Any, keys: Sequence[str]) -> bool:
     return True
 
 
-def _with_default(stated: Any, filled: Any, keys: Sequence[str]) -> Any:
-    """``stated`` with the default that a path leads into, down from the first key that it leaves out."""
-    if not keys or not isinstance(stated, Mapping) or is_marked(stated) or not isinstance(filled, Mapping):
-        return stated
-    key = keys[0]
-    if key not in filled:
-        return stated
-    below = _with_default(stated[key], filled[key], keys[1:]) if key in stated else filled[key]
-    return {**stated, key: below}
+def _with_default(stated: Mapping[str, Any], keys: Sequence[str]) -> Mapping[str, Any]:
+    """``stated`` with the table or list around a path that a rule fills in as a whole, so that one of its values can
+    be replaced; the other defaults still follow the rest of the case."""
+    for depth in range(1, len(keys)):
+        above = keys[:depth]
+        if not _stands(stated, above) and filled_as_a_whole(".".join(above)):
+            tree = with_defaults(stated)
+            if _stands(tree, above):
+                return dict(_replaced(stated, above, _node(tree, above)))
+    return stated
+
+
+def _node(tree: Any, keys: Sequence[str]) -> Any:
+    """What stands at a path of names, with its marks."""
+    for key in keys:
+        tree = tree["value"][key] if is_marked(tree) else tree[key]
+    return tree
 
 
 def _build(stated: Mapping[str, Any], file: Path, equal: EqualParts) -> Case:

@@ -49,9 +49,9 @@ def _stub(tree: RawTree, box: str, shaft: str) -> float | None:
 
 
 def _start(tree: RawTree, box: str, shaft: str) -> float | None:
-    """Place of the front bearing on a shaft that the case does not draw [m]; None for any other."""
+    """Place of the front bearing on a shaft [m]; None in a circuit of another kind."""
     boxes = _two_boxes(tree)
-    if box not in boxes or tree.has(f"drivetrain.shafts.{shaft}.sections"):
+    if box not in boxes:
         return None
     return 0.0 if box == boxes[0] else _stub(tree, box, shaft)
 
@@ -84,7 +84,7 @@ def _gear_position(tree: RawTree, box: str, gear: str) -> Filling:
     )
 
 
-@book.default("drivetrain.shafts")
+@book.default("drivetrain.shafts", completes=True)
 def _shafts(tree: RawTree) -> Filling:
     return {shaft: {} for box in _two_boxes(tree) for shaft in shafts_of(tree, box)} or None
 

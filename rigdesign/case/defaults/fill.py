@@ -8,6 +8,7 @@ from rigdesign.case.defaults import drivetrains, gearboxes, housings, runs
 from rigdesign.case.defaults.limit_set import fill_limits
 from rigdesign.case.defaults.raw_tree import RawTree
 from rigdesign.case.defaults.rule import Rule, fill
+from rigdesign.case.paths import path_pattern
 
 
 def rules() -> tuple[Rule, ...]:
@@ -22,6 +23,13 @@ def rules() -> tuple[Rule, ...]:
     walls = [rule for rule in housing if rule not in late]
     first = [rule for rule in parts if rule not in seats]
     return (*first, *walls, *drivetrains.book.rules, *seats, *late, *runs.book.rules)
+
+
+def filled_as_a_whole(path: str) -> bool:
+    """Whether a rule fills in the table or list at a path with all that is in it, rather than key by key."""
+    if path == "limits":
+        return True
+    return any(not rule.completes and path_pattern(rule.path).fullmatch(path) for rule in rules())
 
 
 def with_defaults(tree: Mapping[str, Any]) -> dict[str, Any]:

@@ -115,7 +115,7 @@ def _field_material(tree: RawTree, box: str) -> Filling:
 # ------------------------------------------------------------------ shafts
 
 
-@book.default(f"{HOUSING}.shafts")
+@book.default(f"{HOUSING}.shafts", completes=True)
 def _shafts(tree: RawTree, box: str) -> Filling:
     return {shaft: {} for shaft in shafts_of(tree, box)} or None
 

@@ -50,11 +50,14 @@ class Rule:
     """One rule and the path it is for.
 
     within : start of the path down to a table that the case has to state; empty where the rule makes its tables
+    completes : of a table of named parts, parts are added to those that are stated; not where one of these is a
+        stranger, so that a misspelt name stays a fault
     """
 
     path: str
     known: Callable[..., Filling]
     within: str = ""
+    completes: bool = False
 
 
 def assumed(value: Any, reason: str, low: Any = None, high: Any = None) -> Given:
@@ -88,11 +91,13 @@ class RuleBook:
         self.rules: list[Rule] = []
         self.within = within
 
-    def default(self, path: str) -> Callable[[Callable[..., Filling]], Callable[..., Filling]]:
+    def default(
+        self, path: str, *, completes: bool = False
+    ) -> Callable[[Callable[..., Filling]], Callable[..., Filling]]:
         """Enters a function as the rule of a path."""
 
         def enter(known: Callable[..., Filling]) -> Callable[..., Filling]:
-            self.rules.append(Rule(path, known, self.within))
+            self.rules.append(Rule(path, known, self.within, completes))
             return known
 
         return enter
@@ -105,8 +110,17 @@ def fill(tree: RawTree, rule: Rule) -> None:
         depth = len(rule.within.split(".")) if rule.within else 0
         if depth and not tree.has(".".join(keys[:depth])):
             continue
-        if not tree.has(".".join(keys)) and (found := rule.known(tree, *names)) is not None:
+        if rule.completes and tree.has(".".join(keys)):
+            _complete(tree.at(".".join(keys)), rule.known(tree, *names))
+        elif not tree.has(".".join(keys)) and (found := rule.known(tree, *names)) is not None:
             _insert(tree.root, keys, _written(found))
+
+
+def _complete(stated: Any, found: Filling) -> None:
+    """Add parts to a table that states some of them, in place."""
+    if isinstance(stated, dict) and isinstance(found, Mapping) and set(stated) < set(found):
+        for name, part in found.items():
+            stated.setdefault(name, _written(part))
 
 
 def _places(tree: RawTree, keys: list[str], names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:

@@ -108,6 +108,16 @@ def test_a_default_can_be_varied_by_its_path(minimal: Case) -> None:
     assert len(changed.schedule.stages) == len(minimal.schedule.stages)
 
 
+def test_one_key_of_a_part_may_be_stated_alone(tmp_path: Path) -> None:
+    """The other shafts, and the other keys of this one, stay those of the tool; a misspelt shaft stays a fault."""
+    more = '\n[drivetrain.shafts.test_wheel]\nmaterial = "structural_steel"\n'
+    power = load_case(minimal_case(tmp_path, more)).drivetrain
+    assert power is not None and len(power.shafts) == 4
+    assert power.shafts["test_wheel"].material == "structural_steel" and power.shafts["test_wheel"].sections
+    with pytest.raises(CaseError, match=r"drivetrain\.shafts"):
+        load_case(minimal_case(tmp_path, more.replace("test_wheel", "test_weel")))
+
+
 def test_bearings_sit_in_their_walls_and_gears_between_them(minimal: Case) -> None:
     box = minimal.gearboxes["test"]
     places = [box.bearings[f"pinion_{side}"].position or 0.0 for side in ("front", "rear")]
