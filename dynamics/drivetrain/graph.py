@@ -178,7 +178,14 @@ class _Builder:
                 self.add_body(f"{shaft.name}/{position * 1e3:.2f} mm", float(inertia), shaft.name)
             for i, spring in enumerate(chain.springs):
                 self.joints.append(
-                    TorsionalJoint(shaft.name, "shaft", start + i, start + i + 1, float(spring), 0.0)
+                    TorsionalJoint(
+                        shaft.name,
+                        "shaft",
+                        start + i,
+                        start + i + 1,
+                        float(spring),
+                        shaft.damping_time * float(spring),
+                    )
                 )
 
     @property

@@ -114,7 +114,7 @@ class Gear(Part):
     """One gear: body, toothing of its own, and where it sits."""
 
     shaft: Name
-    """Shaft on which it sits."""
+    """Shaft on which it sits; ``GEARBOX_GEAR`` when left out."""
     teeth: Count = Field(ge=6, le=2000)
     """Number of teeth."""
     face_width: Length
@@ -171,8 +171,11 @@ class GearMesh(Part):
     """Gear whose tip is shortened until ``contact_ratio`` is met."""
     double_helical: bool = False
     """Two opposite helices; face widths are those of the modelled half that carries the torque."""
-    damping: LinearDamping
-    """Damping along the line of action at the mean mesh stiffness."""
+    damping: LinearDamping | None = None
+    """Damping along the line of action at the mean mesh stiffness; or ``damping_ratio``."""
+    damping_ratio: float | None = Field(default=None, gt=0.0, le=0.5)
+    """Damping as a share of the critical one, c / (2 sqrt(k m_red)): k mean mesh stiffness, m_red both gear bodies
+    reduced to the line of action."""
     damping_acts_on: Literal["relative_rotation", "contact_closing_rate"] = "relative_rotation"
     """relative_rotation: on the approach rate r_b1 omega_1 - r_b2 omega_2 while teeth touch; contact_closing_rate: on
     the rate at which each contact closes, so that tip corners that come in under steady load are damped as well."""
@@ -199,6 +202,12 @@ class GearMesh(Part):
             raise fault(
                 "contact_ratio and tip_cut belong together",
                 'write both, e.g. contact_ratio = 1.26 and tip_cut = "wheel", or neither',
+            )
+        if (self.damping is None) == (self.damping_ratio is None):
+            given = "neither" if self.damping is None else "both"
+            raise fault(
+                f"{given} of damping and damping_ratio is given",
+                'write one of the two, e.g. damping = "1000 N s/m" or damping_ratio = 0.06',
             )
         if self.pinion == self.wheel:
             raise fault("a gear cannot mesh with itself", "name two gears of the gearbox")

@@ -231,8 +231,10 @@ class BoughtPart(Part):
 
 
 class Limits(Part):
-    """All limits of the rig."""
+    """All limits of the rig; a case without any is held against the standard set, listed as assumptions."""
 
+    standard_set: bool = False
+    """Whether limits that are left out here are those of the standard set; a case without limits has all of it."""
     clearances: ClearanceLimits = ClearanceLimits()
     """Limits of warm clearances."""
     alignment: AlignmentLimits = AlignmentLimits()

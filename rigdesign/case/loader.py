@@ -1,4 +1,4 @@
-"""Loads a case: file -> tree -> marks off -> validated -> rules that span keys; every fault at once."""
+"""Loads a case: file -> tree -> equal parts -> defaults -> marks off -> validated -> rules; every fault at once."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -8,6 +8,8 @@ from pydantic import ValidationError
 
 from rigdesign.base import units
 from rigdesign.base.errors import CaseError, Fault
+from rigdesign.case.defaults.fill import filled_as_a_whole, with_defaults
+from rigdesign.case.equal_parts import EqualParts, written_out
 from rigdesign.case.faults import faults_of, written
 from rigdesign.case.model import Case, Origin
 from rigdesign.case.paths import Slot, known_paths, nearest_paths, places, slot_at
@@ -29,7 +31,8 @@ def load_case(path: str | Path) -> Case:
         With every fault found: path, value, what is accepted, remedy.
     """
     file = case_file(Path(path))
-    return _build(read_tree(file), file)
+    stated, equal = written_out(read_tree(file), str(file))
+    return _build(stated, file, equal)
 
 
 def changed_together(case: Case, values: Mapping[str, object]) -> Case:
@@ -40,8 +43,8 @@ def changed_together(case: Case, values: Mapping[str, object]) -> Case:
     CaseError
         A path that does not exist, or faults of the changed case.
     """
-    tree = case.origin.tree
-    plain, _, _ = take_off(dict(tree))
+    stated, plain = case.origin.stated, take_off(dict(case.origin.tree))[0]
+    left_out: list[tuple[list[str], object]] = []
     for path, value in values.items():
         found = places(Case, path, plain)
         if not found:
@@ -49,22 +52,65 @@ def changed_together(case: Case, values: Mapping[str, object]) -> Case:
             remedy = "did you mean " + " or ".join(meant) + "?" if meant else "see the schema for its paths"
             raise CaseError([Fault(path, "", "no such path in this case", remedy)], str(case.path))
         for place, slot in found.items():
-            tree = _replaced(tree, place.split("."), _coerced(value, slot))
-    return _build(tree, case.path)
+            keys, new = place.split("."), _coerced(value, slot)
+            if _stands(stated, keys):
+                stated = _replaced(stated, keys, new)
+            else:
+                left_out.append((keys, new))
+    for keys, new in left_out:
+        stated = _replaced(_with_default(stated, keys), keys, new)
+    return _build(stated, case.path, EqualParts({}, {}, {}))
 
 
-def _build(tree: Mapping[str, Any], file: Path) -> Case:
+def _stands(tree: Any, keys: Sequence[str]) -> bool:
+    """Whether a tree holds something at a path."""
+    node = tree
+    for key in keys:
+        node = node["value"] if is_marked(node) else node
+        if isinstance(node, list | tuple):
+            names = [item_name(item, index) for index, item in enumerate(node)]
+            if key not in names and not (key.isdigit() and int(key) < len(node)):
+                return False
+            node = node[names.index(key) if key in names else int(key)]
+        elif isinstance(node, Mapping) and key in node:
+            node = node[key]
+        else:
+            return False
+    return True
+
+
+def _with_default(stated: Mapping[str, Any], keys: Sequence[str]) -> Mapping[str, Any]:
+    """``stated`` with the table or list around a path that a rule fills in as a whole, so that one of its values can
+    be replaced; the other defaults still follow the rest of the case."""
+    for depth in range(1, len(keys)):
+        above = keys[:depth]
+        if not _stands(stated, above) and filled_as_a_whole(".".join(above)):
+            tree = with_defaults(stated)
+            if _stands(tree, above):
+                return dict(_replaced(stated, above, _node(tree, above)))
+    return stated
+
+
+def _node(tree: Any, keys: Sequence[str]) -> Any:
+    """What stands at a path of names, with its marks."""
+    for key in keys:
+        tree = tree["value"][key] if is_marked(tree) else tree[key]
+    return tree
+
+
+def _build(stated: Mapping[str, Any], file: Path, equal: EqualParts) -> Case:
+    tree = with_defaults(stated)
     plain, marks, wrong_marks = take_off(dict(tree))
     faults = [Fault(wrong.path, wrong.given, wrong.problem, wrong.remedy) for wrong in wrong_marks]
     faults += [fault for mark in marks if mark.range is not None for fault in _range_faults(mark, plain)]
     try:
         case = Case.model_validate(plain)
     except ValidationError as error:
-        raise CaseError([*faults_of(error, Case, plain), *faults], str(file)) from None
+        raise CaseError(equal.as_written([*faults_of(error, Case, plain), *faults]), str(file)) from None
     faults += broken_rules(case)
     if faults:
-        raise CaseError(faults, str(file))
-    case._origin = Origin(file, tree, marks, changed_together)
+        raise CaseError(equal.as_written(faults), str(file))
+    case._origin = Origin(file, stated, tree, marks, changed_together)
     return case
 
 

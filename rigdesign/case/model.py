@@ -34,7 +34,10 @@ class Origin:
     """Where a case came from: file, resolved tree (marks still in it), marks by path."""
 
     path: Path
+    stated: Mapping[str, Any]
+    """The tree as the file states it, without defaults."""
     tree: Mapping[str, Any]
+    """The same with what the defaults fill in."""
     marks: tuple[Mark, ...]
     change: Callable[["Case", Mapping[str, object]], "Case"]
     """Reads the case again with values replaced by path."""

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from rigdesign.case.defaults.known import relaxed
 from rigdesign.case.model import Case
 
 _MARK_PROPERTIES: dict[str, Any] = {
@@ -21,8 +22,12 @@ _MARK_PROPERTIES: dict[str, Any] = {
 
 
 def json_schema() -> dict[str, Any]:
-    """Schema of a case file (draft 2020-12): patterns for quantities, choices, names, descriptions."""
+    """Schema of a case file (draft 2020-12): patterns for quantities, choices, names, descriptions.
+
+    A key is required only if the tool knows no default for it.
+    """
     schema = Case.model_json_schema()
+    relaxed(schema)
     for table in [schema, *schema.get("$defs", {}).values()]:
         properties = table.get("properties", {})
         for name, entry in properties.items():
@@ -31,6 +36,7 @@ def json_schema() -> dict[str, Any]:
         "type": "string",
         "description": "case file this one is laid over; required keys may then be left out",
     }
+    schema["$defs"] |= {f"mark_{name}": entry for name, entry in _MARK_PROPERTIES.items()}
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     return schema
 
@@ -46,7 +52,10 @@ def _with_marks(entry: dict[str, Any]) -> dict[str, Any]:
     value = {key: item for key, item in entry.items() if key not in ("title", "description", "default")}
     marked = {
         "type": "object",
-        "properties": {"value": value, **_MARK_PROPERTIES},
+        "properties": {
+            "value": value,
+            **{name: {"$ref": f"#/$defs/mark_{name}"} for name in _MARK_PROPERTIES},
+        },
         "required": ["value"],
         "additionalProperties": False,
     }

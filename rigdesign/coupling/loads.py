@@ -32,6 +32,7 @@ from dynamics.mesh.stiffness import PairStiffness, pair_stiffness
 from dynamics.rating.iso_rating import RatingOptions, mesh_stiffness
 from dynamics.response.speed_sweep import CurvePoint, SweepSettings, periodic_response
 from rigdesign.case.gears import FlankModification, Gear
+from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.properties.oil import Oil
@@ -113,12 +114,12 @@ def mesh_model(
             tooth_offset_2=entry.tooth_offset % gears[1].teeth,
         ),
         dissipation=MeshDissipation(
-            damping=entry.damping,
             damping_acts_on=entry.damping_acts_on,
             friction=ToothPath.of_pair(pair).transverse_friction(friction.value),
         ),
         discretisation=ContactDiscretisation(n_slices=_slices(rig, pair, micro)),
     )
+    law = law._replace(damping=mesh_damping(rig, name, law))
     return MeshModel(name=name, pair=pair, stiffness=shape, friction=friction, law=law)
 
 

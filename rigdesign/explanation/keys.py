@@ -17,6 +17,7 @@ from pydantic.fields import FieldInfo
 
 from rigdesign.base import units
 from rigdesign.base.quantity_kinds import KINDS
+from rigdesign.case.defaults.known import has_default
 from rigdesign.case.fields import Name, Quantity
 from rigdesign.case.kinds import variant_of
 from rigdesign.case.model import Case
@@ -36,6 +37,7 @@ class KeyEntry:
     path : with placeholders; variant : kind of table that has the key, as ``law = radiation``; empty elsewhere
     kind : quantity kind, type or choices, in words; units : accepted spellings, the usual one first
     default : as a case would write it; None where the key is required or nothing stands for it when left out
+    filled_in : a case may leave it out, the tool then writes a default with its reason
     """
 
     path: str
@@ -48,10 +50,13 @@ class KeyEntry:
     description: str
     table: bool = False
     """It holds further keys."""
+    filled_in: bool = False
 
     @property
     def default_text(self) -> str:
         """The default in words."""
+        if self.filled_in:
+            return "by the tool"
         return "required" if self.required else self.default or "left out"
 
 
@@ -91,6 +96,7 @@ def entry_of(path: str, field: FieldInfo, variant: str = "") -> KeyEntry:
     """The entry of one field."""
     slot = slot_of(field.annotation, field.metadata)
     quantity = slot.quantity
+    filled_in = has_default(starred(path))
     return KeyEntry(
         path=path,
         variant=variant,
@@ -98,7 +104,8 @@ def entry_of(path: str, field: FieldInfo, variant: str = "") -> KeyEntry:
         units=() if quantity is None else tuple(KINDS[quantity.kind].like(quantity.shown_example).units),
         bounds=_bounds(slot),
         default=_default(field, quantity),
-        required=field.is_required(),
+        required=field.is_required() and not filled_in,
+        filled_in=filled_in,
         description=" ".join((field.description or "").split()),
         table=slot.table is not None,
     )

@@ -4,6 +4,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from rigdesign.base.units import show
+from rigdesign.case.defaults.rule import BY_THE_TOOL
 from rigdesign.case.model import Case
 from rigdesign.explanation.rules import declared_rules
 
@@ -100,5 +101,6 @@ def _by_basis(case: Case) -> dict[str, int]:
     found: Counter[str] = Counter()
     for row in case.inputs:
         mark = case.origin.mark_of.get(row.path)
-        found[mark.said[0][0] if mark is not None and mark.said else "stated"] += 1
+        kind, text = mark.said[0] if mark is not None and mark.said else ("stated", "")
+        found["default" if text.startswith(BY_THE_TOOL) else kind] += 1
     return dict(found.most_common())

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from rigdesign.base.errors import UsageError
+from rigdesign.case.defaults.rule import BY_THE_TOOL
 from rigdesign.case.kinds import kind_key, of_kind, variant_of
 from rigdesign.case.model import Case
 from rigdesign.case.paths import known_paths, nearest_paths, path_pattern, slot_at
@@ -168,6 +169,8 @@ def _value(case: Case, path: str, entry: KeyEntry, *, description: str = "") -> 
         )
     nothing: tuple[BasisKind, str] = ("stated", "")
     basis, reason = mark.said[0] if mark is not None and mark.said else nothing
+    if reason.startswith(BY_THE_TOOL):
+        basis, reason = "default", reason.removeprefix(BY_THE_TOOL)
     limits = None if mark is None or mark.range is None else (str(mark.range[0]), str(mark.range[1]))
     return StatedValue(
         path=path, value=stated, basis=basis, reason=reason, range=limits, description=description

@@ -98,7 +98,8 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
     "gearboxes.*.meshes.*": _at(
         rig__gears="geometry of the gear pair", coupling__loads="mesh law: stiffness over the path of contact"
     ),
-    "gearboxes.*.meshes.*.damping": _at(coupling__loads="damper of the mesh in the response"),
+    "gearboxes.*.meshes.*.damping": _at(coupling__mesh_damping="damper of the mesh in the response"),
+    "gearboxes.*.meshes.*.damping_ratio": _at(coupling__mesh_damping="damper of the mesh in the response"),
     "gearboxes.*.meshes.*.damping_acts_on": _at(
         coupling__loads="damper of the mesh in the response", coupling__losses="work of the damper"
     ),
@@ -248,6 +249,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__boundary="doubt of a printed coefficient: warns where the field differs from what was assumed"
     ),
     "drivetrain.shafts.*": _at(rig__drivetrain="shaft of the torsional model"),
+    "drivetrain.shafts.*.material_damping": _at(rig__drivetrain="dampers of the shaft elements"),
     "drivetrain.shafts.*.sections.*": _at(
         rig__drivetrain="torsional stiffness and inertia of the shaft",
         rig__shaft_torsion="torsional stress of the shaft",
@@ -296,6 +298,7 @@ STATIONS: Mapping[str, tuple[Station, ...]] = {
         coupling__time_run="run-up at constant torque instead of speed control"
     ),
     "test_plan": _at(checks__strength="load cycles of the teeth", transient__phases="length of the dwell"),
+    "limits.standard_set": _at(case__limits="whether the standard set stands for limits that are left out"),
     "limits.clearances": _at(checks__clearances=_LIMIT, transient__limits="limit over the thermal history"),
     "limits.alignment": _at(checks__alignment=_LIMIT),
     "limits.temperatures": _at(checks__temperatures=_LIMIT),

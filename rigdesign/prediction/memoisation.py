@@ -32,6 +32,7 @@ from rigdesign.coupling.loads import (
     shifted_laws,
     signed_torque,
 )
+from rigdesign.coupling.mesh_damping import mesh_damping
 from rigdesign.coupling.state import CouplingState, OperatingPoint
 from rigdesign.coupling.tooth_deviations import periodic_laws
 from rigdesign.rig.model import Rig
@@ -80,7 +81,7 @@ class Memoisation:
         friction = mesh_friction(rig, name, model.pair, point, coupling_state)
         box, mesh = rig.mesh(name)
         entry, law = box.meshes[mesh], model.law
-        damped = entry.damping, entry.damping_acts_on
+        damped = mesh_damping(rig, name, law), entry.damping_acts_on
         if friction == model.friction and damped == (law.damping, law.damping_acts_on):
             return model
         along = ToothPath.of_pair(model.pair).transverse_friction(friction.value)

@@ -82,7 +82,15 @@ def _shaft(name: str, case: Case, materials: Mapping[str, Material]) -> Shaft:
         ),
         shear_modulus=material.elastic_modulus / (2.0 * (1.0 + material.poisson_ratio)),
         density=material.density,
+        damping_time=shaft.material_damping / mesh_frequency(case) if shaft.material_damping else 0.0,
     )
+
+
+def mesh_frequency(case: Case) -> float:
+    """Angular frequency [rad/s] at which the teeth of the reference gear mesh at test speed."""
+    assert case.drivetrain is not None
+    box, gear = case.drivetrain.torque_at.split(".")
+    return case.gearboxes[box].gears[gear].teeth * case.schedule.test_speed
 
 
 def _gear_bodies(
@@ -91,23 +99,33 @@ def _gear_bodies(
     bodies = []
     for box_name, box in case.gearboxes.items():
         for name, gear in box.gears.items():
-            inertia = gear.inertia
-            if inertia is None:
-                radius = _reference_radius(name, box_name, case, pairs)
-                density = materials[gear.material].density
-                inertia = disc_inertia(2.0 * radius, gear.bore_diameter, box.body_width(name), density)
             assert gear.position is not None
             bodies.append(
                 GearBody(
                     name=f"{box_name}.{name}",
                     shaft=gear.shaft,
                     position=gear.position,
-                    inertia=gear.inertia_factor * inertia,
+                    inertia=gear_inertia(case, box_name, name, pairs, materials),
                     stiffness=RIGID_SEAT if gear.spline is None else gear.spline.torsional_stiffness,
                     damping=0.0 if gear.spline is None else gear.spline.torsional_damping,
                 )
             )
     return bodies
+
+
+def gear_inertia(
+    case: Case, box: str, gear: str, pairs: Mapping[str, GearPair], materials: Mapping[str, Material]
+) -> float:
+    """Polar inertia of a gear body [kg m2]: as the case states it, else that of the bored disc; times its factor."""
+    gearbox = case.gearboxes[box]
+    part = gearbox.gears[gear]
+    inertia = part.inertia
+    if inertia is None:
+        diameter = 2.0 * _reference_radius(gear, box, case, pairs)
+        inertia = disc_inertia(
+            diameter, part.bore_diameter, gearbox.body_width(gear), materials[part.material].density
+        )
+    return part.inertia_factor * inertia
 
 
 def disc_inertia(outer_diameter: float, bore_diameter: float, width: float, density: float) -> float:

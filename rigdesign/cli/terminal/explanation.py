@@ -128,9 +128,8 @@ def _value(value: StatedValue) -> str:
     """A value with where it comes from."""
     if value.basis == "left out":
         return "left out"
-    words = {"stated": "stated by the case", "default": "default"}.get(
-        value.basis, f"{value.basis}: {value.reason}"
-    )
+    said = f"{value.basis}: {value.reason}" if value.reason else value.basis
+    words = "stated by the case" if value.basis == "stated" else said
     limits = "" if value.range is None else f"; range {value.range[0]} to {value.range[1]}"
     return f"{value.value} ({words}{limits})"
 
@@ -156,10 +155,18 @@ def _print_keys(console: Console, found: PathExplanation) -> None:
         shown = "table" if value.table else value.value or "left out"
         shown = textwrap.shorten(shown, 24, placeholder="...")
         first = _plain(value.description).partition(". ")[0]
-        table.add_row(Text(name), Text(f"{shown} *" if value.basis == "assumed" else shown), Text(first))
+        sign = " *" if value.basis == "assumed" else " +" if _by_the_tool(value) else ""
+        table.add_row(Text(name), Text(shown + sign), Text(first))
     console.print(table)
     if any(value.basis == "assumed" for value in found.keys):
         console.print("* assumed")
+    if any(map(_by_the_tool, found.keys)):
+        console.print("+ default of the tool for this case; ask for the key to see its reason and range")
+
+
+def _by_the_tool(value: StatedValue) -> bool:
+    """Whether the tool has worked out a value that the case leaves out."""
+    return value.basis == "default" and bool(value.reason)
 
 
 def _limits(found: CheckExplanation) -> str:

@@ -215,7 +215,8 @@ def mesh_compliance(part: GearboxPart) -> Iterator[Effect]:
             f"mesh_stiffness:{label}", f"stiffness of the mesh {label}", STIFFNESS,
             "mesh orders, resonance speeds of the mesh",
         )  # fmt: skip
-        damping = UncertainValue(path=f"{at}.damping", now=mesh.damping, bounds=(0.2, 5.0), healthy=0.25)
+        key = "damping" if mesh.damping is not None else "damping_ratio"
+        damping = UncertainValue(path=f"{at}.{key}", now=getattr(mesh, key), bounds=(0.2, 5.0), healthy=0.25)
         yield damping.effect(
             f"mesh_damping:{label}", f"damping of the mesh {label}", DAMPING,
             "height of mesh orders near resonance",

@@ -1,0 +1,115 @@
+"""What defaults need to know of the parts of a gearbox before it is validated: pairs, diameters, distances."""
+
+import re
+
+from rigdesign.case.defaults.raw_tree import RawTree
+
+BORE_CODES = {"00": 10e-3, "01": 12e-3, "02": 15e-3, "03": 17e-3}
+"""Bores [m] of the last two digits of a designation below 04; from there on five times the number in millimetres."""
+
+
+def shaft_of(tree: RawTree, box: str, kind: str, part: str) -> str | None:
+    """Shaft of a gear, a bearing or seals."""
+    return tree.text(f"gearboxes.{box}.{kind}.{part}.shaft")
+
+
+def shafts_of(tree: RawTree, box: str) -> list[str]:
+    """Shafts of the gears of a gearbox, each once."""
+    found = (shaft_of(tree, box, "gears", gear) for gear in tree.names(f"gearboxes.{box}.gears"))
+    return list(dict.fromkeys(shaft for shaft in found if shaft is not None))
+
+
+def gear_on(tree: RawTree, box: str, shaft: str) -> str | None:
+    """First gear on a shaft."""
+    gears = tree.names(f"gearboxes.{box}.gears")
+    return next((gear for gear in gears if shaft_of(tree, box, "gears", gear) == shaft), None)
+
+
+def only_mesh(tree: RawTree, box: str) -> str | None:
+    """The mesh of a gearbox that has one; None for any other."""
+    meshes = tree.names(f"gearboxes.{box}.meshes")
+    return meshes[0] if len(meshes) == 1 else None
+
+
+def mesh_of(tree: RawTree, box: str, gear: str) -> str | None:
+    """First mesh that a gear is in."""
+    for mesh in tree.names(f"gearboxes.{box}.meshes"):
+        at = f"gearboxes.{box}.meshes.{mesh}"
+        if gear in (tree.text(f"{at}.pinion"), tree.text(f"{at}.wheel")):
+            return mesh
+    return None
+
+
+def normal_module(tree: RawTree, box: str, gear: str) -> float | None:
+    """Normal module of a gear [m]."""
+    mesh = mesh_of(tree, box, gear)
+    return None if mesh is None else tree.length(f"gearboxes.{box}.meshes.{mesh}.normal_module")
+
+
+def bearings_on(tree: RawTree, box: str, shaft: str) -> list[str]:
+    """Bearings of a shaft by name."""
+    bearings = tree.names(f"gearboxes.{box}.bearings")
+    return [name for name in bearings if shaft_of(tree, box, "bearings", name) == shaft]
+
+
+def bearing_bore(tree: RawTree, box: str, bearing: str) -> float | None:
+    """Journal or bore of a bearing [m]: stated, or that of its designation."""
+    at = f"gearboxes.{box}.bearings.{bearing}"
+    for key in ("diameter", "bore_diameter", "bore"):
+        if (stated := tree.length(f"{at}.{key}")) is not None:
+            return stated
+    code = re.search(r"(\d{3,})\D*$", tree.text(f"{at}.designation") or "")
+    if code is None:
+        return None
+    digits = code[1][-2:]
+    return BORE_CODES.get(digits, 5e-3 * int(digits) or None)
+
+
+def bearing_width(tree: RawTree, box: str, bearing: str) -> float | None:
+    """Width of a bearing [m]; three quarters of its bore where the case states none, as in NU 406 and its like."""
+    stated = tree.length(f"gearboxes.{box}.bearings.{bearing}.width")
+    bore = bearing_bore(tree, box, bearing)
+    return stated if stated is not None or bore is None else 0.75 * bore
+
+
+def shaft_diameter(tree: RawTree, box: str, shaft: str) -> float | None:
+    """Diameter of a shaft in its bearings [m]."""
+    bores = [bearing_bore(tree, box, name) for name in bearings_on(tree, box, shaft)]
+    return next((bore for bore in bores if bore is not None), None)
+
+
+def section_diameter(tree: RawTree, shaft: str, position: float | None) -> float | None:
+    """Outside diameter [m] of a stated shaft at a place; None where no section is stated there."""
+    at, end = f"drivetrain.shafts.{shaft}.sections", 0.0
+    for index in range(len(tree.at(at) or ())):
+        length = tree.length(f"{at}.{index}.length")
+        if position is None or length is None:
+            return None
+        end += length
+        if position <= end:
+            return tree.length(f"{at}.{index}.outer_diameter")
+    return None
+
+
+def inner_length(tree: RawTree, box: str) -> float | None:
+    """Length between the end walls of a housing [m]."""
+    at = f"gearboxes.{box}.housing"
+    chamber = tree.length(f"{at}.warm_length")
+    if chamber is None:
+        return None
+    front, rear = tree.length(f"{at}.cold_length_front"), tree.length(f"{at}.cold_length_rear")
+    partition = tree.length(f"{at}.partition_thickness")
+    return chamber + (front or 0.0) + (rear or 0.0) + 2.0 * (partition or 0.0)
+
+
+def bearing_distance(tree: RawTree, box: str, shaft: str) -> float | None:
+    """Distance of the two bearings of a shaft [m]: at the inner side of the end walls; three diameters beside the gear
+    in a gearbox without a housing."""
+    bearings = bearings_on(tree, box, shaft)
+    width = bearing_width(tree, box, bearings[0]) if bearings else None
+    if tree.has(f"gearboxes.{box}.housing"):
+        inner = inner_length(tree, box)
+        return None if inner is None or width is None else inner + width
+    gear, diameter = gear_on(tree, box, shaft), shaft_diameter(tree, box, shaft)
+    face = None if gear is None else tree.length(f"gearboxes.{box}.gears.{gear}.face_width")
+    return None if face is None or diameter is None else face + 3.0 * diameter

@@ -1,0 +1,62 @@
+"""Values of a case file before it is validated: marks are looked through, what cannot be read is None."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from rigdesign.base import units
+from rigdesign.case.provenance import is_marked
+
+
+def unmarked(node: Any) -> Any:
+    """A value without its marks; what stands inside it keeps them."""
+    return node["value"] if is_marked(node) else node
+
+
+class RawTree:
+    """The tree of a case file, read by dotted path. A rule that finds None where it needs a number knows no default."""
+
+    def __init__(self, root: dict[str, Any]) -> None:
+        self.root = root
+
+    def at(self, path: str) -> Any:
+        """What stands at a path, without marks; None where there is nothing."""
+        node: Any = self.root
+        for key in path.split("."):
+            node = unmarked(node)
+            if isinstance(node, list | tuple) and key.isdigit() and int(key) < len(node):
+                node = node[int(key)]
+            elif isinstance(node, Mapping):
+                node = node.get(key)
+            else:
+                return None
+        return unmarked(node)
+
+    def has(self, path: str) -> bool:
+        """Whether anything stands at a path."""
+        return self.at(path) is not None
+
+    def names(self, path: str) -> list[str]:
+        """Keys of a table; none where there is no table."""
+        node = self.at(path)
+        return [key for key in node if isinstance(key, str)] if isinstance(node, Mapping) else []
+
+    def text(self, path: str) -> str | None:
+        """A text."""
+        node = self.at(path)
+        return node if isinstance(node, str) else None
+
+    def number(self, path: str) -> float | None:
+        """A bare number."""
+        node = self.at(path)
+        return float(node) if isinstance(node, int | float) and not isinstance(node, bool) else None
+
+    def si(self, path: str, kind: str) -> float | None:
+        """A quantity in SI units; None for one that is missing or cannot be read."""
+        try:
+            return units.parse(self.at(path), kind)
+        except units.QuantityError:
+            return None
+
+    def length(self, path: str) -> float | None:
+        """A length [m]."""
+        return self.si(path, "length")

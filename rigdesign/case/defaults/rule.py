@@ -1,0 +1,157 @@
+"""Rules that know a value for a key a case leaves out.
+
+    @default("gearboxes.*.gears.*.material")
+    def _material(tree: RawTree, box: str, gear: str) -> Given | None:
+        return assumed("case_hardened_steel", "usual for gears")
+
+A rule is asked once for every place its path fits, ``*`` standing for the names of the case, and only where the key is
+missing. Rules are asked in the order in which they are written, so that one may build on what another has filled in.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from rigdesign.case.defaults.raw_tree import RawTree
+from rigdesign.case.provenance import is_marked
+
+BY_THE_TOOL = "default of the tool: "
+"""How the reason of every value starts that the case does not state."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Given:
+    """A value in place of a key that is missing.
+
+    value : as a case would write it
+    reason : why, in one line
+    range : lowest and highest plausible value; none for a name, a choice or a setting of the solver
+    is_assumption : False where it follows from the rest of the case and nothing is assumed
+    """
+
+    value: Any
+    reason: str
+    range: tuple[Any, Any] | None = None
+    is_assumption: bool = True
+
+    def as_marked(self) -> dict[str, Any]:
+        """The value with its marks."""
+        text = BY_THE_TOOL + self.reason
+        marked = {"value": self.value, "assumed" if self.is_assumption else "source": text}
+        return marked if self.range is None else {**marked, "range": list(self.range)}
+
+
+Filling: TypeAlias = "Given | Mapping[str, Any] | list[Any] | None"
+"""A value, a table or list of such values, or None where the rule knows none."""
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One rule and the path it is for.
+
+    within : start of the path down to a table that the case has to state; empty where the rule makes its tables
+    completes : of a table of named parts, parts are added to those that are stated; not where one of these is a
+        stranger, so that a misspelt name stays a fault
+    """
+
+    path: str
+    known: Callable[..., Filling]
+    within: str = ""
+    completes: bool = False
+
+
+def assumed(value: Any, reason: str, low: Any = None, high: Any = None) -> Given:
+    """An assumption of the tool, with its range where it has one."""
+    return Given(value=value, reason=reason, range=None if low is None else (low, high))
+
+
+def follows(value: Any, reason: str) -> Given:
+    """A name or measure that the rest of the case settles."""
+    return Given(value=value, reason=reason, is_assumption=False)
+
+
+def around(value: float, unit: str, reason: str, spread: tuple[float, float] = (0.5, 2.0)) -> Given:
+    """An assumed quantity in ``unit`` with a range of ``spread`` times its value; three digits."""
+    low, high = (f"{value * factor:.3g} {unit}" for factor in spread)
+    return assumed(f"{value:.3g} {unit}", reason, low, high)
+
+
+def millimetres(length: float) -> str:
+    """A length [m] as a case would write it."""
+    return f"{1e3 * length:.6g} mm"
+
+
+class RuleBook:
+    """Rules of one topic in their order.
+
+    within : start of all paths down to a table without which none of the rules applies
+    """
+
+    def __init__(self, within: str = "") -> None:
+        self.rules: list[Rule] = []
+        self.within = within
+
+    def default(
+        self, path: str, *, completes: bool = False
+    ) -> Callable[[Callable[..., Filling]], Callable[..., Filling]]:
+        """Enters a function as the rule of a path."""
+
+        def enter(known: Callable[..., Filling]) -> Callable[..., Filling]:
+            self.rules.append(Rule(path, known, self.within, completes))
+            return known
+
+        return enter
+
+
+def fill(tree: RawTree, rule: Rule) -> None:
+    """Fill the places of one rule that are missing, in place."""
+    for names in list(_places(tree, rule.path.split("."), ())):
+        keys = _with_names(rule.path, names)
+        depth = len(rule.within.split(".")) if rule.within else 0
+        if depth and not tree.has(".".join(keys[:depth])):
+            continue
+        if rule.completes and tree.has(".".join(keys)):
+            _complete(tree.at(".".join(keys)), rule.known(tree, *names))
+        elif not tree.has(".".join(keys)) and (found := rule.known(tree, *names)) is not None:
+            _insert(tree.root, keys, _written(found))
+
+
+def _complete(stated: Any, found: Filling) -> None:
+    """Add parts to a table that states some of them, in place."""
+    if isinstance(stated, dict) and isinstance(found, Mapping) and set(stated) < set(found):
+        for name, part in found.items():
+            stated.setdefault(name, _written(part))
+
+
+def _places(tree: RawTree, keys: list[str], names: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    """What the stars of a path stand for, for every place it fits."""
+    if "*" not in keys:
+        yield names
+        return
+    star = keys.index("*")
+    for name in tree.names(".".join(keys[:star])):
+        yield from _places(tree, [*keys[:star], name, *keys[star + 1 :]], (*names, name))
+
+
+def _with_names(path: str, names: tuple[str, ...]) -> list[str]:
+    left = iter(names)
+    return [next(left) if key == "*" else key for key in path.split(".")]
+
+
+def _insert(root: dict[str, Any], keys: list[str], value: Any) -> None:
+    """Put a value at its place; tables on the way are made. Nothing happens where one is no table."""
+    node: Any = root
+    for key in keys[:-1]:
+        if not isinstance(node, dict) or is_marked(node):
+            return
+        node = node.setdefault(key, {})
+    if isinstance(node, dict) and not is_marked(node) and keys[-1] not in node:
+        node[keys[-1]] = value
+
+
+def _written(found: Any) -> Any:
+    if isinstance(found, Given):
+        return found.as_marked()
+    if isinstance(found, Mapping):
+        return {key: _written(value) for key, value in found.items() if value is not None}
+    return [_written(item) for item in found] if isinstance(found, list) else found

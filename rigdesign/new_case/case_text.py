@@ -1,0 +1,153 @@
+"""A new case as text: one key a line, each with what it is and which checks depend on it."""
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from textwrap import wrap
+
+from rigdesign.base import units
+from rigdesign.case.defaults.housings import SEAL_WIDTH
+from rigdesign.case.defaults.known import WRITTEN_ONCE
+from rigdesign.case.model import Case
+from rigdesign.explanation.keys import entry_at
+from rigdesign.explanation.rules import declared_checks, depends_on
+from rigdesign.new_case.outline import Outline
+
+SCHEMA_FILE = "case.schema.json"
+WIDTH = 110
+MOST_NAMED = 4
+"""Checks that a comment names; of more it names the topics."""
+PARTITION = 8e-3
+"""Wall between chamber and cold section [m]."""
+COLD_SHARE = 0.15
+"""Length of a cold section as a share of the inner length."""
+
+Comment = Callable[[str], Sequence[str]]
+"""Lines of the comment at a path."""
+Line = tuple[str, str]
+"""Key within its table, value as TOML."""
+
+
+def tables(outline: Outline) -> Iterator[tuple[str, str, list[Line]]]:
+    """Every table of the case: title, path, lines."""
+    first, second = (str(teeth) for teeth in outline.teeth)
+    width, shift = _quoted(outline.face_width), outline.profile_shift
+    temperature = _quoted(outline.oil_temperature)
+    yield "the case", "", [("schema_version", "1"), ("name", _quoted(outline.name))]
+    pinion = [("teeth", first), ("face_width", width)]
+    if shift is not None:
+        pinion.append(("profile_shift", f"{shift:g}"))
+    yield "test gearbox: the specimens", "gearboxes.test.gears.pinion", pinion
+    yield "", "gearboxes.test.gears.wheel", [("teeth", second), ("face_width", width)]
+    mesh = [("normal_module", _quoted(outline.module)), ("centre_distance", _quoted(outline.centre_distance))]
+    yield "", "gearboxes.test.meshes.main", mesh
+    if outline.lubrication == "dip":
+        oil = [("lubrication", '"dip"'), ("oil", _quoted(outline.oil)), ("level", '"0 mm"')]
+        if outline.box is None:
+            oil.append(("volume", '"1.5 l"'))
+        yield "", "gearboxes.test.oil", [*oil, ("sump_temperature", temperature)]
+    else:
+        yield "", "gearboxes.test.oil", [("oil", _quoted(outline.oil)), ("inlet_temperature", temperature)]
+    bearing = [("diameter", _quoted(outline.bearings))] if outline.journal else _rolling(outline)
+    yield "both bearings of both shafts", "gearboxes.test.all_bearings", bearing
+    if outline.box is not None:
+        yield "box of the test gearbox", "gearboxes.test.housing", _housing(outline, outline.box)
+    slave: list[Line] = [("like", '"test"')]
+    if outline.box is not None:
+        slave.append(("remove", '["housing"]'))
+    yield "slave gearbox: twice as wide, so that it outlives the specimens", "gearboxes.slave", slave
+    wider = _quoted(f"{2e3 * units.parse(outline.face_width, 'length'):.6g} mm")
+    for gear in ("pinion", "wheel"):
+        yield "", f"gearboxes.slave.gears.{gear}", [("face_width", wider)]
+    run = [("test_speed", _quoted(outline.speed)), ("test_torque", _quoted(outline.torque))]
+    yield "the test, counted at the pinion of the test gearbox", "schedule", run
+
+
+def _rolling(outline: Outline) -> list[Line]:
+    return [("type", '"rolling"'), ("designation", _quoted(outline.bearings))]
+
+
+def _housing(outline: Outline, box: tuple[float, float, float]) -> list[Line]:
+    """Outer measures of the box as those of the case; its end walls hold bearings and seals."""
+    bore = units.parse(outline.bearings, "length") if outline.journal else 0.03
+    inner = box[0] - 2.0 * (0.75 * bore + SEAL_WIDTH)
+    cold = COLD_SHARE * inner
+    chamber = inner - 2.0 * (cold + PARTITION)
+    return [
+        ("warm_length", _millimetres(chamber)),
+        ("cold_length_front", _millimetres(cold)),
+        ("cold_length_rear", _millimetres(cold)),
+        ("partition_thickness", _millimetres(PARTITION)),
+        ("width", _millimetres(box[1])),
+        ("height", _millimetres(box[2])),
+    ]
+
+
+def plain_text(outline: Outline) -> str:
+    """The case without comments."""
+    return "\n".join(_written(outline, lambda path: ()))
+
+
+def commented_text(outline: Outline, case: Case, folder: Path) -> str:
+    """The case with a comment at every key.
+
+    case : the same case, loaded; folder : as a user would name it in the next command
+    """
+    checks = declared_checks(case)
+
+    def comment(path: str) -> Sequence[str]:
+        place = path.replace(".all_bearings.", f".bearings.{next(iter(case.gearboxes['test'].bearings))}.")
+        if (once := WRITTEN_ONCE.get(path.rpartition(".")[2])) is not None:
+            return wrap(once[1], WIDTH)
+        entry = entry_at(place, outline.lubrication if ".oil." in place else "")
+        if entry is None:
+            return ()
+        moved = [check.id for check in checks if depends_on(case, check, place)]
+        said = entry.description.partition(". ")[0].rstrip(".")
+        text = f"{said}. {_of_checks(moved, [check.id for check in checks])}"
+        return wrap(text.replace("``", "").strip(), WIDTH)
+
+    head = (
+        f"#:schema {SCHEMA_FILE}",
+        f"# Back-to-back rig {outline.name}. What this file leaves out is worked out by the tool and listed in the",
+        "# report as an assumption with its reason and range; write a key to replace its default.",
+        f"#   rigdesign explain {folder} gearboxes.test.gears.pinion     every key of a part, with its default",
+        f"#   rigdesign check {folder} --fidelity quick                  loads, losses, temperatures, verdict",
+        "",
+    )
+    return "\n".join([*head, *_written(outline, comment)])
+
+
+def _of_checks(moved: Sequence[str], all_checks: Sequence[str]) -> str:
+    """Which checks depend on a key: by name, by topic, or all but a few."""
+    if not moved:
+        return ""
+    if len(moved) <= MOST_NAMED:
+        return f"Checks that depend on it: {', '.join(moved)}."
+    left = [check for check in all_checks if check not in moved]
+    if len(left) <= MOST_NAMED:
+        but = f" but {', '.join(left)}" if left else ""
+        return f"Every check depends on it{but}."
+    topics = dict.fromkeys(check.partition(".")[0] for check in moved)
+    return f"Checks that depend on it: {len(moved)} of {', '.join(topics)}."
+
+
+def _written(outline: Outline, comment: Comment) -> Iterator[str]:
+    for title, path, lines in tables(outline):
+        if title:
+            yield f"# {'-' * 12} {title}"
+        if path:
+            yield f"[{path}]"
+        for key, value in lines:
+            for line in comment(f"{path}.{key}" if path else key):
+                yield f"# {line}"
+            yield f"{key} = {value}"
+        yield ""
+
+
+def _quoted(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
+
+
+def _millimetres(length: float) -> str:
+    return _quoted(f"{1e3 * length:.5g} mm")

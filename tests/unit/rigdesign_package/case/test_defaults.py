@@ -1,0 +1,235 @@
+"""What a case leaves out: defaults are marked, follow the rest of the case, and never touch what is stated."""
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from rigdesign.base.errors import CaseError
+from rigdesign.base.units import parse
+from rigdesign.case import Case, load_case
+from rigdesign.case.defaults.fill import rules, with_defaults
+from rigdesign.case.defaults.rule import BY_THE_TOOL
+from rigdesign.case.loader import changed_together
+from rigdesign.case.shipped import shipped_cases
+from tests.builders.minimal_case import MINIMAL, MOST_LINES, minimal_case
+
+STRUCTURE = ("surfaces", "name", "kind", "held", "speed", "title", "part", "quantity", "source")
+"""Keys inside of a default table that say what it is about."""
+
+
+@pytest.fixture(scope="module")
+def minimal(tmp_path_factory: pytest.TempPathFactory) -> Case:
+    return load_case(minimal_case(tmp_path_factory.mktemp("minimal")))
+
+
+def _paths(tree: Any, path: str = "") -> Iterator[str]:
+    if isinstance(tree, Mapping):
+        for key, value in tree.items():
+            yield from _paths(value, f"{path}.{key}" if path else key)
+    else:
+        yield path
+
+
+def test_the_minimal_case_is_short() -> None:
+    assert len(MINIMAL.splitlines()) <= MOST_LINES
+
+
+@pytest.mark.parametrize("name", shipped_cases())
+def test_shipped_cases_state_everything(name: str) -> None:
+    """A default in one of them would move its results with the tool."""
+    for file in sorted(shipped_cases()[name].glob("*.toml")):
+        case = load_case(file)
+        assert case.origin.tree == case.origin.stated, file
+
+
+def test_every_default_says_that_it_is_one(minimal: Case) -> None:
+    """What the file does not state has a mark of the tool, names inside of default tables aside."""
+    stated = set(_paths(minimal.origin.stated))
+    marks = minimal.origin.mark_of
+    silent = [
+        row.path
+        for row in minimal.inputs
+        if row.path not in stated
+        and row.path.rpartition(".")[2] not in STRUCTURE
+        and not any(mark.basis.startswith((BY_THE_TOOL, f"assumed: {BY_THE_TOOL}")) and _covers(path, row.path)
+                    for path, mark in marks.items())
+    ]  # fmt: skip
+    assert silent == []
+
+
+def _covers(mark: str, path: str) -> bool:
+    return path == mark or path.startswith(f"{mark}.")
+
+
+def test_assumed_numbers_have_a_range_around_them(minimal: Case) -> None:
+    """Settings of the solver, choices and sizes that others depend on have none."""
+    assumed = {record.path: record for record in minimal.assumptions}
+    for key in ("tooth_thinning", "quality_grade", "flank_roughness"):
+        assert assumed[f"gearboxes.test.gears.pinion.{key}"].range is not None
+    ratio = assumed["gearboxes.test.meshes.main.damping_ratio"]
+    assert ratio.range == (0.02, 0.1)
+    assert assumed["gearboxes.test.housing.boundary.rims.film_factor"].range == (0.5, 2.0)
+    assert all(record.range is None for path, record in assumed.items() if path.startswith("numerics."))
+
+
+def test_what_is_stated_is_never_touched(tmp_path: Path) -> None:
+    more = '\n[gearboxes.test.bearing_oil]\noil = "FVA 3A"\n[ambient]\ntemperature = "31 degC"\n'
+    case = load_case(minimal_case(tmp_path, more))
+    filled = with_defaults(case.origin.stated)
+    assert filled["ambient"] == {"temperature": "31 degC"}
+    assert filled["gearboxes"]["test"]["bearing_oil"]["oil"] == "FVA 3A"
+    assert with_defaults(filled) == filled
+
+
+def test_defaults_follow_the_rest_of_the_case(minimal: Case) -> None:
+    faster = minimal.with_value("schedule.test_speed", "3000 rpm")
+    up = next(stage for stage in faster.schedule.stages if stage.name == "run_up")
+    assert up.speed == pytest.approx(parse("3000 rpm", "speed"))
+    assert faster.numerics.curve_speed_end == pytest.approx(1.5 * parse("3000 rpm", "speed"))
+    assert minimal.gearboxes["test"].gears["pinion"].tooth_thinning == pytest.approx(0.015 * 4.5e-3)
+    assert minimal.drivetrain is not None and minimal.drivetrain.motor.torque_limit == pytest.approx(
+        0.1 * 372.6 * 24 / 16, rel=1e-2
+    )
+
+
+def test_a_default_can_be_varied_by_its_path(minimal: Case) -> None:
+    """Also where its whole table is left out; what is beside it stays as it was."""
+    changed = changed_together(
+        minimal,
+        {"gearboxes.test.housing.boundary.rims.film_factor": 0.5, "schedule.stages.run_up.duration": "9 s"},
+    )
+    housing = changed.gearboxes["test"].housing
+    assert housing is not None and housing.boundary["rims"].film_factor == 0.5  # type: ignore[union-attr]
+    assert set(housing.boundary) == set(minimal.gearboxes["test"].housing.boundary)  # type: ignore[union-attr]
+    assert [stage.duration for stage in changed.schedule.stages if stage.name == "run_up"] == [9.0]
+    assert len(changed.schedule.stages) == len(minimal.schedule.stages)
+
+
+def test_one_key_of_a_part_may_be_stated_alone(tmp_path: Path) -> None:
+    """The other shafts, and the other keys of this one, stay those of the tool; a misspelt shaft stays a fault."""
+    more = '\n[drivetrain.shafts.test_wheel]\nmaterial = "structural_steel"\n'
+    power = load_case(minimal_case(tmp_path, more)).drivetrain
+    assert power is not None and len(power.shafts) == 4
+    assert power.shafts["test_wheel"].material == "structural_steel" and power.shafts["test_wheel"].sections
+    with pytest.raises(CaseError, match=r"drivetrain\.shafts"):
+        load_case(minimal_case(tmp_path, more.replace("test_wheel", "test_weel")))
+
+
+def test_bearings_sit_in_their_walls_and_gears_between_them(minimal: Case) -> None:
+    box = minimal.gearboxes["test"]
+    places = [box.bearings[f"pinion_{side}"].position or 0.0 for side in ("front", "rear")]
+    assert places == pytest.approx([0.0, 0.116 + 0.0225])
+    assert box.gears["pinion"].position == pytest.approx(0.5 * sum(places))
+    assert box.housing is not None
+    walls = {name: shaft.lateral_position for name, shaft in box.housing.shafts.items()}
+    assert walls == pytest.approx({"test_pinion": -0.04575, "test_wheel": 0.04575})
+
+
+def test_no_limits_at_all_means_the_standard_set(minimal: Case, tmp_path: Path) -> None:
+    assert minimal.limits.dynamics.dynamic_factor_maximum == 1.5
+    own = "\n[limits.dynamics]\ndynamic_factor_maximum = 1.2\n"
+    alone = load_case(minimal_case(tmp_path, own)).limits
+    assert alone.dynamics.dynamic_factor_maximum == 1.2
+    assert alone.strength.root_safety_minimum is None
+    both = load_case(minimal_case(tmp_path, f"\n[limits]\nstandard_set = true\n{own}")).limits
+    assert both.dynamics.dynamic_factor_maximum == 1.2 and both.strength.root_safety_minimum == 1.4
+
+
+def test_a_dipping_pair_gets_its_sump(tmp_path: Path) -> None:
+    text = MINIMAL.replace(
+        'oil = { oil = "FVA 3", inlet_temperature = "90 degC" }',
+        'oil = { lubrication = "dip", oil = "FVA 3", level = "0 mm", sump_temperature = "90 degC" }',
+    )
+    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+    case = load_case(tmp_path)
+    for name, litres in (("test", 1.51), ("slave", 1.82)):
+        sump = case.gearboxes[name].sump
+        assert sump is not None and 1e3 * sump.volume == pytest.approx(litres, rel=0.05), name
+    assert all(seals.kind == "radial_lip" for box in case.gearboxes.values() for seals in box.seals.values())
+
+
+def test_losses_that_are_given_need_no_drivetrain(tmp_path: Path) -> None:
+    more = (
+        '\n[losses]\nbasis = "input"\n[losses.given.mesh]\ngearbox = "test"\nkind = "mesh"\npart = "main"\n'
+        'power = "900 W"\n'
+    )
+    box = """
+[gearboxes.test.housing.shafts]
+test_pinion = { overhang_front = "0 mm", overhang_rear = "40 mm" }
+test_wheel = { overhang_front = "0 mm", overhang_rear = "40 mm" }
+"""
+    assert load_case(minimal_case(tmp_path, more + box)).drivetrain is None
+
+
+@pytest.mark.parametrize("seed", range(len(MINIMAL.splitlines())))
+def test_any_line_may_be_missing(tmp_path: Path, seed: int) -> None:
+    """A rule that misses what it needs knows no default; the fault names the key that is missing."""
+    lines = MINIMAL.splitlines()
+    (tmp_path / "case.toml").write_text("\n".join(lines[:seed] + lines[seed + 1 :]), encoding="utf-8")
+    try:
+        load_case(tmp_path)
+    except CaseError as error:
+        assert error.faults or "TOML" in str(error)
+
+
+def test_rules_find_their_places() -> None:
+    """Every path of a rule leads to a key of the schema."""
+    from rigdesign.explanation.keys import case_keys, starred
+
+    known = {starred(entry.path) for entry in case_keys()}
+    known |= {path.replace(".*.*", ".*") for path in known}
+    assert [rule.path for rule in rules() if rule.path not in known] == []
+
+
+@pytest.mark.parametrize(
+    ("without", "more", "words"),
+    [
+        ("", "\n[gearboxes.slave.meshes.main]\ndamping = \"1 N s/m\"\ndamping_ratio = 0.05\n", "both of damping and"),
+        ("", "\n[gearboxes.third]\nlike = \"tset\"\n", 'did you mean "test"?'),
+        ("", "\n[gearboxes.third]\nlike = \"fourth\"\n[gearboxes.fourth]\nlike = \"third\"\n", "is like itself"),
+        ("", "\n[gearboxes.third]\nlike = 3\n", "is no name"),
+        ('test_torque = "372.6 N m"\n', "", "schedule.test_torque: a required key is missing"),
+        ('all_bearings = { diameter = "30 mm" }\n', "", "gearboxes.test.bearings: a required key is missing"),
+        ('normal_module = "4.5 mm", ', "", "gearboxes.test.meshes.main.normal_module: a required key is missing"),
+    ],
+)  # fmt: skip
+def test_a_minimal_case_that_contradicts_itself(tmp_path: Path, without: str, more: str, words: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        load_case(minimal_case(tmp_path, more, without=without))
+    assert words in str(caught.value)
+
+
+def test_a_fault_of_equal_parts_is_said_once_where_it_was_written(tmp_path: Path) -> None:
+    text = MINIMAL.replace('diameter = "30 mm"', 'diameter = "30"').replace('"91.5 mm"', '"915 um"')
+    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
+    with pytest.raises(CaseError) as caught:
+        load_case(tmp_path)
+    bearings = [fault.path for fault in caught.value.faults if "bearings" in fault.path and fault.given]
+    assert bearings == ["gearboxes.test.all_bearings.diameter"]
+    assert not any(fault.path.startswith("gearboxes.slave.gears") for fault in caught.value.faults)
+
+
+def test_an_equal_gearbox_takes_over_all_but_its_own(minimal: Case) -> None:
+    test, slave = minimal.gearboxes["test"], minimal.gearboxes["slave"]
+    assert (test.role, slave.role) == ("specimen", "rig")
+    assert slave.housing is None and slave.oil == test.oil
+    assert slave.gears["wheel"].shaft == "slave_wheel" and slave.gears["wheel"].face_width == 0.040
+    assert slave.gears["pinion"].profile_shift == test.gears["pinion"].profile_shift
+    assert {bearing.shaft for bearing in slave.bearings.values()} == {"slave_pinion", "slave_wheel"}
+
+
+def test_shafts_that_are_named_are_renamed(tmp_path: Path) -> None:
+    more = '\n[gearboxes.test.seals.one]\nshaft = "test_pinion"\n[gearboxes.test.seals.two]\nshaft = "test_wheel"\n'
+    seals = load_case(minimal_case(tmp_path, more)).gearboxes["slave"].seals
+    assert {name: seal.shaft for name, seal in seals.items()} == {"one": "slave_pinion", "two": "slave_wheel"}
+
+
+def test_the_locked_power_is_that_of_the_file(minimal: Case) -> None:
+    """2250 rpm and 372.6 N m: 87.8 kW circulate; the default of the jet carries one per cent of it at 10 K."""
+    power = minimal.schedule.test_speed * minimal.schedule.test_torque
+    assert power == pytest.approx(87.8e3, rel=1e-3)
+    jets = minimal.gearboxes["test"].jets
+    assert jets is not None and math.isclose(jets.flow * 870.0 * 2000.0 * 10.0, 0.01 * power, rel_tol=0.01)
