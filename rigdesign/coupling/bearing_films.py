@@ -44,7 +44,8 @@ def solve_bearings(
     loads = bearing_loads(rig, coupling_state)
     for name, box, entry in rig.bearings():
         box_name, part = name.split(".")
-        feed = bearing_feed(rig, box_name, coupling_state.oil_outlet[f"{box_name}.gear_oil"])
+        chamber = coupling_state.oil_outlet[f"{box_name}.gear_oil"]
+        feed = bearing_feed(rig, box_name, chamber, coupling_state.oil_supply)
         with named(f"gearboxes.{box_name}.bearings.{part}"):
             bearing = entry.at_clearance(coupling_state.bearing_clearance[name])
             operation = BearingOperation(

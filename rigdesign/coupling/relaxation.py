@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from rigdesign.coupling.expansion import hot_clearances, uniform_expansion
 from rigdesign.coupling.iteration import SOLVED, IterationParts, IterationResult, PointProblem
+from rigdesign.coupling.oil_circuits import circuit_balances, supplies
 from rigdesign.coupling.state import CouplingState
 from rigdesign.rig.model import Rig
 from rigdesign.rig.oil_supply import bearing_feed, gear_feed, wall_flow
@@ -50,6 +51,7 @@ def next_state(rig: Rig, done: IterationResult, parts: IterationParts = SOLVED) 
             for name, heat in done.wall_heat.items()
         },
         oil_outlet={stream.name: stream.chamber for stream in done.streams},
+        oil_supply=supplies(circuit_balances(rig, done)),
         mesh_torque=torque,
         axial_expansion=axial_expansion,
     )
@@ -92,7 +94,7 @@ def _bearing_capacity(rig: Rig, name: str, state: CouplingState) -> float:
     """Heat capacity flow rho c Q of the oil of one bearing [W/K]; boundless where none is fed (`_without_flow`)."""
     box_name = name.split(".")[0]
     chamber = state.oil_outlet[f"{box_name}.gear_oil"]
-    return _without_flow(bearing_feed(rig, box_name, chamber).capacity_rate)
+    return _without_flow(bearing_feed(rig, box_name, chamber, state.oil_supply).capacity_rate)
 
 
 def _stream_capacity(rig: Rig, name: str, state: CouplingState) -> float:
@@ -101,8 +103,10 @@ def _stream_capacity(rig: Rig, name: str, state: CouplingState) -> float:
     box = rig.case.gearboxes[box_name]
     chamber = state.oil_outlet[f"{box_name}.gear_oil"]
     if kind == "gear_oil":
-        return _without_flow(replace(gear_feed(rig, box_name, chamber), flow=wall_flow(box)).capacity_rate)
-    feed = bearing_feed(rig, box_name, chamber)
+        return _without_flow(
+            replace(gear_feed(rig, box_name, chamber, state.oil_supply), flow=wall_flow(box)).capacity_rate
+        )
+    feed = bearing_feed(rig, box_name, chamber, state.oil_supply)
     return _without_flow(replace(feed, flow=feed.flow * len(box.bearings)).capacity_rate)
 
 
